@@ -1,0 +1,20 @@
+#include "core/canvas.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace farcull {
+
+float depth_scale(const Window& window) {
+  const double reach = std::max(std::abs(window.lo[2]), std::abs(window.hi[2])) + 2;
+  return static_cast<float>(0.25 / reach);
+}
+
+double depth_step(const Window& window, int depth_bits) {
+  // Depths lie in [1/4, 3/4]: the coarsest step of a 32-bit float there is 2^-24, as for 24 bits of
+  // fixed point.
+  (void)depth_bits;
+  return 0x1p-24 / depth_scale(window);
+}
+
+}  // namespace farcull

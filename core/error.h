@@ -1,0 +1,24 @@
+// Errors of the outside world (files, EGL, GL, disk, options): one exception type that says where,
+// why and what to do. Mistakes of the programmer are assertions, uncertainty is a value ("keep the
+// pair"); neither is an Error.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace farcull {
+
+class Error : public std::runtime_error {
+ public:
+  /// where: a file ("mesh.obj"), an option ("--radius") or a GL stage ("store"); reason: what is
+  /// wrong there; remedy: what the user can do next; line: 1-based line of a text file, 0 where
+  /// there is none.
+  Error(std::string where, std::string reason, std::string remedy, long line = 0);
+
+  std::string where;
+  std::string reason;
+  std::string remedy;
+  long line;
+};
+
+}  // namespace farcull

@@ -1,0 +1,63 @@
+// The canvas on OpenGL 4.3: a depth texture, proxies or triangles fetched from storage buffers, and
+// the full-visibility query either as an occlusion query per slot or as a flag that the fragment
+// program raises.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/canvas.h"
+#include "core/gl_context.h"
+
+namespace farcull {
+
+enum class DepthFormat { float32, fixed24 };
+/// flags: asked fragments compare with the stored depth in the shader (float32 only: a comparison
+/// with a texel of a 24-bit texture loses equal depths). occlusion: GL_ANY_SAMPLES_PASSED, many in
+/// flight, as published.
+enum class QueryMode { flags, occlusion };
+
+/// Faults for tests and `farcull doctor`, each applied to the next pass; a pass must notice every
+/// one (assumption A7).
+enum class Fault {
+  none,
+  lost_draw,              // the draw call of a step never runs
+  oversized_dispatch,     // a compute dispatch beyond the device's limit
+  unfinished_invocation,  // a compute invocation ends early
+  lost_query,             // an occlusion query is never issued
+  blind_query,            // the occlusion queries of a batch answer zero
+};
+
+struct GlCanvasOptions {
+  DepthFormat depth_format = DepthFormat::float32;
+  QueryMode query = QueryMode::flags;
+  bool reversed_depth_test = false;  // a deliberate defect, for the twins of the reliability tests
+};
+
+class GlCanvas final : public Canvas {
+ public:
+  /// `mode` and `solid` as in the fattener whose drawables will come. Throws Error where the
+  /// options do not go together or the device refuses. The context must outlive the canvas.
+  GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram& solid,
+           const GlCanvasOptions& options = {});
+  ~GlCanvas() override;
+
+  const RasterLimits& limits() const override;
+  void begin(const Window& window, const Drawables& drawables) override;
+  std::vector<std::uint8_t> run(const Pass& pass) override;
+
+  /// The depths that storing (entry, nearest kept) or asking (exit, farthest kept) leaves in each
+  /// pixel of the window for `draws`; height rows of width values, empty pixels 1 for store and 0
+  /// for ask. For tests and pictures. float32 only.
+  std::vector<float> depths(Verb verb, const std::vector<Draw>& draws);
+
+  void inject(Fault fault);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace farcull

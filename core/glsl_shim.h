@@ -1,0 +1,26 @@
+// Lets a kernel file (*.glsl) compile as C++: the few vector types and functions that kernels use.
+// A kernel says FAR_OUT(t) and FAR_INOUT(t) for its parameters and FAR_PRECISE before a float that
+// no compiler may reassociate; contraction is off for all of farcull (CMakeLists.txt), so both
+// compilations round every operation once.
+#pragma once
+
+#include <cmath>
+
+namespace farcull::glsl {
+
+struct vec2 {
+  float x, y;
+};
+struct vec4 {
+  float x, y, z, w;
+};
+
+inline float min(float a, float b) { return b < a ? b : a; }
+inline float max(float a, float b) { return a < b ? b : a; }
+inline float abs(float a) { return std::fabs(a); }
+
+}  // namespace farcull::glsl
+
+#define FAR_OUT(type) type&
+#define FAR_INOUT(type) type&
+#define FAR_PRECISE

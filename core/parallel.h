@@ -1,0 +1,39 @@
+// Work on all cores in contiguous chunks, so that results can be joined in order.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <exception>
+#include <thread>
+#include <vector>
+
+namespace farcull {
+
+/// Calls work(chunk, begin, end) for `chunks` contiguous parts of 0 .. count - 1, each in a thread
+/// of its own. The first exception of the lowest chunk is thrown again here.
+template <class Work>
+void for_chunks(std::size_t count, std::size_t chunks, const Work& work) {
+  std::vector<std::exception_ptr> failures(chunks);
+  const auto part = [&](std::size_t chunk) {
+    try {
+      work(chunk, count * chunk / chunks, count * (chunk + 1) / chunks);
+    } catch (...) {
+      failures[chunk] = std::current_exception();
+    }
+  };
+  std::vector<std::thread> threads;
+  for (std::size_t chunk = 1; chunk < chunks; ++chunk) threads.emplace_back(part, chunk);
+  part(0);
+  for (std::thread& thread : threads) thread.join();
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+}
+
+/// As many chunks as cores, but none below `least` items.
+inline std::size_t chunks_for(std::size_t count, std::size_t least) {
+  const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+  return std::clamp<std::size_t>(count / std::max<std::size_t>(least, 1), 1, cores);
+}
+
+}  // namespace farcull

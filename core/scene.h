@@ -1,0 +1,74 @@
+// A scene: triangles as flat arrays, grouped into objects. Coordinates are the doubles that were
+// given, never rounded.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace farcull {
+
+using Vec3 = Eigen::Vector3d;
+
+/// A closed axis-aligned box in world units. Empty where lo > hi in some coordinate.
+struct Box {
+  Vec3 lo;
+  Vec3 hi;
+
+  static Box empty();
+  bool is_empty() const { return (lo.array() > hi.array()).any(); }
+  void add(const Vec3& p);
+  void add(const Box& other);
+};
+
+/// True iff the closed boxes share a point (touching counts). Exact: it only compares doubles.
+bool overlap(const Box& a, const Box& b);
+/// The common part of two boxes; empty where they do not overlap.
+Box intersection(const Box& a, const Box& b);
+
+struct Object {
+  std::string name;
+  std::uint32_t first_triangle = 0;  // index into Scene::triangles
+  std::uint32_t triangle_count = 0;  // may be 0
+};
+
+/// Objects own contiguous, ascending, gapless ranges of triangles. Object and triangle order is the
+/// order of the input.
+struct Scene {
+  std::string name;
+  std::vector<Vec3> vertices;  // finite
+  std::vector<std::array<std::uint32_t, 3>>
+      triangles;  // indices into vertices; degenerate ones are kept
+  std::vector<std::uint32_t>
+      source_face;  // per triangle: 0-based face of its file before triangulation
+  std::vector<Object> objects;
+
+  std::array<Vec3, 3> corners(std::uint32_t triangle) const;
+};
+
+/// A pair of triangles of a scene, a < b, as global triangle indices.
+struct TrianglePair {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  auto operator<=>(const TrianglePair&) const = default;
+};
+
+/// Throws Error naming `where` unless every index is in range, every coordinate finite and the
+/// ranges gapless.
+void validate(const Scene& scene, const std::string& where);
+
+std::vector<Box> triangle_boxes(const Scene& scene);
+/// One box per object (empty for an object without triangles), from the triangles, so unused
+/// vertices do not count.
+std::vector<Box> object_boxes(const Scene& scene, std::span<const Box> triangle_boxes);
+/// The object of each triangle.
+std::vector<std::uint32_t> owners(const Scene& scene);
+
+/// 16 hex digits: FNV-1a over object starts, triangles and the bits of all coordinates, in order.
+/// Names do not count.
+std::string scene_hash(const Scene& scene);
+
+}  // namespace farcull

@@ -1,0 +1,47 @@
+// Stores or asks one fragment. FAR_PROXY: depth from the solid's own data (its function stands before this text); entry
+// when storing, exit when asking. FAR_ASK: ask. FAR_FLAGS: an asked fragment compares with the stored depth itself and
+// raises its slot's flag; otherwise the depth test and an occlusion query do.
+uniform ivec4 u_window;  // first pixel and size of the window inside the render target
+uniform vec2 u_centre;   // pixel-space origin inside the render target, an integer
+uniform float u_scale;   // of the depth map
+
+flat in uint v_slot;
+flat in uint v_fixed;
+#ifdef FAR_PROXY
+flat in vec4 v_solid0, v_solid1, v_solid2, v_solid3, v_solid4;
+#endif
+#ifdef FAR_FLAGS
+layout(std430, binding = 2) buffer Flags { uint flags[]; };
+uniform sampler2D u_depth;
+#endif
+
+void main() {
+  ivec2 pixel = ivec2(floor(gl_FragCoord.xy));
+  ivec2 inside = pixel - u_window.xy;
+  bool in_window = all(greaterThanEqual(inside, ivec2(0))) && all(lessThan(inside, u_window.zw));
+  if (!in_window && v_fixed == 0u) discard;
+#ifdef FAR_PROXY
+  float depth;
+  if (v_fixed != 0u) {
+    depth = v_solid4.z;
+  } else {
+    vec2 c = vec2(pixel) + vec2(0.5) - u_centre;
+    float entry, exit;
+    if (!solid_interval(c, v_solid0, v_solid1, v_solid2, v_solid3, v_solid4, entry, exit)) discard;
+#ifdef FAR_ASK
+    precise float z = exit * u_scale;
+#else
+    precise float z = entry * u_scale;
+#endif
+    precise float mapped = 0.5 + z;
+    depth = clamp(mapped, 0.25, 0.75);
+  }
+#else
+  float depth = gl_FragCoord.z;
+#endif
+#ifdef FAR_FLAGS
+  if (depth >= texelFetch(u_depth, pixel, 0).r) flags[v_slot] = 1u;
+#elif defined(FAR_PROXY)
+  gl_FragDepth = depth;
+#endif
+}
