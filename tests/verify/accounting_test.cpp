@@ -1,0 +1,234 @@
+#include "verify/accounting.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <stdexcept>
+
+#include "tests/verify/reference.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+using reference::Triangle;
+using Pairs = std::vector<TrianglePair>;
+
+/// Every class recounted over all pairs, by the reference.
+Accounting recount(const Scene& scene, const Pairs& kept, std::size_t max_examples) {
+  Accounting result;
+  reference::for_each_pair(scene, [&](const TrianglePair& pair, bool overlapping) {
+    ++result.pairs_total;
+    if (std::binary_search(kept.begin(), kept.end(), pair)) {
+      ++result.pairs_kept;
+    } else if (!overlapping) {
+      ++result.certified_by_boxes;
+    } else if (!reference::intersects(scene.corners(pair.a), scene.corners(pair.b))) {
+      ++result.certified_by_predicates;
+    } else {
+      ++result.false_negatives;
+      if (result.examples.size() < max_examples) result.examples.push_back(pair);
+    }
+  });
+  return result;
+}
+
+void expect_equal(const Accounting& a, const Accounting& b) {
+  EXPECT_EQ(a.pairs_total, b.pairs_total);
+  EXPECT_EQ(a.pairs_kept, b.pairs_kept);
+  EXPECT_EQ(a.certified_by_boxes, b.certified_by_boxes);
+  EXPECT_EQ(a.neighbours, b.neighbours);
+  EXPECT_EQ(a.certified_by_predicates, b.certified_by_predicates);
+  EXPECT_EQ(a.false_negatives, b.false_negatives);
+  EXPECT_EQ(a.examples, b.examples);
+  EXPECT_TRUE(a.adds_up());
+}
+
+/// Triangles along the x axis: (x, 0, 0), (x + 1, 0, 0), (x, 1, 0) at height z.
+Triangle tile(double x, double z = 0) { return {Vec3(x, 0, z), Vec3(x + 1, 0, z), Vec3(x, 1, z)}; }
+
+/// Overlaps the box of tile(x) without meeting it.
+Triangle beyond_the_hypotenuse(double x) {
+  return {Vec3(x + 1, 1, 0), Vec3(x + 0.75, 1, 0), Vec3(x + 1, 0.75, 0)};
+}
+
+/// 0, 1: tiles; 2 meets 0; 3 overlaps the box of 1 only; 4 is far from everything.
+Scene example() {
+  return reference::scene_of(
+      {{tile(0), tile(8)}, {tile(0.5), beyond_the_hypotenuse(8)}, {}, {tile(100)}});
+}
+
+TEST(Accounting, PutsEachPairInItsClass) {
+  const Accounting a = account(example(), Pairs{{0, 2}});
+  EXPECT_EQ(a.pairs_total, 8u);  // 2 * 2 + 4 * 1
+  EXPECT_EQ(a.pairs_kept, 1u);
+  EXPECT_EQ(a.certified_by_predicates, 1u);
+  EXPECT_EQ(a.certified_by_boxes, 6u);
+  EXPECT_EQ(a.neighbours, 0u);
+  EXPECT_EQ(a.false_negatives, 0u);
+  EXPECT_TRUE(a.examples.empty());
+  EXPECT_TRUE(a.adds_up());
+  EXPECT_GE(a.ms, 0);
+}
+
+TEST(Accounting, ADroppedCollidingPairIsTheOneFalseNegative) {
+  const Accounting a = account(example(), {});
+  EXPECT_EQ(a.false_negatives, 1u);
+  EXPECT_EQ(a.examples, (Pairs{{0, 2}}));
+  EXPECT_TRUE(a.adds_up());
+}
+
+TEST(Accounting, ADroppedHarmlessPairIsCertifiedByPredicates) {
+  const Accounting with = account(example(), Pairs{{0, 2}, {1, 3}});
+  const Accounting without = account(example(), Pairs{{0, 2}});
+  EXPECT_EQ(with.certified_by_predicates, 0u);
+  EXPECT_EQ(without.certified_by_predicates, 1u);
+  EXPECT_EQ(with.pairs_kept, 2u);
+  EXPECT_EQ(with.false_negatives + without.false_negatives, 0u);
+}
+
+TEST(Accounting, AKeptPairIsKeptWhateverItsBoxes) {
+  const Accounting a = account(example(), Pairs{{0, 2}, {0, 4}});
+  EXPECT_EQ(a.pairs_kept, 2u);
+  EXPECT_EQ(a.certified_by_boxes, 5u);
+  EXPECT_TRUE(a.adds_up());
+}
+
+TEST(Accounting, TouchingBoxesOverlap) {
+  // A corner shared by two boxes whose triangles do not reach it, and one where both do.
+  const Triangle away = {Vec3(1, 2, 0), Vec3(2, 1, 0), Vec3(2, 2, 0)};
+  const Accounting boxes = account(reference::scene_of({{tile(0)}, {away}}), {});
+  EXPECT_EQ(boxes.certified_by_predicates, 1u);
+  const Accounting corner = account(reference::scene_of({{tile(0)}, {tile(1)}}), {});
+  EXPECT_EQ(corner.false_negatives, 1u);
+  const double past = std::nextafter(1.0, 2.0);
+  const Accounting apart = account(reference::scene_of({{tile(0)}, {tile(past)}}), {});
+  EXPECT_EQ(apart.certified_by_boxes, 1u);
+}
+
+TEST(Accounting, NothingToAccountFor) {
+  for (const Scene& scene : {Scene{}, reference::scene_of({{}, {}}),
+                             reference::scene_of({{}, {tile(0), tile(0)}, {}})}) {
+    const Accounting a = account(scene, {});
+    EXPECT_EQ(a.pairs_total, 0u);
+    expect_equal(a, Accounting{});
+  }
+}
+
+TEST(Accounting, DoesNotAddUpWhenAClassIsWrong) {
+  Accounting a = account(example(), {});
+  ASSERT_TRUE(a.adds_up());
+  ++a.certified_by_boxes;
+  EXPECT_FALSE(a.adds_up());
+}
+
+TEST(Accounting, ReturnsTheFirstExamplesInSortedOrder) {
+  const std::vector<Triangle> copies(40, tile(0));
+  const Scene scene = reference::scene_of({copies, copies});
+  EXPECT_EQ(account(scene, {}).examples.size(), 10u);
+  EXPECT_EQ(account(scene, {}, 0).examples.size(), 0u);
+  const Accounting a = account(scene, Pairs{{0, 40}}, 3);
+  EXPECT_EQ(a.examples, (Pairs{{0, 41}, {0, 42}, {0, 43}}));
+  EXPECT_EQ(a.false_negatives, 1599u);
+}
+
+// Overlapping pairs are decided in portions of 2^18.
+TEST(Accounting, CountsMoreOverlapsThanOnePortion) {
+  const std::vector<Triangle> copies(700, tile(0));
+  const Scene scene = reference::scene_of({copies, copies, {tile(0.5), beyond_the_hypotenuse(0)}});
+  const Accounting a = account(scene, Pairs{{0, 701}}, 2);
+  EXPECT_EQ(a.pairs_total, 490'000u + 2 * 1400u);
+  EXPECT_EQ(a.false_negatives, 490'000u + 1400u - 1);
+  EXPECT_EQ(a.certified_by_predicates, 1400u);
+  EXPECT_EQ(a.examples, (Pairs{{0, 700}, {0, 702}}));
+  EXPECT_TRUE(a.adds_up());
+}
+
+TEST(Accounting, RefusesWhatItWouldMiscount) {
+  const Scene scene = example();
+  EXPECT_THROW(account(scene, Pairs{{0, 3}, {0, 2}}), std::logic_error);  // unsorted
+  EXPECT_THROW(account(scene, Pairs{{0, 2}, {0, 2}}), std::logic_error);  // twice
+  EXPECT_THROW(account(scene, Pairs{{2, 0}}), std::logic_error);          // b < a
+  EXPECT_THROW(account(scene, Pairs{{0, 1}}), std::logic_error);          // one object
+  EXPECT_THROW(account(scene, Pairs{{0, 5}}), std::logic_error);          // out of range
+  Scene gap = scene;
+  gap.objects[1].first_triangle = 3;
+  EXPECT_THROW(account(gap, {}), std::logic_error);
+  Scene uncovered = scene;
+  uncovered.objects.pop_back();
+  EXPECT_THROW(account(uncovered, {}), std::logic_error);
+}
+
+TEST(Accounting, HoldsAtTheEndsOfTheDoubles) {
+  constexpr double kMax = std::numeric_limits<double>::max();
+  constexpr double kTiny = std::numeric_limits<double>::denorm_min();
+  std::vector<Triangle> wild;
+  for (const double s : {kTiny, 1e-300, 1.0, 1e300, kMax}) {
+    wild.push_back({Vec3(-s, 0, 0), Vec3(s, 0, -0.0), Vec3(0, s, s)});
+    wild.push_back({Vec3(s, s, s), Vec3(s, s, s), Vec3(-s, -s, -s)});
+    wild.push_back({Vec3(s, s, kTiny), Vec3(s, s, kTiny), Vec3(s, s, kTiny)});
+  }
+  const Scene scene = reference::scene_of({wild, wild, {wild.rbegin(), wild.rend()}});
+  expect_equal(account(scene, {}), recount(scene, {}, 10));
+}
+
+RC_GTEST_PROP(AccountingProperty, EachClassAsRecountedOverAllPairs, ()) {
+  const int object_count = *rc::gen::inRange(0, 7);
+  const int extent = *rc::gen::inRange(1, 7);
+  std::mt19937 random(*rc::gen::arbitrary<unsigned>());
+  std::vector<std::vector<Triangle>> objects(object_count);
+  for (auto& triangles : objects) {
+    triangles.resize(random() % 4 == 0 ? 0 : random() % 60);
+    for (Triangle& t : triangles) {
+      const Vec3 corner(random() % extent, random() % extent, random() % extent);
+      for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
+    }
+  }
+  const Scene scene = reference::scene_of(objects);
+  const unsigned keep_one_in = *rc::gen::inRange(1, 6);
+  Pairs kept;  // of all pairs, so that some have disjoint boxes
+  reference::for_each_pair(scene, [&](const TrianglePair& pair, bool) {
+    if (random() % keep_one_in == 0) kept.push_back(pair);
+  });
+  const std::size_t max_examples = *rc::gen::inRange(0, 12);
+  expect_equal(account(scene, kept, max_examples), recount(scene, kept, max_examples));
+  RC_ASSERT(!::testing::Test::HasFailure());
+}
+
+// Two joins that share nothing but the definition: what one loses the other shows. Large enough for
+// many levels of both.
+TEST(Accounting, AgreesWithTheBoxJoinOnLargeScenes) {
+  for (const int object_count : {2, 5, 400}) {
+    std::mt19937 random(object_count);
+    std::vector<std::vector<Triangle>> objects(object_count);
+    for (auto& triangles : objects) {
+      triangles.resize(12'000 / object_count);
+      for (Triangle& t : triangles) {
+        const Vec3 corner(random() % 50, random() % 50, random() % 50);
+        for (Vec3& p : t) p = corner + Vec3(random() % 4, random() % 4, random() % 4);
+      }
+    }
+    const Scene scene = reference::scene_of(objects);
+    const ExactResult exact = all_colliding_pairs(scene);
+    ASSERT_GT(exact.pairs.size(), 100u);
+    const Accounting all_kept = account(scene, exact.pairs);
+    EXPECT_EQ(all_kept.false_negatives, 0u);
+    EXPECT_EQ(all_kept.pairs_kept + all_kept.certified_by_predicates, exact.box_pairs);
+    EXPECT_TRUE(all_kept.adds_up());
+
+    Pairs dropped_one = exact.pairs;
+    const TrianglePair victim = dropped_one[dropped_one.size() / 2];
+    dropped_one.erase(dropped_one.begin() + dropped_one.size() / 2);
+    const Accounting missing = account(scene, dropped_one);
+    EXPECT_EQ(missing.false_negatives, 1u);
+    EXPECT_EQ(missing.examples, Pairs{victim});
+    EXPECT_TRUE(missing.adds_up());
+  }
+}
+
+}  // namespace
+}  // namespace farcull

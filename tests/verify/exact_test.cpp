@@ -1,0 +1,474 @@
+#include "verify/exact.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+
+#include "tests/verify/reference.h"
+
+namespace farcull {
+namespace {
+
+using reference::Triangle;
+
+constexpr double kTiny = std::numeric_limits<double>::denorm_min();
+constexpr double kMax = std::numeric_limits<double>::max();
+constexpr std::array<std::array<int, 3>, 6> kPermutations = {
+    {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+
+std::string text(const Triangle& a, const Triangle& b) {
+  const Eigen::IOFormat format(Eigen::FullPrecision, Eigen::DontAlignCols, ", ", ", ", "", "", "{",
+                               "}");
+  std::ostringstream out;
+  for (const Triangle& t : {a, b}) {
+    for (const Vec3& p : t) out << p.transpose().format(format);
+    out << ' ';
+  }
+  return out.str();
+}
+
+double up(double x) { return std::nextafter(x, kMax); }
+double down(double x) { return std::nextafter(x, -kMax); }
+
+Triangle segment(const Vec3& a, const Vec3& b) { return {a, b, a}; }
+Triangle single_point(const Vec3& a) { return {a, a, a}; }
+
+Triangle reordered(const Triangle& t, const std::array<int, 3>& order) {
+  return {t[order[0]], t[order[1]], t[order[2]]};
+}
+
+Triangle with_axes(const Triangle& t, const std::array<int, 3>& axes) {
+  Triangle result;
+  for (int i = 0; i < 3; ++i) result[i] = {t[i][axes[0]], t[i][axes[1]], t[i][axes[2]]};
+  return result;
+}
+
+/// The answer, under every order of arguments and corners and every permutation of axes, and the
+/// reference's.
+void expect_intersects(bool expected, const Triangle& a, const Triangle& b) {
+  EXPECT_EQ(reference::intersects(a, b), expected) << "the reference: " << text(a, b);
+  for (const auto& axes : kPermutations) {
+    for (const auto& i : kPermutations) {
+      for (const auto& j : kPermutations) {
+        const Triangle s = with_axes(reordered(a, i), axes);
+        const Triangle t = with_axes(reordered(b, j), axes);
+        EXPECT_EQ(intersects(s, t), expected) << text(s, t);
+        EXPECT_EQ(intersects(t, s), expected) << text(t, s);
+      }
+    }
+  }
+}
+
+const Triangle kUnit = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
+
+TEST(Shape, SeesPointsSegmentsAndTriangles) {
+  EXPECT_EQ(shape(kUnit), Shape::triangle);
+  EXPECT_EQ(shape(single_point({1, 2, 3})), Shape::point);
+  EXPECT_EQ(shape({Vec3(0.0, -0.0, 0.0), Vec3(-0.0, 0.0, 0.0), Vec3(0, 0, 0)}), Shape::point);
+  EXPECT_EQ(shape({Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(kTiny, 0, 0)}), Shape::segment);
+  EXPECT_EQ(shape({Vec3(1, 1, 1), Vec3(3, 3, 3), Vec3(2, 2, 2)}), Shape::segment);
+  EXPECT_EQ(shape({Vec3(1, 1, 1), Vec3(3, 3, 3), Vec3(2, 2, up(2))}), Shape::triangle);
+}
+
+TEST(Shape, IsExactWhereProductsUnderflowOrOverflow) {
+  EXPECT_EQ(shape({Vec3(0, 0, 0), Vec3(kTiny, 0, 0), Vec3(0, kTiny, 0)}), Shape::triangle);
+  EXPECT_EQ(shape({Vec3(0, 0, 0), Vec3(kTiny, kTiny, 0), Vec3(3 * kTiny, 3 * kTiny, 0)}),
+            Shape::segment);
+  EXPECT_EQ(shape({Vec3(-kMax, -kMax, -kMax), Vec3(0, 0, 0), Vec3(kMax, kMax, kMax)}),
+            Shape::segment);
+  EXPECT_EQ(shape({Vec3(-kMax, -kMax, -kMax), Vec3(0, 0, kTiny), Vec3(kMax, kMax, kMax)}),
+            Shape::triangle);
+  EXPECT_EQ(shape({Vec3(1e300, 0, 0), Vec3(0, 1e300, 0), Vec3(0, 0, 1e-300)}), Shape::triangle);
+}
+
+TEST(Intersects, CrossingTriangles) {
+  expect_intersects(true, kUnit, {Vec3(1, 1, -1), Vec3(1, 1, 1), Vec3(9, 9, 1)});
+  expect_intersects(true, kUnit, {Vec3(1, -1, -1), Vec3(1, -1, 1), Vec3(1, 9, 0)});
+  expect_intersects(false, kUnit, {Vec3(3, 3, -1), Vec3(3, 3, 1), Vec3(9, 9, 1)});
+}
+
+TEST(Intersects, TouchingCounts) {
+  // Corner to corner, corner to edge, corner to face, edge across edge, edge along edge.
+  expect_intersects(true, kUnit, {Vec3(0, 0, 0), Vec3(-1, 0, 1), Vec3(0, -1, 1)});
+  expect_intersects(true, kUnit, {Vec3(2, 2, 0), Vec3(4, 4, 1), Vec3(4, 4, 2)});
+  expect_intersects(true, kUnit, {Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(2, 1, 1)});
+  expect_intersects(true, kUnit, {Vec3(1, 0, -1), Vec3(1, 0, 1), Vec3(1, -5, 0)});
+  expect_intersects(true, kUnit, {Vec3(1, 0, 0), Vec3(3, 0, 0), Vec3(2, -1, 3)});
+}
+
+TEST(Intersects, OneUlpDecides) {
+  const auto standing = [](double z) {
+    return Triangle{Vec3(1, 1, z), Vec3(1, 1, z + 1), Vec3(2, 1, z + 1)};
+  };
+  const Triangle plate = {Vec3(0, 0, 1), Vec3(4, 0, 1), Vec3(0, 4, 1)};
+  expect_intersects(true, plate, standing(down(1)));
+  expect_intersects(true, plate, standing(1));
+  expect_intersects(false, plate, standing(up(1)));
+  // The hypotenuse x + y = 4 against a corner just beyond, on and inside it.
+  const auto corner = [](double x) {
+    return Triangle{Vec3(x, 2, 0), Vec3(5, 5, 0), Vec3(5, 4, 0)};
+  };
+  expect_intersects(true, kUnit, corner(down(2)));
+  expect_intersects(true, kUnit, corner(2));
+  expect_intersects(false, kUnit, corner(up(2)));
+}
+
+TEST(Intersects, CoplanarTriangles) {
+  const auto at = [](double x, double y, double size) {
+    return Triangle{Vec3(x, y, 0), Vec3(x + size, y, 0), Vec3(x, y + size, 0)};
+  };
+  expect_intersects(true, kUnit, kUnit);
+  expect_intersects(true, kUnit, at(1, 1, 1));                                      // inside
+  expect_intersects(true, kUnit, at(-9, -9, 40));                                   // around
+  expect_intersects(true, kUnit, at(1, 1, 40));                                     // across
+  expect_intersects(true, kUnit, {Vec3(3, 3, 0), Vec3(3, -1, 0), Vec3(-1, 3, 0)});  // star
+  expect_intersects(true, kUnit, at(4, 0, 1));                                      // corner
+  expect_intersects(true, kUnit, {Vec3(1, 3, 0), Vec3(3, 1, 0), Vec3(4, 4, 0)});    // edge
+  expect_intersects(false, kUnit, at(4, 1, 1));
+  expect_intersects(false, kUnit, {Vec3(0, 0, 1), Vec3(4, 0, 1), Vec3(0, 4, 1)});  // parallel
+}
+
+TEST(Intersects, DegenerateTrianglesAreSegmentsAndPoints) {
+  const Triangle diagonal = segment({0, 0, 0}, {4, 4, 4});
+  expect_intersects(true, diagonal, segment({0, 4, 0}, {4, 0, 4}));     // crossing inside
+  expect_intersects(true, diagonal, segment({2, 2, 2}, {0, 9, 0}));     // end on inside
+  expect_intersects(true, diagonal, segment({4, 4, 4}, {5, 0, 0}));     // end on end
+  expect_intersects(true, diagonal, segment({3, 3, 3}, {9, 9, 9}));     // collinear, overlapping
+  expect_intersects(true, diagonal, segment({-1, -1, -1}, {9, 9, 9}));  // collinear, around
+  expect_intersects(true, diagonal, segment({4, 4, 4}, {9, 9, 9}));     // collinear, touching
+  expect_intersects(false, diagonal, segment({up(4), up(4), up(4)}, {9, 9, 9}));
+  expect_intersects(false, diagonal, segment({0, 4, 0}, {4, 0, up(4)}));  // skew by one ulp
+  expect_intersects(false, diagonal, segment({1, 0, 0}, {5, 4, 4}));      // parallel
+  expect_intersects(false, diagonal, segment({5, 6, 5}, {6, 5, 6}));  // coplanar, beyond the end
+  expect_intersects(true, diagonal, single_point({3, 3, 3}));
+  expect_intersects(true, diagonal, single_point({4, 4, 4}));
+  expect_intersects(false, diagonal, single_point({up(4), up(4), up(4)}));
+  expect_intersects(false, diagonal, single_point({3, 3, down(3)}));
+  expect_intersects(true, single_point({1, 2, 3}), single_point({1, 2, 3}));
+  expect_intersects(true, single_point({0.0, -0.0, 0.0}), single_point({-0.0, 0.0, -0.0}));
+  expect_intersects(false, single_point({1, 2, 3}), single_point({1, 2, up(3)}));
+  // A segment given by three different corners, the middle one first: its ends are the outer two.
+  expect_intersects(true, {Vec3(2, 2, 2), Vec3(0, 0, 0), Vec3(4, 4, 4)}, single_point({3, 3, 3}));
+}
+
+TEST(Intersects, DegenerateAgainstTriangle) {
+  expect_intersects(true, kUnit, segment({1, 1, -1}, {1, 1, 1}));           // through the face
+  expect_intersects(true, kUnit, segment({1, 1, 0}, {1, 1, 1}));            // end on the face
+  expect_intersects(true, kUnit, segment({0, 0, -1}, {0, 0, 1}));           // through a corner
+  expect_intersects(true, kUnit, segment({2, 2, -1}, {2, 2, 1}));           // through an edge
+  expect_intersects(false, kUnit, segment({2, up(2), -1}, {2, up(2), 1}));  // just past the edge
+  expect_intersects(false, kUnit, segment({1, 1, kTiny}, {1, 1, 1}));       // just above the face
+  expect_intersects(true, kUnit, segment({1, 1, 0}, {2, 1, 0}));            // coplanar, inside
+  expect_intersects(true, kUnit, segment({-1, 1, 0}, {9, 1, 0}));           // coplanar, across
+  expect_intersects(true, kUnit, segment({-3, 0, 0}, {9, 0, 0}));      // coplanar, along an edge
+  expect_intersects(true, kUnit, segment({0, 8, 0}, {0, 4, 0}));       // coplanar, to a corner
+  expect_intersects(false, kUnit, segment({0, 8, 0}, {0, up(4), 0}));  // one ulp before it
+  expect_intersects(false, kUnit, segment({5, 0, 0}, {0, 5, 0}));      // coplanar, beside
+  expect_intersects(true, kUnit, single_point({1, 1, 0}));
+  expect_intersects(true, kUnit, single_point({4, 0, 0}));
+  expect_intersects(true, kUnit, single_point({2, 2, 0}));
+  expect_intersects(false, kUnit, single_point({2, up(2), 0}));
+  expect_intersects(false, kUnit, single_point({1, 1, -kTiny}));
+}
+
+TEST(Intersects, CoordinatesAtTheEndsOfTheDoubles) {
+  for (const double s : {kTiny, 0x1p-1000, 0x1p-340, 0x1p330, 0x1p500, 0x1p1020}) {
+    const auto scaled = [s](const Triangle& t) { return Triangle{s * t[0], s * t[1], s * t[2]}; };
+    expect_intersects(true, scaled(kUnit), scaled({Vec3(1, 1, -1), Vec3(1, 1, 1), Vec3(9, 9, 1)}));
+    expect_intersects(false, scaled(kUnit), scaled({Vec3(3, 3, -1), Vec3(3, 3, 1), Vec3(9, 9, 1)}));
+    expect_intersects(true, scaled(kUnit), scaled(segment({2, 2, -1}, {2, 2, 1})));
+    expect_intersects(false, scaled(kUnit), scaled(segment({2, 3, -1}, {2, 3, 1})));
+    expect_intersects(true, scaled(segment({0, 0, 0}, {4, 4, 4})),
+                      scaled(segment({0, 4, 0}, {4, 0, 4})));
+  }
+  // Huge and subnormal in one pair: a plate of 1e300 with a needle's tip on it, then just above it.
+  const Triangle plate = {Vec3(-1e300, -1e300, 0), Vec3(1e300, -1e300, -0.0), Vec3(0, 1e300, 0)};
+  expect_intersects(true, plate, {Vec3(0, 0, -0.0), Vec3(0, 1, 1e300), Vec3(1, 0, 1e300)});
+  expect_intersects(false, plate, {Vec3(0, 0, kTiny), Vec3(0, 1, 1e300), Vec3(1, 0, 1e300)});
+  const Triangle all = {Vec3(-kMax, -kMax, -kMax), Vec3(kMax, kMax, kMax), Vec3(kMax, -kMax, 0)};
+  expect_intersects(true, all, single_point({0, 0, 0}));
+  expect_intersects(false, all, single_point({0, kTiny, 0}));
+}
+
+/// All triangles with corners in the list, each set of corners once.
+std::vector<Triangle> all_triangles(const std::vector<Vec3>& corners) {
+  std::vector<Triangle> result;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    for (std::size_t j = i; j < corners.size(); ++j) {
+      for (std::size_t k = j; k < corners.size(); ++k) {
+        result.push_back({corners[i], corners[j], corners[k]});
+      }
+    }
+  }
+  return result;
+}
+
+void expect_all_pairs_as_reference(const std::vector<Vec3>& corners) {
+  std::mt19937 random(20240601);  // varies the order of corners, on which CGAL's cases depend
+  const std::vector<Triangle> triangles = all_triangles(corners);
+  for (const Triangle& s : triangles) {
+    for (const Triangle& t : triangles) {
+      const Triangle a = reordered(s, kPermutations[random() % 6]);
+      const Triangle b = reordered(t, kPermutations[random() % 6]);
+      ASSERT_EQ(intersects(a, b), reference::intersects(a, b)) << text(a, b);
+    }
+  }
+}
+
+TEST(Intersects, EveryPairOnAPlanarGridUprightAndOblique) {
+  for (int plane = 0; plane < 4; ++plane) {
+    std::vector<Vec3> corners;
+    for (double x = 0; x < 3; ++x) {
+      for (double y = 0; y < 3; ++y) {
+        corners.push_back(plane == 0   ? Vec3(x, y, 1)
+                          : plane == 1 ? Vec3(1, x, y)
+                          : plane == 2 ? Vec3(y, 1, x)
+                                       : Vec3(x, y, 2 * x - y));
+      }
+    }
+    expect_all_pairs_as_reference(corners);
+  }
+}
+
+TEST(Intersects, EveryPairOnTheCornersAndCentreOfACube) {
+  std::vector<Vec3> corners = {{1, 1, 1}};
+  for (int i = 0; i < 8; ++i) corners.push_back(2 * Vec3(i & 1, i >> 1 & 1, i >> 2));
+  expect_all_pairs_as_reference(corners);
+}
+
+TEST(Intersects, RandomPairsOnSmallGrids) {
+  std::mt19937 random(7);
+  std::array<int, 2> answers = {0, 0};
+  for (int n = 0; n < 300'000; ++n) {
+    const int size = 2 + n % 5;
+    std::array<Triangle, 2> pair;
+    for (Triangle& t : pair) {
+      for (Vec3& p : t) p = Vec3(random() % size, random() % size, random() % size);
+    }
+    const bool expected = reference::intersects(pair[0], pair[1]);
+    ASSERT_EQ(intersects(pair[0], pair[1]), expected) << text(pair[0], pair[1]);
+    ++answers[expected];
+  }
+  EXPECT_GT(answers[0], 50'000);
+  EXPECT_GT(answers[1], 50'000);
+}
+
+// Any finite double is as likely as any other, so coordinates of one pair differ by hundreds of
+// orders of magnitude; corners put on an edge or at a rounded mean of the other's make about half
+// of the pairs meet.
+TEST(Intersects, RandomPairsOfArbitraryBits) {
+  std::mt19937_64 random(13);
+  std::array<int, 2> answers = {0, 0};
+  for (int n = 0; n < 2'000; ++n) {
+    std::array<Triangle, 2> pair;
+    for (Triangle& t : pair) {
+      for (Vec3& p : t) {
+        for (int axis = 0; axis < 3; ++axis) {
+          do {
+            p[axis] = std::bit_cast<double>(random());
+          } while (!std::isfinite(p[axis]));
+        }
+      }
+    }
+    auto& [a, b] = pair;
+    if (n % 3 == 0) b[0] = a[1];
+    if (n % 4 == 0) b[1] = a[0] / 2 + a[2] / 2;
+    if (n % 5 == 0) b[2] = b[1];
+    if (n % 7 == 0) b[0] = a[0] / 4 + a[1] / 4 + a[2] / 2;
+    const bool expected = reference::intersects(a, b);
+    ASSERT_EQ(intersects(a, b), expected) << text(a, b);
+    ++answers[expected];
+  }
+  EXPECT_GT(answers[0], 500);
+  EXPECT_GT(answers[1], 500);
+}
+
+/// Twelve or so values that meet in all combinations: equal and nearly equal, huge and subnormal.
+rc::Gen<double> extreme_coordinate() {
+  return rc::gen::map(
+      rc::gen::pair(rc::gen::inRange(-3, 4),
+                    rc::gen::element(-1074, -1022, -538, -341, -1, 0, 0, 0, 341, 511, 1021)),
+      [](const std::pair<int, int>& x) { return std::ldexp(x.first, x.second); });
+}
+
+/// Tenths (which are rounded) and their neighbours: planes and lines missed by an ulp.
+rc::Gen<double> nearly_grid_coordinate() {
+  return rc::gen::map(rc::gen::pair(rc::gen::inRange(-4, 5), rc::gen::inRange(-1, 2)),
+                      [](const std::pair<int, int>& x) {
+                        const double tenth = x.first * 0.1;
+                        return x.second == 0 ? tenth : x.second < 0 ? down(tenth) : up(tenth);
+                      });
+}
+
+Triangle generated(const rc::Gen<double>& coordinate) {
+  Triangle t;
+  for (Vec3& p : t) {
+    for (int axis = 0; axis < 3; ++axis) p[axis] = *coordinate;
+  }
+  return t;
+}
+
+void check_pair_and_its_symmetries(const Triangle& a, const Triangle& b) {
+  const bool expected = reference::intersects(a, b);
+  const auto axes = *rc::gen::elementOf(kPermutations);
+  const auto i = *rc::gen::elementOf(kPermutations);
+  const auto j = *rc::gen::elementOf(kPermutations);
+  RC_ASSERT(intersects(a, b) == expected);
+  RC_ASSERT(intersects(b, a) == expected);
+  RC_ASSERT(intersects(with_axes(reordered(a, i), axes), with_axes(reordered(b, j), axes)) ==
+            expected);
+}
+
+void check_many_pairs(const rc::Gen<double>& coordinate) {
+  for (int n = 0; n < 20; ++n) {
+    const Triangle a = generated(coordinate);
+    Triangle b = generated(coordinate);
+    if (*rc::gen::arbitrary<bool>()) b[0] = a[1];                 // touch at a corner
+    if (*rc::gen::arbitrary<bool>()) b[2] = b[1];                 // a segment
+    if (*rc::gen::arbitrary<bool>()) b[1] = a[0] / 2 + a[2] / 2;  // on (or an ulp off) an edge
+    check_pair_and_its_symmetries(a, b);
+  }
+}
+
+RC_GTEST_PROP(IntersectsProperty, AsTheReferenceOnTheIntegerGrid, ()) {
+  check_many_pairs(
+      rc::gen::map(rc::gen::inRange(-2, 3), [](int x) { return static_cast<double>(x); }));
+}
+
+RC_GTEST_PROP(IntersectsProperty, AsTheReferenceAnUlpOffTheGrid, ()) {
+  check_many_pairs(nearly_grid_coordinate());
+}
+
+RC_GTEST_PROP(IntersectsProperty, AsTheReferenceFromSubnormalToHuge, ()) {
+  check_many_pairs(extreme_coordinate());
+}
+
+TEST(Exact, CountsDegenerateTriangles) {
+  EXPECT_EQ(degenerate_triangles(Scene{}), 0u);
+  const Scene scene = reference::scene_of(
+      {{kUnit, single_point({1, 1, 1})}, {}, {segment({0, 0, 0}, {1, 0, 0}), kUnit}});
+  EXPECT_EQ(degenerate_triangles(scene), 2u);
+}
+
+TEST(Exact, KeepsTheOrderOfCandidatesWhateverTheThreads) {
+  std::mt19937 random(11);
+  std::vector<Triangle> triangles(60);
+  for (Triangle& t : triangles) {
+    for (Vec3& p : t) p = Vec3(random() % 9, random() % 9, random() % 9);
+  }
+  const Scene scene = reference::scene_of({triangles});
+  std::vector<TrianglePair> candidates(20'000);  // many blocks, in no order, with repetitions
+  for (TrianglePair& pair : candidates) {
+    pair = {static_cast<std::uint32_t>(random() % 60), static_cast<std::uint32_t>(random() % 60)};
+  }
+  std::vector<TrianglePair> expected;
+  for (const TrianglePair& pair : candidates) {
+    if (reference::intersects(triangles[pair.a], triangles[pair.b])) expected.push_back(pair);
+  }
+  ASSERT_GT(expected.size(), 1000u);
+  ASSERT_LT(expected.size(), candidates.size() - 1000);
+  for (const unsigned threads : {0u, 1u, 2u, 7u}) {
+    EXPECT_EQ(colliding_pairs(scene, candidates, threads), expected) << threads;
+  }
+}
+
+TEST(Exact, RefusesCandidatesOutOfRange) {
+  const Scene scene = reference::scene_of({{kUnit}, {kUnit}});
+  EXPECT_THROW(colliding_pairs(scene, std::vector<TrianglePair>{{0, 2}}), std::logic_error);
+  EXPECT_THROW(colliding_pairs(Scene{}, std::vector<TrianglePair>{{0, 0}}), std::logic_error);
+  EXPECT_TRUE(colliding_pairs(scene, {}).empty());
+}
+
+/// Objects of small triangles on a coarse grid: boxes are flat, points, touching and equal again
+/// and again.
+std::vector<std::vector<Triangle>> grid_objects(const std::vector<int>& sizes, int extent, int size,
+                                                unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<std::vector<Triangle>> objects;
+  for (const int count : sizes) {
+    auto& triangles = objects.emplace_back(count);
+    for (Triangle& t : triangles) {
+      const Vec3 corner(random() % extent, random() % extent, random() % extent);
+      for (Vec3& p : t) p = corner + Vec3(random() % size, random() % size, random() % size);
+    }
+  }
+  return objects;
+}
+
+void expect_join_as_brute_force(const Scene& scene) {
+  std::uint64_t box_pairs = 0;
+  std::vector<TrianglePair> expected;
+  reference::for_each_pair(scene, [&](const TrianglePair& pair, bool overlapping) {
+    if (!overlapping) return;
+    ++box_pairs;
+    if (reference::intersects(scene.corners(pair.a), scene.corners(pair.b)))
+      expected.push_back(pair);
+  });
+  const ExactResult result = all_colliding_pairs(scene);
+  EXPECT_EQ(result.box_pairs, box_pairs);
+  EXPECT_EQ(result.pairs, expected);
+}
+
+TEST(BoxJoin, FindsNothingWhereThereIsNothingToJoin) {
+  expect_join_as_brute_force(Scene{});
+  expect_join_as_brute_force(reference::scene_of({{}, {}, {}}));
+  expect_join_as_brute_force(reference::scene_of({{}, {kUnit, kUnit}, {}}));
+}
+
+TEST(BoxJoin, CountsFlatPointAndTouchingBoxes) {
+  const Triangle flat = {Vec3(4, 0, 0), Vec3(4, 4, 0), Vec3(4, 0, 4)};
+  const Scene scene = reference::scene_of(
+      {{kUnit, single_point({4, 0, 0})}, {}, {flat, single_point({4, 0, 0}), kUnit}});
+  const ExactResult result = all_colliding_pairs(scene);
+  EXPECT_EQ(result.box_pairs, 6u);
+  EXPECT_EQ(result.pairs.size(), 6u);
+  expect_join_as_brute_force(scene);
+}
+
+// Overlapping pairs are decided in portions of 2^18.
+TEST(BoxJoin, KeepsEveryPortion) {
+  const Scene scene = reference::scene_of(
+      {std::vector<Triangle>(700, kUnit), {}, std::vector<Triangle>(700, kUnit)});
+  const ExactResult result = all_colliding_pairs(scene);
+  EXPECT_EQ(result.box_pairs, 490'000u);
+  ASSERT_EQ(result.pairs.size(), 490'000u);
+  std::size_t i = 0;
+  reference::for_each_pair(
+      scene, [&](const TrianglePair& pair, bool) { ASSERT_EQ(result.pairs[i++], pair); });
+  EXPECT_GE(result.join_ms, 0);
+  EXPECT_GT(result.predicates_ms, 0);
+}
+
+RC_GTEST_PROP(BoxJoinProperty, AsBruteForceOnDuplicatedCoordinates, ()) {
+  const auto sizes = *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 30));
+  const auto few =
+      std::vector<int>(sizes.begin(), sizes.begin() + std::min<std::size_t>(sizes.size(), 5));
+  const int extent = *rc::gen::inRange(1, 8);
+  const auto seed = *rc::gen::arbitrary<unsigned>();
+  expect_join_as_brute_force(reference::scene_of(grid_objects(few, extent, 3, seed)));
+  RC_ASSERT(!::testing::Test::HasFailure());
+}
+
+// Beyond the cutoff the join divides space; with every coordinate repeated hundreds of times it
+// divides at equal values.
+TEST(BoxJoin, AsBruteForceBeyondTheCutoff) {
+  expect_join_as_brute_force(reference::scene_of(grid_objects({6000, 5000}, 40, 3, 3)));
+  expect_join_as_brute_force(reference::scene_of(grid_objects({3000, 0, 4000, 2500}, 40, 2, 4)));
+  auto flat = grid_objects({5000, 5000}, 400, 3, 5);
+  for (auto& triangles : flat) {
+    for (Triangle& t : triangles) {
+      for (Vec3& p : t) p.z() = 1;
+    }
+  }
+  expect_join_as_brute_force(reference::scene_of(flat));
+}
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,322 @@
+// Every pair of triangles of different objects is met exactly once, alone or in a product, by
+// joining a tree of boxes with itself. The upper levels of the tree divide objects, the lower ones
+// the triangles of one object; so two subtrees that have no node in common below their parent hold
+// different objects, unless one object holds both, where nothing is joined. Two nodes with disjoint
+// boxes settle |a| * |b| pairs at once. Nothing here is rounded: boxes are minima and maxima of the
+// coordinates, and the order in which the tree divides changes the speed, never the answer.
+//
+// Why not a sweep along one axis: it tests every pair that overlaps on that axis, 1.4e8 on two
+// bunnies and all 1.1e10 for bundles of long parallel needles (37 s; the tree 0.07 s on both). The
+// tree is as short to state, and because it counts what it passes over, the classes add up only if
+// no pair was lost.
+#include "verify/accounting.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+constexpr std::uint32_t kLeafSize =
+    4;  // triangles; a trade between nodes and tests of single boxes
+constexpr std::size_t kChunk =
+    1 << 18;  // pairs decided at a time, so that no list of overlaps is ever stored
+constexpr std::uint32_t kNone = 0xffffffff;
+
+struct Bounds {
+  std::array<double, 3> lo;
+  std::array<double, 3> hi;
+};
+
+Bounds empty_bounds() {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  return {{kInf, kInf, kInf}, {-kInf, -kInf, -kInf}};
+}
+
+void include(Bounds& bounds, const Bounds& other) {
+  for (int axis = 0; axis < 3; ++axis) {
+    bounds.lo[axis] = std::min(bounds.lo[axis], other.lo[axis]);
+    bounds.hi[axis] = std::max(bounds.hi[axis], other.hi[axis]);
+  }
+}
+
+bool meet(const Bounds& a, const Bounds& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (a.hi[axis] < b.lo[axis] || b.hi[axis] < a.lo[axis]) return false;
+  }
+  return true;
+}
+
+std::vector<Bounds> bounds_of_triangles(const Scene& scene) {
+  std::vector<Bounds> bounds(scene.triangles.size(), empty_bounds());
+  for (std::uint32_t t = 0; t < bounds.size(); ++t) {
+    for (const Vec3& p : scene.corners(t)) {
+      const std::array<double, 3> corner = {p.x(), p.y(), p.z()};
+      include(bounds[t], {corner, corner});
+    }
+  }
+  return bounds;
+}
+
+struct Node {
+  Bounds bounds = empty_bounds();
+  std::uint32_t first = 0;  // into Tree::order
+  std::uint32_t count = 0;
+  std::uint32_t left = kNone;  // kNone: a leaf
+  std::uint32_t right = kNone;
+  bool one_object = true;
+};
+
+/// Moves the half of the items with the smaller centres to the front, along the axis on which the
+/// centres spread most; returns the middle.
+std::size_t divide(std::span<std::uint32_t> items, const std::vector<Bounds>& bounds) {
+  const auto centre = [&](std::uint32_t item, int axis) {
+    return bounds[item].lo[axis] / 2 +
+           bounds[item].hi[axis] / 2;  // halves first: the sum may overflow
+  };
+  int widest = 0;
+  double spread = -1;
+  for (int axis = 0; axis < 3; ++axis) {
+    double lo = std::numeric_limits<double>::infinity();
+    double hi = -lo;
+    for (const std::uint32_t item : items) {
+      lo = std::min(lo, centre(item, axis));
+      hi = std::max(hi, centre(item, axis));
+    }
+    if (hi / 2 - lo / 2 > spread) {
+      widest = axis;
+      spread = hi / 2 - lo / 2;
+    }
+  }
+  const std::size_t middle = items.size() / 2;
+  std::nth_element(
+      items.begin(), items.begin() + middle, items.end(),
+      [&](std::uint32_t a, std::uint32_t b) { return centre(a, widest) < centre(b, widest); });
+  return middle;
+}
+
+class Tree {
+ public:
+  Tree(const Scene& scene, std::vector<Bounds> triangle_bounds)
+      : scene_(scene), bounds_(std::move(triangle_bounds)) {
+    object_bounds_.assign(scene.objects.size(), empty_bounds());
+    std::vector<std::uint32_t> objects;
+    for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+      const Object& object = scene.objects[o];
+      if (object.triangle_count == 0) continue;
+      objects.push_back(o);
+      for (std::uint32_t i = 0; i < object.triangle_count; ++i) {
+        include(object_bounds_[o], bounds_[object.first_triangle + i]);
+      }
+    }
+    order_.reserve(scene.triangles.size());
+    if (!objects.empty()) root_ = build_objects(objects);
+  }
+
+  /// visit(a, b) for each two triangles of different objects whose bounds meet, in no particular
+  /// order of a and b; returns the number of pairs whose bounds are disjoint.
+  template <typename Visit>
+  std::uint64_t join(Visit& visit) const {
+    return root_ == kNone ? 0 : join_within(nodes_[root_], visit);
+  }
+
+ private:
+  std::uint32_t add(std::uint32_t left, std::uint32_t right, bool one_object) {
+    Node node;
+    node.bounds = nodes_[left].bounds;
+    include(node.bounds, nodes_[right].bounds);
+    node.first = nodes_[left].first;
+    node.count = nodes_[left].count + nodes_[right].count;
+    node.left = left;
+    node.right = right;
+    node.one_object = one_object;
+    nodes_.push_back(node);
+    return static_cast<std::uint32_t>(nodes_.size() - 1);
+  }
+
+  std::uint32_t build_objects(std::span<std::uint32_t> objects) {
+    if (objects.size() > 1) {
+      const std::size_t middle = divide(objects, object_bounds_);
+      const std::uint32_t left = build_objects(objects.first(middle));
+      const std::uint32_t right = build_objects(objects.subspan(middle));
+      return add(left, right, false);
+    }
+    const Object& object = scene_.objects[objects.front()];
+    const auto first = static_cast<std::uint32_t>(order_.size());
+    for (std::uint32_t i = 0; i < object.triangle_count; ++i) {
+      order_.push_back(object.first_triangle + i);
+    }
+    return build_triangles(first, object.triangle_count);
+  }
+
+  std::uint32_t build_triangles(std::uint32_t first, std::uint32_t count) {
+    const std::span<std::uint32_t> items = std::span(order_).subspan(first, count);
+    if (count > kLeafSize) {
+      const auto middle = static_cast<std::uint32_t>(divide(items, bounds_));
+      const std::uint32_t left = build_triangles(first, middle);
+      const std::uint32_t right = build_triangles(first + middle, count - middle);
+      return add(left, right, true);
+    }
+    Node leaf;
+    leaf.first = first;
+    leaf.count = count;
+    for (const std::uint32_t t : items) include(leaf.bounds, bounds_[t]);
+    nodes_.push_back(leaf);
+    return static_cast<std::uint32_t>(nodes_.size() - 1);
+  }
+
+  template <typename Visit>
+  std::uint64_t join_within(const Node& node, Visit& visit) const {
+    if (node.one_object) return 0;
+    const Node& left = nodes_[node.left];
+    const Node& right = nodes_[node.right];
+    return join_within(left, visit) + join_within(right, visit) + join_across(left, right, visit);
+  }
+
+  template <typename Visit>
+  std::uint64_t join_across(const Node& a, const Node& b, Visit& visit) const {
+    if (!meet(a.bounds, b.bounds)) return std::uint64_t{a.count} * b.count;
+    const bool a_is_leaf = a.left == kNone;
+    const bool b_is_leaf = b.left == kNone;
+    if (!a_is_leaf && (b_is_leaf || a.count >= b.count)) {
+      return join_across(nodes_[a.left], b, visit) + join_across(nodes_[a.right], b, visit);
+    }
+    if (!b_is_leaf) {
+      return join_across(a, nodes_[b.left], visit) + join_across(a, nodes_[b.right], visit);
+    }
+    std::uint64_t disjoint = 0;
+    for (std::uint32_t i = a.first; i < a.first + a.count; ++i) {
+      for (std::uint32_t j = b.first; j < b.first + b.count; ++j) {
+        if (meet(bounds_[order_[i]], bounds_[order_[j]])) {
+          visit(order_[i], order_[j]);
+        } else {
+          ++disjoint;
+        }
+      }
+    }
+    return disjoint;
+  }
+
+  const Scene& scene_;
+  std::vector<Bounds> bounds_;  // per triangle
+  std::vector<Bounds> object_bounds_;
+  std::vector<std::uint32_t> order_;  // triangles; each node owns a range
+  std::vector<Node> nodes_;
+  std::uint32_t root_ = kNone;
+};
+
+/// The kept pairs with a lookup: those of triangle a lie in [starts[a], starts[a + 1]).
+class Kept {
+ public:
+  Kept(const Scene& scene, std::span<const TrianglePair> pairs)
+      : pairs_(pairs), starts_(scene.triangles.size() + 1) {
+    std::vector<std::uint32_t> owner(scene.triangles.size(), kNone);
+    for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+      const Object& object = scene.objects[o];
+      for (std::uint64_t i = 0; i < object.triangle_count; ++i) {
+        owner.at(object.first_triangle + i) = o;
+      }
+    }
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const TrianglePair& pair = pairs[i];
+      if (pair.b >= scene.triangles.size())
+        throw std::logic_error("account: kept pair out of range");
+      if (pair.a >= pair.b) throw std::logic_error("account: kept pair without a < b");
+      if (owner[pair.a] == owner[pair.b])
+        throw std::logic_error("account: kept pair of one object");
+      if (i > 0 && !(pairs[i - 1] < pair)) {
+        throw std::logic_error("account: kept pairs unsorted or repeated");
+      }
+      ++starts_[pair.a + 1];
+    }
+    for (std::size_t t = 1; t < starts_.size(); ++t) starts_[t] += starts_[t - 1];
+  }
+
+  bool contains(const TrianglePair& pair) const {
+    const auto from = pairs_.begin();
+    return std::binary_search(from + starts_[pair.a], from + starts_[pair.a + 1], pair);
+  }
+
+ private:
+  std::span<const TrianglePair> pairs_;
+  std::vector<std::size_t> starts_;
+};
+
+/// n (n - 1) / 2 less the same of each object; below 2^63 for 32-bit n.
+std::uint64_t pairs_of_different_objects(const Scene& scene) {
+  std::uint64_t before = 0;
+  std::uint64_t pairs = 0;
+  for (const Object& object : scene.objects) {
+    if (object.first_triangle != before) {
+      throw std::logic_error("account: objects with gaps or overlaps");
+    }
+    pairs += before * object.triangle_count;
+    before += object.triangle_count;
+  }
+  if (before != scene.triangles.size()) {
+    throw std::logic_error("account: triangles without an object");
+  }
+  return pairs;
+}
+
+}  // namespace
+
+bool Accounting::adds_up() const {
+  return pairs_total ==
+         pairs_kept + certified_by_boxes + neighbours + certified_by_predicates + false_negatives;
+}
+
+Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
+                   std::size_t max_examples) {
+  const auto start = std::chrono::steady_clock::now();
+  Accounting result;
+  result.pairs_total = pairs_of_different_objects(scene);
+  const Kept kept_pairs(scene, kept);
+  result.pairs_kept = kept.size();
+
+  std::vector<TrianglePair> chunk;
+  const auto decide = [&] {
+    const std::vector<TrianglePair> missed = colliding_pairs(scene, chunk);
+    result.false_negatives += missed.size();
+    result.certified_by_predicates += chunk.size() - missed.size();
+    chunk.clear();
+    std::vector<TrianglePair>& examples = result.examples;
+    examples.insert(examples.end(), missed.begin(), missed.end());
+    std::sort(examples.begin(), examples.end());
+    examples.resize(std::min(examples.size(), max_examples));
+  };
+  std::uint64_t kept_met = 0;
+  const auto visit = [&](std::uint32_t s, std::uint32_t t) {
+    const TrianglePair pair = {std::min(s, t), std::max(s, t)};
+    if (kept_pairs.contains(pair)) {
+      ++kept_met;
+      return;
+    }
+    chunk.push_back(pair);
+    if (chunk.size() == kChunk) decide();
+  };
+
+  const std::vector<Bounds> bounds = bounds_of_triangles(scene);
+  const std::uint64_t disjoint = Tree(scene, bounds).join(visit);
+  decide();
+  // A kept pair with disjoint boxes is a mistake upstream, but kept it is: it leaves the class that
+  // comes later.
+  const auto kept_disjoint = static_cast<std::uint64_t>(std::count_if(
+      kept.begin(), kept.end(),
+      [&](const TrianglePair& pair) { return !meet(bounds[pair.a], bounds[pair.b]); }));
+  if (kept_met + kept_disjoint != kept.size()) {
+    throw std::logic_error("account: the tree passed over a kept pair whose boxes overlap");
+  }
+  result.certified_by_boxes = disjoint - kept_disjoint;
+  result.ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace farcull
