@@ -1,8 +1,9 @@
 #include "core/budget.h"
 
-#include <bit>
 #include <cmath>
 #include <numbers>
+
+#include "core/view.h"
 
 namespace farcull {
 namespace {
@@ -11,7 +12,6 @@ namespace {
 // 2^-23, not 2^-24.
 constexpr double kUnit = 0x1p-23;
 constexpr double kSqrt2 = std::numbers::sqrt2;
-constexpr double kSqrt3 = std::numbers::sqrt3;
 
 }  // namespace
 
@@ -38,20 +38,17 @@ Budget budget_for(const RasterLimits& limits, int viewport) {
   Budget b;
   b.sampling = kSqrt2 / 2;
   b.input = kSqrt2 * kUnit * half;
-  b.double_ = kSqrt3 * kMaxDoubleError;
-  // docs/budget.md, "vertex": product with 2/viewport (1), division by w (2.5), product with
-  // viewport/2 (1), each relative to M, and the sum with the viewport's centre (1), relative to M +
-  // viewport/2.
-  b.vertex = kSqrt2 * kUnit * (4.5 * half + (half + half));
+  // In the plane sqrt(2) of it; along the depth it adds to the distance from the centre only to second order:
+  // sqrt((s + sqrt(2) e)^2 + e^2) <= s + sqrt(2) e + e^2 / (2 s) with s = sqrt(2)/2 (docs/budget.md, "double").
+  b.double_ = kSqrt2 * kMaxDoubleError + kMaxDoubleError * kMaxDoubleError;
+  // docs/budget.md, "vertex": product with 2/viewport (1), division by w (2.5), product with viewport/2 (1), each
+  // relative to M, and the sum with the viewport's centre (1), relative to M + viewport/2; 4 u for their products.
+  b.vertex = kSqrt2 * kUnit * (4.5 * half + (half + half)) * (1 + 4 * kUnit);
   b.snap = kSqrt2 * std::ldexp(1.0, -limits.subpixel_bits);
   b.offset = 0;
   return b;
 }
 
 double published_radius(double depth_step) { return 0.5 * std::sqrt(2 + depth_step * depth_step); }
-
-int viewport_side(int window) {
-  return static_cast<int>(std::bit_ceil(static_cast<unsigned>(window + 2 * kBorder)));
-}
 
 }  // namespace farcull

@@ -6,17 +6,9 @@
 #include <array>
 #include <string>
 
-#include "core/view.h"
+#include "core/raster.h"
 
 namespace farcull {
-
-/// What the budget needs to know of a rasterizer.
-struct RasterLimits {
-  int subpixel_bits =
-      0;  // GL_SUBPIXEL_BITS: window coordinates snap by at most 2^-subpixel_bits px per axis (A2)
-  int depth_bits = 0;      // 24 fixed point, 32 float
-  int max_resolution = 0;  // largest Window::width and height
-};
 
 struct BudgetTerm {
   std::string name;  // also the section of docs/budget.md
@@ -47,12 +39,5 @@ Budget budget_for(const RasterLimits& limits, int viewport);
 /// 1 px and dz the smallest step of the depth buffer in px (Govindaraju, Lin, Manocha 2004, section
 /// 4). It fails on real rasterizers.
 double published_radius(double depth_step);
-
-/// The viewport side that serves a window side of `window` px: the window, its border, and the next
-/// power of two, so that the scale to normalized device coordinates is exact.
-int viewport_side(int window);
-/// Pixels of the render target around the window on each side; its corner holds the control items
-/// (canvas.h).
-constexpr int kBorder = 2;
 
 }  // namespace farcull

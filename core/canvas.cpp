@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace farcull {
+
+std::vector<float> Canvas::samples(Verb, const std::vector<Draw>&) {
+  throw std::logic_error("this canvas offers no samples");
+}
 
 float depth_scale(const Window& window) {
   const double reach = std::max(std::abs(window.lo[2]), std::abs(window.hi[2])) + 2;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/budget.h"
+#include "core/raster.h"
 #include "core/view.h"
 
 namespace farcull {
@@ -36,6 +36,9 @@ struct SolidProgram {
   std::string name;
   std::string glsl;
   bool (*interval)(float cx, float cy, const Solid& solid, float& entry, float& exit) = nullptr;
+  /// The same on the worst device that GLSL allows (core/glsl_worst.h): false where some rounding misses, else the latest
+  /// entry and the earliest exit.
+  bool (*interval_worst)(float cx, float cy, const Solid& solid, float& entry, float& exit) = nullptr;
 };
 
 /// All that one view can draw, as elements: proxies (fragment) or triangles (fixed). Item i owns
@@ -90,6 +93,11 @@ class Canvas {
   /// Per slot: 1 seen, 0 not. Throws Error unless every command of the pass is known to have run
   /// (assumption A7).
   virtual std::vector<std::uint8_t> run(const Pass& pass) = 0;
+  /// The entry depth (store; nearest kept) or exit depth (ask; farthest kept) in px that `draws`
+  /// give each pixel of the window, NaN where there is no fragment; height rows of width values.
+  /// Where mapped depths are equal, any of theirs. Proxies only. For the lemmas' tests and for
+  /// pictures.
+  virtual std::vector<float> samples(Verb verb, const std::vector<Draw>& draws);
 };
 
 /// The depth map of a window, the same float expression wherever it stands:

@@ -17,6 +17,7 @@ namespace farcull {
 struct Patch {
   std::array<Vec3, 9> corners;
   int count = 0;     // 0: the triangle has no point in the region
+  int cuts = 0;      // planes that cut it
   double error = 0;  // px; beyond kMaxDoubleError (or not finite) the patch is undrawable and
                      // `corners` mean nothing
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "core/budget.h"
 #include "core/canvas.h"
 #include "core/fatten.h"
 #include "core/plan.h"

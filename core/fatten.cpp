@@ -23,7 +23,7 @@ Drawables fatten_part(const Scene& scene, std::span<const std::uint32_t> triangl
     } else if (patch.count == 0) {
       ++counts.outside;
     } else {
-      if (patch.count > 3) ++counts.clipped;
+      if (patch.cuts > 0) ++counts.clipped;
       fattener.fatten(patch, radius, bounds, out);
     }
     out.first.push_back(static_cast<std::uint32_t>(out.elements()));

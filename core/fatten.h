@@ -32,8 +32,9 @@ struct Fattener {
 Fattener raw_triangles();
 
 /// A rectangle that contains the image of `points` fattened by a disc of `radius` px, inside
-/// `bounds`: along the longest edge where that fits, else aligned with the axes and cut off two
-/// pixels outside the window.
+/// `bounds`: along the longest edge where that fits, else aligned with the axes and cut off at
+/// `bounds`, a pixel or more outside the window. Corners are rounded to the nearest floats, which
+/// the budget's term "input" pays for.
 std::array<float, 8> proxy_rectangle(std::span<const Vec3> points, double radius,
                                      const ProxyBounds& bounds);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <utility>
 
 #include "core/error.h"
@@ -49,7 +50,7 @@ struct GlCanvas::State {
   RasterLimits limits;
   Fault fault = Fault::none;
 
-  GlProgram store_program, ask_program, pack_program, exit_program;
+  GlProgram store_program, ask_program, pack_program, exit_program, entry_values, exit_values;
   GlVertexArray vertex_array;
   GlTexture depth;
   GlFramebuffer depth_target, bare_target;
@@ -83,6 +84,7 @@ struct GlCanvas::State {
                            std::uint32_t& slots) const;
   void bind(const Run& run) const;
   void draw(std::size_t first, std::size_t count) const;
+  float draw_all(GLuint program, Verb verb, const std::vector<Draw>& wanted, GLuint target);
   std::vector<std::uint8_t> read_flags(std::uint32_t slots);
   std::vector<std::uint8_t> read_queries(std::uint32_t slots);
 };
@@ -268,11 +270,12 @@ GlCanvas::GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram&
   const int viewport = static_cast<int>(std::bit_floor(static_cast<unsigned>(info.max_viewport)));
   s.limits.max_resolution =
       std::min({viewport, info.max_texture_size, framebuffer[0], framebuffer[1]}) - 2 * kBorder - 6;
+  long storage = info.max_storage_block;
   GLint offset_alignment = 0;
   glGetIntegerv(GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT, &offset_alignment);
   s.alignment = std::max<std::size_t>(offset_alignment, sizeof(GpuDraw));
-  s.per_chunk =
-      std::max<std::size_t>(1, static_cast<std::size_t>(info.max_storage_block) / (16 * s.vec4s()));
+  if (options.storage_limit > 0) storage = std::min(storage, options.storage_limit);
+  s.per_chunk = std::max<std::size_t>(1, static_cast<std::size_t>(storage) / (16 * s.vec4s()));
 
   s.solid = solid.glsl;
   s.store_program = s.program("store", {});
@@ -431,39 +434,82 @@ std::vector<std::uint8_t> GlCanvas::run(const Pass& pass) {
   return seen;
 }
 
-std::vector<float> GlCanvas::depths(Verb verb, const std::vector<Draw>& wanted) {
-  State& s = *state_;
-  if (s.limits.depth_bits != 32) throw std::logic_error("GlCanvas::depths: float32 only");
+// Draws everything with one program into a target that shares the canvas's depth texture; returns
+// the depth that the control item left.
+float GlCanvas::State::draw_all(GLuint program, Verb verb, const std::vector<Draw>& wanted,
+                                GLuint target) {
   const bool store = verb == Verb::store;
-  if (!store && s.mode == DepthMode::fragment && s.exit_program == 0) {
-    s.exit_program = s.program("exit", {"FAR_ASK"});
-  }
-  const GLuint program = store || s.mode == DepthMode::fixed ? s.store_program : s.exit_program;
   Pass pass;
   pass.draws = wanted;
   pass.steps = {{Verb::store, 0, static_cast<std::uint32_t>(wanted.size())}};
   std::vector<GpuDraw> list;
   std::vector<float> own;
   std::uint32_t slots = 0;
-  const std::vector<Run> runs = s.lay_out(pass, list, own, slots);
-  gl_fill(s.draws, list.data(), list.size() * sizeof(GpuDraw));
-  gl_fill(s.extras, own.data(), own.size() * sizeof(float));
-  s.set_uniforms(program);
-  s.start(store ? 1 : 0);
+  const std::vector<Run> runs = lay_out(pass, list, own, slots);
+  gl_fill(draws, list.data(), list.size() * sizeof(GpuDraw));
+  gl_fill(extras, own.data(), own.size() * sizeof(float));
+  set_uniforms(program);
+  start(store ? 1 : 0);
+  glBindFramebuffer(GL_FRAMEBUFFER, target);
   glDepthFunc(store ? GL_LESS : GL_GREATER);
   for (const Run& run : runs) {
-    s.bind(run);
-    s.draw(0, run.count);
+    bind(run);
+    draw(0, run.count);
   }
-  std::vector<float> out(static_cast<std::size_t>(s.window.width) * s.window.height);
   float control = 0;
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  glReadPixels(kBorder, kBorder, s.window.width, s.window.height, GL_DEPTH_COMPONENT, GL_FLOAT,
-               out.data());
   glReadPixels(0, 0, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &control);
-  check_gl("depths");
+  check_gl("samples");
+  return control;
+}
+
+std::vector<float> GlCanvas::depths(Verb verb, const std::vector<Draw>& wanted) {
+  State& s = *state_;
+  if (s.limits.depth_bits != 32) throw std::logic_error("GlCanvas::depths: float32 only");
+  const bool exits = verb == Verb::ask && s.mode == DepthMode::fragment;
+  if (exits && s.exit_program == 0) s.exit_program = s.program("exit", {"FAR_ASK"});
+  const float control =
+      s.draw_all(exits ? s.exit_program : s.store_program, verb, wanted, s.depth_target);
   if (control != static_cast<float>(kControlTop - kControlGap)) {
     throw Error("GL depths", "the control item was not drawn",
+                "run again, or with another --device");
+  }
+  std::vector<float> out(static_cast<std::size_t>(s.window.width) * s.window.height);
+  glReadPixels(kBorder, kBorder, s.window.width, s.window.height, GL_DEPTH_COMPONENT, GL_FLOAT,
+               out.data());
+  check_gl("depths");
+  return out;
+}
+
+std::vector<float> GlCanvas::samples(Verb verb, const std::vector<Draw>& wanted) {
+  State& s = *state_;
+  if (s.mode != DepthMode::fragment) throw std::logic_error("GlCanvas::samples: proxies only");
+  GlProgram& program = verb == Verb::store ? s.entry_values : s.exit_values;
+  if (program == 0) {
+    program = verb == Verb::store ? s.program("entry values", {"FAR_VALUE"})
+                                  : s.program("exit values", {"FAR_VALUE", "FAR_ASK"});
+  }
+  const GlTexture values = gl_make<GlTexture>(glGenTextures);
+  glBindTexture(GL_TEXTURE_2D, values);
+  glTexStorage2D(GL_TEXTURE_2D, 1, GL_R32F, s.target_width, s.target_height);
+  const GlFramebuffer target = gl_make<GlFramebuffer>(glGenFramebuffers);
+  glBindFramebuffer(GL_FRAMEBUFFER, target);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, s.depth, 0);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, values, 0);
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    throw Error("GL samples", "the device refuses a float target",
+                "choose a smaller resolution or another --device");
+  }
+  const float none[4] = {std::numeric_limits<float>::quiet_NaN(), 0, 0, 0};
+  glClearBufferfv(GL_COLOR, 0, none);
+  s.draw_all(program, verb, wanted, target);
+  float control = 0;
+  std::vector<float> out(static_cast<std::size_t>(s.window.width) * s.window.height);
+  glReadPixels(0, 0, 1, 1, GL_RED, GL_FLOAT, &control);
+  glReadPixels(kBorder, kBorder, s.window.width, s.window.height, GL_RED, GL_FLOAT, out.data());
+  check_gl("samples");
+  if (control != static_cast<float>(kControlTop - kControlGap)) {
+    throw Error("GL samples", "the control item was not drawn",
                 "run again, or with another --device");
   }
   return out;

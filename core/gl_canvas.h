@@ -34,6 +34,8 @@ struct GlCanvasOptions {
   DepthFormat depth_format = DepthFormat::float32;
   QueryMode query = QueryMode::flags;
   bool reversed_depth_test = false;  // a deliberate defect, for the twins of the reliability tests
+  long storage_limit =
+      0;  // bytes; as if a storage block held no more than this. 0: the device's own limit
 };
 
 class GlCanvas final : public Canvas {
@@ -47,6 +49,7 @@ class GlCanvas final : public Canvas {
   const RasterLimits& limits() const override;
   void begin(const Window& window, const Drawables& drawables) override;
   std::vector<std::uint8_t> run(const Pass& pass) override;
+  std::vector<float> samples(Verb verb, const std::vector<Draw>& draws) override;
 
   /// The depths that storing (entry, nearest kept) or asking (exit, farthest kept) leaves in each
   /// pixel of the window for `draws`; height rows of width values, empty pixels 1 for store and 0

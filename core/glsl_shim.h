@@ -18,9 +18,12 @@ struct vec4 {
 inline float min(float a, float b) { return b < a ? b : a; }
 inline float max(float a, float b) { return a < b ? b : a; }
 inline float abs(float a) { return std::fabs(a); }
+inline float sqrt(float a) { return std::sqrt(a); }
+inline float fixed(float a) { return a; }
 
 }  // namespace farcull::glsl
 
 #define FAR_OUT(type) type&
 #define FAR_INOUT(type) type&
 #define FAR_PRECISE
+#define FAR_FIXED(x) fixed(x)

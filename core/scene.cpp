@@ -25,7 +25,7 @@ void Box::add(const Box& other) {
 }
 
 bool overlap(const Box& a, const Box& b) {
-  return (a.lo.array() <= b.hi.array()).all() && (b.lo.array() <= a.hi.array()).all();
+  return !intersection(a, b).is_empty();  // so a box that is empty along one axis meets nothing
 }
 
 Box intersection(const Box& a, const Box& b) { return {a.lo.cwiseMax(b.lo), a.hi.cwiseMin(b.hi)}; }

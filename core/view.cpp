@@ -25,11 +25,11 @@ std::vector<std::string> split(const std::string& text, char separator) {
 }
 
 // Image axes for a depth direction: for a coordinate axis the two others, so that its map
-// multiplies exactly.
+// multiplies exactly. (A direction may round to length 1 along an axis and still not be that axis.)
 Eigen::Matrix3d rows_for(const Vec3& depth) {
   Eigen::Matrix3d rows;
   for (int axis = 0; axis < 3; ++axis) {
-    if (std::abs(depth[axis]) == 1) {
+    if (depth[axis] != 0 && (depth.array() == 0).count() == 2) {
       rows << Vec3::Unit((axis + 1) % 3).transpose(), Vec3::Unit((axis + 2) % 3).transpose(),
           depth.transpose();
       return rows;
@@ -113,9 +113,11 @@ PixelPoint to_pixel(const Window& window, const Vec3& x) {
   // The subtraction is one correctly rounded operation, so its error is relative to |x - origin|
   // and not to |x|: scenes far from the world's origin lose nothing. Three products and two
   // additions follow; 8 covers the five roundings and the cross terms (docs/budget.md, "double").
+  // Products that underflow err by at most 2^-1075 more, each.
   const Vec3 d = x - window.origin;
   PixelPoint out{window.map * d, 0};
-  const double bound = 8 * kUnit * (window.map.cwiseAbs() * d.cwiseAbs()).maxCoeff();
+  const double bound =
+      8 * kUnit * (window.map.cwiseAbs() * d.cwiseAbs()).maxCoeff() + 0x1p-1000;
   out.error = std::isfinite(bound) && out.p.allFinite() ? bound : HUGE_VAL;
   return out;
 }
@@ -140,21 +142,24 @@ std::optional<Window> fit_window(const View& view, std::span<const Box> regions,
   const bool axis_aligned = (view.rows.array() == 0).count() == 6;
   if (!axis_aligned) window.origin += view.rows.transpose() * (0.5 * rough.lo + 0.5 * rough.hi);
 
-  // A region that is flat in the image still needs a pixel of positive size: one that the
-  // coordinates can resolve.
+  // A region that is flat in the image still needs a pixel of positive size. Whatever the
+  // resolution, the pixel is one that the coordinates can resolve: the centre, a rounded double,
+  // then lies within 1/16 px of the middle, and the window within its size.
   const Box unit = image(view.rows, window.origin, regions, error);
   const double magnitude = std::max(world.lo.cwiseAbs().maxCoeff(), world.hi.cwiseAbs().maxCoeff());
   const double extent =
       std::max({unit.hi[0] - unit.lo[0], unit.hi[1] - unit.lo[1],
-                0x1p-20 * (unit.hi[2] - unit.lo[2]), 0x1p-45 * magnitude, 0x1p-960});
-  window.pixel_size = extent / resolution;
+                0x1p-20 * (unit.hi[2] - unit.lo[2]), 0x1p-960});
+  if (!std::isfinite(extent)) return std::nullopt;
+  window.pixel_size = std::max(extent / resolution, 0x1p-45 * magnitude);
   window.map = view.rows / window.pixel_size;
 
   error = 0;
   const Box px = image(window.map, window.origin, regions, error);
   if (!(error <= kMaxDoubleError)) return std::nullopt;
-  window.lo = px.lo.array() - 1;
-  window.hi = px.hi.array() + 1;
+  // The margin's own rounding: relative to the bounds it is inside their error, else below 2^-40.
+  window.lo = px.lo.array() - (1 + 0x1p-40);
+  window.hi = px.hi.array() + (1 + 0x1p-40);
   const auto side = [&](int i) {
     return 2 *
            static_cast<int>(std::ceil(std::max(std::abs(window.lo[i]), std::abs(window.hi[i]))));

@@ -52,9 +52,11 @@ PixelPoint to_pixel(const Window& window, const Vec3& x);
 constexpr double kMaxDoubleError = 0x1p-10;
 
 /// The window of `resolution` pixels (>= 1) along the larger image side of the union of `regions`
-/// (non-empty), one more pixel around it. Square pixels. Empty where pixel space cannot resolve the
-/// region: a corner's image is not finite or its error is beyond kMaxDoubleError; nothing may be
-/// culled in such a view.
+/// (non-empty), one more pixel around it: width, height <= resolution + 5. Square pixels; fewer of
+/// them where they would be smaller than the coordinates can resolve, or than 2^-20 of the depth in
+/// a window of this resolution. Empty where pixel space cannot resolve the region: the extent or a
+/// corner's image is not finite, or its error is beyond kMaxDoubleError; nothing may be culled in
+/// such a view.
 std::optional<Window> fit_window(const View& view, std::span<const Box> regions, int resolution);
 
 }  // namespace farcull

@@ -3,30 +3,28 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <string>
 
-#include "core/glsl_shim.h"
 #include "embedded/obb_glsl.h"
+#include "embedded/slab_glsl.h"
+#include "offsets/kernel.h"
+#include "offsets/round.h"
 
 namespace farcull {
 namespace glsl::obb {
+#include "offsets/slab.glsl"
+
 #include "offsets/obb.glsl"
 }  // namespace glsl::obb
+namespace glsl_worst::obb {
+#define float Worst
+#include "offsets/slab.glsl"
+
+#include "offsets/obb.glsl"
+#undef float
+}  // namespace glsl_worst::obb
 
 namespace {
-
-bool interval(float cx, float cy, const Solid& solid, float& entry, float& exit) {
-  glsl::vec4 s[5];
-  for (int i = 0; i < 5; ++i) s[i] = {solid[i][0], solid[i][1], solid[i][2], solid[i][3]};
-  return glsl::obb::solid_interval({cx, cy}, s[0], s[1], s[2], s[3], s[4], entry, exit);
-}
-
-float round_up(double x) {
-  const float f = static_cast<float>(x);
-  return f < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
-}
-
-float round_down(double x) { return -round_up(-x); }
 
 // Directions of the box: the longest edge, the farthest point's distance from it, and their normal.
 // Any directions are sound, since the extents are measured afterwards; these make the box tight.
@@ -147,20 +145,21 @@ Solid obb_of(std::span<const Vec3> points, double radius) {
     lo = std::min(lo, p[2]);
     hi = std::max(hi, p[2]);
   }
-  lo -= radius + 0x1p-50 * (std::abs(lo) + radius);  // beyond the rounding of this line
-  hi += radius + 0x1p-50 * (std::abs(hi) + radius);
   Solid solid{};
-  solid[0] = {slabs.centre[0], slabs.centre[1], slabs.centre[2], round_down(lo)};
+  solid[0] = {slabs.centre[0], slabs.centre[1], slabs.centre[2], outward_lower(lo, radius)};
   for (int i = 0; i < 3; ++i) {
     solid[1 + i] = {slabs.normals(i, 0), slabs.normals(i, 1), slabs.normals(i, 2),
                     round_up(slabs.half[i])};
   }
-  solid[4][0] = round_up(hi);
+  solid[4][0] = outward_upper(hi, radius);
   return solid;
 }
 
 Fattener obb_fattener() {
-  return {"obb", DepthMode::fragment, {"obb", embedded::obb_glsl, interval}, fatten_proxy};
+  const SolidProgram solid{"obb", std::string(embedded::slab_glsl) + embedded::obb_glsl,
+                           kernel_interval<glsl::obb::solid_interval>,
+                           kernel_interval_worst<glsl_worst::obb::solid_interval>};
+  return {"obb", DepthMode::fragment, solid, fatten_proxy};
 }
 
 Fattener obb_surface_fattener() { return {"obb-surface", DepthMode::fixed, {}, fatten_surface}; }

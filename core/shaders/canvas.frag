@@ -1,4 +1,5 @@
-// Stores or asks one fragment. FAR_PROXY: depth from the solid's own data (its function stands before this text); entry
+// Stores or asks one fragment. FAR_VALUE: its depth in px is written out as well.
+// FAR_PROXY: depth from the solid's own data (its function stands before this text); entry
 // when storing, exit when asking. FAR_ASK: ask. FAR_FLAGS: an asked fragment compares with the stored depth itself and
 // raises its slot's flag; otherwise the depth test and an occlusion query do.
 uniform ivec4 u_window;  // first pixel and size of the window inside the render target
@@ -9,6 +10,9 @@ flat in uint v_slot;
 flat in uint v_fixed;
 #ifdef FAR_PROXY
 flat in vec4 v_solid0, v_solid1, v_solid2, v_solid3, v_solid4;
+#endif
+#ifdef FAR_VALUE
+out float o_value;
 #endif
 #ifdef FAR_FLAGS
 layout(std430, binding = 2) buffer Flags { uint flags[]; };
@@ -24,6 +28,9 @@ void main() {
   float depth;
   if (v_fixed != 0u) {
     depth = v_solid4.z;
+#ifdef FAR_VALUE
+    o_value = depth;
+#endif
   } else {
     vec2 c = vec2(pixel) + vec2(0.5) - u_centre;
     float entry, exit;
@@ -32,6 +39,13 @@ void main() {
     precise float z = exit * u_scale;
 #else
     precise float z = entry * u_scale;
+#endif
+#ifdef FAR_VALUE
+#ifdef FAR_ASK
+    o_value = exit;
+#else
+    o_value = entry;
+#endif
 #endif
     precise float mapped = 0.5 + z;
     depth = clamp(mapped, 0.25, 0.75);

@@ -1,0 +1,52 @@
+// Probes of the device assumptions A1 .. A7: each tries to catch this device breaking one, and
+// gives the worst that it measured beside the bound that the proofs rely on (docs/budget.md). A
+// probe can refute an assumption, never prove it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/gl_context.h"
+
+namespace farcull {
+
+struct ProbeResult {
+  std::string assumption;  // "A1" .. "A7"
+  std::string name;
+  double measured = 0;  // the worst seen, in `unit`
+  double bound = 0;     // in `unit`
+  std::string unit;
+  std::uint64_t samples = 0;  // edges, pixels, results, ... that were compared
+  bool pass = false;          // measured <= bound, and something was compared
+  std::string note;  // what was tried and seen besides; the error's text where the probe broke off
+};
+
+/// All but `seed` and `only` are deliberate defects, one for each probe, so that tests can see
+/// every probe fail.
+struct ProbeOptions {
+  std::uint64_t seed = 1;
+  std::string only;  // an assumption, as in "A3"; empty: all of them
+
+  int snap_bits = 0;                 // A2: demand 2^-snap_bits px instead of what the device says
+  bool no_vertex_term = false;       // A1: vertex arithmetic may not err at all
+  bool dropped_triangle = false;     // A3: the second triangle of each proxy is lost
+  bool fat_zero_area = false;        // A3: the triangles without area get one
+  bool shifted_pixel = false;        // A3: gl_FragCoord is half a pixel off
+  bool exact_arithmetic = false;     // A4: operations may not round
+  bool loose_text = false;           // A4: shaders without `precise`
+  bool damaged_operand = false;      // A4: one bit of one operand changes on its way
+  bool reversed_depth_map = false;   // A4: farther is mapped nearer
+  bool reversed_depth_test = false;  // A5: the farthest is kept
+  bool blind_queries = false;        // A6: queries end before their draws or ask in front of all
+  bool skipped_faults = false;       // A7: no fault happens
+};
+
+/// Runs the probes in the order of the assumptions; `started`, where given, is called with the
+/// assumption before each group. The same device and options give the same results. A probe that
+/// breaks off by an Error fails; others go on. The context must be current; GL state is not kept.
+std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions& options = {},
+                                    const std::function<void(const std::string&)>& started = {});
+
+}  // namespace farcull

@@ -1,0 +1,477 @@
+#include "experiments/cli.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+
+#include "commit.h"
+#include "core/error.h"
+#include "experiments/builtin_scenes.h"
+#include "experiments/compare.h"
+#include "experiments/doctor.h"
+#include "experiments/mesh.h"
+#include "experiments/mesh_text.h"
+#include "experiments/output.h"
+#include "experiments/run.h"
+#include "experiments/scene_file.h"
+#include "experiments/tables.h"
+
+namespace farcull {
+namespace {
+
+constexpr int kDone = 0, kBroken = 1, kBad = 2;
+
+using Text = std::optional<std::string>;  // of an option; empty where it was not given
+
+// The one line of a failure. A path may hold anything, so control characters do not get through.
+void complain(const std::string& message) {
+  std::fprintf(stderr, "farcull: %s\n", clean_name(message).c_str());
+}
+
+// One line that is written over, on a terminal only.
+class TerminalProgress {
+ public:
+  Progress callback() {
+    const char* const terminal = std::getenv("TERM");
+    if (!::isatty(STDERR_FILENO) || terminal == nullptr || std::string_view(terminal) == "dumb")
+      return {};
+    return [this](const std::string& stage) { show(stage + " ..."); };
+  }
+  void clear() {
+    if (std::exchange(shown_, false)) std::fputs("\r\033[K", stderr);
+  }
+  TerminalProgress() = default;
+  ~TerminalProgress() { clear(); }
+  TerminalProgress(const TerminalProgress&) = delete;
+  TerminalProgress& operator=(const TerminalProgress&) = delete;
+
+ private:
+  // A line that wraps could not be written over, so it is cut to the terminal as it is now.
+  void show(std::string line) {
+    winsize size = {};
+    if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1)
+      line = line.substr(0, size.ws_col - 1u);
+    std::fprintf(stderr, "\r\033[K%s", line.c_str());
+    std::fflush(stderr);
+    shown_ = true;
+  }
+
+  bool shown_ = false;
+};
+
+// Where results go besides the table.
+struct Outputs {
+  Text json;
+  Text pairs;
+
+  bool to_stdout() const { return json == "-" || pairs == "-"; }
+};
+
+// The outputs, or what can be known to go wrong with them, before anything is read or run.
+Outputs checked(Outputs outputs) {
+  // By its other name, standard output would be written at two places at once.
+  for (Text* path : {&outputs.json, &outputs.pairs}) {
+    if (*path == "/dev/stdout") *path = "-";
+  }
+  for (const auto& [option, path] :
+       {std::pair("--json", outputs.json), std::pair("--pairs", outputs.pairs)}) {
+    if (!path) continue;
+    if (path->empty())
+      throw Error(option, "the path is empty", "name a file, or - for standard output");
+    // `run a.off --json --pairs b.csv`: CLI11 takes what follows for the value.
+    if (path->starts_with("-") && path != "-") {
+      throw Error(option, "its value is missing before '" + *path + "'",
+                  "name a file, with ./ before a name that begins with -");
+    }
+    // `run --json a.off b.off`: the mesh would be gone.
+    if (has_mesh_extension(*path)) {
+      throw Error(option, *path + " is named like a mesh and would be overwritten",
+                  std::string("name the file to write first, as in ") + option + " result" +
+                      (option == std::string("--json") ? ".json" : ".csv"));
+    }
+    check_output(*path);
+  }
+  if (outputs.json && outputs.json == outputs.pairs)
+    throw Error("--pairs", "goes to the same place as --json", "give each a place of its own");
+  if (!outputs.to_stdout()) check_output("-");
+  return outputs;
+}
+
+void check(const std::vector<std::string>& scene) {
+  if (std::find(scene.begin(), scene.end(), "") != scene.end())
+    throw Error("SCENE", "a name is empty", "name mesh files, a scene file or a built-in scene");
+}
+
+// Empty where none is asked for.
+std::string device_of(const Text& device) {
+  if (device && device->empty())
+    throw Error("--device", "its value is empty", "give software, hardware or a number");
+  return device.value_or("");
+}
+
+std::optional<std::uint64_t> seed_of(const std::vector<std::string>& scene) {
+  return scene.size() == 1 ? builtin_seed(scene[0]) : std::nullopt;
+}
+
+void write_json(const nlohmann::ordered_json& json, const std::string& path) {
+  write_output(path, json.dump(2) + "\n");
+}
+
+template <class Value>
+Value choose(const std::string& option, const std::string& given,
+             const std::map<std::string, Value>& values) {
+  const auto found = values.find(given);
+  if (found != values.end()) return found->second;
+  std::string known;
+  for (const auto& [name, value] : values) known += (known.empty() ? "" : " or ") + name;
+  throw Error(option, "'" + given + "' is no choice", "give " + known);
+}
+
+// The options as they stand on the command line; parsed into RunOptions after CLI11 is done, so
+// that every refusal is an Error with a remedy.
+struct RunArguments {
+  std::vector<std::string> scene;
+  Text method, resolution, radius, offset, depth, depth_format, query, views, device;
+  Outputs outputs;
+  bool no_verify = false;
+
+  RunOptions parse() const {
+    RunOptions out;
+    if (method) out.method = parse_method(*method);
+    if (resolution) out.resolution = parse_resolution(*resolution);
+    if (radius) out.radius = parse_radius(*radius);
+    if (offset) out.offset = *offset;
+    if (depth) {
+      out.depth = choose<DepthMode>(
+          "--depth", *depth, {{"fragment", DepthMode::fragment}, {"fixed", DepthMode::fixed}});
+    }
+    if (depth_format) {
+      out.depth_format =
+          choose<DepthFormat>("--depth-format", *depth_format,
+                              {{"32f", DepthFormat::float32}, {"24", DepthFormat::fixed24}});
+    }
+    if (query) {
+      out.query = choose<QueryMode>(
+          "--query", *query, {{"flags", QueryMode::flags}, {"occlusion", QueryMode::occlusion}});
+    }
+    if (views) out.views = *views;
+    out.device = device_of(device);
+    out.verify = !no_verify;
+    out.seed = seed_of(scene);
+    validate(out);
+    refuse_idle(out.method);
+    return out;
+  }
+
+ private:
+  // An option that the method has no use for was meant for something: no result without it.
+  void refuse_idle(Method chosen) const {
+    const auto refuse = [&](const char* option, const Text& given) {
+      if (!given) return;
+      throw Error(option, "has no meaning for --method " + to_string(chosen),
+                  std::string("leave ") + option + " out, or use --method far");
+    };
+    if (chosen == Method::far) return;
+    refuse("--radius", radius);
+    refuse("--offset", offset);
+    if (chosen == Method::cullide) return;
+    refuse("--depth", depth);
+    refuse("--depth-format", depth_format);
+    refuse("--query", query);
+  }
+};
+
+constexpr const char* kSceneHelp =
+    "mesh files (.obj .off .ply .stl), each an object;\n"
+    "or one scene file (.json); or one built-in scene\n"
+    "(`farcull scenes` lists them)";
+constexpr const char* kViewsHelp =
+    "axes or directions to look along, by commas, as in\n"
+    "x,-y,1:1:0.5; default x,y,z";
+constexpr const char* kDeviceHelp =
+    "software, hardware or a number that `farcull doctor`\n"
+    "lists; default hardware first, then software";
+constexpr const char* kJsonHelp =
+    "write the record as JSON to this file; - for standard\n"
+    "output, without the table";
+
+void add_run_options(CLI::App& command, RunArguments& a) {
+  command.add_option("SCENE", a.scene, kSceneHelp)->required()->type_name("");
+  const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
+    command.add_option(name, text, help)->type_name(type);
+  };
+  add("--method", a.method, "METHOD", "far, cullide or exact; default far");
+  add("--resolution", a.resolution, "N",
+      "pixels along the larger side of each view's window;\ndefault 512");
+  add("--radius", a.radius, "RADIUS",
+      "of the ball that fattens a primitive, for far: budget,\n"
+      "published, or a factor on the budget; default budget");
+  add("--offset", a.offset, "OFFSET", "what a primitive is fattened to, for far: obb");
+  add("--depth", a.depth, "fragment|fixed",
+      "entry and exit depth by the fragment program\n"
+      "(reliable), or fixed function as published;\n"
+      "default fragment for far, fixed for cullide");
+  add("--depth-format", a.depth_format, "32f|24", "of the depth buffer; default 32f");
+  add("--query", a.query, "flags|occlusion",
+      "how visibility is asked; default flags, but\n"
+      "occlusion with --depth-format 24");
+  add("--views", a.views, "VIEWS", kViewsHelp);
+  add("--device", a.device, "DEVICE", kDeviceHelp);
+  add("--pairs", a.outputs.pairs, "FILE",
+      "write the colliding pairs as CSV to this file; - for\n"
+      "standard output, without the table");
+  add("--json", a.outputs.json, "FILE", kJsonHelp);
+}
+
+std::string missed(const RunRecord& record) {
+  return fmt::format("{} culled pairs that collide: {}", describe(record.options),
+                     grouped(record.verification->false_negatives));
+}
+
+int run_command(const RunArguments& arguments, bool strict) {
+  const RunOptions options = arguments.parse();
+  check(arguments.scene);
+  const Outputs outputs = checked(arguments.outputs);
+  TerminalProgress terminal;
+  const Progress progress = terminal.callback();
+  if (progress) progress("reading the scene");
+  const Scene scene = load_scene(arguments.scene);
+  Session session(options.device);
+  const RunRecord record = run_scene(scene, options, session, progress);
+  terminal.clear();
+  if (outputs.pairs) write_output(*outputs.pairs, pairs_csv(scene, record.pairs));
+  if (outputs.json) write_json(to_json(scene, record), *outputs.json);
+  if (!outputs.to_stdout()) write_output("-", run_table(scene, record));
+  if (!broken(record, strict)) return kDone;
+  complain(missed(record));
+  return kBroken;
+}
+
+struct CompareCommand {
+  CompareArguments arguments;
+  Text device;
+  Outputs outputs;
+};
+
+int compare_command(const CompareCommand& command) {
+  CompareArguments arguments = command.arguments;
+  arguments.options.device = device_of(command.device);
+  arguments.options.seed = seed_of(arguments.scene);
+  validate(arguments);
+  check(arguments.scene);
+  const Outputs outputs = checked(command.outputs);
+  TerminalProgress terminal;
+  const Progress progress = terminal.callback();
+  if (progress) progress("reading the scene");
+  const Scene scene = load_scene(arguments.scene);
+  const Comparison comparison = compare(scene, arguments, progress);
+  terminal.clear();
+  const std::vector<RunRecord> records = comparison.median_records();
+  if (outputs.json) write_json(to_json(scene, comparison), *outputs.json);
+  if (!outputs.to_stdout()) write_output("-", comparison_table(scene, records));
+  for (const RunRecord& record : records) {
+    if (!broken(record, false)) continue;
+    complain(missed(record));
+    return kBroken;
+  }
+  return kDone;
+}
+
+int scenes_command(const Outputs& asked) {
+  const Outputs outputs = checked(asked);
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  Table table("lrrrl");
+  table.add({"scene", "objects", "triangles", "seed", ""});
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    table.add({scene.name, grouped(scene.objects), grouped(scene.triangles),
+               scene.seed ? std::to_string(*scene.seed) : "-", scene.description});
+    list.push_back({{"name", scene.name},
+                    {"objects", scene.objects},
+                    {"triangles", scene.triangles},
+                    {"needs_meshes", scene.needs_meshes},
+                    {"seed", nullptr},
+                    {"description", scene.description}});
+    if (scene.seed) list.back()["seed"] = *scene.seed;
+  }
+  Table suffixes("ll");
+  for (const SceneSuffix& suffix : scene_suffixes())
+    suffixes.add({suffix.suffix, suffix.description});
+  if (outputs.json) write_json(list, *outputs.json);
+  if (!outputs.to_stdout()) {
+    write_output("-", table.text() + "\nEvery name takes suffixes, as in two-spheres@far:\n" +
+                          suffixes.text());
+  }
+  return kDone;
+}
+
+// What CLI11 refuses, as an Error with a remedy. `app` is as the parse left it.
+Error refusal(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<const CLI::App*> parsed = app.get_subcommands({});
+  const CLI::App* command = &app;
+  for (const CLI::App* subcommand : parsed) {
+    if (subcommand->parsed()) command = subcommand;
+  }
+  const std::string name = command == &app ? "farcull" : "farcull " + command->get_name();
+  const std::string help = "see " + name + " --help";
+  const std::string text = error.what();
+  // What was not understood comes first: it may be why something else is missing.
+  const std::vector<std::string> words = app.remaining(true);
+  if (!words.empty()) {
+    const std::string& word = words.front();
+    if (word.starts_with("-")) return Error(word, name + " has no such option", help);
+    if (command != &app) return Error(word, "is one argument too many for " + name, help);
+    return Error(word, "no such command", "give run, verify, compare, doctor or scenes");
+  }
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+    return Error("SCENE", "none is named",
+                 "name mesh files, a scene file or a built-in scene (farcull scenes lists them)");
+  }
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    for (const CLI::Option* option : command->get_options()) {
+      if (option->count() > 1 && option->get_items_expected_max() == 1) {
+        return Error(option->get_name(), fmt::format("is given {} times", option->count()),
+                     "give it once");
+      }
+    }
+    std::string option = text.substr(0, text.find_first_of(": "));
+    if (text.find("override") != std::string::npos) {
+      if (!option.starts_with("-")) option.insert(0, "--");
+      return Error(option, "takes no value", "give " + option + " alone");
+    }
+    return Error(option, "its value is missing", help);
+  }
+  return Error(name, text, help);
+}
+
+}  // namespace
+
+int command_line(int argc, char** argv) {
+  prepare_output();
+  // Mesa's own warnings about the devices it tries would stand beside our message, which says what
+  // came of it.
+  ::setenv("EGL_LOG_LEVEL", "fatal", 0);
+
+  CLI::App app("farcull: collision culling that never misses.", "farcull");
+  app.get_formatter()->column_width(28);
+  app.set_help_flag("-h,--help", "print this and exit");
+  app.set_version_flag("--version", std::string("farcull 0.1, commit ") + FARCULL_COMMIT,
+                       "print the version and exit");
+  app.require_subcommand(0, 1);
+  app.footer(
+      "Each has its own --help. Exit status: 0 done; 1 a guarantee is broken; 2 bad input or\n"
+      "environment.\n\n"
+      "Examples:\n"
+      "  farcull run two-spheres\n"
+      "  farcull run a.obj b.ply --resolution 1024 --pairs pairs.csv\n"
+      "  farcull compare two-tori\n"
+      "  farcull doctor");
+
+  RunArguments run, verify;
+  CLI::App* run_app =
+      app.add_subcommand("run", "cull a scene, test what is left, account for every pair");
+  add_run_options(*run_app, run);
+  run_app->add_flag("--no-verify", run.no_verify, "leave out the accounting of all pairs")
+      ->disable_flag_override();
+  run_app->footer(
+      "Examples:\n"
+      "  farcull run two-spheres\n"
+      "  farcull run bunny.off dragon.off --method cullide --resolution 256\n"
+      "  farcull run scene.json --json - | jq .verification\n"
+      "  farcull run two-spheres --radius published --depth fixed --depth-format 24\n\n"
+      "Exit status 1: a method that promises missed a pair. far promises at the budget radius or\n"
+      "more with fragment depth; farcull verify asks it of every method.");
+  CLI::App* verify_app =
+      app.add_subcommand("verify", "run; status 1 if any culled pair intersects");
+  add_run_options(*verify_app, verify);
+  verify_app->footer(
+      "Examples:\n"
+      "  farcull verify two-spheres\n"
+      "  farcull verify two-spheres --method cullide --resolution 64\n"
+      "  farcull verify scene.json --json record.json\n\n"
+      "Exit status 1: a culled pair intersects, whatever the method.");
+
+  CompareCommand comparison;
+  CLI::App* compare_app = app.add_subcommand("compare", "methods and resolutions side by side");
+  compare_app->add_option("SCENE", comparison.arguments.scene, kSceneHelp)
+      ->required()
+      ->type_name("");
+  compare_app
+      ->add_option("--methods", comparison.arguments.methods,
+                   "separated by commas;\ndefault far,cullide,exact")
+      ->type_name("LIST");
+  compare_app
+      ->add_option("--resolutions", comparison.arguments.resolutions,
+                   "separated by commas;\ndefault 128,256,512,1024,2048")
+      ->type_name("LIST");
+  compare_app
+      ->add_option("--repeat", comparison.arguments.repeat,
+                   "runs of each, the one with the median time is shown;\ndefault 1")
+      ->type_name("N");
+  compare_app->add_option("--views", comparison.arguments.options.views, kViewsHelp)
+      ->type_name("VIEWS");
+  compare_app->add_option("--device", comparison.device, kDeviceHelp)->type_name("DEVICE");
+  compare_app->add_option("--json", comparison.outputs.json, kJsonHelp)->type_name("FILE");
+  compare_app->footer(
+      "Examples:\n"
+      "  farcull compare two-tori\n"
+      "  farcull compare two-bunnies --methods far,exact --resolutions 256,512 --repeat 5\n\n"
+      "Exit status 1: a method that promises missed a pair.");
+
+  DoctorArguments doctor;
+  CLI::App* doctor_app =
+      app.add_subcommand("doctor", "the devices, and what each assumption A1-A7 finds there");
+  Text doctor_device, doctor_json;
+  doctor_app->add_option("--device", doctor_device, kDeviceHelp)->type_name("DEVICE");
+  doctor_app->add_option("--json", doctor_json, kJsonHelp)->type_name("FILE");
+  doctor_app->footer(
+      "Examples:\n  farcull doctor\n  farcull doctor --device software --json -\n\n"
+      "Exit status 1: the device breaks an assumption, so no promise holds on it.");
+
+  Outputs scenes;
+  CLI::App* scenes_app = app.add_subcommand("scenes", "the built-in scenes with their sizes");
+  scenes_app->add_option("--json", scenes.json, kJsonHelp)->type_name("FILE");
+  scenes_app->footer("Examples:\n  farcull scenes\n  farcull run crowd@ground");
+
+  try {
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::Success& wanted) {  // --help, --version
+      std::ostringstream out;
+      app.exit(wanted, out, out);
+      write_output("-", out.str());
+      return kDone;
+    } catch (const CLI::ParseError& error) {
+      throw refusal(app, error);
+    }
+    if (*run_app) return run_command(run, false);
+    if (*verify_app) return run_command(verify, true);
+    if (*compare_app) return compare_command(comparison);
+    if (*scenes_app) return scenes_command(scenes);
+    if (*doctor_app) {
+      doctor.device = device_of(doctor_device);
+      doctor.json = checked({.json = doctor_json, .pairs = {}}).json.value_or("");
+      return doctor_command(doctor);
+    }
+    std::fputs(app.help().c_str(), stderr);
+    throw Error("COMMAND", "none is given", "name one, as in farcull run two-spheres");
+  } catch (const Error& error) {
+    complain(error.what());
+  } catch (const std::bad_alloc&) {
+    complain("out of memory; use a smaller scene or resolution, or a machine with more memory");
+  } catch (const std::exception& error) {
+    complain(std::string("a fault of farcull itself: ") + error.what() +
+             "; report it with the command line");
+  }
+  return kBad;
+}
+
+}  // namespace farcull

@@ -1,0 +1,117 @@
+#include "experiments/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "experiments/output.h"
+
+namespace farcull {
+namespace {
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == ',') {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+int parse_repeat(const std::string& text) {
+  int value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc() || end != text.data() + text.size() || value < 1)
+    throw Error("--repeat", "'" + text + "' is no number of runs", "give 1 or more");
+  return value;
+}
+
+std::vector<RunOptions> cells_of(const CompareArguments& arguments) {
+  std::vector<RunOptions> cells;
+  for (const std::string& method : split(arguments.methods)) {
+    RunOptions options = arguments.options;
+    options.method = parse_method(method, "--methods");
+    for (const std::string& resolution : split(arguments.resolutions)) {
+      options.resolution = parse_resolution(resolution, "--resolutions");
+      validate(options);
+      cells.push_back(options);
+      if (options.method == Method::exact) break;
+    }
+  }
+  return cells;
+}
+
+// A resolution beyond the device is refused before the first run, not after an hour of smaller
+// ones. Every OpenGL 4.3 has room for half of its 16384 px, so only beyond that is a device asked.
+void require_room(const std::vector<RunOptions>& cells, Session& session) {
+  int largest = 0;
+  for (const RunOptions& cell : cells) {
+    if (cell.method != Method::exact) largest = std::max(largest, cell.resolution);
+  }
+  if (largest <= 8192) return;
+  const int limit = GlCanvas(session.context(), DepthMode::fixed, {}).limits().max_resolution;
+  if (largest > limit) {
+    throw Error("--resolutions",
+                fmt::format("{} is outside 1 .. {}, the limit of this device", largest, limit),
+                "choose resolutions in that range");
+  }
+}
+
+double compared_ms(const RunRecord& record) { return record.ms.cull + record.ms.exact; }
+
+}  // namespace
+
+std::vector<RunRecord> Comparison::median_records() const {
+  std::vector<RunRecord> out;
+  for (std::vector<RunRecord> repeats : runs) {
+    const auto middle = repeats.begin() + static_cast<std::ptrdiff_t>((repeats.size() - 1) / 2);
+    std::nth_element(
+        repeats.begin(), middle, repeats.end(),
+        [](const RunRecord& a, const RunRecord& b) { return compared_ms(a) < compared_ms(b); });
+    out.push_back(*middle);
+  }
+  return out;
+}
+
+void validate(const CompareArguments& arguments) {
+  parse_repeat(arguments.repeat);
+  cells_of(arguments);
+}
+
+Comparison compare(const Scene& scene, const CompareArguments& arguments,
+                   const Progress& progress) {
+  const int repeats = parse_repeat(arguments.repeat);
+  const std::vector<RunOptions> cells = cells_of(arguments);
+  Comparison out;
+  out.runs.resize(cells.size());
+  Session session(arguments.options.device);
+  require_room(cells, session);
+  // Repeats go round the cells, so that a slow minute of the machine does not fall on one of them
+  // alone.
+  for (int repeat = 0; repeat < repeats; ++repeat) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      RunOptions options = cells[i];
+      const std::string cell = describe(options) + ": ";
+      const Progress named =
+          progress ? [&](const std::string& stage) { progress(cell + stage); } : Progress{};
+      out.runs[i].push_back(run_scene(scene, options, session, named));
+    }
+  }
+  return out;
+}
+
+nlohmann::ordered_json to_json(const Scene& scene, const Comparison& comparison) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const std::vector<RunRecord>& repeats : comparison.runs) {
+    for (const RunRecord& record : repeats) rows.push_back(to_json(scene, record));
+  }
+  return {{"runs", rows}};
+}
+
+}  // namespace farcull

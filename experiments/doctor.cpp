@@ -1,0 +1,162 @@
+#include "experiments/doctor.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "commit.h"
+#include "core/gl_canvas.h"
+#include "core/gl_probe.h"
+#include "experiments/output.h"
+
+namespace farcull {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The device that GlContext takes for this option: the list knows why the others were passed over.
+std::optional<int> choose(const std::vector<GlDevice>& devices, const std::string& device) {
+  for (const std::string kind : {"hardware", "software"}) {
+    for (const GlDevice& d : devices) {
+      const bool named = device == std::to_string(d.index);
+      if (d.usable && d.kind == kind && (named || device.empty() || device == kind)) return d.index;
+    }
+  }
+  return std::nullopt;
+}
+
+Json devices_json(const std::vector<GlDevice>& devices) {
+  Json out = Json::array();
+  for (const GlDevice& d : devices) {
+    out.push_back({{"number", d.index},
+                   {"kind", d.kind},
+                   {"usable", d.usable},
+                   {"problem", d.usable ? Json(nullptr) : Json(d.problem)},
+                   {"vendor", d.vendor},
+                   {"renderer", d.renderer},
+                   {"version", d.version},
+                   {"drm", d.drm}});
+  }
+  return out;
+}
+
+// A number of the table: whole where it is whole, else three digits.
+std::string number(double x) {
+  if (x == std::floor(x) && std::abs(x) < 1e9) return fmt::format("{:.0f}", x);
+  return fmt::format("{:.3g}", x);
+}
+
+std::string devices_table(const std::vector<GlDevice>& devices, int chosen) {
+  std::string out = "devices:\n";
+  for (const GlDevice& d : devices) {
+    out += fmt::format("{} {}  {:<8}  {}\n", d.index == chosen ? '*' : ' ', d.index, d.kind,
+                       d.usable ? d.renderer : "not usable: " + d.problem);
+  }
+  return out;
+}
+
+std::string limits_table(const GlInfo& gl, int resolution) {
+  return fmt::format(
+      "\nchosen: {}\n"
+      "  vendor            {}\n"
+      "  OpenGL            {}\n"
+      "  GLSL              {}\n"
+      "  subpixel bits     {}\n"
+      "  largest texture   {}\n"
+      "  largest viewport  {}\n"
+      "  resolution limit  {}\n"
+      "  compute groups    {}\n"
+      "  storage block     {} bytes\n"
+      "  reset detection   {}\n",
+      gl.renderer, gl.vendor, gl.version, gl.glsl, gl.subpixel_bits, gl.max_texture_size,
+      gl.max_viewport, resolution, gl.max_compute_groups, gl.max_storage_block,
+      gl.reset_detection ? "yes" : "no");
+}
+
+std::string probes_table(const std::vector<ProbeResult>& probes) {
+  std::string out = fmt::format("\n    {:<52} {:>9} {:>9}  {:<20} {:>9}\n", "probe", "measured",
+                                "bound", "", "samples");
+  int failed = 0;
+  for (const ProbeResult& p : probes) {
+    out += fmt::format("{}  {:<52} {:>9} {:>9}  {:<20} {:>9}  {}\n", p.assumption, p.name,
+                       number(p.measured), number(p.bound), p.unit, p.samples,
+                       p.pass ? "pass" : "FAIL");
+    if (!p.note.empty()) out += fmt::format("      {}\n", p.note);
+    failed += !p.pass;
+  }
+  out += failed == 0 ? fmt::format("\nall {} probes pass\n", probes.size())
+                     : fmt::format("\n{} of {} probes FAIL: no promise holds on this device\n",
+                                   failed, probes.size());
+  return out;
+}
+
+Json probes_json(const std::vector<ProbeResult>& probes) {
+  Json out = Json::array();
+  for (const ProbeResult& p : probes) {
+    // Infinity has no number in JSON.
+    out.push_back({{"assumption", p.assumption},
+                   {"name", p.name},
+                   {"pass", p.pass},
+                   {"measured", std::isfinite(p.measured) ? Json(p.measured) : Json("infinite")},
+                   {"bound", p.bound},
+                   {"unit", p.unit},
+                   {"samples", p.samples},
+                   {"note", p.note}});
+  }
+  return out;
+}
+
+}  // namespace
+
+int doctor_command(const DoctorArguments& arguments) {
+  if (!arguments.json.empty()) check_output(arguments.json);
+  const std::vector<GlDevice> devices = GlContext::list_devices();
+  const std::optional<int> chosen = choose(devices, arguments.device);
+  // Where nothing fits, the context says so in an Error.
+  const GlContext context(chosen ? std::to_string(*chosen) : arguments.device);
+  const GlInfo& gl = context.info();
+  const int resolution = GlCanvas(context, DepthMode::fixed, {}).limits().max_resolution;
+  const bool people = arguments.json != "-";
+  if (people)
+    write_output("-", devices_table(devices, chosen.value_or(-1)) + limits_table(gl, resolution));
+
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  const std::vector<ProbeResult> probes =
+      run_probes(context, {}, [terminal](const std::string& assumption) {
+        if (terminal) std::fprintf(stderr, "\rprobing %s ...", assumption.c_str());
+      });
+  if (terminal) std::fprintf(stderr, "\r%20s\r", "");
+
+  bool pass = true;
+  for (const ProbeResult& p : probes) pass = pass && p.pass;
+  if (!arguments.json.empty()) {
+    const Json report = {{"devices", devices_json(devices)},
+                         {"chosen", chosen ? Json(*chosen) : Json(nullptr)},
+                         {"gl",
+                          {{"vendor", gl.vendor},
+                           {"renderer", gl.renderer},
+                           {"version", gl.version},
+                           {"glsl", gl.glsl}}},
+                         {"limits",
+                          {{"subpixel_bits", gl.subpixel_bits},
+                           {"max_texture_size", gl.max_texture_size},
+                           {"max_viewport", gl.max_viewport},
+                           {"max_resolution", resolution},
+                           {"max_compute_groups", gl.max_compute_groups},
+                           {"max_storage_block", gl.max_storage_block},
+                           {"reset_detection", gl.reset_detection}}},
+                         {"probes", probes_json(probes)},
+                         {"pass", pass},
+                         {"commit", FARCULL_COMMIT}};
+    write_output(arguments.json, report.dump(2) + "\n");
+  }
+  if (people) write_output("-", probes_table(probes));
+  return pass ? 0 : 1;
+}
+
+}  // namespace farcull

@@ -1,0 +1,291 @@
+#include "experiments/output.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "commit.h"
+#include "core/error.h"
+#include "experiments/tables.h"
+
+namespace farcull {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json view_json(const ViewReport& view) {
+  Json budget = Json::object();
+  for (const BudgetTerm& term : view.budget.terms()) budget[term.name] = term.px;
+  budget["radius_px"] = view.radius_px;
+  return {{"name", view.name},
+          {"drawn", view.drawn},
+          {"width", view.width},
+          {"height", view.height},
+          {"pixel_size", view.pixel_size},
+          {"depth_step_px", view.depth_step_px},
+          {"budget", budget}};
+}
+
+Json budget_json(const std::vector<ViewReport>& views) {
+  const ViewReport* widest = widest_budget(views);
+  return widest ? view_json(*widest)["budget"] : Json(nullptr);
+}
+
+Json device_json(const RunRecord& record) {
+  if (!record.device) return {{"none", record.device_note}};
+  const GlInfo& device = *record.device;
+  return {{"vendor", device.vendor},
+          {"renderer", device.renderer},
+          {"version", device.version},
+          {"glsl", device.glsl},
+          {"subpixel_bits", device.subpixel_bits},
+          {"depth_bits", record.depth_bits},
+          {"reset_detection", device.reset_detection}};
+}
+
+// A triangle as a person finds it again: its object, its place there and the face of the file it
+// came from.
+Json place_json(const Scene& scene, const std::vector<std::uint32_t>& owner,
+                std::uint32_t triangle) {
+  const Object& object = scene.objects[owner[triangle]];
+  return {{"object", owner[triangle]},
+          {"name", object.name},
+          {"triangle", triangle - object.first_triangle},
+          {"face", scene.source_face[triangle]}};
+}
+
+Json verification_json(const Scene& scene, const std::optional<Accounting>& accounting) {
+  if (!accounting) return nullptr;
+  const std::vector<std::uint32_t> owner = owners(scene);
+  Json examples = Json::array();
+  for (const TrianglePair& pair : accounting->examples) {
+    examples.push_back(
+        {{"a", place_json(scene, owner, pair.a)}, {"b", place_json(scene, owner, pair.b)}});
+  }
+  return {{"pairs_total", accounting->pairs_total},
+          {"pairs_kept", accounting->pairs_kept},
+          {"certified_by_boxes", accounting->certified_by_boxes},
+          {"certified_by_predicates", accounting->certified_by_predicates},
+          {"neighbours", accounting->neighbours},
+          {"false_negatives", accounting->false_negatives},
+          {"examples", examples},
+          {"ms", accounting->ms}};
+}
+
+constexpr const char* kStdoutRemedy = "let it go somewhere, or write to a file with --json FILE";
+constexpr const char* kPathRemedy = "give a path in a folder with room that you may write to";
+
+[[noreturn]] void refuse(const std::string& path, int code) {
+  const bool standard = path == "-";
+  throw Error(standard ? "standard output" : path,
+              std::string("cannot be written: ") + std::strerror(code),
+              standard ? kStdoutRemedy : kPathRemedy);
+}
+
+// Where a path leads. Only a regular file, or none yet, can be put in place by renaming; anything
+// else takes the text as it comes.
+struct Target {
+  std::string path;
+  bool exists = false;
+  bool direct = false;
+  mode_t mode = 0;  // of what exists
+};
+
+Target target_of(const std::string& path) {
+  Target target{.path = path};
+  struct stat link = {}, status = {};
+  target.exists = ::stat(path.c_str(), &status) == 0;
+  const bool is_link = ::lstat(path.c_str(), &link) == 0 && S_ISLNK(link.st_mode);
+  // /dev/stdout is a link to whatever that is, perhaps a file that another program holds open.
+  const bool kernels = path.starts_with("/dev/") || path.starts_with("/proc/");
+  target.mode = status.st_mode;
+  target.direct = (target.exists && !S_ISREG(status.st_mode)) || (is_link && kernels);
+  if (is_link && target.exists && !target.direct)
+    target.path = std::filesystem::canonical(path).string();
+  return target;
+}
+
+std::string folder_of(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
+// A file that is being written, taken away again unless it is put in place: by the destructor, or
+// by the handler where a signal ends the program. One at a time.
+char half_written[4096] = "";
+
+extern "C" void take_away(int signal) {
+  ::unlink(half_written);
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+class HalfWritten {
+ public:
+  explicit HalfWritten(const std::string& path) : path_(path) {
+    if (path.size() >= sizeof half_written) refuse(path, ENAMETOOLONG);
+    path.copy(half_written, path.size());
+    half_written[path.size()] = '\0';
+    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+      ::sigaction(kSignals[i], nullptr, &before_[i]);
+      // A signal that the caller had us ignore (nohup) stays ignored.
+      if (before_[i].sa_handler == SIG_IGN) continue;
+      struct sigaction action = {};
+      action.sa_handler = take_away;
+      ::sigaction(kSignals[i], &action, nullptr);
+    }
+  }
+  ~HalfWritten() {
+    if (!in_place_) ::unlink(path_.c_str());
+    for (std::size_t i = 0; i < kSignals.size(); ++i)
+      ::sigaction(kSignals[i], &before_[i], nullptr);
+    half_written[0] = '\0';
+  }
+  HalfWritten(const HalfWritten&) = delete;
+  HalfWritten& operator=(const HalfWritten&) = delete;
+
+  bool put(const std::string& place) {
+    in_place_ = std::rename(path_.c_str(), place.c_str()) == 0;
+    return in_place_;
+  }
+
+ private:
+  static constexpr std::array<int, 3> kSignals = {SIGINT, SIGTERM, SIGHUP};
+  std::string path_;
+  bool in_place_ = false;
+  std::array<struct sigaction, 3> before_ = {};
+};
+
+// Writes all of the text and closes the file; 0 or the errno of the first failure.
+int write_and_close(std::FILE* file, const std::string& text, bool to_disk) {
+  int failure = 0;
+  if (std::fwrite(text.data(), 1, text.size(), file) != text.size() || std::fflush(file) != 0 ||
+      (to_disk && ::fsync(::fileno(file)) != 0)) {
+    failure = errno;
+  }
+  if (std::fclose(file) != 0 && failure == 0) failure = errno;
+  return failure;
+}
+
+}  // namespace
+
+nlohmann::ordered_json to_json(const Scene& scene, const RunRecord& record) {
+  const RunOptions& o = record.options;
+  const bool draws = o.method != Method::exact;  // the others have no use for a resolution
+  Json views = Json::array();
+  for (const ViewReport& view : record.views) views.push_back(view_json(view));
+  Json stages = Json::array();
+  for (const Stage& s : record.stages) {
+    stages.push_back({{"name", s.name},
+                      {"ran", s.ran},
+                      {"reason", s.reason},
+                      {"ms", s.ms},
+                      {"in", s.in},
+                      {"out", s.out},
+                      {"unit", s.unit},
+                      {"draws", s.draws},
+                      {"queries", s.queries}});
+  }
+  return {{"scene",
+           {{"name", scene.name},
+            {"objects", scene.objects.size()},
+            {"triangles", scene.triangles.size()},
+            {"degenerate_triangles", record.degenerate_triangles},
+            {"hash", record.scene_hash}}},
+          {"method", to_string(o.method)},
+          {"resolution", draws ? Json(o.resolution) : Json(nullptr)},
+          {"radius", o.method == Method::far ? Json(radius_text(o.radius)) : Json(nullptr)},
+          {"offset", o.method == Method::far ? Json(o.offset) : Json(nullptr)},
+          {"depth", !draws ? Json(nullptr)
+                           : Json(depth_of(o) == DepthMode::fragment ? "fragment" : "fixed")},
+          {"depth_format",
+           draws ? Json(o.depth_format == DepthFormat::float32 ? "32f" : "24") : Json(nullptr)},
+          {"query",
+           draws ? Json(query_of(o) == QueryMode::flags ? "flags" : "occlusion") : Json(nullptr)},
+          {"promises", record.promises},
+          {"views", views},
+          {"budget", budget_json(record.views)},
+          {"device", device_json(record)},
+          {"stages", stages},
+          {"pcs", {{"objects", record.pcs_objects}, {"triangles", record.pcs_triangles}}},
+          {"candidate_pairs", record.candidate_pairs},
+          {"colliding_pairs", record.pairs.size()},
+          {"verification", verification_json(scene, record.verification)},
+          {"time_ms",
+           {{"setup", record.ms.setup},
+            {"cull", record.ms.cull},
+            {"exact", record.ms.exact},
+            {"total", record.ms.total}}},
+          {"seed", o.seed ? Json(*o.seed) : Json(nullptr)},
+          {"commit", FARCULL_COMMIT}};
+}
+
+std::string pairs_csv(const Scene& scene, const std::vector<TrianglePair>& pairs) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  fmt::memory_buffer out;
+  fmt::format_to(std::back_inserter(out), "object_a,triangle_a,object_b,triangle_b\n");
+  for (const TrianglePair& p : pairs) {
+    fmt::format_to(std::back_inserter(out), "{},{},{},{}\n", owner[p.a],
+                   p.a - scene.objects[owner[p.a]].first_triangle, owner[p.b],
+                   p.b - scene.objects[owner[p.b]].first_triangle);
+  }
+  return fmt::to_string(out);
+}
+
+void check_output(const std::string& path) {
+  if (path == "-") {
+    const int flags = ::fcntl(STDOUT_FILENO, F_GETFL);
+    if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY) refuse(path, EBADF);
+    return;
+  }
+  const Target target = target_of(path);
+  if (S_ISDIR(target.mode)) refuse(path, EISDIR);
+  if (target.exists && ::access(target.path.c_str(), W_OK) != 0) refuse(path, errno);
+  if (!target.direct && ::access((folder_of(target.path) + "/").c_str(), W_OK | X_OK) != 0)
+    refuse(path, errno);
+}
+
+void write_output(const std::string& path, const std::string& text) {
+  check_output(path);
+  if (path == "-") {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+      refuse(path, errno);
+    return;
+  }
+  const Target target = target_of(path);
+  if (target.direct) {
+    std::FILE* file = std::fopen(path.c_str(), "wb");
+    if (file == nullptr) refuse(path, errno);
+    if (const int failure = write_and_close(file, text, false)) refuse(path, failure);
+    return;
+  }
+  const std::string beside = target.path + ".part-" + std::to_string(::getpid());
+  HalfWritten part(beside);
+  std::FILE* file = std::fopen(beside.c_str(), "wb");
+  if (file == nullptr) refuse(path, errno);
+  if (target.exists) ::fchmod(::fileno(file), target.mode & 07777);
+  if (const int failure = write_and_close(file, text, true)) refuse(path, failure);
+  if (!part.put(target.path)) refuse(path, errno);
+}
+
+void prepare_output() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  // The next file that is opened would get the number of a closed stream, and with it the table.
+  // What stands in its place refuses instead.
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) < 0)
+      (void)!::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
+}  // namespace farcull

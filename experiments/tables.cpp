@@ -1,0 +1,274 @@
+#include "experiments/tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace farcull {
+namespace {
+
+constexpr std::size_t kExamplesShown = 5;
+
+std::string counted(std::uint64_t n, const std::string& one, const std::string& many) {
+  return grouped(n) + " " + (n == 1 ? one : many);
+}
+
+std::string scene_line(const Scene& scene, const RunRecord& record) {
+  std::string line =
+      fmt::format("{}: {}, {}", scene.name, counted(scene.objects.size(), "object", "objects"),
+                  counted(scene.triangles.size(), "triangle", "triangles"));
+  if (record.degenerate_triangles > 0)
+    line += fmt::format(", {} of them degenerate", grouped(record.degenerate_triangles));
+  if (record.options.seed) line += fmt::format(", seed {}", *record.options.seed);
+  return line + "\n";
+}
+
+std::string device_text(const RunRecord& record) {
+  if (!record.device) return "none: " + record.device_note;
+  return fmt::format("{}, {} depth bits, {} subpixel bits", record.device->renderer,
+                     record.depth_bits, record.device->subpixel_bits);
+}
+
+std::string method_text(const RunRecord& record) {
+  const RunOptions& o = record.options;
+  std::string text = describe(o);
+  if (o.method == Method::far) text += fmt::format(", {} offsets", o.offset);
+  if (o.method != Method::exact) {
+    text += fmt::format(", {} depth, {}",
+                        depth_of(o) == DepthMode::fragment ? "fragment" : "fixed-function",
+                        query_of(o) == QueryMode::flags ? "flags" : "occlusion queries");
+  }
+  return text + (record.promises ? "; promises to miss nothing" : "");
+}
+
+std::string views_text(const std::vector<ViewReport>& views) {
+  std::string text;
+  for (const ViewReport& view : views) {
+    text += (text.empty() ? "" : ", ") + view.name + " ";
+    text += view.drawn ? fmt::format("{} x {}", view.width, view.height) : "not drawn";
+  }
+  return text + " px";
+}
+
+// The radius of the view with the largest budget, and what the budget is made of.
+std::string radius_line(const RunRecord& record) {
+  const ViewReport* view = widest_budget(record.views);
+  if (record.options.method != Method::far || view == nullptr) return "";
+  const RadiusRule& rule = record.options.radius;
+  std::string line = fmt::format("radius     {:.5f} px", view->radius_px);
+  if (rule.published) line += ", as published";
+  if (!rule.published && rule.factor != 1) line += fmt::format(", {} of the budget", rule.factor);
+  if (rule.published || rule.factor != 1)
+    line += fmt::format("\nbudget     {:.5f} px", view->budget.radius());
+  bool first = true;
+  for (const BudgetTerm& term : view->budget.terms()) {
+    if (term.px <= 0) continue;
+    line += fmt::format("{}{} {:.5f}", first ? " = " : " + ", term.name, term.px);
+    first = false;
+  }
+  return line + "\n";
+}
+
+// A row of the stage table: one stage, or those of one view in the first round, or all of the
+// rounds after it, where little happens.
+struct Row {
+  std::string key;  // what stages are folded by; empty: nothing joins this row
+  std::string name;
+  std::string note;
+  std::vector<std::string> views;  // of later rounds
+  Stage sum;                       // ms of all, in of the first, out of the last
+};
+
+// The parts of a stage's name such as "cull triangles x, round 2".
+struct StageName {
+  std::string verb;   // fatten, objects, triangles
+  std::string view;   // x
+  std::string round;  // 2; empty where the stage belongs to no round
+};
+
+StageName parts_of(const std::string& name) {
+  const std::size_t comma = name.rfind(", round ");
+  const std::size_t blank = name.rfind(' ', comma == std::string::npos ? 0 : comma - 1);
+  if (comma == std::string::npos || blank == std::string::npos) return {};
+  std::string verb = name.substr(0, blank);
+  if (verb.starts_with("cull ")) verb.erase(0, 5);
+  return {verb, name.substr(blank + 1, comma - blank - 1), name.substr(comma + 8)};
+}
+
+// What a stage says beside its ordinary course, such as triangles that could not be drawn.
+std::string exception_of(const Stage& stage) {
+  const std::size_t at = stage.reason.find("; ");
+  return at == std::string::npos ? "" : stage.reason.substr(at + 2);
+}
+
+std::vector<Row> folded(const std::vector<Stage>& stages) {
+  std::vector<Row> rows;
+  for (const Stage& stage : stages) {
+    const StageName name = parts_of(stage.name);
+    if (!stage.ran || name.round.empty()) {
+      rows.push_back(
+          {"", stage.name, stage.ran ? stage.reason : "left out: " + stage.reason, {}, stage});
+      continue;
+    }
+    const bool first = name.round == "1";
+    const std::string key = first ? "view " + name.view : "later rounds";
+    const bool joins = !rows.empty() && rows.back().key == key;
+    if (!joins) {
+      rows.push_back({key, first ? key : "", "", {}, stage});
+    } else {
+      rows.back().sum.ms += stage.ms;
+      rows.back().sum.out = stage.out;
+    }
+    Row& row = rows.back();
+    if (first) {
+      row.note += fmt::format("{}{} {:.1f}", row.note.empty() ? "" : ", ", name.verb, stage.ms);
+    } else {
+      row.name = name.round == "2" ? "round 2" : "rounds 2-" + name.round;
+      if (std::find(row.views.begin(), row.views.end(), name.view) == row.views.end()) {
+        row.note += (row.note.empty() ? "" : ", ") + name.view;
+        row.views.push_back(name.view);
+      }
+    }
+    const std::string exception = exception_of(stage);
+    if (first && !exception.empty()) row.note += " (" + exception + ")";
+  }
+  return rows;
+}
+
+std::string stage_table(const std::vector<Stage>& stages) {
+  Table table("lrrrll");
+  table.add({"stage", "ms", "in", "out", "", ""});
+  for (const Row& row : folded(stages)) {
+    const Stage& s = row.sum;
+    const bool counts = !s.unit.empty() && (s.ran || s.in > 0);
+    table.add({row.name, s.ran ? fmt::format("{:.1f}", s.ms) : "-", counts ? grouped(s.in) : "",
+               counts ? grouped(s.out) : "", counts ? s.unit : "", row.note});
+  }
+  return table.text();
+}
+
+std::string accounting_lines(const Scene& scene, const RunRecord& record) {
+  if (!record.verification) return "accounted  not at all (--no-verify)\n";
+  const Accounting& v = *record.verification;
+  std::string out = fmt::format(
+      "accounted  {} = {} kept + {} disjoint boxes\n           + {} proved disjoint{} + {} "
+      "missed\n",
+      counted(v.pairs_total, "pair", "pairs"), grouped(v.pairs_kept), grouped(v.certified_by_boxes),
+      grouped(v.certified_by_predicates),
+      v.neighbours > 0 ? " + " + grouped(v.neighbours) + " neighbours" : "",
+      grouped(v.false_negatives));
+  const std::vector<std::uint32_t> owner = owners(scene);
+  const auto place = [&](std::uint32_t triangle) {
+    const Object& object = scene.objects[owner[triangle]];
+    return fmt::format("{} triangle {}", object.name, triangle - object.first_triangle);
+  };
+  const std::size_t shown = std::min(v.examples.size(), kExamplesShown);
+  for (std::size_t i = 0; i < shown; ++i)
+    out += fmt::format("  missed: {} meets {}\n", place(v.examples[i].a), place(v.examples[i].b));
+  if (v.false_negatives > shown && shown > 0)
+    out += fmt::format("  missed: {} more\n", grouped(v.false_negatives - shown));
+  return out;
+}
+
+std::string missed_text(const RunRecord& record) {
+  return record.verification ? grouped(record.verification->false_negatives) : "not verified";
+}
+
+}  // namespace
+
+std::string Table::text() const {
+  std::vector<std::size_t> widths(alignment_.size(), 0);
+  for (const auto& row : rows_) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  std::string out;
+  for (const auto& row : rows_) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string pad(widths[i] - row[i].size(), ' ');
+      if (widths[i] == 0) continue;
+      if (!line.empty()) line += "  ";
+      line += alignment_[i] == 'l' ? row[i] + pad : pad + row[i];
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    out += line + "\n";
+  }
+  return out;
+}
+
+std::string grouped(std::uint64_t n) {
+  std::string digits = std::to_string(n);
+  for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) digits.insert(at, ",");
+  return digits;
+}
+
+std::string radius_text(const RadiusRule& radius) {
+  if (radius.published) return "published";
+  return radius.factor == 1 ? "budget" : fmt::format("{}", radius.factor);
+}
+
+const ViewReport* widest_budget(const std::vector<ViewReport>& views) {
+  const ViewReport* widest = nullptr;
+  for (const ViewReport& view : views) {
+    if (view.drawn && (!widest || view.budget.radius() > widest->budget.radius())) widest = &view;
+  }
+  return widest;
+}
+
+std::string run_table(const Scene& scene, const RunRecord& record) {
+  std::string out = scene_line(scene, record);
+  out += "device     " + device_text(record) + "\n";
+  out += "method     " + method_text(record) + "\n";
+  if (!record.views.empty()) out += "views      " + views_text(record.views) + "\n";
+  out += radius_line(record);
+  out += "\n" + stage_table(record.stages) + "\n";
+  out += fmt::format("kept       {}, {}, {}\n", counted(record.pcs_objects, "object", "objects"),
+                     counted(record.pcs_triangles, "triangle", "triangles"),
+                     counted(record.candidate_pairs, "candidate pair", "candidate pairs"));
+  out += fmt::format("colliding  {}\n", counted(record.pairs.size(), "pair", "pairs"));
+  out += accounting_lines(scene, record);
+  out += fmt::format(
+      "time       {:.1f} ms = setup {:.1f} + cull {:.1f} + exact {:.1f}{}\n", record.ms.total,
+      record.ms.setup, record.ms.cull, record.ms.exact,
+      record.verification ? fmt::format("; accounting {:.1f} more", record.verification->ms) : "");
+  return out;
+}
+
+std::string comparison_table(const Scene& scene, const std::vector<RunRecord>& records) {
+  if (records.empty()) return "";
+  const auto drawn = std::find_if(records.begin(), records.end(),
+                                  [](const RunRecord& r) { return r.device.has_value(); });
+  const RunRecord* reference = nullptr;
+  for (const RunRecord& record : records) {
+    if (record.options.method == Method::exact) reference = &record;
+  }
+  std::string out = scene_line(scene, records[0]);
+  out += "device     " + device_text(drawn == records.end() ? records[0] : *drawn) + "\n\n";
+  Table table("lrrrrrrrrr");
+  table.add({"method", "resolution", "objects", "triangles", "candidates", "colliding", "missed",
+             "cull ms", "exact ms", reference ? "x exact" : ""});
+  for (const RunRecord& r : records) {
+    const double ratio =
+        reference ? (r.ms.cull + r.ms.exact) / (reference->ms.cull + reference->ms.exact) : 0;
+    table.add({to_string(r.options.method),
+               r.options.method == Method::exact ? "-" : std::to_string(r.options.resolution),
+               grouped(r.pcs_objects), grouped(r.pcs_triangles), grouped(r.candidate_pairs),
+               grouped(r.pairs.size()), missed_text(r), fmt::format("{:.1f}", r.ms.cull),
+               fmt::format("{:.1f}", r.ms.exact), reference ? fmt::format("{:.2f}", ratio) : ""});
+  }
+  out += table.text();
+  out +=
+      "\nobjects, triangles: kept by culling; candidates: pairs of kept triangles whose boxes "
+      "overlap;\n"
+      "missed: colliding pairs that culling lost, found by exact predicates over all pairs.\n";
+  if (reference) {
+    out +=
+        "x exact: cull + exact ms over those of the method exact in this run\n"
+        "(CGAL's box join with cutoff 2000, exact predicates); the graphics context is set up "
+        "once\n"
+        "and not counted.\n";
+  }
+  return out;
+}
+
+}  // namespace farcull

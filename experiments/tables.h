@@ -1,0 +1,43 @@
+// What people read: aligned tables and short lines. Programs read the JSON (output.h), which holds
+// more.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/run.h"
+
+namespace farcull {
+
+/// Rows of cells; each column is as wide as its widest cell.
+class Table {
+ public:
+  /// One letter a column: 'l' to the left, 'r' to the right.
+  explicit Table(std::string_view alignment) : alignment_(alignment) {}
+  void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+  /// Two blanks between columns, none at the ends of lines.
+  std::string text() const;
+
+ private:
+  std::string alignment_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// 1234567 as 1,234,567.
+std::string grouped(std::uint64_t n);
+
+/// The radius as the option gives it: "budget", "published" or the factor.
+std::string radius_text(const RadiusRule& radius);
+
+/// The view with the largest budget: the one that a reader should quote. Null where none was drawn.
+const ViewReport* widest_budget(const std::vector<ViewReport>& views);
+
+/// One run. The stages of a view are folded into one row, and so are all rounds after the first.
+std::string run_table(const Scene& scene, const RunRecord& record);
+
+/// Several runs of one scene, a line each. `repeat` > 1: times are medians, the spread is in the
+/// JSON.
+std::string comparison_table(const Scene& scene, const std::vector<RunRecord>& records);
+
+}  // namespace farcull

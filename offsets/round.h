@@ -1,0 +1,26 @@
+// Outward rounding from double to float, shared by the offsets.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+namespace farcull {
+
+/// The smallest float >= x.
+inline float round_up(double x) {
+  const float f = static_cast<float>(x);
+  return f < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
+}
+
+/// The largest float <= x.
+inline float round_down(double x) { return -round_up(-x); }
+
+/// Floats beyond z -+ radius, the rounding of these very lines included.
+inline float outward_lower(double z, double radius) {
+  return round_down(z - radius - 0x1p-50 * (std::abs(z) + radius));
+}
+inline float outward_upper(double z, double radius) {
+  return round_up(z + radius + 0x1p-50 * (std::abs(z) + radius));
+}
+
+}  // namespace farcull

@@ -1,0 +1,352 @@
+// FAR from triangles to pairs on the real rasterizer, against the exact oracle over all pairs.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/box_join.h"
+#include "core/cull.h"
+#include "core/plan.h"
+#include "experiments/builtin_scenes.h"
+#include "experiments/run.h"
+#include "offsets/obb.h"
+#include "tests/core/gl_lab.h"
+#include "verify/accounting.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+using lab::Random;
+
+Session& session() {
+  static Session shared("");
+  return shared;
+}
+
+RunRecord run(const Scene& scene, int resolution, RunOptions options = {}) {
+  options.resolution = resolution;
+  return run_scene(scene, options, session());
+}
+
+void expect_right(const Scene& scene, const RunRecord& record) {
+  ASSERT_TRUE(record.promises);
+  ASSERT_TRUE(record.verification->adds_up());
+  EXPECT_EQ(record.verification->false_negatives, 0);
+  EXPECT_EQ(record.pairs, all_colliding_pairs(scene).pairs);
+}
+
+// Objects of the given triangles, a vertex per corner.
+Scene scene_of(const std::vector<std::vector<std::array<Vec3, 3>>>& objects) {
+  Scene scene;
+  scene.name = "test";
+  for (const auto& triangles : objects) {
+    scene.objects.push_back({"o" + std::to_string(scene.objects.size()),
+                             static_cast<std::uint32_t>(scene.triangles.size()),
+                             static_cast<std::uint32_t>(triangles.size())});
+    for (const auto& t : triangles) {
+      const auto v = static_cast<std::uint32_t>(scene.vertices.size());
+      scene.vertices.insert(scene.vertices.end(), t.begin(), t.end());
+      scene.source_face.push_back(static_cast<std::uint32_t>(scene.triangles.size()));
+      scene.triangles.push_back({v, v + 1, v + 2});
+    }
+  }
+  validate(scene, "test");
+  return scene;
+}
+
+// Random triangles of several kinds in a unit cube, on a grid of 2^-10 so that exact contacts happen.
+Scene random_scene(std::uint64_t seed) {
+  Random random(seed);
+  const int kind = random.below(5);
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2 + random.below(4));
+  for (auto& object : objects) {
+    const int count = random.below(60);
+    for (int i = 0; i < count; ++i) {
+      std::array<Vec3, 3> t;
+      const double size = kind == 3 ? 30 : std::exp2(-random.below(8));
+      const Vec3 at(random.grid(0, 1, 0x1p-10), random.grid(0, 1, 0x1p-10), random.grid(0, 1, 0x1p-10));
+      for (Vec3& c : t) {
+        c = at + Vec3(random.grid(-size, size, 0x1p-10), random.grid(-size, size, 0x1p-10),
+                      random.grid(-size, size, 0x1p-10));
+      }
+      if (kind == 1 && random.below(2)) t[2] = random.below(2) ? t[1] : Vec3(2 * t[1] - t[0]);  // segments
+      if (kind == 1 && random.below(4) == 0) t[2] = t[1] = t[0];                                // points
+      if (kind == 2) t[2] = t[1] + Vec3(0x1p-10, 0, 0);                                         // needles
+      if (kind == 4) t[1][2] = t[2][2] = t[0][2] = random.below(4) * 0.25;                      // coplanar sheets
+      object.push_back(t);
+    }
+  }
+  return scene_of(objects);
+}
+
+TEST(GlFar, MissesNothingOnRandomScenes) {
+  std::uint64_t colliding = 0, culled = 0;
+  for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Scene scene = random_scene(seed);
+    const RunRecord record = run(scene, 1 + static_cast<int>(seed * seed % 97));
+    expect_right(scene, record);
+    colliding += record.pairs.size();
+    culled += scene.triangles.size() - record.pcs_triangles;
+  }
+  EXPECT_GT(colliding, 10'000u) << "too few intersecting pairs to find a miss";
+  EXPECT_GT(culled, 1'000u) << "a method that keeps everything would pass";
+}
+
+TEST(GlFar, MissesNothingOnBuiltInScenes) {
+  for (const BuiltinScene& builtin : builtin_scenes()) {
+    if (builtin.needs_meshes) continue;
+    for (const char* suffix : {"", "@far", "@tiny", "@huge", "@ground"}) {
+      SCOPED_TRACE(builtin.name + suffix);
+      const Scene scene = make_builtin_scene(builtin.name + suffix);
+      expect_right(scene, run(scene, suffix[0] == 0 ? 200 : 64));
+    }
+  }
+}
+
+TEST(GlFar, MissesNothingInObliqueAndRepeatedViews) {
+  for (const char* views : {"1:1:1", "x,-x", "-y", "0.3:-1:2,z", "1:1e-9:0,y", "x,y,z,-x,-y,-z"}) {
+    SCOPED_TRACE(views);
+    for (const char* name : {"random-soup", "degenerate", "needles"}) {
+      const Scene scene = make_builtin_scene(name);
+      RunOptions options;
+      options.views = views;
+      expect_right(scene, run(scene, 100, options));
+    }
+  }
+}
+
+TEST(GlFar, QueriesAndDepthFormatsAgree) {
+  for (const char* name : {"random-soup", "degenerate", "two-spheres", "crowd"}) {
+    SCOPED_TRACE(name);
+    const Scene scene = make_builtin_scene(name);
+    RunOptions options;
+    const RunRecord flags = run(scene, 128, options);
+    options.query = QueryMode::occlusion;
+    const RunRecord occlusion = run(scene, 128, options);
+    EXPECT_EQ(flags.pcs_triangles, occlusion.pcs_triangles);
+    EXPECT_EQ(flags.candidate_pairs, occlusion.candidate_pairs);
+    expect_right(scene, occlusion);
+    options.depth_format = DepthFormat::fixed24;
+    expect_right(scene, run(scene, 128, options));
+    options.method = Method::cullide;
+    options.depth_format = DepthFormat::float32;
+    const RunRecord cullide_occlusion = run(scene, 128, options);
+    options.query = QueryMode::flags;
+    EXPECT_EQ(run(scene, 128, options).pcs_triangles, cullide_occlusion.pcs_triangles);
+  }
+}
+
+TEST(GlFar, PublishedPathRunsAndPromisesNothing) {
+  const Scene scene = make_builtin_scene("two-spheres");
+  RunOptions options;
+  options.depth = DepthMode::fixed;
+  options.radius = {.published = true, .factor = 1};
+  const RunRecord record = run(scene, 128, options);
+  EXPECT_FALSE(record.promises);
+  EXPECT_TRUE(record.verification->adds_up());
+  EXPECT_LT(record.pcs_triangles, scene.triangles.size());
+  EXPECT_GT(record.pairs.size(), 0u);
+}
+
+TEST(GlFar, CullideMissesPairsThatFarKeeps) {
+  const Scene scene = make_builtin_scene("two-spheres");
+  RunOptions options;
+  options.method = Method::cullide;
+  const RunRecord cullide = run(scene, 64, options);
+  EXPECT_GT(cullide.verification->false_negatives, 0u);
+  EXPECT_FALSE(broken(cullide, false)) << "cullide promises nothing";
+  EXPECT_TRUE(broken(cullide, true));
+}
+
+// Short segments that cross at 45 degrees near the corners of the pixels of the view along z, at a resolution of `side`.
+// Two anchors give both objects the same box, so that the pixel grid is known.
+Scene corner_scene(int side) {
+  Random random(7);
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+  const double half = 0.5 * side;
+  for (auto& object : objects) {
+    const Vec3 corner(half, half, half);
+    object.push_back({-corner, -corner, -corner});
+    object.push_back({corner, corner, corner});
+  }
+  for (int y = -side / 2 + 4; y <= side / 2 - 4; y += 6) {
+    for (int x = -side / 2 + 4; x <= side / 2 - 4; x += 6) {
+      const Vec3 q(x + random.grid(-0x1p-10, 0x1p-10, 0x1p-14), y + random.grid(-0x1p-10, 0x1p-10, 0x1p-14),
+                   random.grid(-half + 1, half - 1, 0x1p-8));
+      const Vec3 u(0x1p-12, 0x1p-12, 0), v(0x1p-12, -0x1p-12, 0);
+      objects[0].push_back({q - u, q + u, q + u});
+      objects[1].push_back({q - v, q + v, q + v});
+    }
+  }
+  return scene_of(objects);
+}
+
+TEST(GlFar, RadiusTwinsFailNearPixelCorners) {
+  const int side = 256;
+  const Scene scene = corner_scene(side);
+  RunOptions options;
+  options.views = "z";
+  expect_right(scene, run(scene, side, options));
+  const std::uint64_t pairs = all_colliding_pairs(scene).pairs.size();
+  ASSERT_GT(pairs, 1500u);
+  for (const RadiusRule radius : {RadiusRule{.published = false, .factor = 0.9}, RadiusRule{.published = true, .factor = 1}}) {
+    options.radius = radius;
+    const RunRecord record = run(scene, side, options);
+    EXPECT_FALSE(record.promises);
+    EXPECT_GT(record.verification->false_negatives, pairs / 50) << (radius.published ? "published" : "0.9");
+  }
+}
+
+// An item beyond the budget: a needle of 1e18 px seen all but end-on, whose image double arithmetic cannot place.
+TEST(GlFar, UndrawableItemKeepsItsSmallPartner) {
+  const Vec3 along = Vec3(1, 1, 1) * 0x1p60;
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+  objects[0].push_back({-along, along, along + Vec3(0, 0, 0x1p10)});
+  for (int i = -20; i <= 20; ++i) {
+    const Vec3 at(0.03125 * i, 0.25 * (i % 3), 0.0625 * (i % 5));
+    objects[1].push_back({at, at + Vec3(0.125, 0, 0), at + Vec3(0, 0.125, 0.03125)});
+  }
+  const Scene scene = scene_of(objects);
+  ASSERT_GT(all_colliding_pairs(scene).pairs.size(), 0u);
+  for (const char* views : {"1:1:1", "x,y,z", "1:1:1.0000001"}) {
+    SCOPED_TRACE(views);
+    RunOptions options;
+    options.views = views;
+    const RunRecord record = run(scene, 256, options);
+    expect_right(scene, record);
+    bool reported = false;
+    for (const Stage& stage : record.stages) reported |= stage.reason.find("beyond the budget") != std::string::npos;
+    EXPECT_TRUE(reported) << "the scene must exercise the undrawable path";
+  }
+}
+
+TEST(GlFar, RegionsThatPixelsCannotResolveKeepEverything) {
+  const Vec3 far(0x1p60, 0x1p60, 0x1p60);
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+  for (int o = 0; o < 2; ++o) {
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 at = far + Vec3(0x1p8 * i, 0x1p8 * (i * 5 % 8), 0x1p8 * o);
+      objects[o].push_back({at, at + Vec3(0x1p9, 0, 0x1p8), at + Vec3(0, 0x1p9, 0x1p8)});
+    }
+  }
+  const Scene scene = scene_of(objects);
+  for (const int resolution : {16, 4096}) expect_right(scene, run(scene, resolution));
+}
+
+Scene permuted(const Scene& scene, Random& random, std::vector<std::uint32_t>& triangle_from) {
+  std::vector<std::uint32_t> order(scene.objects.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(static_cast<int>(i))]);
+  Scene out;
+  out.name = scene.name;
+  out.vertices = scene.vertices;
+  for (const std::uint32_t o : order) {
+    Object object = scene.objects[o];
+    const std::uint32_t from = object.first_triangle;
+    object.first_triangle = static_cast<std::uint32_t>(out.triangles.size());
+    out.objects.push_back(object);
+    for (std::uint32_t i = 0; i < object.triangle_count; ++i) {
+      auto t = scene.triangles[from + i];
+      const int turn = random.below(3);
+      std::rotate(t.begin(), t.begin() + turn, t.end());
+      if (random.below(2)) std::swap(t[0], t[1]);
+      out.triangles.push_back(t);
+      out.source_face.push_back(scene.source_face[from + i]);
+      triangle_from.push_back(from + i);
+    }
+  }
+  return out;
+}
+
+std::vector<TrianglePair> mapped_back(std::vector<TrianglePair> pairs, const std::vector<std::uint32_t>& from) {
+  for (TrianglePair& p : pairs) p = {std::min(from[p.a], from[p.b]), std::max(from[p.a], from[p.b])};
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+TEST(GlFar, PermutationsOfObjectsAndVerticesChangeNoAnswer) {
+  Random random(11);
+  for (const char* name : {"random-soup", "degenerate", "two-spheres"}) {
+    SCOPED_TRACE(name);
+    const Scene scene = make_builtin_scene(name);
+    const RunRecord before = run(scene, 96);
+    for (int i = 0; i < 3; ++i) {
+      std::vector<std::uint32_t> from;
+      const Scene other = permuted(scene, random, from);
+      const RunRecord after = run(other, 96);
+      expect_right(other, after);
+      EXPECT_EQ(mapped_back(after.pairs, from), before.pairs);
+    }
+  }
+}
+
+TEST(GlFar, SignedAxisPermutationsChangeNoAnswer) {
+  const Scene scene = make_builtin_scene("random-soup");
+  const RunRecord before = run(scene, 96);
+  const int axes[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+  for (int i = 0; i < 12; ++i) {
+    Scene other = scene;
+    for (Vec3& v : other.vertices) {
+      const Vec3 old = v;
+      for (int k = 0; k < 3; ++k) v[k] = (i * 5 >> k & 1 ? -1 : 1) * old[axes[i % 6][k]];
+    }
+    const RunRecord after = run(other, 96);
+    expect_right(other, after);
+    EXPECT_EQ(after.pairs, before.pairs);
+  }
+}
+
+// Powers of two and exactly representable moves change no rounding at all: what is kept is the same too.
+TEST(GlFar, ScalingsByPowersOfTwoAndExactMovesChangeNothingAtAll) {
+  Scene scene = make_builtin_scene("random-soup");
+  for (Vec3& v : scene.vertices) {
+    for (double& x : v) x = std::round(x * 0x1p20) * 0x1p-20;
+  }
+  const RunRecord before = run(scene, 96);
+  for (const int exponent : {-300, -40, -1, 1, 40, 300}) {
+    Scene other = scene;
+    for (Vec3& v : other.vertices) v *= std::ldexp(1.0, exponent);
+    const RunRecord after = run(other, 96);
+    EXPECT_EQ(after.pairs, before.pairs) << exponent;
+    EXPECT_EQ(after.pcs_triangles, before.pcs_triangles) << exponent;
+    EXPECT_EQ(after.verification->false_negatives, 0) << exponent;
+  }
+  for (const Vec3& move : {Vec3(1, -2, 3), Vec3(0x1p20, 0x1p22, -0x1p21)}) {
+    Scene other = scene;
+    for (Vec3& v : other.vertices) v += move;
+    const RunRecord after = run(other, 96);
+    EXPECT_EQ(after.pairs, before.pairs);
+    EXPECT_EQ(after.pcs_triangles, before.pcs_triangles);
+    EXPECT_EQ(after.verification->false_negatives, 0);
+  }
+}
+
+TEST(GlFar, FarApartDrawsNothingAndSaysWhy) {
+  const Scene scene = make_builtin_scene("far-apart");
+  Session none("no such device");  // opening it would throw
+  const RunRecord record = run_scene(scene, {}, none);
+  EXPECT_FALSE(record.device.has_value());
+  EXPECT_NE(record.device_note.find("nothing to draw"), std::string::npos);
+  EXPECT_EQ(record.pcs_triangles, 0u);
+  EXPECT_EQ(record.verification->false_negatives, 0u);
+}
+
+// The economy of storing only open items must cost no culling: the fixed point is at least as small.
+TEST(GlFar, EconomyNeverKeepsMore) {
+  for (const char* name : {"two-spheres", "crowd", "random-soup"}) {
+    SCOPED_TRACE(name);
+    const Scene scene = make_builtin_scene(name);
+    const Plan plan = make_plan(scene);
+    const Fattener fattener = obb_fattener();
+    GlCanvas canvas(session().context(), fattener.mode, fattener.solid);
+    CullSettings settings{.views = parse_views("x,y,z"), .resolution = 96, .fattener = fattener, .radius = {}, .economy = true};
+    const std::vector<std::uint32_t> economical = cull(scene, plan, settings, canvas).live;
+    settings.economy = false;
+    const std::vector<std::uint32_t> plain = cull(scene, plan, settings, canvas).live;
+    EXPECT_TRUE(std::includes(plain.begin(), plain.end(), economical.begin(), economical.end()));
+  }
+}
+
+}  // namespace
+}  // namespace farcull

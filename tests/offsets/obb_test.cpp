@@ -1,0 +1,417 @@
+// The oriented box against rationals: obb_of() holds hull and ball, and the kernel's interval holds
+// the exact one of the solid that the floats say.
+#include "offsets/obb.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <limits>
+#include <optional>
+
+#include "core/glsl_shim.h"
+#include "tests/core/rational.h"
+
+namespace farcull {
+namespace glsl::obb_without_widening {
+#define FAR_WIDEN 0.0f
+#include "offsets/slab.glsl"
+#include "offsets/obb.glsl"
+#undef FAR_WIDEN
+}  // namespace glsl::obb_without_widening
+
+namespace {
+
+using rational::Q;
+using rational::Random;
+using Points = std::vector<Vec3>;
+using Kernel = bool (*)(float cx, float cy, const Solid& solid, float& entry, float& exit);
+
+bool without_widening(float cx, float cy, const Solid& solid, float& entry, float& exit) {
+  glsl::vec4 s[5];
+  for (int i = 0; i < 5; ++i) s[i] = {solid[i][0], solid[i][1], solid[i][2], solid[i][3]};
+  return glsl::obb_without_widening::solid_interval({cx, cy}, s[0], s[1], s[2], s[3], s[4], entry,
+                                                    exit);
+}
+
+// ---- obb_of ----
+
+/// The ball around each point inside each slab: |a . (p - m)| + r |a| <= h; and inside the z range.
+void expect_holds_balls(const Solid& solid, const Points& points, double radius) {
+  const Q r(radius);
+  for (const Vec3& p : points) {
+    const Q d[3] = {Q(p[0]) - Q(solid[0][0]), Q(p[1]) - Q(solid[0][1]), Q(p[2]) - Q(solid[0][2])};
+    for (int i = 1; i <= 3; ++i) {
+      const Q a[3] = {Q(solid[i][0]), Q(solid[i][1]), Q(solid[i][2])};
+      const Q rest = Q(solid[i][3]) - abs(a[0] * d[0] + a[1] * d[1] + a[2] * d[2]);
+      ASSERT_GE(rest, 0) << "slab " << i;
+      ASSERT_GE(rest * rest, r * r * (a[0] * a[0] + a[1] * a[1] + a[2] * a[2])) << "slab " << i;
+    }
+    ASSERT_LE(Q(solid[0][3]), Q(p[2]) - r);
+    ASSERT_GE(Q(solid[4][0]), Q(p[2]) + r);
+  }
+}
+
+Points random_points(Random& random) {
+  const double reach = random.below(3) == 0 ? std::exp2(random.uniform(10, 31)) : 600;
+  const Vec3 at(random.uniform(-600, 600), random.uniform(-600, 600), random.uniform(-1, 1) * reach);
+  const auto near = [&](double lo, double hi) { return Vec3(at + random.scaled3(lo, hi)); };
+  switch (random.below(9)) {
+    case 0: return {near(-4, 9), near(-4, 9), near(-4, 9)};
+    case 1: {  // needle, aspect 1e3 .. 1e12
+      const Vec3 e = random.scaled3(0, 9);
+      return {at - e, at + e, at + e * random.uniform(-1, 1) + random.scaled3(-40, -3)};
+    }
+    case 2: return {at, at, near(-10, 9)};                    // a segment
+    case 3: return {at, at, at};                              // a point
+    case 4: return {at};                                      // one point
+    case 5: return {near(-60, -20), near(-60, -20), near(-60, -20)};
+    case 6: return {random.scaled3(-160, -100), random.scaled3(-160, -100), Vec3::Zero()};
+    case 7: {  // flat along an axis: normals with exact zeros
+      Points points{near(0, 9), near(0, 9), near(0, 9), near(0, 9)};
+      const int axis = random.below(3);
+      for (Vec3& p : points) p[axis] = at[axis];
+      return points;
+    }
+    default: {
+      Points points;
+      for (int i = 0; i < 3 + random.below(7); ++i) points.push_back(near(-2, 8));
+      return points;
+    }
+  }
+}
+
+TEST(ObbOf, HoldsHullAndBallOfEveryPolygon) {
+  Random random(501);
+  for (int n = 0; n < 30'000; ++n) {
+    const Points points = random_points(random);
+    const double radius = random.below(4) == 0   ? 0
+                          : random.below(3) == 0 ? std::abs(random.scaled(-20, 8))
+                                                 : 0.715;
+    const Solid solid = obb_of(points, radius);
+    for (const auto& row : solid) {
+      for (const float x : row) ASSERT_TRUE(std::isfinite(x));
+    }
+    for (int i = 1; i <= 3; ++i) {
+      for (int k = 0; k < 3; ++k) ASSERT_LE(std::abs(solid[i][k]), 1.001f);  // the kernel's |a| <= 2
+    }
+    for (int k = 1; k < 4; ++k) ASSERT_EQ(solid[4][k], 0);  // the canvas's own numbers
+    expect_holds_balls(solid, points, radius);
+    if (HasFatalFailure()) FAIL() << "polygon " << n;
+  }
+}
+
+// Any box that is large enough would pass above. A triangle in general position is held by a box
+// that is at most the ball thicker than the triangle.
+TEST(ObbOf, IsTightAroundTriangles) {
+  Random random(502);
+  for (int n = 0; n < 20'000; ++n) {
+    const Vec3 at = random.cube(500);
+    const Points points{at + random.cube(20), at + random.cube(20), at + random.cube(20)};
+    const Vec3 cross = (points[1] - points[0]).cross(points[2] - points[0]);
+    double longest = 0;
+    for (int i = 0; i < 3; ++i) longest = std::max(longest, (points[(i + 1) % 3] - points[i]).norm());
+    const Solid solid = obb_of(points, 0.75);
+    // Half sizes: along the longest edge, across it (half the height), and along the normal.
+    const double half[3] = {0.5 * longest + 0.75, 0.5 * cross.norm() / longest + 0.75, 0.75};
+    for (int i = 0; i < 3; ++i) ASSERT_NEAR(solid[1 + i][3], half[i], 1e-4) << "slab " << i;
+    const auto [lo, hi] = std::minmax({points[0][2], points[1][2], points[2][2]});
+    ASSERT_NEAR(solid[0][3], lo - 0.75, 1e-4);
+    ASSERT_NEAR(solid[4][0], hi + 0.75, 1e-4);
+  }
+}
+
+// ---- the kernel ----
+
+template <typename Number>
+struct Interval {
+  Number lo, hi;
+};
+
+/// The solid's interval along the line, without rounding; none where the line misses it.
+std::optional<Interval<Q>> exact_interval(float cx, float cy, const Solid& s) {
+  Interval<Q> z{Q(s[0][3]), Q(s[4][0])};
+  for (int i = 1; i <= 3; ++i) {
+    const Q at = Q(s[i][0]) * (Q(cx) - Q(s[0][0])) + Q(s[i][1]) * (Q(cy) - Q(s[0][1]));
+    const Q h(s[i][3]), a(s[i][2]);
+    if (a == 0) {
+      if (abs(at) > h) return std::nullopt;
+      continue;
+    }
+    Q z0 = Q(s[0][2]) + (-h - at) / a, z1 = Q(s[0][2]) + (h - at) / a;
+    if (a < 0) std::swap(z0, z1);
+    z.lo = std::max(z.lo, z0);
+    z.hi = std::min(z.hi, z1);
+  }
+  if (z.lo > z.hi) return std::nullopt;
+  return z;
+}
+
+/// In double, a little too large; none where the line misses for certain. Products of floats are
+/// exact in double, the differences and sums err by 2^-53 each of the terms' sizes: 2^-49 is beyond
+/// all of them together.
+std::optional<Interval<double>> outer_interval(float cx, float cy, const Solid& s) {
+  Interval<double> z{s[0][3], s[4][0]};
+  for (int i = 1; i <= 3; ++i) {
+    const double x = double(s[i][0]) * (double(cx) - s[0][0]);
+    const double y = double(s[i][1]) * (double(cy) - s[0][1]);
+    const double at = x + y, h = s[i][3], a = s[i][2];
+    const double e = 0x1p-49 * (std::abs(x) + std::abs(y) + h) + 0x1p-1000;
+    if (a == 0) {
+      if (std::abs(at) > h + e) return std::nullopt;
+      continue;
+    }
+    double z0 = (-h - at) / a, z1 = (h - at) / a;
+    if (a < 0) std::swap(z0, z1);
+    const double f = e / std::abs(a) +
+                     0x1p-49 * (std::abs(z0) + std::abs(z1) + std::abs(double(s[0][2])));
+    z.lo = std::max(z.lo, s[0][2] + z0 - f);
+    z.hi = std::min(z.hi, s[0][2] + z1 + f);
+  }
+  if (z.lo > z.hi) return std::nullopt;
+  return z;
+}
+
+struct Tally {
+  long hits = 0, misses = 0, exact = 0, violations = 0;
+};
+
+/// Whether the kernel's answer holds the exact interval. The double interval decides nearly always,
+/// since the widening is by 2^-20; where it does not, rationals do.
+void count(Kernel kernel, float cx, float cy, const Solid& solid, Tally& tally) {
+  float entry = 0, exit = 0;
+  const bool hit = kernel(cx, cy, solid, entry, exit);
+  const auto outer = outer_interval(cx, cy, solid);
+  ++(outer ? tally.hits : tally.misses);
+  if (!outer || (hit && entry <= outer->lo && exit >= outer->hi)) return;
+  ++tally.exact;
+  const auto truth = exact_interval(cx, cy, solid);
+  if (truth && !(hit && Q(entry) <= truth->lo && Q(exit) >= truth->hi)) ++tally.violations;
+}
+
+float number(double x) { return static_cast<float>(x); }
+
+/// A solid made of floats directly: slabs on either side of "parallel", normals with zeros and
+/// denormals, far middles, thin and thick; the line passes through it or close to its border.
+void adversarial(Random& random, Solid& s, float& cx, float& cy) {
+  s = {};
+  const double far = random.below(3) == 0 ? 1e9 : 1000;
+  const double cut = random.uniform(-600, 600);
+  s[0] = {number(cut), number(random.uniform(-600, 600)), number(random.uniform(-far, far)), 0};
+  if (random.below(10) == 0) s[0][random.below(3)] = 0;
+  cx = static_cast<float>(std::floor(s[0][0] + random.scaled(-2, 8)) + 0.5);
+  cy = static_cast<float>(std::floor(s[0][1] + random.scaled(-2, 8)) + 0.5);
+  for (int i = 1; i <= 3; ++i) {
+    const Vec3 a = random.cube(1).normalized();
+    for (int k = 0; k < 3; ++k) s[i][k] = number(a[k]);
+    switch (random.below(8)) {
+      case 0: s[i][2] = 0; break;
+      case 1: s[i][2] = number(random.sign() * 0x1p-20 * random.uniform(0.99, 1.01)); break;
+      case 2: s[i][2] = std::nextafter(0x1p-20f, random.coin() ? 0.f : 1.f); break;
+      case 3: s[i][2] = number(random.scaled(-149, -18)); break;
+      case 4: s[i][random.below(3)] = number(random.scaled(-149, -100)); break;
+      case 5: s[i][random.below(2)] = 0; break;
+      default: break;
+    }
+    // The border of the slab close to the line, measured at a depth of its own.
+    const double at = double(s[i][0]) * (double(cx) - s[0][0]) +
+                      double(s[i][1]) * (double(cy) - s[0][1]);
+    double h = std::abs(random.scaled(-10, 10));
+    if (random.coin()) h = std::abs(at) * (1 + random.scaled(-30, -18));
+    if (random.below(4) == 0) h = std::abs(at + s[i][2] * random.uniform(-far, far) * 0.01);
+    s[i][3] = std::max(number(h), 0.f);
+  }
+  const double thick = std::abs(random.scaled(-6, 12));
+  double mid = s[0][2] + random.scaled(-6, 8);
+  s[0][3] = number(mid - thick);
+  s[4][0] = std::max(number(mid + thick), s[0][3]);
+  if (random.below(4) == 0) {  // the slabs alone decide
+    s[0][3] = number(-2 * far);
+    s[4][0] = number(2 * far);
+  }
+}
+
+TEST(ObbKernel, TheFilterInDoubleHoldsTheExactInterval) {
+  Random random(508);
+  int hits = 0;
+  for (int n = 0; n < 100'000; ++n) {
+    Solid solid;
+    float cx, cy;
+    adversarial(random, solid, cx, cy);
+      const auto outer = outer_interval(cx, cy, solid);
+    const auto truth = exact_interval(cx, cy, solid);
+    if (!truth) continue;
+    ++hits;
+    ASSERT_TRUE(outer) << "case " << n;
+    ASSERT_LE(Q(outer->lo), truth->lo) << "case " << n;
+    ASSERT_GE(Q(outer->hi), truth->hi) << "case " << n;
+  }
+  EXPECT_GT(hits, 10'000);
+}
+
+void expect_holds_adversarial(Kernel kernel, int cases) {
+  Random random(503);
+  Tally tally;
+  for (int n = 0; n < cases; ++n) {
+    Solid solid;
+    float cx, cy;
+    adversarial(random, solid, cx, cy);
+    count(kernel, cx, cy, solid, tally);
+    if (tally.violations != 0) {
+      for (const auto& row : solid) std::printf("%a %a %a %a\n", row[0], row[1], row[2], row[3]);
+      FAIL() << "case " << n << " at " << cx << ", " << cy;
+    }
+  }
+  EXPECT_GT(tally.hits, cases / 10);
+  EXPECT_GT(tally.misses, cases / 10);
+  std::cout << tally.hits << " lines hit, " << tally.exact << " decided with rationals\n";
+}
+
+TEST(ObbKernel, HoldsTheExactIntervalOfAdversarialFloats) {
+  expect_holds_adversarial(obb_fattener().solid.interval, 4'000'000);
+}
+
+// The latest entry and the earliest exit of all roundings that GLSL allows.
+TEST(ObbKernel, HoldsTheExactIntervalOnTheWorstDevice) {
+  expect_holds_adversarial(obb_fattener().solid.interval_worst, 1'000'000);
+}
+
+TEST(ObbKernel, WithoutWideningAdversarialFloatsAreMissed) {
+  Random random(503);
+  Tally tally;
+  for (int n = 0; n < 200'000; ++n) {
+    Solid solid;
+    float cx, cy;
+    adversarial(random, solid, cx, cy);
+    count(without_widening, cx, cy, solid, tally);
+  }
+  EXPECT_GT(tally.violations, 1000);
+  std::cout << tally.violations << " of " << tally.hits << " lines violated\n";
+}
+
+/// Pixel centres in and around a polygon's box.
+template <typename Visit>
+void for_pixels(const Points& points, int most, Random& random, Visit visit) {
+  Vec3 lo = points[0], hi = points[0];
+  for (const Vec3& p : points) lo = lo.cwiseMin(p), hi = hi.cwiseMax(p);
+  for (int k = 0; k < most; ++k) {
+    visit(static_cast<float>(std::floor(random.uniform(lo[0] - 3, hi[0] + 3)) + 0.5),
+          static_cast<float>(std::floor(random.uniform(lo[1] - 3, hi[1] + 3)) + 0.5));
+  }
+}
+
+TEST(ObbKernel, HoldsTheExactIntervalOfRealBoxes) {
+  Random random(504);
+  Tally tally;
+  for (int n = 0; n < 60'000; ++n) {
+    const Points points = random_points(random);
+    const Solid solid = obb_of(points, 0.715);
+    for_pixels(points, 12, random, [&](float cx, float cy) {
+      count(obb_fattener().solid.interval, cx, cy, solid, tally);
+    });
+    ASSERT_EQ(tally.violations, 0) << "polygon " << n;
+  }
+  EXPECT_GT(tally.hits, 100'000);
+}
+
+// The lemma as the kernel serves it: a point of the polygon in a pixel lies in the interval of that
+// pixel's centre, be it in the pixel's corner.
+TEST(ObbKernel, HoldsEveryPointOfThePixel) {
+  Random random(505);
+  for (int n = 0; n < 60'000; ++n) {
+    const Points points = random_points(random);
+    const Solid solid = obb_of(points, 0.7072);
+    for (int k = 0; k < 8; ++k) {
+      Vec3 q = Vec3::Zero();
+      double left = 1;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const double w = i + 1 == points.size() ? left : left * random.uniform(0, 1);
+        q += w * points[i];
+        left -= w;
+      }
+      if (k == 0) q = points[0];
+      float entry, exit;
+      const float cx = static_cast<float>(std::floor(q[0]) + 0.5);
+      const float cy = static_cast<float>(std::floor(q[1]) + 0.5);
+      ASSERT_TRUE(obb_fattener().solid.interval(cx, cy, solid, entry, exit)) << "polygon " << n;
+      // q itself is rounded, by less than 2^-50 of its size.
+      const double off = 0x1p-50 * q.cwiseAbs().maxCoeff();
+      ASSERT_LE(entry, q[2] + off) << "polygon " << n;
+      ASSERT_GE(exit, q[2] - off) << "polygon " << n;
+    }
+  }
+}
+
+// A kernel that always answers [zlo, zhi] would pass all of the above.
+TEST(ObbKernel, IsNotAbsurdlyLooseOnOrdinaryBoxes) {
+  Random random(506);
+  std::vector<double> excess, relative;
+  long hits = 0, sure_misses = 0, false_hits = 0;
+  for (int n = 0; n < 20'000; ++n) {
+    const Vec3 at = random.cube(500);
+    const Points points{at + random.cube(20), at + random.cube(20), at + random.cube(20)};
+    const Solid solid = obb_of(points, 0.715);
+    for_pixels(points, 20, random, [&](float cx, float cy) {
+      float entry, exit;
+      const bool hit = obb_fattener().solid.interval(cx, cy, solid, entry, exit);
+          const auto outer = outer_interval(cx, cy, solid);
+      if (!outer) {
+        ++sure_misses;
+        false_hits += hit;
+        return;
+      }
+      ++hits;
+      ASSERT_TRUE(hit);
+      const double more = std::max(outer->lo - entry, exit - outer->hi);
+      excess.push_back(more);
+      relative.push_back(more / (outer->hi - outer->lo));
+    });
+  }
+  const auto rank = [](std::vector<double>& values, double part) {
+    const auto at = values.begin() + static_cast<long>(part * double(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  std::printf("excess over the exact interval (px): median %.3g, 99.9%% %.3g, most %.3g; relative "
+              "to its length: median %.3g\n%ld lines hit; %ld miss, %ld of them reported as hits\n",
+              rank(excess, 0.5), rank(excess, 0.999), rank(excess, 1), rank(relative, 0.5), hits,
+              sure_misses, false_hits);
+  EXPECT_LT(rank(excess, 0.5), 1e-3);
+  EXPECT_LT(rank(excess, 0.999), 0.1);
+  EXPECT_GT(sure_misses, 50'000);
+  EXPECT_LT(false_hits, sure_misses / 1000);
+}
+
+TEST(ObbSurface, IsAClosedSurfaceOfTwelveTriangles) {
+  Random random(507);
+  for (int n = 0; n < 500; ++n) {
+    Patch patch;
+    patch.count = 3;
+    for (int i = 0; i < 3; ++i) patch.corners[i] = random.cube(100);
+    Drawables out;
+    out.mode = DepthMode::fixed;
+    obb_surface_fattener().fatten(patch, 0.7072, {200, 200}, out);
+    ASSERT_EQ(out.triangles.size(), 12u);
+    // Every edge belongs to two triangles.
+    std::vector<std::array<float, 6>> edges;
+    for (const auto& t : out.triangles) {
+      for (int i = 0; i < 3; ++i) {
+        std::array<float, 3> a{t[4 * i], t[4 * i + 1], t[4 * i + 2]};
+        const int j = (i + 1) % 3;
+        std::array<float, 3> b{t[4 * j], t[4 * j + 1], t[4 * j + 2]};
+        if (b < a) std::swap(a, b);
+        edges.push_back({a[0], a[1], a[2], b[0], b[1], b[2]});
+      }
+    }
+    std::sort(edges.begin(), edges.end());
+    ASSERT_EQ(edges.size(), 36u);
+    for (std::size_t i = 0; i < 36; i += 2) ASSERT_EQ(edges[i], edges[i + 1]);
+    ASSERT_EQ(std::unique(edges.begin(), edges.end()) - edges.begin(), 18);
+  }
+}
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,149 @@
+// Making a certificate. Which direction is written is no matter of trust: the checker proves it.
+#include "verify/certificate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "core/parallel.h"
+#include "verify/box_pairs.h"
+#include "verify/integer_pair.h"
+
+namespace farcull {
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+
+Vec3 direction_of(const Corners& a, const Corners& b, int direction) {
+  const auto edge = [](const Corners& t, int i) -> Vec3 { return t[(i + 1) % 3] - t[i]; };
+  const auto cross = [](const Vec3& x, const Vec3& y) -> Vec3 {
+    return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+  };
+  if (direction < 2) {
+    const Corners& t = direction == 0 ? a : b;
+    return cross(edge(t, 0), edge(t, 1));
+  }
+  const int family = (direction - 2) / 9;
+  const int i = (direction - 2) % 9 / 3;
+  const int j = (direction - 2) % 3;
+  const Vec3 w = b[j] - a[i];
+  if (family == 0) return cross(edge(a, i), edge(b, j));
+  if (family == 3) return w;
+  const Vec3 e = family == 1 ? edge(a, i) : edge(b, j);
+  return w * e.dot(e) - e * w.dot(e);
+}
+
+/// A direction whose gap, in doubles, is clear of rounding, cheap ones first; else the one with the
+/// widest gap in proportion. Only a guess, and NaN where doubles overflow.
+int likely_direction(const Corners& a, const Corners& b) {
+  constexpr double kClear = 1e-6;
+  int best = 29;
+  double widest = -std::numeric_limits<double>::infinity();
+  for (int n = 0; n < kDirections; ++n) {
+    const int direction = n < 9 ? 29 + n : n - 9;
+    const Vec3 d = direction_of(a, b, direction);
+    std::array<double, 3> on_a;
+    std::array<double, 3> on_b;
+    for (int i = 0; i < 3; ++i) {
+      on_a[i] = d.dot(a[i] - a[0]);
+      on_b[i] = d.dot(b[i] - a[0]);
+    }
+    const auto [a_lo, a_hi] = std::minmax({on_a[0], on_a[1], on_a[2]});
+    const auto [b_lo, b_hi] = std::minmax({on_b[0], on_b[1], on_b[2]});
+    const double extent = std::max(a_hi, b_hi) - std::min(a_lo, b_lo);
+    const double gap = std::max(b_lo - a_hi, a_lo - b_hi) / extent;
+    if (gap > kClear) return direction;
+    if (gap > widest) {
+      widest = gap;
+      best = direction;
+    }
+  }
+  return best;
+}
+
+std::uint8_t evidence_of(const Scene& scene, const TrianglePair& pair, bool kept, bool colliding) {
+  if (colliding) return kKept | kMeets;
+  const Corners a = scene.corners(pair.a);
+  const Corners b = scene.corners(pair.b);
+  IntegerPair integers(a, b);
+  const std::uint8_t flag = kept ? kKept : 0;
+  if (const int guess = likely_direction(a, b); integers.separated_by(guess)) return flag | guess;
+  const std::optional<int> direction = integers.separating_direction();
+  if (direction) return flag | *direction;
+  return kept ? kKept : kMeets;
+}
+
+/// The pairs of a sorted list, found one after the other in a longer one.
+class Marked {
+ public:
+  Marked(std::span<const TrianglePair> pairs, const char* name) : pairs_(pairs), name_(name) {
+    for (std::size_t i = 1; i < pairs.size(); ++i) {
+      if (!(pairs[i - 1] < pairs[i])) fail("unsorted or repeated");
+    }
+  }
+  bool contains(const TrianglePair& pair) {
+    if (at_ == pairs_.size() || pair < pairs_[at_]) return false;
+    if (pair != pairs_[at_]) fail("not among those whose boxes overlap");
+    ++at_;
+    return true;
+  }
+  void finish() const {
+    if (at_ != pairs_.size()) fail("not among those whose boxes overlap");
+  }
+
+ private:
+  [[noreturn]] void fail(const char* what) const {
+    throw std::logic_error(std::string("make_certificate: ") + name_ + " pairs " + what);
+  }
+
+  std::span<const TrianglePair> pairs_;
+  const char* name_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> kept,
+                             std::span<const TrianglePair> colliding, Certificate::Run run) {
+  constexpr std::size_t kBlock = 1 << 16;   // pairs decided at a time
+  constexpr std::size_t kPerThread = 1024;  // enough work to pay for a thread
+  Certificate out;
+  out.scene = {scene.name, scene.objects.size(), scene.triangles.size(), scene_hash(scene)};
+  out.run = std::move(run);
+
+  Marked kept_pairs(kept, "kept");
+  Marked colliding_pairs(colliding, "colliding");
+  BoxPairs enumeration(scene);
+  std::vector<TrianglePair> pairs;
+  std::vector<std::array<bool, 2>> marks;
+  while (enumeration.next(pairs, kBlock)) {
+    marks.clear();
+    for (const TrianglePair& pair : pairs) {
+      marks.push_back({kept_pairs.contains(pair), colliding_pairs.contains(pair)});
+      if (marks.back()[1] && !marks.back()[0])
+        throw std::logic_error("make_certificate: a colliding pair that was not kept");
+    }
+    const std::size_t done = out.evidence.size();
+    out.evidence.resize(done + pairs.size());
+    for_chunks(pairs.size(), chunks_for(pairs.size(), kPerThread),
+               [&](std::size_t, std::size_t begin, std::size_t end) {
+                 for (std::size_t i = begin; i < end; ++i) {
+                   out.evidence[done + i] =
+                       evidence_of(scene, pairs[i], marks[i][0], marks[i][1]);
+                 }
+               });
+  }
+  kept_pairs.finish();
+  colliding_pairs.finish();
+
+  out.claims.box_pairs = out.evidence.size();
+  for (const std::uint8_t byte : out.evidence) {
+    ++((byte & kKept) != 0 ? out.claims.kept : out.claims.culled);
+    ++((byte & ~kKept) == kMeets ? out.claims.meeting : out.claims.separated);
+  }
+  return out;
+}
+
+}  // namespace farcull

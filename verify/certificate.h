@@ -1,0 +1,120 @@
+// A certificate: what a run claims about every pair of triangles whose boxes overlap, with one byte
+// of evidence a pair, so that a stranger can prove or refute it without any of the code that culled.
+// docs/certificate.md is the format and the proof that 38 directions suffice.
+//
+// What is attested: for the scene with this hash, the pairs of triangles of different objects whose
+// boxes overlap, which of them meet, and that no pair that the method culled meets. Pairs whose
+// boxes are disjoint need no evidence. How the method came to its answer (Run) is beyond any check.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/scene.h"
+
+namespace farcull {
+
+struct Certificate {
+  struct SceneKey {
+    std::string name;
+    std::uint64_t objects = 0;
+    std::uint64_t triangles = 0;
+    std::string hash;  // scene_hash(); names do not count
+    bool operator==(const SceneKey&) const = default;
+  };
+
+  /// Counts of pairs of triangles of different objects whose closed boxes overlap.
+  struct Claims {
+    std::uint64_t box_pairs = 0;
+    std::uint64_t kept = 0;       // left to the exact tests by the method
+    std::uint64_t culled = 0;     // the others
+    std::uint64_t separated = 0;  // disjoint
+    std::uint64_t meeting = 0;    // the others
+    bool operator==(const Claims&) const = default;
+  };
+
+  struct View {
+    std::string name;
+    std::uint64_t width = 0;   // px
+    std::uint64_t height = 0;  // px
+    double radius_px = 0;
+    bool operator==(const View&) const = default;
+  };
+
+  /// What no check can attest, for the reader's information.
+  struct Run {
+    std::string method;
+    std::uint64_t resolution = 0;  // px; 0 where nothing was drawn
+    double radius_px = 0;          // the largest of the views; finite, >= 0
+    std::string offset;
+    std::vector<View> views;
+    struct Device {
+      std::string vendor, renderer, version, glsl;
+      bool operator==(const Device&) const = default;
+    };
+    std::optional<Device> device;          // none where nothing was drawn
+    std::vector<std::string> assumptions;  // of the device, that the method relied on
+    bool operator==(const Run&) const = default;
+  };
+
+  SceneKey scene;
+  Claims claims;
+  Run run;
+  /// One byte per pair in the order of BoxPairs. Bits 0 .. 5: a direction (integer_pair.h) that
+  /// separates the pair, or kMeets; kKept: the method kept the pair; bit 7 is 0.
+  std::vector<std::uint8_t> evidence;
+
+  bool operator==(const Certificate&) const = default;
+};
+
+constexpr std::uint8_t kMeets = 38;
+constexpr std::uint8_t kKept = 0x40;
+
+/// kept: what culling left to the exact tests; colliding: which of these the run found to meet. Both
+/// sorted, each pair once, a < b, of different objects, with overlapping boxes; colliding a part of
+/// kept; anything else is a std::logic_error. What the run got wrong is written as the run had it, so
+/// that the check refutes it: a kept pair meets iff it is in `colliding`, and a pair for which no
+/// direction is found though the run calls it disjoint carries direction 0 where it was kept, kMeets
+/// where it was culled.
+Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> kept,
+                             std::span<const TrianglePair> colliding, Certificate::Run run);
+
+/// JSON, the keys always in the same order, with a final newline. Bytes of strings that are not
+/// UTF-8 become U+FFFD. Throws std::logic_error where a radius is not finite.
+std::string to_text(const Certificate& certificate);
+
+/// The inverse of to_text(). Throws Error naming `name` and what is wrong where the text is not JSON
+/// of exactly this form: syntax, UTF-8, keys unknown, missing or twice, types, ranges, base64, format
+/// or version. It does not judge what the certificate claims. Memory in proportion to the text,
+/// whatever it says.
+Certificate parse_certificate(std::string_view text, const std::string& name);
+
+enum class Verdict : std::uint8_t { proved, refuted, not_proved };
+std::string to_string(Verdict verdict);
+
+struct CheckResult {
+  Verdict verdict = Verdict::not_proved;
+  std::string reason;                // empty where proved
+  std::optional<TrianglePair> pair;  // that refutes, or for which the evidence fails
+  Certificate::Claims found;         // counted by the checker, whatever was claimed
+  std::uint64_t culled_meeting = 0;  // pairs that the certificate calls culled and that meet
+  std::vector<std::string> unattested;  // what the check cannot speak about, one line each
+  double ms = 0;                        // wall clock of the check
+};
+
+/// Decides every pair of the scene whose boxes overlap, in integers, and compares.
+/// - refuted: the certificate calls a pair culled that meets, or says of a pair that it meets or that
+///   it does not, and the contrary is true. The first such pair in order is named.
+/// - not_proved: no such pair, but the scene is another, the evidence is too short or too long, a
+///   byte is no evidence or names a direction that does not separate its disjoint pair, or a count
+///   is wrong.
+/// - proved: neither.
+/// For another scene or a wrong length nothing is decided: bytes and pairs do not belong together.
+/// Precondition: validate() accepts the scene.
+CheckResult check_certificate(const Certificate& certificate, const Scene& scene);
+
+}  // namespace farcull

@@ -1,0 +1,216 @@
+// The checker: box_pairs, integer_pair and this file are all that has to be right.
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+#include <utility>
+
+#include "core/parallel.h"
+#include "verify/box_pairs.h"
+#include "verify/certificate.h"
+#include "verify/integer_pair.h"
+
+namespace farcull {
+namespace {
+
+enum class Finding : std::uint8_t {
+  as_claimed,
+  // These two leave the certificate unproved:
+  wrong_direction,  // the pair is disjoint, but not for the reason given
+  no_evidence,      // the byte means nothing
+  // and these three refute it:
+  culled_meets,
+  meets,      // kept; claimed to be disjoint
+  separated,  // claimed to meet
+};
+
+bool refutes(Finding finding) { return finding >= Finding::culled_meets; }
+
+struct Decision {
+  bool meets = false;
+  Finding finding = Finding::as_claimed;
+};
+
+[[noreturn]] void contradiction() {
+  throw std::logic_error(
+      "check_certificate: neither a separating direction nor a common point of a pair");
+}
+
+/// Decides the pair whatever the byte says: by a direction that separates or by a point in both.
+Decision decide(const Scene& scene, const TrianglePair& pair, std::uint8_t byte) {
+  IntegerPair integers(scene.corners(pair.a), scene.corners(pair.b));
+  const bool kept = (byte & kKept) != 0;
+  const int claim = byte & ~kKept;
+  const auto meeting = [&](Finding if_kept) {
+    return Decision{true, kept ? if_kept : Finding::culled_meets};
+  };
+  if (claim == kMeets) {
+    if (integers.has_common_point()) return meeting(Finding::as_claimed);
+    if (!integers.separating_direction()) contradiction();
+    return {false, Finding::separated};
+  }
+  const bool direction = claim < kDirections;
+  if (direction && integers.separated_by(claim)) return {false, Finding::as_claimed};
+  if (integers.separating_direction())
+    return {false, direction ? Finding::wrong_direction : Finding::no_evidence};
+  if (!integers.has_common_point()) contradiction();
+  return meeting(direction ? Finding::meets : Finding::no_evidence);
+}
+
+std::string sentence(Finding finding, int byte) {
+  switch (finding) {
+    case Finding::culled_meets:
+      return "the pair is called culled, and it meets";
+    case Finding::meets:
+      return "the pair is called disjoint, and it meets";
+    case Finding::separated:
+      return "the pair is said to meet, and it is disjoint";
+    case Finding::wrong_direction:
+      return "direction " + std::to_string(byte & ~kKept) +
+             " does not separate the pair, which is disjoint";
+    case Finding::no_evidence:
+      return "the byte " + std::to_string(byte) + " is no evidence";
+    case Finding::as_claimed:
+      break;
+  }
+  return "";
+}
+
+std::vector<std::string> unattested_of(const Certificate::Run& run) {
+  std::vector<std::string> out;
+  out.push_back("that the method was " + run.method +
+                ", and which of the separated pairs it kept");
+  out.push_back("that the resolution was " + std::to_string(run.resolution) + " px");
+  out.push_back("the views, " + std::to_string(run.views.size()) + " of them");
+  out.push_back("the offset and its radius");
+  out.push_back(run.device ? "the device, " + run.device->renderer : "that no device was used");
+  out.push_back("the assumptions about the device, on which the proof does not rely");
+  out.push_back("any time");
+  return out;
+}
+
+std::string other_scene(const Certificate::SceneKey& key, const Scene& scene) {
+  const auto differ = [](const char* what, const std::string& claimed, const std::string& found) {
+    return std::string("the certificate is of another scene: ") + what + " " + claimed +
+           ", given " + found;
+  };
+  if (key.objects != scene.objects.size())
+    return differ("objects", std::to_string(key.objects), std::to_string(scene.objects.size()));
+  if (key.triangles != scene.triangles.size()) {
+    return differ("triangles", std::to_string(key.triangles),
+                  std::to_string(scene.triangles.size()));
+  }
+  const std::string hash = scene_hash(scene);
+  return key.hash == hash ? "" : differ("hash", key.hash, hash);
+}
+
+std::string wrong_count(const Certificate::Claims& claimed, const Certificate::Claims& found) {
+  using Claims = Certificate::Claims;
+  constexpr std::pair<const char*, std::uint64_t Claims::*> kCounts[] = {
+      {"box_pairs", &Claims::box_pairs},
+      {"kept", &Claims::kept},
+      {"culled", &Claims::culled},
+      {"separated", &Claims::separated},
+      {"meeting", &Claims::meeting}};
+  for (const auto& [name, count] : kCounts) {
+    if (claimed.*count != found.*count) {
+      return std::string("the count ") + name + " is " + std::to_string(claimed.*count) +
+             " and should be " + std::to_string(found.*count);
+    }
+  }
+  return "";
+}
+
+/// What the pairs so far came to.
+class Tally {
+ public:
+  void add(const TrianglePair& pair, std::uint8_t byte, const Decision& decision) {
+    ++result_.found.box_pairs;
+    const bool kept = (byte & kKept) != 0;
+    ++(kept ? result_.found.kept : result_.found.culled);
+    ++(decision.meets ? result_.found.meeting : result_.found.separated);
+    if (decision.meets && !kept) ++result_.culled_meeting;
+    if (decision.finding == Finding::as_claimed) return;
+    // The first pair that refutes; before there is one, the first that is not proved.
+    const bool refuted = refutes(decision.finding);
+    if (result_.pair && (result_.verdict == Verdict::refuted || !refuted)) return;
+    result_.verdict = refuted ? Verdict::refuted : Verdict::not_proved;
+    result_.pair = pair;
+    result_.reason = sentence(decision.finding, byte);
+  }
+
+  /// The verdict, once every pair is in.
+  CheckResult finish(const Certificate::Claims& claimed) {
+    if (!result_.pair) {
+      result_.reason = wrong_count(claimed, result_.found);
+      result_.verdict = result_.reason.empty() ? Verdict::proved : Verdict::not_proved;
+    }
+    return std::move(result_);
+  }
+
+ private:
+  CheckResult result_;
+};
+
+CheckResult not_proved(std::string reason) {
+  CheckResult result;
+  result.reason = std::move(reason);
+  return result;
+}
+
+CheckResult decide_all(const Certificate& certificate, const Scene& scene) {
+  constexpr std::size_t kBlock = 1 << 16;  // pairs at a time: their number may be many millions
+  constexpr std::size_t kPerThread = 1024;
+  BoxPairs enumeration(scene);
+  Tally tally;
+  std::vector<TrianglePair> pairs;
+  std::vector<Decision> decisions;
+  std::size_t done = 0;
+  while (enumeration.next(pairs, kBlock)) {
+    if (pairs.size() > certificate.evidence.size() - done) {
+      return not_proved("the evidence is too short: " +
+                        std::to_string(certificate.evidence.size()) +
+                        " bytes, and the scene has more pairs with overlapping boxes");
+    }
+    decisions.assign(pairs.size(), {});
+    for_chunks(pairs.size(), chunks_for(pairs.size(), kPerThread),
+               [&](std::size_t, std::size_t begin, std::size_t end) {
+                 for (std::size_t i = begin; i < end; ++i)
+                   decisions[i] = decide(scene, pairs[i], certificate.evidence[done + i]);
+               });
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      tally.add(pairs[i], certificate.evidence[done + i], decisions[i]);
+    done += pairs.size();
+  }
+  if (done != certificate.evidence.size()) {
+    return not_proved("the evidence is too long: " + std::to_string(certificate.evidence.size()) +
+                      " bytes for " + std::to_string(done) + " pairs with overlapping boxes");
+  }
+  return tally.finish(certificate.claims);
+}
+
+}  // namespace
+
+std::string to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::proved:
+      return "proved";
+    case Verdict::refuted:
+      return "refuted";
+    case Verdict::not_proved:
+      break;
+  }
+  return "not proved";
+}
+
+CheckResult check_certificate(const Certificate& certificate, const Scene& scene) {
+  const auto start = std::chrono::steady_clock::now();
+  std::string other = other_scene(certificate.scene, scene);
+  CheckResult result =
+      other.empty() ? decide_all(certificate, scene) : not_proved(std::move(other));
+  result.unattested = unattested_of(certificate.run);
+  result.ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace farcull

@@ -1,0 +1,297 @@
+// A certificate as text and back. The reader trusts nothing: a first pass over the syntax bounds the
+// number of values and the depth before anything is built, so memory stays in proportion to the text.
+#include <array>
+#include <cmath>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+
+#include "core/error.h"
+#include "verify/certificate.h"
+
+namespace farcull {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "farcull-certificate";
+constexpr std::uint64_t kVersion = 1;
+constexpr const char* kRemedy =
+    "give a file that `farcull run ... --certificate` wrote; docs/certificate.md is the format";
+
+// ---- base64 (RFC 4648), padded, without line breaks ----
+
+constexpr std::string_view kDigits =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+std::string encode(const std::vector<std::uint8_t>& bytes) {
+  std::string out;
+  out.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t have = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t word = 0;
+    for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < have ? bytes[i + k] : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      out += k <= have ? kDigits[word >> (18 - 6 * k) & 63] : '=';
+  }
+  return out;
+}
+
+/// False where the text is not the encoding of any bytes. There is one encoding of each: bits that
+/// padding leaves over are 0.
+bool decode(const std::string& text, std::vector<std::uint8_t>& out) {
+  constexpr std::uint8_t kNone = 64;
+  std::array<std::uint8_t, 256> value;
+  value.fill(kNone);
+  for (std::uint8_t v = 0; v < 64; ++v) value[static_cast<unsigned char>(kDigits[v])] = v;
+  if (text.size() % 4 != 0) return false;
+  std::size_t padding = 0;
+  while (padding < 2 && padding < text.size() && text[text.size() - 1 - padding] == '=') ++padding;
+  out.reserve(text.size() / 4 * 3);
+  for (std::size_t i = 0; i < text.size(); i += 4) {
+    const std::size_t digits = i + 4 == text.size() ? 4 - padding : 4;
+    std::uint32_t word = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::uint8_t v = k < digits ? value[static_cast<unsigned char>(text[i + k])] : 0;
+      if (v == kNone) return false;
+      word = word << 6 | v;
+    }
+    if ((word & (digits == 2 ? 0xffffu : digits == 3 ? 0xffu : 0u)) != 0) return false;
+    for (std::size_t k = 0; k + 1 < digits; ++k)
+      out.push_back(static_cast<std::uint8_t>(word >> (16 - 8 * k)));
+  }
+  return true;
+}
+
+// ---- reading ----
+
+/// Printable ASCII, cut short: for a message.
+std::string clean(std::string_view text, std::size_t most) {
+  std::string out;
+  for (const char c : text.substr(0, most)) out += c >= ' ' && c <= '~' ? c : '?';
+  if (text.size() > most) out += "...";
+  return out;
+}
+
+/// Reads the syntax alone and stops where the text is more than a certificate can be.
+class Syntax : public nlohmann::json_sax<Json> {
+ public:
+  bool null() override { return count(); }
+  bool boolean(bool) override { return count(); }
+  bool number_integer(number_integer_t) override { return count(); }
+  bool number_unsigned(number_unsigned_t) override { return count(); }
+  bool number_float(number_float_t, const string_t&) override { return count(); }
+  bool string(string_t&) override { return count(); }
+  bool binary(binary_t&) override { return count(); }
+  bool start_array(std::size_t) override { return enter(); }
+  bool end_array() override { return leave(); }
+  bool start_object(std::size_t) override { return enter(); }
+  bool end_object() override { return leave(); }
+  bool key(string_t& name) override {
+    if (keys_.back().insert(name).second) return true;
+    return stop("the key '" + clean(name, 40) + "' occurs twice");
+  }
+  bool parse_error(std::size_t position, const std::string&,
+                   const nlohmann::json::exception& error) override {
+    // The library's text between "...column 2: " and "; last read: '...'", which holds the text.
+    std::string_view what = error.what();
+    for (const std::string_view mark : {"] ", "column "}) {
+      const std::size_t found = what.find(mark);
+      if (found != std::string_view::npos) what.remove_prefix(found + mark.size());
+    }
+    const std::size_t number = what.find_first_not_of("0123456789");
+    if (number != 0 && what.substr(std::min(number, what.size()), 2) == ": ")
+      what.remove_prefix(number + 2);
+    what = what.substr(0, what.find("; last read"));
+    return stop("not JSON at byte " + std::to_string(position) + ": " + clean(what, 120));
+  }
+
+  std::string reason;
+
+ private:
+  bool stop(std::string why) {
+    reason = std::move(why);
+    return false;
+  }
+  bool count() {
+    constexpr int kMostValues = 10'000;  // views and assumptions are few; evidence is one string
+    return ++values_ <= kMostValues || stop("more values than any certificate has");
+  }
+  bool enter() {
+    constexpr std::size_t kDeepest = 8;
+    if (keys_.size() == kDeepest) return stop("nested deeper than any certificate is");
+    keys_.emplace_back();
+    return count();
+  }
+  bool leave() {
+    keys_.pop_back();
+    return true;
+  }
+
+  int values_ = 0;
+  std::vector<std::set<std::string>> keys_;  // of the objects (none of arrays) around the place
+};
+
+/// Readers of values; `place` is where they are, as in unattested.views[1].width.
+class Reader {
+ public:
+  explicit Reader(std::string name) : name_(std::move(name)) {}
+
+  [[noreturn]] void fail(const std::string& reason) const { throw Error(name_, reason, kRemedy); }
+
+  /// The value is an object with exactly these keys.
+  void object(const Json& value, const std::string& place,
+              std::initializer_list<const char*> keys) const {
+    const std::string of = place.empty() ? "" : place + ".";
+    if (!value.is_object()) fail((place.empty() ? "the certificate" : place) + " is no object");
+    for (const char* key : keys) {
+      if (!value.contains(key)) fail(of + key + " is missing");
+    }
+    if (value.size() == keys.size()) return;
+    for (const auto& item : value.items()) {
+      bool known = false;
+      for (const char* key : keys) known = known || item.key() == key;
+      if (!known) fail("the key '" + of + clean(item.key(), 40) + "' is unknown");
+    }
+  }
+  const Json& array(const Json& value, const std::string& place) const {
+    if (!value.is_array()) fail(place + " is no array");
+    return value;
+  }
+  std::string text(const Json& value, const std::string& place) const {
+    if (!value.is_string()) fail(place + " is no string");
+    return value.get<std::string>();
+  }
+  std::uint64_t count(const Json& value, const std::string& place) const {
+    if (!value.is_number_unsigned()) fail(place + " is no whole number from 0 to 2^64 - 1");
+    return value.get<std::uint64_t>();
+  }
+  double length(const Json& value, const std::string& place) const {
+    const double x = value.is_number() ? value.get<double>() : -1;
+    if (!(x >= 0) || !std::isfinite(x)) fail(place + " is no finite number of 0 or more");
+    return x;
+  }
+
+ private:
+  std::string name_;
+};
+
+Certificate::SceneKey read_scene(const Reader& reader, const Json& value) {
+  reader.object(value, "scene", {"name", "objects", "triangles", "hash"});
+  Certificate::SceneKey scene{reader.text(value["name"], "scene.name"),
+                              reader.count(value["objects"], "scene.objects"),
+                              reader.count(value["triangles"], "scene.triangles"),
+                              reader.text(value["hash"], "scene.hash")};
+  if (scene.hash.size() != 16 || scene.hash.find_first_not_of("0123456789abcdef") != scene.hash.npos)
+    reader.fail("scene.hash is not 16 lower-case hexadecimal digits");
+  return scene;
+}
+
+Certificate::Claims read_claims(const Reader& reader, const Json& value) {
+  reader.object(value, "claims", {"box_pairs", "kept", "culled", "separated", "meeting"});
+  return {reader.count(value["box_pairs"], "claims.box_pairs"),
+          reader.count(value["kept"], "claims.kept"),
+          reader.count(value["culled"], "claims.culled"),
+          reader.count(value["separated"], "claims.separated"),
+          reader.count(value["meeting"], "claims.meeting")};
+}
+
+Certificate::Run read_run(const Reader& reader, const Json& value) {
+  const std::string in = "unattested.";
+  reader.object(value, "unattested",
+                {"method", "resolution", "radius_px", "offset", "views", "device", "assumptions"});
+  Certificate::Run run;
+  run.method = reader.text(value["method"], in + "method");
+  run.resolution = reader.count(value["resolution"], in + "resolution");
+  run.radius_px = reader.length(value["radius_px"], in + "radius_px");
+  run.offset = reader.text(value["offset"], in + "offset");
+  for (const Json& view : reader.array(value["views"], in + "views")) {
+    const std::string place = in + "views[" + std::to_string(run.views.size()) + "]";
+    reader.object(view, place, {"name", "width", "height", "radius_px"});
+    run.views.push_back({reader.text(view["name"], place + ".name"),
+                         reader.count(view["width"], place + ".width"),
+                         reader.count(view["height"], place + ".height"),
+                         reader.length(view["radius_px"], place + ".radius_px")});
+  }
+  if (const Json& device = value["device"]; !device.is_null()) {
+    reader.object(device, in + "device", {"vendor", "renderer", "version", "glsl"});
+    run.device = {reader.text(device["vendor"], in + "device.vendor"),
+                  reader.text(device["renderer"], in + "device.renderer"),
+                  reader.text(device["version"], in + "device.version"),
+                  reader.text(device["glsl"], in + "device.glsl")};
+  }
+  for (const Json& line : reader.array(value["assumptions"], in + "assumptions")) {
+    run.assumptions.push_back(
+        reader.text(line, in + "assumptions[" + std::to_string(run.assumptions.size()) + "]"));
+  }
+  return run;
+}
+
+double finite(double radius) {
+  if (!std::isfinite(radius)) throw std::logic_error("to_text: a radius that is not finite");
+  return radius;
+}
+
+}  // namespace
+
+std::string to_text(const Certificate& certificate) {
+  const Certificate::Run& run = certificate.run;
+  Json views = Json::array();
+  for (const Certificate::View& view : run.views) {
+    views.push_back({{"name", view.name},
+                     {"width", view.width},
+                     {"height", view.height},
+                     {"radius_px", finite(view.radius_px)}});
+  }
+  Json device = nullptr;
+  if (run.device) {
+    device = {{"vendor", run.device->vendor},
+              {"renderer", run.device->renderer},
+              {"version", run.device->version},
+              {"glsl", run.device->glsl}};
+  }
+  const Json json = {{"format", kFormat},
+                     {"version", kVersion},
+                     {"scene",
+                      {{"name", certificate.scene.name},
+                       {"objects", certificate.scene.objects},
+                       {"triangles", certificate.scene.triangles},
+                       {"hash", certificate.scene.hash}}},
+                     {"claims",
+                      {{"box_pairs", certificate.claims.box_pairs},
+                       {"kept", certificate.claims.kept},
+                       {"culled", certificate.claims.culled},
+                       {"separated", certificate.claims.separated},
+                       {"meeting", certificate.claims.meeting}}},
+                     {"unattested",
+                      {{"method", run.method},
+                       {"resolution", run.resolution},
+                       {"radius_px", finite(run.radius_px)},
+                       {"offset", run.offset},
+                       {"views", std::move(views)},
+                       {"device", std::move(device)},
+                       {"assumptions", Json(run.assumptions)}}},
+                     {"evidence", encode(certificate.evidence)}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Certificate parse_certificate(std::string_view text, const std::string& name) {
+  const Reader reader(name);
+  Syntax syntax;
+  if (!Json::sax_parse(text.begin(), text.end(), &syntax)) reader.fail(syntax.reason);
+  const Json root = Json::parse(text.begin(), text.end());
+  reader.object(root, "", {"format", "version", "scene", "claims", "unattested", "evidence"});
+  if (root["format"] != kFormat) reader.fail(std::string("format is not ") + kFormat);
+  if (!root["version"].is_number_unsigned() || root["version"] != kVersion)
+    reader.fail("version is not " + std::to_string(kVersion));
+  Certificate certificate;
+  certificate.scene = read_scene(reader, root["scene"]);
+  certificate.claims = read_claims(reader, root["claims"]);
+  certificate.run = read_run(reader, root["unattested"]);
+  if (!decode(reader.text(root["evidence"], "evidence"), certificate.evidence))
+    reader.fail("evidence is not base64 (padded, without line breaks)");
+  return certificate;
+}
+
+}  // namespace farcull

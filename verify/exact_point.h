@@ -1,0 +1,31 @@
+// A point of a triangle as an exact number, for deciding the lemmas: which pixels contain its image, and whether two samples
+// bound its depth. Integers only (GMP); never the budget, never an offset.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/scene.h"
+
+namespace farcull {
+
+/// (w0 c0 + w1 c1 + w2 c2) / (w0 + w1 + w2) in pixel space: a point of the closed triangle of the corners.
+struct ExactPoint {
+  std::array<Vec3, 3> corners;  // px, finite
+  std::array<int, 3> weights;   // >= 0, their sum > 0
+};
+
+struct Pixel {
+  int x;  // from 0 at the left of the window
+  int y;
+};
+
+/// The pixels (closed squares) of a window of width x height px centred on the origin that contain the image of the
+/// point: none to four.
+std::vector<Pixel> pixels_containing(const ExactPoint& point, int width, int height);
+
+/// entry <= z(point) <= exit, exactly; false where a sample is NaN.
+bool bounded(const ExactPoint& point, float entry, float exit);
+
+}  // namespace farcull

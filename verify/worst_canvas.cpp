@@ -1,0 +1,168 @@
+#include "verify/worst_canvas.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace farcull {
+namespace {
+
+// A float32 operation in any rounding mode; GLSL 4.50, 4.7.1.
+constexpr double kUlp = 0x1p-23;
+
+struct Range {
+  double lo, hi;
+};
+
+// How far a window coordinate can be from the exact one: times 2/viewport, over w = 1, times viewport/2, plus the centre,
+// then snapped. A1 bounds the error over the whole viewport, so every corner may err as one at its rim does, where all
+// intermediate results are largest.
+double displacement(int viewport, int subpixel_bits) {
+  const double half = 0.5 * viewport;
+  double x = half;
+  for (const double units : {1.0, 2.5, 1.0}) x += units * kUlp * x;
+  x += half;
+  x += kUlp * x;
+  return (x - viewport) + std::ldexp(1.0, -subpixel_bits);
+}
+
+struct Point {
+  double x, y;
+};
+
+double cross(const Point& a, const Point& b, const Point& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+// Whether c is on the inner side of the edge for every choice of its ends: the product is linear in each coordinate, so
+// its least value is at corners of the ranges.
+bool surely_inside(const Range (&a)[2], const Range (&b)[2], const Point& c, double orientation) {
+  for (int bits = 0; bits < 16; ++bits) {
+    const Point from = {bits & 1 ? a[0].hi : a[0].lo, bits & 2 ? a[1].hi : a[1].lo};
+    const Point to = {bits & 4 ? b[0].hi : b[0].lo, bits & 8 ? b[1].hi : b[1].lo};
+    if (orientation * cross(from, to, c) <= 0) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+WorstCanvas::WorstCanvas(const SolidProgram& solid, const WorstCanvasOptions& options) : solid_(solid), options_(options) {
+  limits_.subpixel_bits = options.subpixel_bits;
+  limits_.depth_bits = options.depth_bits;
+  limits_.max_resolution = options.max_resolution;
+}
+
+void WorstCanvas::begin(const Window& window, const Drawables& drawables) {
+  window_ = window;
+  drawables_ = &drawables;
+}
+
+float WorstCanvas::stored_depth(float mapped) const {
+  if (options_.depth_bits == 32) return mapped;
+  return static_cast<float>(std::floor(mapped * 0x1p24) * 0x1p-24);
+}
+
+// Calls visit(pixel, px, mapped) for each fragment of an element: px is the entry or exit depth, mapped its place in the
+// depth buffer.
+template <class Visit>
+void WorstCanvas::rasterize(std::uint32_t element, Verb verb, const Visit& visit) const {
+  const int width = window_.width, height = window_.height;
+  if (element == kEverywhere) {
+    for (std::size_t pixel = 0; pixel < static_cast<std::size_t>(width) * height; ++pixel) visit(pixel, 0, 0);
+    return;
+  }
+  const float scale = depth_scale(window_);
+  const auto mapped = [&](float z) { return std::min(std::max(0.5f + z * scale, 0.25f), 0.75f); };
+  const auto pixels = [](double lo, double hi, int size) {  // indices whose centre is in [lo, hi]
+    return std::pair{std::max(0, static_cast<int>(std::ceil(lo + 0.5 * size - 0.5))),
+                     std::min(size - 1, static_cast<int>(std::floor(hi + 0.5 * size - 0.5)))};
+  };
+
+  if (drawables_->mode == DepthMode::fixed) {
+    const std::array<float, 12>& t = drawables_->triangles[element];
+    const Point a = {t[0], t[1]}, b = {t[4], t[5]}, c = {t[8], t[9]};
+    const double area = cross(a, b, c);
+    if (area == 0) return;
+    const auto [x0, x1] = pixels(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), width);
+    const auto [y0, y1] = pixels(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), height);
+    for (int y = y0; y <= y1; ++y) {
+      for (int x = x0; x <= x1; ++x) {
+        const Point p = {x + 0.5 - 0.5 * width, y + 0.5 - 0.5 * height};
+        const double wa = cross(b, c, p) / area, wb = cross(c, a, p) / area, wc = cross(a, b, p) / area;
+        if (wa <= 0 || wb <= 0 || wc <= 0) continue;
+        const float z = static_cast<float>(wa * t[2] + wb * t[6] + wc * t[10]);
+        visit(static_cast<std::size_t>(y) * width + x, z, mapped(z));
+      }
+    }
+    return;
+  }
+
+  const Proxy& proxy = drawables_->proxies[element];
+  Range corner[4][2];
+  Point nominal[4];
+  double lo[2] = {HUGE_VAL, HUGE_VAL}, hi[2] = {-HUGE_VAL, -HUGE_VAL};
+  for (int i = 0; i < 4; ++i) {
+    nominal[i] = {proxy.corners[2 * i], proxy.corners[2 * i + 1]};
+    for (int k = 0; k < 2; ++k) {
+      const int size = k == 0 ? width : height;
+      const double d = displacement(viewport_side(size), options_.subpixel_bits);
+      const double x = proxy.corners[2 * i + k];
+      corner[i][k] = {x - d, x + d};
+      lo[k] = std::min(lo[k], corner[i][k].lo);
+      hi[k] = std::max(hi[k], corner[i][k].hi);
+    }
+  }
+  const double orientation = cross(nominal[0], nominal[1], nominal[2]) > 0 ? 1 : -1;
+  const auto [x0, x1] = pixels(lo[0], hi[0], width);
+  const auto [y0, y1] = pixels(lo[1], hi[1], height);
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) {
+      const Point c = {x + 0.5 - 0.5 * width, y + 0.5 - 0.5 * height};
+      bool covered = true;
+      for (int i = 0; i < 4 && covered; ++i) covered = surely_inside(corner[i], corner[(i + 1) % 4], c, orientation);
+      if (!covered) continue;
+      float entry, exit;
+      if (!solid_.interval_worst(static_cast<float>(c.x), static_cast<float>(c.y), proxy.solid, entry, exit)) continue;
+      const float z = verb == Verb::store ? entry : exit;
+      visit(static_cast<std::size_t>(y) * width + x, z, mapped(z));
+    }
+  }
+}
+
+std::vector<std::uint8_t> WorstCanvas::run(const Pass& pass) {
+  constexpr float kClear = 1;
+  std::vector<float> depth(static_cast<std::size_t>(window_.width) * window_.height, kClear);
+  std::vector<std::uint8_t> seen(pass.slots);
+  for (const Step& step : pass.steps) {
+    for (std::uint32_t i = step.first; i < step.first + step.count; ++i) {
+      const Draw& draw = pass.draws[i];
+      if (step.verb == Verb::ask && seen[draw.slot]) continue;
+      rasterize(draw.element, step.verb, [&](std::size_t pixel, float, float mapped) {
+        const float d = stored_depth(mapped);
+        if (step.verb == Verb::store) {
+          depth[pixel] = std::min(depth[pixel], d);
+        } else if (d >= depth[pixel]) {
+          seen[draw.slot] = 1;
+        }
+      });
+    }
+  }
+  return seen;
+}
+
+std::vector<float> WorstCanvas::samples(Verb verb, const std::vector<Draw>& draws) {
+  if (drawables_->mode == DepthMode::fixed) throw std::logic_error("WorstCanvas::samples: proxies only");
+  std::vector<float> out(static_cast<std::size_t>(window_.width) * window_.height,
+                         std::numeric_limits<float>::quiet_NaN());
+  for (const Draw& draw : draws) {
+    rasterize(draw.element, verb, [&](std::size_t pixel, float z, float) {
+      float& kept = out[pixel];
+      if (std::isnan(kept) || (verb == Verb::store ? z < kept : z > kept)) kept = z;
+    });
+  }
+  return out;
+}
+
+}  // namespace farcull

@@ -1,0 +1,45 @@
+// A canvas without a GPU that keeps the device assumptions (docs/reliability.md) and nothing more: whatever they leave open
+// goes against culling. It knows the steps that a coordinate takes through a rasterizer, not the budget's terms.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/canvas.h"
+
+namespace farcull {
+
+struct WorstCanvasOptions {
+  int subpixel_bits = 8;
+  int depth_bits = 32;         // 32: stored as the float that was computed; 24: rounded to a multiple of 2^-24
+  int max_resolution = 16370;
+};
+
+/// Proxies (A1 to A4): a pixel gets a fragment only if its centre is inside the quadrilateral for every choice of
+/// corners that the roundings of the vertex stage, the division by w, the viewport transform and snapping allow, ties
+/// lost. The solid is evaluated with SolidProgram::interval_worst: discarded where some rounding discards, entry as late
+/// and exit as early as any rounding makes them. Depths (A5): the mapped depth rounds down, so that nearer ones are merged with
+/// farther ones as little as possible; a query sees exactly what passes (A6).
+/// Triangles (fixed depth) are sampled at pixel centres without displacement: that path promises nothing.
+class WorstCanvas final : public Canvas {
+ public:
+  explicit WorstCanvas(const SolidProgram& solid, const WorstCanvasOptions& options = {});
+
+  const RasterLimits& limits() const override { return limits_; }
+  void begin(const Window& window, const Drawables& drawables) override;
+  std::vector<std::uint8_t> run(const Pass& pass) override;
+  std::vector<float> samples(Verb verb, const std::vector<Draw>& draws) override;
+
+ private:
+  template <class Visit>
+  void rasterize(std::uint32_t element, Verb verb, const Visit& visit) const;
+  float stored_depth(float mapped) const;
+
+  SolidProgram solid_;
+  WorstCanvasOptions options_;
+  RasterLimits limits_;
+  Window window_;
+  const Drawables* drawables_ = nullptr;  // the caller's, until the next begin
+};
+
+}  // namespace farcull
