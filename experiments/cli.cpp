@@ -315,9 +315,9 @@ int scenes_command(const Outputs& asked) {
 
 // What CLI11 refuses, as an Error with a remedy. `app` is as the parse left it.
 Error refusal(const CLI::App& app, const CLI::ParseError& error) {
-  const std::vector<const CLI::App*> parsed = app.get_subcommands({});
+  const std::vector<const CLI::App*> subcommands = app.get_subcommands({});
   const CLI::App* command = &app;
-  for (const CLI::App* subcommand : parsed) {
+  for (const CLI::App* subcommand : subcommands) {
     if (subcommand->parsed()) command = subcommand;
   }
   const std::string name = command == &app ? "farcull" : "farcull " + command->get_name();
@@ -329,7 +329,10 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
     const std::string& word = words.front();
     if (word.starts_with("-")) return Error(word, name + " has no such option", help);
     if (command != &app) return Error(word, "is one argument too many for " + name, help);
-    return Error(word, "no such command", "give run, verify, compare, doctor or scenes");
+    std::string known;
+    for (const CLI::App* subcommand : subcommands)
+      known += (known.empty() ? "" : ", ") + subcommand->get_name();
+    return Error(word, "no such command", "give one of " + known);
   }
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
     return Error("SCENE", "none is named",

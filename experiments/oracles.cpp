@@ -72,8 +72,7 @@ std::vector<OracleRow> compare_oracles(std::uint64_t pairs_per_generator, std::u
         std::seed_seq mix{seed, seed >> 32, block, block >> 32, std::uint64_t{rows.size()}};
         std::array<std::uint32_t, 2> words;
         mix.generate(words.begin(), words.end());
-        results[block] =
-            compare_block(generator, pairs, std::uint64_t{words[0]} << 32 | words[1]);
+        results[block] = compare_block(generator, pairs, std::uint64_t{words[0]} << 32 | words[1]);
       }
     });
     OracleRow row;
@@ -99,8 +98,8 @@ std::string oracles_table(const std::vector<OracleRow>& rows) {
   std::string out = fmt::format("{:<17} {:>10} {:>13} {:>13} {:>10} {:>12}\n", "generator", "pairs",
                                 "intersecting", "disagreements", "CGAL ns", "integers ns");
   for (const OracleRow& row : rows) {
-    out += fmt::format("{:<17} {:>10} {:>13} {:>13} {:>10.0f} {:>12.0f}\n", row.generator, row.pairs,
-                       row.intersecting, row.disagreements, row.cgal_ns, row.integer_ns);
+    out += fmt::format("{:<17} {:>10} {:>13} {:>13} {:>10.0f} {:>12.0f}\n", row.generator,
+                       row.pairs, row.intersecting, row.disagreements, row.cgal_ns, row.integer_ns);
   }
   for (const OracleRow& row : rows) {
     if (row.disagreements > 0) out += fmt::format("{}: {}\n", row.generator, row.example);

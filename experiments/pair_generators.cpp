@@ -1,5 +1,5 @@
-// Contact is made exactly, on integers, and then spoilt on purpose: by an ulp, by rounding, by scale.
-// Corners change places and a changes places with b, since predicates branch on their order.
+// Contact is made exactly, on integers, and then spoilt on purpose: by an ulp, by rounding, by
+// scale. Corners change places and a changes places with b, since predicates branch on their order.
 #include "experiments/pair_generators.h"
 
 #include <cmath>
@@ -70,8 +70,8 @@ PairOfTriangles random_pair(PairRandom& random) {
 }
 
 /// Contact in one point, exactly: a corner, a point of an edge or of the face of a (multiples of 4,
-/// so that quarters are whole), with a corner, an edge or the face of b. b leaves it to any side, so
-/// that it may also cross, and every third time steps back from it by one.
+/// so that quarters are whole), with a corner, an edge or the face of b. b leaves it to any side,
+/// so that it may also cross, and every third time steps back from it by one.
 PairOfTriangles contact(PairRandom& random) {
   constexpr int kExtent = 64;
   PairOfTriangles pair;
@@ -216,8 +216,7 @@ PairOfTriangles magnitudes(PairRandom& random) {
 PairOfTriangles denormals(PairRandom& random) {
   PairOfTriangles pair = random.chance(2) ? contact(random) : small_grid(random);
   const int exponent = random.whole(-1074, -1030);
-  if (random.chance(2))
-    return mapped(pair, [&](double x) { return std::ldexp(x, exponent); });
+  if (random.chance(2)) return mapped(pair, [&](double x) { return std::ldexp(x, exponent); });
   const int axis = random.below(3);
   for (Corners* t : {&pair.a, &pair.b}) {
     for (Vec3& p : *t) p[axis] = std::ldexp(p[axis], exponent);

@@ -38,7 +38,9 @@ void BoxPairs::build(std::uint32_t first, std::uint32_t count) {
   Node node{.bounds = bounds_[*from], .first = first, .count = count};
   Bounds centres;  // of the boxes, halved before they are added, since a sum may overflow
   for (int k = 0; k < 3; ++k) {
-    const auto centre = [&](std::uint32_t t) { return bounds_[t].lo[k] / 2 + bounds_[t].hi[k] / 2; };
+    const auto centre = [&](std::uint32_t t) {
+      return bounds_[t].lo[k] / 2 + bounds_[t].hi[k] / 2;
+    };
     centres.lo[k] = centres.hi[k] = centre(*from);
     for (auto t = from; t != to; ++t) {
       node.bounds.lo[k] = std::min(node.bounds.lo[k], bounds_[*t].lo[k]);
@@ -59,9 +61,8 @@ void BoxPairs::build(std::uint32_t first, std::uint32_t count) {
     const auto centre = [&](std::uint32_t t) {
       return bounds_[t].lo[widest] / 2 + bounds_[t].hi[widest] / 2;
     };
-    std::nth_element(from, from + count / 2, to, [&](std::uint32_t s, std::uint32_t t) {
-      return centre(s) < centre(t);
-    });
+    std::nth_element(from, from + count / 2, to,
+                     [&](std::uint32_t s, std::uint32_t t) { return centre(s) < centre(t); });
     build(first, count / 2);
     build(first + count / 2, count - count / 2);
   }

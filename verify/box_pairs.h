@@ -22,8 +22,8 @@ class BoxPairs {
  public:
   explicit BoxPairs(const Scene& scene);
 
-  /// Replaces `pairs` by the next ones: all partners of the next triangles, until there are at least
-  /// `enough` or the scene ends. False, with none, after the last.
+  /// Replaces `pairs` by the next ones: all partners of the next triangles, until there are at
+  /// least `enough` or the scene ends. False, with none, after the last.
   bool next(std::vector<TrianglePair>& pairs, std::size_t enough);
 
  private:

@@ -130,8 +130,7 @@ Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> k
     for_chunks(pairs.size(), chunks_for(pairs.size(), kPerThread),
                [&](std::size_t, std::size_t begin, std::size_t end) {
                  for (std::size_t i = begin; i < end; ++i) {
-                   out.evidence[done + i] =
-                       evidence_of(scene, pairs[i], marks[i][0], marks[i][1]);
+                   out.evidence[done + i] = evidence_of(scene, pairs[i], marks[i][0], marks[i][1]);
                  }
                });
   }

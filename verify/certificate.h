@@ -1,6 +1,6 @@
 // A certificate: what a run claims about every pair of triangles whose boxes overlap, with one byte
-// of evidence a pair, so that a stranger can prove or refute it without any of the code that culled.
-// docs/certificate.md is the format and the proof that 38 directions suffice.
+// of evidence a pair, so that a stranger can prove or refute it without any of the code that
+// culled. docs/certificate.md is the format and the proof that 38 directions suffice.
 //
 // What is attested: for the scene with this hash, the pairs of triangles of different objects whose
 // boxes overlap, which of them meet, and that no pair that the method culled meets. Pairs whose
@@ -74,12 +74,12 @@ struct Certificate {
 constexpr std::uint8_t kMeets = 38;
 constexpr std::uint8_t kKept = 0x40;
 
-/// kept: what culling left to the exact tests; colliding: which of these the run found to meet. Both
-/// sorted, each pair once, a < b, of different objects, with overlapping boxes; colliding a part of
-/// kept; anything else is a std::logic_error. What the run got wrong is written as the run had it, so
-/// that the check refutes it: a kept pair meets iff it is in `colliding`, and a pair for which no
-/// direction is found though the run calls it disjoint carries direction 0 where it was kept, kMeets
-/// where it was culled.
+/// kept: what culling left to the exact tests; colliding: which of these the run found to meet.
+/// Both sorted, each pair once, a < b, of different objects, with overlapping boxes; colliding a
+/// part of kept; anything else is a std::logic_error. What the run got wrong is written as the run
+/// had it, so that the check refutes it: a kept pair meets iff it is in `colliding`, and a pair for
+/// which no direction is found though the run calls it disjoint carries direction 0 where it was
+/// kept, kMeets where it was culled.
 Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> kept,
                              std::span<const TrianglePair> colliding, Certificate::Run run);
 
@@ -87,10 +87,10 @@ Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> k
 /// UTF-8 become U+FFFD. Throws std::logic_error where a radius is not finite.
 std::string to_text(const Certificate& certificate);
 
-/// The inverse of to_text(). Throws Error naming `name` and what is wrong where the text is not JSON
-/// of exactly this form: syntax, UTF-8, keys unknown, missing or twice, types, ranges, base64, format
-/// or version. It does not judge what the certificate claims. Memory in proportion to the text,
-/// whatever it says.
+/// The inverse of to_text(). Throws Error naming `name` and what is wrong where the text is not
+/// JSON of exactly this form: syntax, UTF-8, keys unknown, missing or twice, types, ranges, base64,
+/// format or version. It does not judge what the certificate claims. Memory in proportion to the
+/// text, whatever it says.
 Certificate parse_certificate(std::string_view text, const std::string& name);
 
 enum class Verdict : std::uint8_t { proved, refuted, not_proved };
@@ -98,16 +98,18 @@ std::string to_string(Verdict verdict);
 
 struct CheckResult {
   Verdict verdict = Verdict::not_proved;
-  std::string reason;                // empty where proved
-  std::optional<TrianglePair> pair;  // that refutes, or for which the evidence fails
-  Certificate::Claims found;         // counted by the checker, whatever was claimed
-  std::uint64_t culled_meeting = 0;  // pairs that the certificate calls culled and that meet
+  std::string reason;                   // empty where proved
+  std::optional<TrianglePair> pair;     // that refutes, or for which the evidence fails
+  Certificate::Claims found;            // counted by the checker, whatever was claimed
+  std::uint64_t culled_meeting = 0;     // pairs that the certificate calls culled and that meet
   std::vector<std::string> unattested;  // what the check cannot speak about, one line each
-  double ms = 0;                        // wall clock of the check
+  double ms = 0;                        // wall clock of the check: hash, enumeration and decisions
+  double decide_ms = 0;                 // wall clock of the decisions alone, on all cores
 };
 
 /// Decides every pair of the scene whose boxes overlap, in integers, and compares.
-/// - refuted: the certificate calls a pair culled that meets, or says of a pair that it meets or that
+/// - refuted: the certificate calls a pair culled that meets, or says of a pair that it meets or
+/// that
 ///   it does not, and the contrary is true. The first such pair in order is named.
 /// - not_proved: no such pair, but the scene is another, the evidence is too short or too long, a
 ///   byte is no evidence or names a direction that does not separate its disjoint pair, or a count

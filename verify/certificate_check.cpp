@@ -30,6 +30,11 @@ struct Decision {
   Finding finding = Finding::as_claimed;
 };
 
+using Clock = std::chrono::steady_clock;
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
 [[noreturn]] void contradiction() {
   throw std::logic_error(
       "check_certificate: neither a separating direction nor a common point of a pair");
@@ -77,8 +82,7 @@ std::string sentence(Finding finding, int byte) {
 
 std::vector<std::string> unattested_of(const Certificate::Run& run) {
   std::vector<std::string> out;
-  out.push_back("that the method was " + run.method +
-                ", and which of the separated pairs it kept");
+  out.push_back("that the method was " + run.method + ", and which of the separated pairs it kept");
   out.push_back("that the resolution was " + std::to_string(run.resolution) + " px");
   out.push_back("the views, " + std::to_string(run.views.size()) + " of them");
   out.push_back("the offset and its radius");
@@ -139,7 +143,8 @@ class Tally {
   }
 
   /// The verdict, once every pair is in.
-  CheckResult finish(const Certificate::Claims& claimed) {
+  CheckResult finish(const Certificate::Claims& claimed, double decide_ms) {
+    result_.decide_ms = decide_ms;
     if (!result_.pair) {
       result_.reason = wrong_count(claimed, result_.found);
       result_.verdict = result_.reason.empty() ? Verdict::proved : Verdict::not_proved;
@@ -165,18 +170,21 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene) {
   std::vector<TrianglePair> pairs;
   std::vector<Decision> decisions;
   std::size_t done = 0;
+  double decide_ms = 0;
   while (enumeration.next(pairs, kBlock)) {
     if (pairs.size() > certificate.evidence.size() - done) {
-      return not_proved("the evidence is too short: " +
-                        std::to_string(certificate.evidence.size()) +
-                        " bytes, and the scene has more pairs with overlapping boxes");
+      return not_proved(
+          "the evidence is too short: " + std::to_string(certificate.evidence.size()) +
+          " bytes, and the scene has more pairs with overlapping boxes");
     }
+    const auto start = Clock::now();
     decisions.assign(pairs.size(), {});
     for_chunks(pairs.size(), chunks_for(pairs.size(), kPerThread),
                [&](std::size_t, std::size_t begin, std::size_t end) {
                  for (std::size_t i = begin; i < end; ++i)
                    decisions[i] = decide(scene, pairs[i], certificate.evidence[done + i]);
                });
+    decide_ms += ms_since(start);
     for (std::size_t i = 0; i < pairs.size(); ++i)
       tally.add(pairs[i], certificate.evidence[done + i], decisions[i]);
     done += pairs.size();
@@ -185,7 +193,7 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene) {
     return not_proved("the evidence is too long: " + std::to_string(certificate.evidence.size()) +
                       " bytes for " + std::to_string(done) + " pairs with overlapping boxes");
   }
-  return tally.finish(certificate.claims);
+  return tally.finish(certificate.claims, decide_ms);
 }
 
 }  // namespace
@@ -203,13 +211,12 @@ std::string to_string(Verdict verdict) {
 }
 
 CheckResult check_certificate(const Certificate& certificate, const Scene& scene) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   std::string other = other_scene(certificate.scene, scene);
   CheckResult result =
       other.empty() ? decide_all(certificate, scene) : not_proved(std::move(other));
   result.unattested = unattested_of(certificate.run);
-  result.ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  result.ms = ms_since(start);
   return result;
 }
 

@@ -1,5 +1,6 @@
-// A certificate as text and back. The reader trusts nothing: a first pass over the syntax bounds the
-// number of values and the depth before anything is built, so memory stays in proportion to the text.
+// A certificate as text and back. The reader trusts nothing: a first pass over the syntax bounds
+// the number of values and the depth before anything is built, so memory stays in proportion to the
+// text.
 #include <array>
 #include <cmath>
 #include <initializer_list>
@@ -32,8 +33,7 @@ std::string encode(const std::vector<std::uint8_t>& bytes) {
     const std::size_t have = std::min<std::size_t>(3, bytes.size() - i);
     std::uint32_t word = 0;
     for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < have ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      out += k <= have ? kDigits[word >> (18 - 6 * k) & 63] : '=';
+    for (std::size_t k = 0; k < 4; ++k) out += k <= have ? kDigits[word >> (18 - 6 * k) & 63] : '=';
   }
   return out;
 }
@@ -183,7 +183,8 @@ Certificate::SceneKey read_scene(const Reader& reader, const Json& value) {
                               reader.count(value["objects"], "scene.objects"),
                               reader.count(value["triangles"], "scene.triangles"),
                               reader.text(value["hash"], "scene.hash")};
-  if (scene.hash.size() != 16 || scene.hash.find_first_not_of("0123456789abcdef") != scene.hash.npos)
+  if (scene.hash.size() != 16 ||
+      scene.hash.find_first_not_of("0123456789abcdef") != scene.hash.npos)
     reader.fail("scene.hash is not 16 lower-case hexadecimal digits");
   return scene;
 }

@@ -1,5 +1,6 @@
-// Separating directions: Gottschalk, Lin, Manocha, "OBBTree" (1996) for the idea; that 38 directions
-// are complete for triangles, degenerate ones included, is proved in docs/certificate.md.
+// Separating directions: Gottschalk, Lin, Manocha, "OBBTree" (1996) for the idea; that 38
+// directions are complete for triangles, degenerate ones included, is proved in
+// docs/certificate.md.
 #include "verify/integer_pair.h"
 
 #include <gmpxx.h>
@@ -311,8 +312,7 @@ struct Point {
 bool contains(const BigCorners& t, const Point& point) {
   std::array<BigVector, 3> from;  // denominator * (point - corner i)
   for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k)
-      from[i][k] = point.numerator[k] - point.denominator * t[i][k];
+    for (int k = 0; k < 3; ++k) from[i][k] = point.numerator[k] - point.denominator * t[i][k];
   }
   const BigVector normal = product(difference(t[1], t[0]), difference(t[2], t[0]));
   if (!is_zero(normal)) {

@@ -1,13 +1,13 @@
 // Two triangles decided in integers: which of 38 directions separates them, or a point they share.
 //
-// The certificate checker rests on this file alone, so it knows neither CGAL nor verify/exact. Every
-// finite double is an integer times a power of two: the pair is scaled by one common power, and from
-// there on nothing is rounded and nothing can overflow (GMP; machine integers where the scaled
-// coordinates are short enough for a bound that is proved beside the code).
+// The certificate checker rests on this file alone, so it knows neither CGAL nor verify/exact.
+// Every finite double is an integer times a power of two: the pair is scaled by one common power,
+// and from there on nothing is rounded and nothing can overflow (GMP; machine integers where the
+// scaled coordinates are short enough for a bound that is proved beside the code).
 //
 // Semantics as in verify/exact.h: closed convex hulls of the three corners, touching counts, a
-// degenerate triangle is the segment or the point that it is. docs/certificate.md proves that the 38
-// directions find every disjoint pair and the 21 points every other one.
+// degenerate triangle is the segment or the point that it is. docs/certificate.md proves that the
+// 38 directions find every disjoint pair and the 21 points every other one.
 #pragma once
 
 #include <array>
@@ -43,8 +43,8 @@ class IntegerPair {
   /// A direction that separates; none iff the triangles share a point.
   std::optional<int> separating_direction();
   /// True iff one of 21 constructed points (corners, edge with plane, edge with edge) lies in both
-  /// closed triangles; each is a vector of integers over one integer. True iff the triangles share a
-  /// point, found without any of the directions.
+  /// closed triangles; each is a vector of integers over one integer. True iff the triangles share
+  /// a point, found without any of the directions.
   bool has_common_point();
 
  private:

@@ -1,4 +1,4 @@
-// Each term recomputed from the table of docs/reliability.md with rationals; square roots by their
+// Each term recomputed from the table of docs/budget.md with rationals; square roots by their
 // squares.
 #include "core/budget.h"
 
@@ -37,10 +37,13 @@ TEST(Budget, TermsAreTheFormulasOfTheTable) {
       const Q m = Q(viewport) / 2;  // the largest |coordinate|, and half the viewport's side
       expect_root(b.sampling, 2, Q(1, 2));
       expect_root(b.input, 2, kU * m);
-      expect_root(b.double_, 3, Q(1, 1 << 10));
+      // In the plane by e per axis, and along the depth to second order: e^2.
+      const Q e(1, 1 << 10);
+      EXPECT_GE(Q(b.double_), e * e);
+      expect_root(Q(Q(b.double_) - e * e).get_d(), 2, e);
       // To normalized coordinates u M; division by w 2.5 u M; times half the viewport u M; plus its
-      // centre u (M + W/2).
-      expect_root(b.vertex, 2, kU * (m + Q(5, 2) * m + m + (m + m)));
+      // centre u (M + W/2); and less than 4 u of all for products of the errors.
+      expect_root(b.vertex, 2, kU * (1 + 4 * kU) * (m + Q(5, 2) * m + m + (m + m)));
       expect_root(b.snap, 2, Q(1) / Q(1 << bits));
       EXPECT_EQ(b.offset, 0);
     }

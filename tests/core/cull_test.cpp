@@ -156,6 +156,31 @@ TEST(Cull, ReachesTheFixedPointWhateverTheOrderOfViews) {
   }
 }
 
+// Layers that do not meet, the earlier in front, between two objects that meet beside them. Where
+// every live item is stored, a pass frees only the layer that has become the foremost: it must be
+// run again because of what it killed itself.
+TEST(Cull, PlainStoringPeelsLayersOneByOne) {
+  const std::vector<Triangle> beside = {{Vec3(1.1, 0, 0), Vec3(1.2, 0, 1), Vec3(1.1, 1, 1)}};
+  for (std::uint32_t layers = 2; layers <= 4; ++layers) {
+    Objects objects{beside};
+    for (std::uint32_t i = 0; i < layers; ++i) {
+      const double z = 0.3 * i;  // inside the box of the first one
+      objects.push_back({{Vec3(0, 0, z), Vec3(1, 0, z + 1), Vec3(0, 1, z + 1)}});
+    }
+    objects.push_back(beside);
+    for (int order = 0; order < 2; ++order) {
+      const Scene scene = reference::scene_of(objects);
+      ASSERT_EQ(make_plan(scene).triangles.size(), scene.triangles.size());
+      for (const bool economy : {true, false}) {
+        EXPECT_EQ(cull_ideally(scene, settings_for("z", 128, economy)).live,
+                  (Indices{0, layers + 1}))
+            << layers << ", economy " << economy;
+      }
+      std::reverse(objects.begin(), objects.end());
+    }
+  }
+}
+
 // More views never cull less, and a single view of two bits is not enough for what two views clear.
 TEST(Cull, ViewsClearTheTwoSidesTogether) {
   Random random(605);
@@ -189,8 +214,8 @@ TEST(Cull, AnUndrawableItemKeepsItsPartner) {
       for (const int resolution : {1, 8, 64}) {
         Objects objects = with_undrawable();
         for (int order = 0; order < 2; ++order) {
-          const CullResult result = cull_ideally(reference::scene_of(objects),
-                                                 settings_for(views, resolution, economy));
+          const CullResult result =
+              cull_ideally(reference::scene_of(objects), settings_for(views, resolution, economy));
           ASSERT_EQ(result.live, (Indices{0, 1})) << views << " at " << resolution;
           std::reverse(objects.begin(), objects.end());
         }
@@ -237,8 +262,8 @@ TEST(Cull, GreaterInsteadOfGreaterOrEqualMisses) {
 }
 
 TEST(Cull, ALostStoreMisses) {
-  const Scene scene = reference::scene_of(
-      {{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}}, {{Vec3(0, 0, 0), Vec3(1, 0, 1), Vec3(0, 1, 1)}}});
+  const Scene scene = reference::scene_of({{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}},
+                                           {{Vec3(0, 0, 0), Vec3(1, 0, 1), Vec3(0, 1, 1)}}});
   EXPECT_EQ(missed(scene, settings_for("z", 16)), 0u);
   EXPECT_EQ(missed(scene, settings_for("z", 16), CanvasFault::drops_first_store), 1u);
 }
@@ -284,8 +309,7 @@ class CheckingCanvas : public IdealCanvas {
       FattenCounts counts;
       const Indices one{t};
       const Drawables alone = fatten(scene_, one, window, obb_fattener(), radius, counts);
-      for (const Proxy& proxy : alone.proxies)
-        owner_of_solid[proxy.solid] = owner_of_triangle_[t];
+      for (const Proxy& proxy : alone.proxies) owner_of_solid[proxy.solid] = owner_of_triangle_[t];
     }
     owner_.clear();
     for (const Proxy& proxy : drawables.proxies) owner_.push_back(owner_of_solid.at(proxy.solid));
@@ -344,8 +368,8 @@ TEST(Cull, PassesAskNobodyAgainstItselfAndEndWithAnAsk) {
   int passes = 0;
   for (int n = 0; n < 200; ++n) {
     const Scene scene = reference::scene_of(random_objects(random));
-    const CullSettings settings = settings_for(kViews[random.below(8)], 1 + random.below(24),
-                                               random.coin());
+    const CullSettings settings =
+        settings_for(kViews[random.below(8)], 1 + random.below(24), random.coin());
     CheckingCanvas canvas(scene, settings.fattener.solid);
     cull(scene, make_plan(scene), settings, canvas);
     passes += canvas.passes;
@@ -366,7 +390,8 @@ TEST(Cull, RefusesAResolutionBeyondTheDevice) {
 TEST(Cull, BoxesApartNeedNoCanvas) {
   const Triangle t = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
   const Triangle apart = {Vec3(5, 0, 0), Vec3(6, 0, 0), Vec3(5, 1, 0)};
-  for (const Objects& objects : {Objects{}, Objects{{}, {}}, Objects{{t, t}}, Objects{{t}, {apart}}}) {
+  for (const Objects& objects :
+       {Objects{}, Objects{{}, {}}, Objects{{t, t}}, Objects{{t}, {apart}}}) {
     const CullResult result = cull_ideally(reference::scene_of(objects), settings_for("x,z", 8));
     EXPECT_TRUE(result.live.empty());
     ASSERT_EQ(result.views.size(), 2u);

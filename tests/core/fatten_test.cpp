@@ -139,8 +139,7 @@ TEST(ProxyRectangle, IsTightAroundObliqueNeedles) {
   for (int n = 0; n < 5000; ++n) {
     Vec3 a = random.cube(200), b = random.cube(200);
     const double length = (b - a).head<2>().norm();
-    const std::array<float, 8> c =
-        proxy_rectangle(Points{a, b, 0.5 * (a + b)}, 0.75, bounds);
+    const std::array<float, 8> c = proxy_rectangle(Points{a, b, 0.5 * (a + b)}, 0.75, bounds);
     double area = 0;
     for (int i = 0; i < 4; ++i) {
       const int j = (i + 1) % 4;

@@ -15,7 +15,7 @@ namespace farcull {
 
 enum class CanvasFault {
   none,
-  greater,           // asks with GREATER instead of GEQUAL
+  greater,            // asks with GREATER instead of GEQUAL
   drops_first_store,  // of every pass
   nothing_everywhere  // kEverywhere draws nothing
 };

@@ -92,8 +92,8 @@ TEST(Plan, KeepsOneTriangleOfAnObjectOnceWithManyPartners) {
 }
 
 RC_GTEST_PROP(PlanProperty, AsDefinedOnTheGrid, ()) {
-  const auto sizes = *rc::gen::resize(7, rc::gen::container<std::vector<int>>(
-                                             rc::gen::inRange(0, 12)));
+  const auto sizes =
+      *rc::gen::resize(7, rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 12)));
   const auto extent = *rc::gen::inRange<unsigned>(1, 30);
   std::mt19937 random(*rc::gen::arbitrary<unsigned>());
   std::vector<std::vector<Triangle>> objects;

@@ -82,9 +82,9 @@ class Random {
 
 /// An axis view, a round oblique one, or a direction with components of very different sizes.
 inline View random_view(Random& random) {
-  static const char* const kNames[] = {"x",     "-x",    "y",        "-y",          "z",
-                                       "-z",    "1:1:1", "1:-2:0.5", "1:1e-8:1e-9", "0:1:1",
-                                       "3:4:0", "1:1:0"};
+  static const char* const kNames[] = {"x",           "-x",    "y",     "-y",
+                                       "z",           "-z",    "1:1:1", "1:-2:0.5",
+                                       "1:1e-8:1e-9", "0:1:1", "3:4:0", "1:1:0"};
   const int pick = random.below(18);
   if (pick < 12) return parse_view(kNames[pick]);
   const Vec3 d = pick < 15 ? random.cube(1) : random.scaled3(-40, 1);

@@ -18,9 +18,10 @@ using rational::Random;
 
 TEST(View, RefusesWhatIsNoDirection) {
   for (const char* text :
-       {"", "-", "--x", "w", "X", "xy", "x ", " x", "1", "1:2", "1:2:3:4", "1:2:", ":1:2", "1::2",
-        "::", "1:2:z", "+1:0:0", "1 :0:0", "1:0:0 ", "0x1:0:0", "inf:0:0", "1:nan:0", "1e400:0:0",
-        "0:0:0", "-0:0:0.0", "1:2:3x"}) {
+       {"",        "-",         "--x",    "w",        "X",      "xy",      "x ",
+        " x",      "1",         "1:2",    "1:2:3:4",  "1:2:",   ":1:2",    "1::2",
+        "::",      "1:2:z",     "+1:0:0", "1 :0:0",   "1:0:0 ", "0x1:0:0", "inf:0:0",
+        "1:nan:0", "1e400:0:0", "0:0:0",  "-0:0:0.0", "1:2:3x"}) {
     EXPECT_THROW(parse_view(text), Error) << "'" << text << "'";
   }
   for (const char* text : {"", ",", "x,", ",x", "x,,y", "x,x", "1:1:1,z,1:1:1", "x;y"}) {
@@ -74,13 +75,20 @@ TEST(View, ObliqueRowsAreUnitAndOrthogonalWhateverTheScale) {
 /// Coordinates that cancel, mix scales, underflow, or lie far from the world's origin.
 double nasty(Random& random) {
   switch (random.below(8)) {
-    case 0: return 0;
-    case 1: return random.scaled(-1074, -1000);
-    case 2: return random.scaled(-60, 60);
-    case 3: return random.scaled(200, 330);
-    case 4: return 1e9 + random.below(3);
-    case 5: return random.sign() * random.below(5);
-    default: return random.uniform(-10, 10);
+    case 0:
+      return 0;
+    case 1:
+      return random.scaled(-1074, -1000);
+    case 2:
+      return random.scaled(-60, 60);
+    case 3:
+      return random.scaled(200, 330);
+    case 4:
+      return 1e9 + random.below(3);
+    case 5:
+      return random.sign() * random.below(5);
+    default:
+      return random.uniform(-10, 10);
   }
 }
 
@@ -187,16 +195,30 @@ Box random_region(Random& random) {
   const int kind = random.below(9);
   for (int i = 0; i < 3; ++i) {
     switch (kind) {
-      case 0: size[i] = random.uniform(0, 2); break;
-      case 1: size[i] = std::abs(random.scaled(-40, 40)); break;   // any aspect ratio
-      case 2: size[i] = random.coin() ? 0 : 1; break;              // flat, a segment, a point
-      case 3: size[i] = std::abs(random.scaled(-1074, -1010)); break;
-      case 4: size[i] = std::abs(random.scaled(900, 1020)); break;
-      case 5: size[i] = std::abs(random.scaled(-60, 2)); break;
-      default: size[i] = std::abs(random.scaled(-10, 1)); break;
+      case 0:
+        size[i] = random.uniform(0, 2);
+        break;
+      case 1:
+        size[i] = std::abs(random.scaled(-40, 40));
+        break;  // any aspect ratio
+      case 2:
+        size[i] = random.coin() ? 0 : 1;
+        break;  // flat, a segment, a point
+      case 3:
+        size[i] = std::abs(random.scaled(-1074, -1010));
+        break;
+      case 4:
+        size[i] = std::abs(random.scaled(900, 1020));
+        break;
+      case 5:
+        size[i] = std::abs(random.scaled(-60, 2));
+        break;
+      default:
+        size[i] = std::abs(random.scaled(-10, 1));
+        break;
     }
-    if (kind == 5) at[i] = 1e9;                     // on the diagonal, below what doubles resolve
-    if (kind == 6) at[i] = random.scaled(20, 40);   // far, sizes mixed
+    if (kind == 5) at[i] = 1e9;                    // on the diagonal, below what doubles resolve
+    if (kind == 6) at[i] = random.scaled(20, 40);  // far, sizes mixed
     if (kind == 7) at[i] = random.uniform(-5, 5);
     if (kind == 8) size[i] = 0, at[i] = nasty(random);
   }
@@ -229,7 +251,8 @@ TEST(FitWindow, ContainsTheExactRegionWithAPixelAround) {
 TEST(FitWindow, EveryResolutionKeepsItsLimit) {
   const std::vector<Box> cube{{Vec3(-1, -2, 0.1), Vec3(3, 5, 0.7)}};
   // Odd multiples of the spacing of doubles there: the middle is not a double.
-  const std::vector<Box> far_and_small{{Vec3::Constant(1.088e9), Vec3::Constant(1.088e9 + 2.79e-5)}};
+  const std::vector<Box> far_and_small{
+      {Vec3::Constant(1.088e9), Vec3::Constant(1.088e9 + 2.79e-5)}};
   for (const char* name : {"z", "1:2:3"}) {
     for (int resolution = 1; resolution <= 5000; resolution += resolution < 300 ? 1 : 37) {
       expect_fits(*fit_window(parse_view(name), cube, resolution), cube, resolution);

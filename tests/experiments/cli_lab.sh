@@ -2,6 +2,7 @@
 # What cli_test.sh is made of: how the program is launched and judged, and files in every format.
 # Sourced with `program` set to its path and `work` to a folder of our own; leaves the caller in
 # $work/here.
+: "${program:?}" "${work:?}"
 
 # What the caller has set must not decide; few malloc arenas, since each thread's takes address
 # space that is counted below.

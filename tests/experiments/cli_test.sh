@@ -4,7 +4,7 @@
 # A bad input has to end within seconds with status 2, one line on stderr that names the place and
 # says what to do (after a semicolon), nothing on stdout, nothing left in the folder, and within an
 # address space too small for what its header claims. Prints each failing case and a count; status
-# 1 if any failed. Needs bash, coreutils and a software device of Mesa.
+# 1 if any failed. Needs bash, Debian's essential tools and a software device of Mesa.
 set -uo pipefail
 
 if [[ $# -ne 1 || ! -x $1 ]]; then

@@ -18,8 +18,10 @@
 namespace farcull {
 namespace glsl::obb_without_widening {
 #define FAR_WIDEN 0.0f
-#include "offsets/slab.glsl"
+// clang-format off: the order matters
 #include "offsets/obb.glsl"
+#include "offsets/slab.glsl"
+// clang-format on
 #undef FAR_WIDEN
 }  // namespace glsl::obb_without_widening
 
@@ -57,19 +59,26 @@ void expect_holds_balls(const Solid& solid, const Points& points, double radius)
 
 Points random_points(Random& random) {
   const double reach = random.below(3) == 0 ? std::exp2(random.uniform(10, 31)) : 600;
-  const Vec3 at(random.uniform(-600, 600), random.uniform(-600, 600), random.uniform(-1, 1) * reach);
+  const Vec3 at(random.uniform(-600, 600), random.uniform(-600, 600),
+                random.uniform(-1, 1) * reach);
   const auto near = [&](double lo, double hi) { return Vec3(at + random.scaled3(lo, hi)); };
   switch (random.below(9)) {
-    case 0: return {near(-4, 9), near(-4, 9), near(-4, 9)};
+    case 0:
+      return {near(-4, 9), near(-4, 9), near(-4, 9)};
     case 1: {  // needle, aspect 1e3 .. 1e12
       const Vec3 e = random.scaled3(0, 9);
       return {at - e, at + e, at + e * random.uniform(-1, 1) + random.scaled3(-40, -3)};
     }
-    case 2: return {at, at, near(-10, 9)};                    // a segment
-    case 3: return {at, at, at};                              // a point
-    case 4: return {at};                                      // one point
-    case 5: return {near(-60, -20), near(-60, -20), near(-60, -20)};
-    case 6: return {random.scaled3(-160, -100), random.scaled3(-160, -100), Vec3::Zero()};
+    case 2:
+      return {at, at, near(-10, 9)};  // a segment
+    case 3:
+      return {at, at, at};  // a point
+    case 4:
+      return {at};  // one point
+    case 5:
+      return {near(-60, -20), near(-60, -20), near(-60, -20)};
+    case 6:
+      return {random.scaled3(-160, -100), random.scaled3(-160, -100), Vec3::Zero()};
     case 7: {  // flat along an axis: normals with exact zeros
       Points points{near(0, 9), near(0, 9), near(0, 9), near(0, 9)};
       const int axis = random.below(3);
@@ -96,7 +105,8 @@ TEST(ObbOf, HoldsHullAndBallOfEveryPolygon) {
       for (const float x : row) ASSERT_TRUE(std::isfinite(x));
     }
     for (int i = 1; i <= 3; ++i) {
-      for (int k = 0; k < 3; ++k) ASSERT_LE(std::abs(solid[i][k]), 1.001f);  // the kernel's |a| <= 2
+      for (int k = 0; k < 3; ++k)
+        ASSERT_LE(std::abs(solid[i][k]), 1.001f);  // the kernel's |a| <= 2
     }
     for (int k = 1; k < 4; ++k) ASSERT_EQ(solid[4][k], 0);  // the canvas's own numbers
     expect_holds_balls(solid, points, radius);
@@ -113,7 +123,8 @@ TEST(ObbOf, IsTightAroundTriangles) {
     const Points points{at + random.cube(20), at + random.cube(20), at + random.cube(20)};
     const Vec3 cross = (points[1] - points[0]).cross(points[2] - points[0]);
     double longest = 0;
-    for (int i = 0; i < 3; ++i) longest = std::max(longest, (points[(i + 1) % 3] - points[i]).norm());
+    for (int i = 0; i < 3; ++i)
+      longest = std::max(longest, (points[(i + 1) % 3] - points[i]).norm());
     const Solid solid = obb_of(points, 0.75);
     // Half sizes: along the longest edge, across it (half the height), and along the normal.
     const double half[3] = {0.5 * longest + 0.75, 0.5 * cross.norm() / longest + 0.75, 0.75};
@@ -166,8 +177,8 @@ std::optional<Interval<double>> outer_interval(float cx, float cy, const Solid& 
     }
     double z0 = (-h - at) / a, z1 = (h - at) / a;
     if (a < 0) std::swap(z0, z1);
-    const double f = e / std::abs(a) +
-                     0x1p-49 * (std::abs(z0) + std::abs(z1) + std::abs(double(s[0][2])));
+    const double f =
+        e / std::abs(a) + 0x1p-49 * (std::abs(z0) + std::abs(z1) + std::abs(double(s[0][2])));
     z.lo = std::max(z.lo, s[0][2] + z0 - f);
     z.hi = std::min(z.hi, s[0][2] + z1 + f);
   }
@@ -208,17 +219,30 @@ void adversarial(Random& random, Solid& s, float& cx, float& cy) {
     const Vec3 a = random.cube(1).normalized();
     for (int k = 0; k < 3; ++k) s[i][k] = number(a[k]);
     switch (random.below(8)) {
-      case 0: s[i][2] = 0; break;
-      case 1: s[i][2] = number(random.sign() * 0x1p-20 * random.uniform(0.99, 1.01)); break;
-      case 2: s[i][2] = std::nextafter(0x1p-20f, random.coin() ? 0.f : 1.f); break;
-      case 3: s[i][2] = number(random.scaled(-149, -18)); break;
-      case 4: s[i][random.below(3)] = number(random.scaled(-149, -100)); break;
-      case 5: s[i][random.below(2)] = 0; break;
-      default: break;
+      case 0:
+        s[i][2] = 0;
+        break;
+      case 1:
+        s[i][2] = number(random.sign() * 0x1p-20 * random.uniform(0.99, 1.01));
+        break;
+      case 2:
+        s[i][2] = std::nextafter(0x1p-20f, random.coin() ? 0.f : 1.f);
+        break;
+      case 3:
+        s[i][2] = number(random.scaled(-149, -18));
+        break;
+      case 4:
+        s[i][random.below(3)] = number(random.scaled(-149, -100));
+        break;
+      case 5:
+        s[i][random.below(2)] = 0;
+        break;
+      default:
+        break;
     }
     // The border of the slab close to the line, measured at a depth of its own.
-    const double at = double(s[i][0]) * (double(cx) - s[0][0]) +
-                      double(s[i][1]) * (double(cy) - s[0][1]);
+    const double at =
+        double(s[i][0]) * (double(cx) - s[0][0]) + double(s[i][1]) * (double(cy) - s[0][1]);
     double h = std::abs(random.scaled(-10, 10));
     if (random.coin()) h = std::abs(at) * (1 + random.scaled(-30, -18));
     if (random.below(4) == 0) h = std::abs(at + s[i][2] * random.uniform(-far, far) * 0.01);
@@ -241,7 +265,7 @@ TEST(ObbKernel, TheFilterInDoubleHoldsTheExactInterval) {
     Solid solid;
     float cx, cy;
     adversarial(random, solid, cx, cy);
-      const auto outer = outer_interval(cx, cy, solid);
+    const auto outer = outer_interval(cx, cy, solid);
     const auto truth = exact_interval(cx, cy, solid);
     if (!truth) continue;
     ++hits;
@@ -357,7 +381,7 @@ TEST(ObbKernel, IsNotAbsurdlyLooseOnOrdinaryBoxes) {
     for_pixels(points, 20, random, [&](float cx, float cy) {
       float entry, exit;
       const bool hit = obb_fattener().solid.interval(cx, cy, solid, entry, exit);
-          const auto outer = outer_interval(cx, cy, solid);
+      const auto outer = outer_interval(cx, cy, solid);
       if (!outer) {
         ++sure_misses;
         false_hits += hit;
@@ -375,10 +399,11 @@ TEST(ObbKernel, IsNotAbsurdlyLooseOnOrdinaryBoxes) {
     std::nth_element(values.begin(), at, values.end());
     return *at;
   };
-  std::printf("excess over the exact interval (px): median %.3g, 99.9%% %.3g, most %.3g; relative "
-              "to its length: median %.3g\n%ld lines hit; %ld miss, %ld of them reported as hits\n",
-              rank(excess, 0.5), rank(excess, 0.999), rank(excess, 1), rank(relative, 0.5), hits,
-              sure_misses, false_hits);
+  std::printf(
+      "excess over the exact interval (px): median %.3g, 99.9%% %.3g, most %.3g; relative "
+      "to its length: median %.3g\n%ld lines hit; %ld miss, %ld of them reported as hits\n",
+      rank(excess, 0.5), rank(excess, 0.999), rank(excess, 1), rank(relative, 0.5), hits,
+      sure_misses, false_hits);
   EXPECT_LT(rank(excess, 0.5), 1e-3);
   EXPECT_LT(rank(excess, 0.999), 0.1);
   EXPECT_GT(sure_misses, 50'000);
