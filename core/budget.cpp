@@ -38,11 +38,13 @@ Budget budget_for(const RasterLimits& limits, int viewport) {
   Budget b;
   b.sampling = kSqrt2 / 2;
   b.input = kSqrt2 * kUnit * half;
-  // In the plane sqrt(2) of it; along the depth it adds to the distance from the centre only to second order:
-  // sqrt((s + sqrt(2) e)^2 + e^2) <= s + sqrt(2) e + e^2 / (2 s) with s = sqrt(2)/2 (docs/budget.md, "double").
+  // In the plane sqrt(2) of it; along the depth it adds to the distance from the centre only to
+  // second order: sqrt((s + sqrt(2) e)^2 + e^2) <= s + sqrt(2) e + e^2 / (2 s) with s = sqrt(2)/2
+  // (docs/budget.md, "double").
   b.double_ = kSqrt2 * kMaxDoubleError + kMaxDoubleError * kMaxDoubleError;
-  // docs/budget.md, "vertex": product with 2/viewport (1), division by w (2.5), product with viewport/2 (1), each
-  // relative to M, and the sum with the viewport's centre (1), relative to M + viewport/2; 4 u for their products.
+  // docs/budget.md, "vertex": product with 2/viewport (1), division by w (2.5), product with
+  // viewport/2 (1), each relative to M, and the sum with the viewport's centre (1), relative to M +
+  // viewport/2; 4 u for their products.
   b.vertex = kSqrt2 * kUnit * (4.5 * half + (half + half)) * (1 + 4 * kUnit);
   b.snap = kSqrt2 * std::ldexp(1.0, -limits.subpixel_bits);
   b.offset = 0;

@@ -36,9 +36,10 @@ struct SolidProgram {
   std::string name;
   std::string glsl;
   bool (*interval)(float cx, float cy, const Solid& solid, float& entry, float& exit) = nullptr;
-  /// The same on the worst device that GLSL allows (core/glsl_worst.h): false where some rounding misses, else the latest
-  /// entry and the earliest exit.
-  bool (*interval_worst)(float cx, float cy, const Solid& solid, float& entry, float& exit) = nullptr;
+  /// The same on the worst device that GLSL allows (core/glsl_worst.h): false where some rounding
+  /// misses, else the latest entry and the earliest exit.
+  bool (*interval_worst)(float cx, float cy, const Solid& solid, float& entry,
+                         float& exit) = nullptr;
 };
 
 /// All that one view can draw, as elements: proxies (fragment) or triangles (fixed). Item i owns

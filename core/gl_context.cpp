@@ -30,7 +30,9 @@ void require_egl() {
   if (!epoxy_has_egl()) throw Error("EGL", "libEGL.so.1 cannot be loaded", kInstall);
   const std::string client = text(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS));
   if (!has_word(client, "EGL_EXT_device_enumeration") && !has_word(client, "EGL_EXT_device_base")) {
-    throw Error("EGL", "no EGL driver is installed, or it cannot list devices (EGL_EXT_device_enumeration is missing)",
+    throw Error("EGL",
+                "no EGL driver is installed, or it cannot list devices (EGL_EXT_device_enumeration "
+                "is missing)",
                 kInstall);
   }
   if (!has_word(client, "EGL_EXT_platform_device") && !has_word(client, "EGL_EXT_platform_base")) {

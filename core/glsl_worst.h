@@ -1,8 +1,9 @@
-// A device whose arithmetic is as bad as GLSL allows, for kernels (*.glsl) compiled as C++ with `float` standing for Worst.
-// A Worst is the range of all floats that some permitted rounding could have given: sums, differences and products are
-// rounded in any direction, quotients err by 2.5 units in the last place, roots by 4, and results below 2^-126 may be
-// flushed to zero (GLSL 4.50, section 4.7.1; A4). A comparison is true only if it is true for every choice.
-// Include the kernel between `#define float Worst` and `#undef float`, after all other headers.
+// A device whose arithmetic is as bad as GLSL allows, for kernels (*.glsl) compiled as C++ with
+// `float` standing for Worst. A Worst is the range of all floats that some permitted rounding could
+// have given: sums, differences and products are rounded in any direction, quotients err by 2.5
+// units in the last place, roots by 4, and results below 2^-126 may be flushed to zero (GLSL 4.50,
+// section 4.7.1; A4). A comparison is true only if it is true for every choice. Include the kernel
+// between `#define float Worst` and `#undef float`, after all other headers.
 #pragma once
 
 #include <algorithm>
@@ -14,23 +15,30 @@ namespace farcull::glsl_worst {
 class Worst {
  public:
   Worst() = default;
-  Worst(float x) : lo_(x), hi_(x) {}  // NOLINT(google-explicit-constructor): kernels mix in literals
+  Worst(float x)
+      : lo_(x), hi_(x) {}  // NOLINT(google-explicit-constructor): kernels mix in literals
 
   float lo() const { return lo_; }
   float hi() const { return hi_; }
   /// One value of the range, for what a kernel may choose freely.
-  friend Worst fixed(Worst a) { return Worst(static_cast<float>(0.5 * (static_cast<double>(a.lo_) + a.hi_))); }
+  friend Worst fixed(Worst a) {
+    return Worst(static_cast<float>(0.5 * (static_cast<double>(a.lo_) + a.hi_)));
+  }
 
   friend Worst operator-(Worst a) { return {-a.hi_, -a.lo_}; }
-  friend Worst operator+(Worst a, Worst b) { return rounded(double(a.lo_) + b.lo_, double(a.hi_) + b.hi_, 0); }
+  friend Worst operator+(Worst a, Worst b) {
+    return rounded(double(a.lo_) + b.lo_, double(a.hi_) + b.hi_, 0);
+  }
   friend Worst operator-(Worst a, Worst b) { return a + -b; }
   friend Worst operator*(Worst a, Worst b) {
-    const double p[4] = {double(a.lo_) * b.lo_, double(a.lo_) * b.hi_, double(a.hi_) * b.lo_, double(a.hi_) * b.hi_};
+    const double p[4] = {double(a.lo_) * b.lo_, double(a.lo_) * b.hi_, double(a.hi_) * b.lo_,
+                         double(a.hi_) * b.hi_};
     return rounded(*std::min_element(p, p + 4), *std::max_element(p, p + 4), 0);
   }
   /// Precondition of the kernels: the divisor's range does not contain zero.
   friend Worst operator/(Worst a, Worst b) {
-    const double q[4] = {double(a.lo_) / b.lo_, double(a.lo_) / b.hi_, double(a.hi_) / b.lo_, double(a.hi_) / b.hi_};
+    const double q[4] = {double(a.lo_) / b.lo_, double(a.lo_) / b.hi_, double(a.hi_) / b.lo_,
+                         double(a.hi_) / b.hi_};
     return rounded(*std::min_element(q, q + 4), *std::max_element(q, q + 4), 2.5);
   }
   friend bool operator<(Worst a, Worst b) { return a.hi_ < b.lo_; }
@@ -45,14 +53,15 @@ class Worst {
     return {0, std::max(-a.lo_, a.hi_)};
   }
   friend Worst sqrt(Worst a) {
-    return rounded(std::sqrt(std::max(0.0, double(a.lo_))), std::sqrt(std::max(0.0, double(a.hi_))), 4);
+    return rounded(std::sqrt(std::max(0.0, double(a.lo_))), std::sqrt(std::max(0.0, double(a.hi_))),
+                   4);
   }
 
  private:
   Worst(float lo, float hi) : lo_(lo), hi_(hi) {}
 
-  // The floats around [lo, hi], `units` of the last place farther out. A result that is a float already stays exact, as
-  // correct rounding demands, unless it is flushed.
+  // The floats around [lo, hi], `units` of the last place farther out. A result that is a float
+  // already stays exact, as correct rounding demands, unless it is flushed.
   static Worst rounded(double lo, double hi, double units) {
     constexpr float kInf = std::numeric_limits<float>::infinity();
     constexpr double kUlp = 0x1p-23, kSmallest = 0x1p-126;

@@ -116,8 +116,7 @@ PixelPoint to_pixel(const Window& window, const Vec3& x) {
   // Products that underflow err by at most 2^-1075 more, each.
   const Vec3 d = x - window.origin;
   PixelPoint out{window.map * d, 0};
-  const double bound =
-      8 * kUnit * (window.map.cwiseAbs() * d.cwiseAbs()).maxCoeff() + 0x1p-1000;
+  const double bound = 8 * kUnit * (window.map.cwiseAbs() * d.cwiseAbs()).maxCoeff() + 0x1p-1000;
   out.error = std::isfinite(bound) && out.p.allFinite() ? bound : HUGE_VAL;
   return out;
 }
@@ -147,9 +146,8 @@ std::optional<Window> fit_window(const View& view, std::span<const Box> regions,
   // then lies within 1/16 px of the middle, and the window within its size.
   const Box unit = image(view.rows, window.origin, regions, error);
   const double magnitude = std::max(world.lo.cwiseAbs().maxCoeff(), world.hi.cwiseAbs().maxCoeff());
-  const double extent =
-      std::max({unit.hi[0] - unit.lo[0], unit.hi[1] - unit.lo[1],
-                0x1p-20 * (unit.hi[2] - unit.lo[2]), 0x1p-960});
+  const double extent = std::max({unit.hi[0] - unit.lo[0], unit.hi[1] - unit.lo[1],
+                                  0x1p-20 * (unit.hi[2] - unit.lo[2]), 0x1p-960});
   if (!std::isfinite(extent)) return std::nullopt;
   window.pixel_size = std::max(extent / resolution, 0x1p-45 * magnitude);
   window.map = view.rows / window.pixel_size;

@@ -1,8 +1,6 @@
 #include "experiments/cli.h"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -16,10 +14,11 @@
 #include "commit.h"
 #include "core/error.h"
 #include "experiments/builtin_scenes.h"
+#include "experiments/check.h"
+#include "experiments/cli_experiment.h"
+#include "experiments/cli_parts.h"
 #include "experiments/compare.h"
 #include "experiments/doctor.h"
-#include "experiments/mesh.h"
-#include "experiments/mesh_text.h"
 #include "experiments/output.h"
 #include "experiments/run.h"
 #include "experiments/scene_file.h"
@@ -30,100 +29,13 @@ namespace {
 
 constexpr int kDone = 0, kBroken = 1, kBad = 2;
 
-using Text = std::optional<std::string>;  // of an option; empty where it was not given
-
-// The one line of a failure. A path may hold anything, so control characters do not get through.
-void complain(const std::string& message) {
-  std::fprintf(stderr, "farcull: %s\n", clean_name(message).c_str());
-}
-
-// One line that is written over, on a terminal only.
-class TerminalProgress {
- public:
-  Progress callback() {
-    const char* const terminal = std::getenv("TERM");
-    if (!::isatty(STDERR_FILENO) || terminal == nullptr || std::string_view(terminal) == "dumb")
-      return {};
-    return [this](const std::string& stage) { show(stage + " ..."); };
-  }
-  void clear() {
-    if (std::exchange(shown_, false)) std::fputs("\r\033[K", stderr);
-  }
-  TerminalProgress() = default;
-  ~TerminalProgress() { clear(); }
-  TerminalProgress(const TerminalProgress&) = delete;
-  TerminalProgress& operator=(const TerminalProgress&) = delete;
-
- private:
-  // A line that wraps could not be written over, so it is cut to the terminal as it is now.
-  void show(std::string line) {
-    winsize size = {};
-    if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1)
-      line = line.substr(0, size.ws_col - 1u);
-    std::fprintf(stderr, "\r\033[K%s", line.c_str());
-    std::fflush(stderr);
-    shown_ = true;
-  }
-
-  bool shown_ = false;
-};
-
-// Where results go besides the table.
-struct Outputs {
-  Text json;
-  Text pairs;
-
-  bool to_stdout() const { return json == "-" || pairs == "-"; }
-};
-
-// The outputs, or what can be known to go wrong with them, before anything is read or run.
-Outputs checked(Outputs outputs) {
-  // By its other name, standard output would be written at two places at once.
-  for (Text* path : {&outputs.json, &outputs.pairs}) {
-    if (*path == "/dev/stdout") *path = "-";
-  }
-  for (const auto& [option, path] :
-       {std::pair("--json", outputs.json), std::pair("--pairs", outputs.pairs)}) {
-    if (!path) continue;
-    if (path->empty())
-      throw Error(option, "the path is empty", "name a file, or - for standard output");
-    // `run a.off --json --pairs b.csv`: CLI11 takes what follows for the value.
-    if (path->starts_with("-") && path != "-") {
-      throw Error(option, "its value is missing before '" + *path + "'",
-                  "name a file, with ./ before a name that begins with -");
-    }
-    // `run --json a.off b.off`: the mesh would be gone.
-    if (has_mesh_extension(*path)) {
-      throw Error(option, *path + " is named like a mesh and would be overwritten",
-                  std::string("name the file to write first, as in ") + option + " result" +
-                      (option == std::string("--json") ? ".json" : ".csv"));
-    }
-    check_output(*path);
-  }
-  if (outputs.json && outputs.json == outputs.pairs)
-    throw Error("--pairs", "goes to the same place as --json", "give each a place of its own");
-  if (!outputs.to_stdout()) check_output("-");
-  return outputs;
-}
-
 void check(const std::vector<std::string>& scene) {
   if (std::find(scene.begin(), scene.end(), "") != scene.end())
     throw Error("SCENE", "a name is empty", "name mesh files, a scene file or a built-in scene");
 }
 
-// Empty where none is asked for.
-std::string device_of(const Text& device) {
-  if (device && device->empty())
-    throw Error("--device", "its value is empty", "give software, hardware or a number");
-  return device.value_or("");
-}
-
 std::optional<std::uint64_t> seed_of(const std::vector<std::string>& scene) {
   return scene.size() == 1 ? builtin_seed(scene[0]) : std::nullopt;
-}
-
-void write_json(const nlohmann::ordered_json& json, const std::string& path) {
-  write_output(path, json.dump(2) + "\n");
 }
 
 template <class Value>
@@ -194,16 +106,6 @@ constexpr const char* kSceneHelp =
     "mesh files (.obj .off .ply .stl), each an object;\n"
     "or one scene file (.json); or one built-in scene\n"
     "(`farcull scenes` lists them)";
-constexpr const char* kViewsHelp =
-    "axes or directions to look along, by commas, as in\n"
-    "x,-y,1:1:0.5; default x,y,z";
-constexpr const char* kDeviceHelp =
-    "software, hardware or a number that `farcull doctor`\n"
-    "lists; default hardware first, then software";
-constexpr const char* kJsonHelp =
-    "write the record as JSON to this file; - for standard\n"
-    "output, without the table";
-
 void add_run_options(CLI::App& command, RunArguments& a) {
   command.add_option("SCENE", a.scene, kSceneHelp)->required()->type_name("");
   const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
@@ -215,7 +117,8 @@ void add_run_options(CLI::App& command, RunArguments& a) {
   add("--radius", a.radius, "RADIUS",
       "of the ball that fattens a primitive, for far: budget,\n"
       "published, or a factor on the budget; default budget");
-  add("--offset", a.offset, "OFFSET", "what a primitive is fattened to, for far: obb");
+  add("--offset", a.offset, "OFFSET",
+      "what a primitive is fattened to, for far: obb or\nexact; default obb");
   add("--depth", a.depth, "fragment|fixed",
       "entry and exit depth by the fragment program\n"
       "(reliable), or fixed function as published;\n"
@@ -230,6 +133,8 @@ void add_run_options(CLI::App& command, RunArguments& a) {
       "write the colliding pairs as CSV to this file; - for\n"
       "standard output, without the table");
   add("--json", a.outputs.json, "FILE", kJsonHelp);
+  add("--certificate", a.outputs.certificate, "FILE",
+      "write evidence for every pair to this file, for\n`farcull check`");
 }
 
 std::string missed(const RunRecord& record) {
@@ -249,6 +154,9 @@ int run_command(const RunArguments& arguments, bool strict) {
   const RunRecord record = run_scene(scene, options, session, progress);
   terminal.clear();
   if (outputs.pairs) write_output(*outputs.pairs, pairs_csv(scene, record.pairs));
+  if (outputs.certificate) {
+    write_output(*outputs.certificate, to_text(certificate_of(scene, record, record.kept)));
+  }
   if (outputs.json) write_json(to_json(scene, record), *outputs.json);
   if (!outputs.to_stdout()) write_output("-", run_table(scene, record));
   if (!broken(record, strict)) return kDone;
@@ -315,12 +223,19 @@ int scenes_command(const Outputs& asked) {
 
 // What CLI11 refuses, as an Error with a remedy. `app` is as the parse left it.
 Error refusal(const CLI::App& app, const CLI::ParseError& error) {
-  const std::vector<const CLI::App*> subcommands = app.get_subcommands({});
   const CLI::App* command = &app;
-  for (const CLI::App* subcommand : subcommands) {
-    if (subcommand->parsed()) command = subcommand;
+  std::string name = "farcull";
+  for (bool deeper = true; deeper;) {
+    deeper = false;
+    for (const CLI::App* subcommand : command->get_subcommands({})) {
+      if (!subcommand->parsed()) continue;
+      command = subcommand;
+      name += " " + command->get_name();
+      deeper = true;
+      break;
+    }
   }
-  const std::string name = command == &app ? "farcull" : "farcull " + command->get_name();
+  const std::vector<const CLI::App*> subcommands = command->get_subcommands({});
   const std::string help = "see " + name + " --help";
   const std::string text = error.what();
   // What was not understood comes first: it may be why something else is missing.
@@ -328,7 +243,7 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
   if (!words.empty()) {
     const std::string& word = words.front();
     if (word.starts_with("-")) return Error(word, name + " has no such option", help);
-    if (command != &app) return Error(word, "is one argument too many for " + name, help);
+    if (subcommands.empty()) return Error(word, "is one argument too many for " + name, help);
     std::string known;
     for (const CLI::App* subcommand : subcommands)
       known += (known.empty() ? "" : ", ") + subcommand->get_name();
@@ -439,6 +354,23 @@ int command_line(int argc, char** argv) {
       "Examples:\n  farcull doctor\n  farcull doctor --device software --json -\n\n"
       "Exit status 1: the device breaks an assumption, so no promise holds on it.");
 
+  CheckArguments certificate;
+  Text check_json;
+  CLI::App* check_app = app.add_subcommand("check", "prove or refute a certificate of a run");
+  check_app->add_option("CERTIFICATE", certificate.certificate, "as written by run --certificate")
+      ->required()
+      ->type_name("");
+  check_app->add_option("SCENE", certificate.scene, kSceneHelp)->required()->type_name("");
+  check_app->add_option("--json", check_json, kJsonHelp)->type_name("FILE");
+  check_app->footer(
+      "Examples:\n"
+      "  farcull run two-spheres --certificate c.json\n"
+      "  farcull check c.json two-spheres\n\n"
+      "Exit status 0: proved; 1: refuted, or not proved.");
+
+  ExperimentCommands experiments;
+  CLI::App* experiment_app = experiments.add_to(app);
+
   Outputs scenes;
   CLI::App* scenes_app = app.add_subcommand("scenes", "the built-in scenes with their sizes");
   scenes_app->add_option("--json", scenes.json, kJsonHelp)->type_name("FILE");
@@ -458,10 +390,18 @@ int command_line(int argc, char** argv) {
     if (*run_app) return run_command(run, false);
     if (*verify_app) return run_command(verify, true);
     if (*compare_app) return compare_command(comparison);
+    if (*check_app) {
+      check(certificate.scene);
+      certificate.json = checked({.json = check_json, .pairs = {}, .certificate = {}, .csv = {}})
+                             .json.value_or("");
+      return check_command(certificate);
+    }
+    if (*experiment_app) return experiments.run();
     if (*scenes_app) return scenes_command(scenes);
     if (*doctor_app) {
       doctor.device = device_of(doctor_device);
-      doctor.json = checked({.json = doctor_json, .pairs = {}}).json.value_or("");
+      doctor.json = checked({.json = doctor_json, .pairs = {}, .certificate = {}, .csv = {}})
+                        .json.value_or("");
       return doctor_command(doctor);
     }
     std::fputs(app.help().c_str(), stderr);

@@ -24,15 +24,16 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-// A triangle in pixel space about the origin of its cell, and the weights of points to look at. The pixel grid is that of
-// the cell: its centre is a pixel corner.
+// A triangle in pixel space about the origin of its cell, and the weights of points to look at. The
+// pixel grid is that of the cell: its centre is a pixel corner.
 struct Trial {
   std::array<Vec3, 3> corners;
   std::vector<std::array<int, 3>> weights;
 };
 
 Vec3 in_ball(Random& random, double reach) {
-  return {random.between(-reach, reach), random.between(-reach, reach), random.between(-reach, reach)};
+  return {random.between(-reach, reach), random.between(-reach, reach),
+          random.between(-reach, reach)};
 }
 
 std::vector<std::array<int, 3>> random_weights(Random& random, int count) {
@@ -44,7 +45,8 @@ std::vector<std::array<int, 3>> random_weights(Random& random, int count) {
   return out;
 }
 
-// A short segment at 45 degrees in the image, its middle at q: its box has a face a radius away from q towards the corner.
+// A short segment at 45 degrees in the image, its middle at q: its box has a face a radius away
+// from q towards the corner.
 Trial diagonal_segment(Random& random, const Vec3& q) {
   const Vec3 half(0x1p-14, 0x1p-14 * random.sign(), 0);
   return {{q - half, q + half, q + half}, {{1, 1, 0}}};
@@ -54,17 +56,21 @@ Trial diagonal_segment(Random& random, const Vec3& q) {
 struct Generator {
   const char* name;
   bool large;
-  int side;  // px, of the window; with the border a power of two, so that coordinates reach the viewport's rim
+  int side;  // px, of the window; with the border a power of two, so that coordinates reach the
+             // viewport's rim
   bool rim;  // cells only along the window's far corner
   Trial (*make)(Random&);
 };
 
 Trial corner(Random& random) {
   const double spread = std::exp2(random.between(-30, -9.5));
-  return diagonal_segment(random, Vec3(random.between(-spread, spread), random.between(-spread, spread), random.between(-90, 90)));
+  return diagonal_segment(random, Vec3(random.between(-spread, spread),
+                                       random.between(-spread, spread), random.between(-90, 90)));
 }
 
-Trial exact_corner(Random& random) { return diagonal_segment(random, Vec3(0, 0, random.between(-90, 90))); }
+Trial exact_corner(Random& random) {
+  return diagonal_segment(random, Vec3(0, 0, random.between(-90, 90)));
+}
 
 Trial pixel_edge(Random& random) {
   Vec3 q(random.between(-0.5, 0.5), 0, random.between(-90, 90));
@@ -74,14 +80,16 @@ Trial pixel_edge(Random& random) {
 }
 
 Trial pixel_centre(Random& random) {
-  Trial t{{Vec3(0.5, 0.5, random.between(-90, 90)), in_ball(random, 12), in_ball(random, 12)}, random_weights(random, 60)};
+  Trial t{{Vec3(0.5, 0.5, random.between(-90, 90)), in_ball(random, 12), in_ball(random, 12)},
+          random_weights(random, 60)};
   if (random.below(2)) t.corners[1] = t.corners[0] + Vec3(0, 0, random.between(-20, 20));
   return t;
 }
 
 Trial random_triangle(Random& random) {
   const double reach = std::exp2(random.between(-8, 4.5));
-  return {{in_ball(random, reach), in_ball(random, reach), in_ball(random, reach)}, random_weights(random, 120)};
+  return {{in_ball(random, reach), in_ball(random, reach), in_ball(random, reach)},
+          random_weights(random, 120)};
 }
 
 // Edges at 45 degrees, corners at pixel corners.
@@ -89,7 +97,9 @@ Trial diagonal_triangle(Random& random) {
   const int n = 1 + random.below(10);
   const double s = random.sign();
   const Vec3 a(0, 0, random.between(-20, 20));
-  return {{a, a + Vec3(n, s * n, random.between(-9, 9)), a + Vec3(s * n, -n, random.between(-9, 9))}, random_weights(random, 120)};
+  return {
+      {a, a + Vec3(n, s * n, random.between(-9, 9)), a + Vec3(s * n, -n, random.between(-9, 9))},
+      random_weights(random, 120)};
 }
 
 // Contains the direction of the view, exactly or nearly.
@@ -115,7 +125,8 @@ Trial needle(Random& random) {
   if (random.below(3) == 0) along.head<2>() *= std::exp2(random.between(-30, 0));
   const Vec3 across = in_ball(random, 1) * along.norm() * std::pow(10, -random.between(3, 12));
   const Vec3 at = in_ball(random, 4);
-  return {{at - along, at + along, at + along * random.between(-1, 1) + across}, random_weights(random, 120)};
+  return {{at - along, at + along, at + along * random.between(-1, 1) + across},
+          random_weights(random, 120)};
 }
 
 Trial segment_or_point(Random& random) {
@@ -136,22 +147,29 @@ constexpr Generator kGenerators[] = {{"pixel corners", false, 508, false, corner
                                      {"segments and points", true, 764, false, segment_or_point}};
 
 Window lab_window(int side) {
-  Window w{.view = parse_view("z"), .origin = Vec3::Zero(), .map = Eigen::Matrix3d::Identity(), .pixel_size = 1,
-           .width = side, .height = side, .lo = {}, .hi = {}};
+  Window w{.view = parse_view("z"),
+           .origin = Vec3::Zero(),
+           .map = Eigen::Matrix3d::Identity(),
+           .pixel_size = 1,
+           .width = side,
+           .height = side,
+           .lo = {},
+           .hi = {}};
   w.hi = Vec3(0.5 * side, 0.5 * side, 128);
   w.lo = -w.hi;
   return w;
 }
 
-// What double arithmetic may have made of a triangle: each corner moved by kMaxDoubleError along the axes.
+// What double arithmetic may have made of a triangle: each corner moved by kMaxDoubleError along
+// the axes.
 void displace(std::array<Vec3, 3>& corners, Random& random) {
   const Vec3 by(random.sign(), random.sign(), random.sign());
   for (Vec3& c : corners) c += by * kMaxDoubleError;
 }
 
 // One window full of trials; returns the row's increments.
-void run_round(Canvas& canvas, const Fattener& fattener, const LemmaSettings& settings, const Generator& generator,
-               Random& random, std::uint64_t wanted, LemmaRow& row) {
+void run_round(Canvas& canvas, const Fattener& fattener, const LemmaSettings& settings,
+               const Generator& generator, Random& random, std::uint64_t wanted, LemmaRow& row) {
   const Window window = lab_window(generator.side);
   const Budget budget = budget_for(canvas.limits(), viewport_side(generator.side));
   const double radius = settings.radius(budget, depth_step(window, canvas.limits().depth_bits));
@@ -202,11 +220,12 @@ std::vector<std::string> lemma_generators() {
   return out;
 }
 
-std::vector<LemmaRow> lemma_experiment(Canvas& canvas, const Fattener& fattener, const LemmaSettings& settings,
-                                       const Progress& progress) {
+std::vector<LemmaRow> lemma_experiment(Canvas& canvas, const Fattener& fattener,
+                                       const LemmaSettings& settings, const Progress& progress) {
   std::vector<LemmaRow> rows;
   std::uint64_t index = 0;
-  const std::uint64_t each = (settings.points + std::size(kGenerators) - 1) / std::size(kGenerators);
+  const std::uint64_t each =
+      (settings.points + std::size(kGenerators) - 1) / std::size(kGenerators);
   for (const Generator& generator : kGenerators) {
     LemmaRow row{.generator = generator.name};
     Random random(settings.seed * 1000003 + index++);

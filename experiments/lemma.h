@@ -1,5 +1,5 @@
-// Lemmas 1 and 2 as an experiment: points of triangles that aim at trouble, rasterized with their fattened triangles on a
-// canvas, decided in exact arithmetic.
+// Lemmas 1 and 2 as an experiment: points of triangles that aim at trouble, rasterized with their
+// fattened triangles on a canvas, decided in exact arithmetic.
 #pragma once
 
 #include <cstdint>
@@ -30,12 +30,13 @@ struct LemmaSettings {
   std::uint64_t seed = 0;
   /// The radius in px for a view's budget and depth step.
   std::function<double(const Budget& budget, double depth_step)> radius;
-  /// Displaces what is drawn by as much as double arithmetic may (kMaxDoubleError per axis), away from the pixel centre: the
-  /// budget's "double" term at its worst.
+  /// Displaces what is drawn by as much as double arithmetic may (kMaxDoubleError per axis), away
+  /// from the pixel centre: the budget's "double" term at its worst.
   bool displace = false;
 };
 
-std::vector<LemmaRow> lemma_experiment(Canvas& canvas, const Fattener& fattener, const LemmaSettings& settings,
+std::vector<LemmaRow> lemma_experiment(Canvas& canvas, const Fattener& fattener,
+                                       const LemmaSettings& settings,
                                        const Progress& progress = {});
 
 /// The sum of all rows, named "all".

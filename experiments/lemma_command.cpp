@@ -36,20 +36,26 @@ Sweep parse_sweep(const std::string& text) {
   for (int i = 0; i < 3; ++i) {
     const auto [next, code] = std::from_chars(at, end, values[i]);
     const bool last = i == 2;
-    if (code != std::errc() || !std::isfinite(values[i]) || (last ? next != end : next == end || *next != ':')) {
-      throw Error("--sweep", "'" + text + "' is no sweep", "give FROM:TO:STEP of the radius factor, such as 0.5:1.1:0.01");
+    if (code != std::errc() || !std::isfinite(values[i]) ||
+        (last ? next != end : next == end || *next != ':')) {
+      throw Error("--sweep", "'" + text + "' is no sweep",
+                  "give FROM:TO:STEP of the radius factor, such as 0.5:1.1:0.01");
     }
     at = next + 1;
   }
   const Sweep sweep{values[0], values[1], values[2]};
-  if (sweep.from < 0 || sweep.to < sweep.from || sweep.step <= 0 || (sweep.to - sweep.from) / sweep.step > 100000) {
-    throw Error("--sweep", "'" + text + "' does not ascend from 0 or more in at most 100000 positive steps",
+  if (sweep.from < 0 || sweep.to < sweep.from || sweep.step <= 0 ||
+      (sweep.to - sweep.from) / sweep.step > 100000) {
+    throw Error("--sweep",
+                "'" + text + "' does not ascend from 0 or more in at most 100000 positive steps",
                 "give FROM:TO:STEP, such as 0.5:1.1:0.01");
   }
   return sweep;
 }
 
-std::string radius_name(const RadiusRule& rule) { return rule.published ? "published" : fmt::format("{}", rule.factor); }
+std::string radius_name(const RadiusRule& rule) {
+  return rule.published ? "published" : fmt::format("{}", rule.factor);
+}
 
 struct Result {
   RadiusRule rule;
@@ -77,14 +83,16 @@ Json result_json(const Result& result) {
 }
 
 std::string result_table(const Result& result) {
-  std::string out = fmt::format("{:<28} {:>12} {:>12} {:>12} {:>12} {:>10}\n", "generator", "points", "no sample",
-                                "not bounding", "violations", "rate");
+  std::string out = fmt::format("{:<28} {:>12} {:>12} {:>12} {:>12} {:>10}\n", "generator",
+                                "points", "no sample", "not bounding", "violations", "rate");
   std::vector<LemmaRow> rows = result.rows;
   rows.push_back(lemma_total(rows));
   for (const LemmaRow& row : rows) {
-    out += fmt::format("{:<28} {:>12} {:>12} {:>12} {:>12} {:>9.3f}%\n", row.generator, row.points, row.no_sample,
-                       row.not_bounding, row.violations(),
-                       row.points ? 100.0 * static_cast<double>(row.violations()) / static_cast<double>(row.points) : 0.0);
+    out += fmt::format(
+        "{:<28} {:>12} {:>12} {:>12} {:>12} {:>9.3f}%\n", row.generator, row.points, row.no_sample,
+        row.not_bounding, row.violations(),
+        row.points ? 100.0 * static_cast<double>(row.violations()) / static_cast<double>(row.points)
+                   : 0.0);
   }
   return out;
 }
@@ -95,8 +103,8 @@ std::string sweep_csv(const std::vector<Result>& results) {
     std::vector<LemmaRow> rows = result.rows;
     rows.push_back(lemma_total(rows));
     for (const LemmaRow& row : rows) {
-      out += fmt::format("{},{},{},{},{},{}\n", result.rule.factor, row.generator, row.points, row.violations(), row.no_sample,
-                         row.not_bounding);
+      out += fmt::format("{},{},{},{},{},{}\n", result.rule.factor, row.generator, row.points,
+                         row.violations(), row.no_sample, row.not_bounding);
     }
   }
   return out;
@@ -117,9 +125,11 @@ std::optional<double> smallest_safe(const std::vector<Result>& results) {
 
 }  // namespace
 
-int lemma_command(const LemmaArguments& arguments, const Progress& progress) {
+int lemma_command(const LemmaArguments& arguments, const Progress& progress,
+                  const std::function<void()>& done) {
   if (arguments.points < 1 || arguments.points > 1'000'000'000'000) {
-    throw Error("--points", fmt::format("{} is no number of points", arguments.points), "give 1 to 1e12");
+    throw Error("--points", fmt::format("{} is no number of points", arguments.points),
+                "give 1 to 1e12");
   }
   if (arguments.canvas != "gl" && arguments.canvas != "worst") {
     throw Error("--canvas", "'" + arguments.canvas + "' is no canvas", "give gl or worst");
@@ -128,14 +138,16 @@ int lemma_command(const LemmaArguments& arguments, const Progress& progress) {
     throw Error("--offset", "'" + arguments.offset + "' is no offset", "give obb or exact");
   }
   if (!arguments.csv.empty() && arguments.sweep.empty()) {
-    throw Error("--csv", "there is a table to write only with --sweep", "add --sweep 0.5:1.1:0.01, or use --json");
+    throw Error("--csv", "there is a table to write only with --sweep",
+                "add --sweep 0.5:1.1:0.01, or use --json");
   }
   std::vector<RadiusRule> rules;
   if (arguments.sweep.empty()) {
     rules.push_back(parse_radius(arguments.radius));
   } else {
     const Sweep sweep = parse_sweep(arguments.sweep);
-    for (int i = 0; i < sweep.count(); ++i) rules.push_back({.published = false, .factor = sweep.at(i)});
+    for (int i = 0; i < sweep.count(); ++i)
+      rules.push_back({.published = false, .factor = sweep.at(i)});
   }
 
   const Fattener fattener = arguments.offset == "exact" ? exact_fattener() : obb_fattener();
@@ -160,11 +172,14 @@ int lemma_command(const LemmaArguments& arguments, const Progress& progress) {
       return rule.published ? published_radius(step) : rule.factor * budget.radius();
     };
     const Progress named =
-        progress ? [&](const std::string& text) { progress("radius " + radius_name(rule) + ", " + text); } : Progress{};
+        progress ? [&](const std::string&
+                           text) { progress("radius " + radius_name(rule) + ", " + text); }
+                 : Progress{};
     results.push_back({rule, lemma_experiment(*canvas, fattener, settings, named)});
-    if (!rule.published && rule.factor >= 1) broken += lemma_total(results.back().rows).violations();
+    if (!rule.published && rule.factor >= 1)
+      broken += lemma_total(results.back().rows).violations();
   }
-  if (progress) progress("");
+  done();
 
   const std::optional<double> safe = smallest_safe(results);
   if (!arguments.json.empty()) {
@@ -189,20 +204,24 @@ int lemma_command(const LemmaArguments& arguments, const Progress& progress) {
   }
   if (!arguments.csv.empty()) write_output(arguments.csv, sweep_csv(results));
   if (arguments.json != "-" && arguments.csv != "-") {
-    std::string text = fmt::format("canvas {}, offset {}, {}\n\n", arguments.canvas, arguments.offset,
-                                   worst ? "no device" : context->info().renderer);
+    std::string text =
+        fmt::format("canvas {}, offset {}, {}\n\n", arguments.canvas, arguments.offset,
+                    worst ? "no device" : context->info().renderer);
     if (arguments.sweep.empty()) {
       text += "radius " + radius_name(rules.front()) + "\n" + result_table(results.front());
     } else {
-      text += fmt::format("{:>10} {:>12} {:>12} {:>12} {:>12}\n", "factor", "points", "no sample", "not bounding", "violations");
+      text += fmt::format("{:>10} {:>12} {:>12} {:>12} {:>12}\n", "factor", "points", "no sample",
+                          "not bounding", "violations");
       for (const Result& result : results) {
         const LemmaRow total = lemma_total(result.rows);
-        text += fmt::format("{:>10.6g} {:>12} {:>12} {:>12} {:>12}\n", result.rule.factor, total.points, total.no_sample,
-                            total.not_bounding, total.violations());
+        text += fmt::format("{:>10.6g} {:>12} {:>12} {:>12} {:>12}\n", result.rule.factor,
+                            total.points, total.no_sample, total.not_bounding, total.violations());
       }
-      text += safe ? fmt::format("\nno violation from the factor {:.6g} on: the budget's slack is {:.4g} %\n", *safe,
-                                 100 * (1 - *safe))
-                   : "\nthe last factor still has violations\n";
+      text +=
+          safe ? fmt::format(
+                     "\nno violation from the factor {:.6g} on: the budget's slack is {:.4g} %\n",
+                     *safe, 100 * (1 - *safe))
+               : "\nthe last factor still has violations\n";
     }
     write_output("-", text);
   }

@@ -1,7 +1,9 @@
-// `farcull experiment lemma`: the lemmas on a canvas at one radius, or along a sweep of the radius factor.
+// `farcull experiment lemma`: the lemmas on a canvas at one radius, or along a sweep of the radius
+// factor.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "core/cull.h"
@@ -17,11 +19,13 @@ struct LemmaArguments {
   std::string device;
   std::uint64_t seed = 1;
   std::string json;
-  std::string csv;                // of the sweep
+  std::string csv;  // of the sweep
 };
 
-/// Prints the rows; writes --json and --csv. 0: no violation at the budget radius or beyond (others promise nothing); 1: one.
-/// Throws Error for bad arguments and for faults of the device.
-int lemma_command(const LemmaArguments& arguments, const Progress& progress);
+/// Prints the rows; writes --json and --csv. 0: no violation at the budget radius or beyond (others
+/// promise nothing); 1: one. Throws Error for bad arguments and for faults of the device. `done` is
+/// called before anything is printed, to clear the progress.
+int lemma_command(const LemmaArguments& arguments, const Progress& progress,
+                  const std::function<void()>& done);
 
 }  // namespace farcull

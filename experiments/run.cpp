@@ -82,8 +82,8 @@ std::vector<std::uint32_t> cull_stage(const Scene& scene, const Plan& plan, Sess
   return std::move(result.live);
 }
 
-void run_culled(const Scene& scene, Session& session, const Progress& progress, RunRecord& record,
-                std::vector<TrianglePair>& candidates) {
+void run_culled(const Scene& scene, Session& session, const Progress& progress, RunRecord& record) {
+  std::vector<TrianglePair>& candidates = record.kept;
   const Clock planning;
   if (progress) progress("planning");
   const Plan plan = make_plan(scene);
@@ -261,17 +261,16 @@ RunRecord run_scene(const Scene& scene, const RunOptions& options, Session& sess
   record.scene_hash = scene_hash(scene);
   record.degenerate_triangles = degenerate_triangles(scene);
 
-  std::vector<TrianglePair> kept;
   if (options.method == Method::exact) {
     run_exact(scene, progress, record);
-    kept = record.pairs;
+    record.kept = record.pairs;
   } else {
-    run_culled(scene, session, progress, record, kept);
+    run_culled(scene, session, progress, record);
   }
   record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
   if (options.verify) {
     if (progress) progress("accounting for every pair");
-    record.verification = account(scene, kept);
+    record.verification = account(scene, record.kept);
     if (!record.verification->adds_up())
       throw std::logic_error("the classes of the accounting do not add up");
   }

@@ -69,6 +69,8 @@ struct RunRecord {
   std::uint64_t pcs_objects = 0;
   std::uint64_t pcs_triangles = 0;
   std::uint64_t candidate_pairs = 0;
+  std::vector<TrianglePair>
+      kept;  // sorted: the candidates; for exact, which tests them all, the colliding ones
   std::vector<TrianglePair> pairs;  // colliding, sorted
   std::optional<Accounting> verification;
   RunTimes ms;

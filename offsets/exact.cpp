@@ -27,7 +27,9 @@ namespace {
 
 void fatten_exact(const Patch& patch, double radius, const ProxyBounds& bounds, Drawables& out) {
   for (int i = 2; i < std::max(patch.count, 3); ++i) {
-    const auto corner = [&patch](int k) -> const Vec3& { return patch.corners[std::min(k, patch.count - 1)]; };
+    const auto corner = [&patch](int k) -> const Vec3& {
+      return patch.corners[std::min(k, patch.count - 1)];
+    };
     const std::array<Vec3, 3> t = {corner(0), corner(i - 1), corner(i)};
     out.proxies.push_back({proxy_rectangle(t, radius, bounds), exact_of(t[0], t[1], t[2], radius)});
   }

@@ -16,17 +16,18 @@ V4 vec4_of(const std::array<float, 4>& s) {
 template <auto Kernel>
 bool kernel_interval(float cx, float cy, const Solid& s, float& entry, float& exit) {
   using glsl::vec4;
-  return Kernel({cx, cy}, vec4_of<vec4>(s[0]), vec4_of<vec4>(s[1]), vec4_of<vec4>(s[2]), vec4_of<vec4>(s[3]),
-                vec4_of<vec4>(s[4]), entry, exit);
+  return Kernel({cx, cy}, vec4_of<vec4>(s[0]), vec4_of<vec4>(s[1]), vec4_of<vec4>(s[2]),
+                vec4_of<vec4>(s[3]), vec4_of<vec4>(s[4]), entry, exit);
 }
 
-/// The same compiled with Worst: a miss where some rounding misses, else the latest entry and the earliest exit.
+/// The same compiled with Worst: a miss where some rounding misses, else the latest entry and the
+/// earliest exit.
 template <auto Kernel>
 bool kernel_interval_worst(float cx, float cy, const Solid& s, float& entry, float& exit) {
   using glsl_worst::vec4;
   glsl_worst::Worst first, last;
-  if (!Kernel({cx, cy}, vec4_of<vec4>(s[0]), vec4_of<vec4>(s[1]), vec4_of<vec4>(s[2]), vec4_of<vec4>(s[3]),
-              vec4_of<vec4>(s[4]), first, last)) {
+  if (!Kernel({cx, cy}, vec4_of<vec4>(s[0]), vec4_of<vec4>(s[1]), vec4_of<vec4>(s[2]),
+              vec4_of<vec4>(s[3]), vec4_of<vec4>(s[4]), first, last)) {
     return false;
   }
   entry = first.hi();

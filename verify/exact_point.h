@@ -1,5 +1,6 @@
-// A point of a triangle as an exact number, for deciding the lemmas: which pixels contain its image, and whether two samples
-// bound its depth. Integers only (GMP); never the budget, never an offset.
+// A point of a triangle as an exact number, for deciding the lemmas: which pixels contain its
+// image, and whether two samples bound its depth. Integers only (GMP); never the budget, never an
+// offset.
 #pragma once
 
 #include <array>
@@ -10,7 +11,8 @@
 
 namespace farcull {
 
-/// (w0 c0 + w1 c1 + w2 c2) / (w0 + w1 + w2) in pixel space: a point of the closed triangle of the corners.
+/// (w0 c0 + w1 c1 + w2 c2) / (w0 + w1 + w2) in pixel space: a point of the closed triangle of the
+/// corners.
 struct ExactPoint {
   std::array<Vec3, 3> corners;  // px, finite
   std::array<int, 3> weights;   // >= 0, their sum > 0
@@ -21,8 +23,8 @@ struct Pixel {
   int y;
 };
 
-/// The pixels (closed squares) of a window of width x height px centred on the origin that contain the image of the
-/// point: none to four.
+/// The pixels (closed squares) of a window of width x height px centred on the origin that contain
+/// the image of the point: none to four.
 std::vector<Pixel> pixels_containing(const ExactPoint& point, int width, int height);
 
 /// entry <= z(point) <= exit, exactly; false where a sample is NaN.

@@ -15,9 +15,9 @@ struct Range {
   double lo, hi;
 };
 
-// How far a window coordinate can be from the exact one: times 2/viewport, over w = 1, times viewport/2, plus the centre,
-// then snapped. A1 bounds the error over the whole viewport, so every corner may err as one at its rim does, where all
-// intermediate results are largest.
+// How far a window coordinate can be from the exact one: times 2/viewport, over w = 1, times
+// viewport/2, plus the centre, then snapped. A1 bounds the error over the whole viewport, so every
+// corner may err as one at its rim does, where all intermediate results are largest.
 double displacement(int viewport, int subpixel_bits) {
   const double half = 0.5 * viewport;
   double x = half;
@@ -35,8 +35,8 @@ double cross(const Point& a, const Point& b, const Point& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Whether c is on the inner side of the edge for every choice of its ends: the product is linear in each coordinate, so
-// its least value is at corners of the ranges.
+// Whether c is on the inner side of the edge for every choice of its ends: the product is linear in
+// each coordinate, so its least value is at corners of the ranges.
 bool surely_inside(const Range (&a)[2], const Range (&b)[2], const Point& c, double orientation) {
   for (int bits = 0; bits < 16; ++bits) {
     const Point from = {bits & 1 ? a[0].hi : a[0].lo, bits & 2 ? a[1].hi : a[1].lo};
@@ -48,7 +48,8 @@ bool surely_inside(const Range (&a)[2], const Range (&b)[2], const Point& c, dou
 
 }  // namespace
 
-WorstCanvas::WorstCanvas(const SolidProgram& solid, const WorstCanvasOptions& options) : solid_(solid), options_(options) {
+WorstCanvas::WorstCanvas(const SolidProgram& solid, const WorstCanvasOptions& options)
+    : solid_(solid), options_(options) {
   limits_.subpixel_bits = options.subpixel_bits;
   limits_.depth_bits = options.depth_bits;
   limits_.max_resolution = options.max_resolution;
@@ -64,13 +65,14 @@ float WorstCanvas::stored_depth(float mapped) const {
   return static_cast<float>(std::floor(mapped * 0x1p24) * 0x1p-24);
 }
 
-// Calls visit(pixel, px, mapped) for each fragment of an element: px is the entry or exit depth, mapped its place in the
-// depth buffer.
+// Calls visit(pixel, px, mapped) for each fragment of an element: px is the entry or exit depth,
+// mapped its place in the depth buffer.
 template <class Visit>
 void WorstCanvas::rasterize(std::uint32_t element, Verb verb, const Visit& visit) const {
   const int width = window_.width, height = window_.height;
   if (element == kEverywhere) {
-    for (std::size_t pixel = 0; pixel < static_cast<std::size_t>(width) * height; ++pixel) visit(pixel, 0, 0);
+    for (std::size_t pixel = 0; pixel < static_cast<std::size_t>(width) * height; ++pixel)
+      visit(pixel, 0, 0);
     return;
   }
   const float scale = depth_scale(window_);
@@ -90,7 +92,8 @@ void WorstCanvas::rasterize(std::uint32_t element, Verb verb, const Visit& visit
     for (int y = y0; y <= y1; ++y) {
       for (int x = x0; x <= x1; ++x) {
         const Point p = {x + 0.5 - 0.5 * width, y + 0.5 - 0.5 * height};
-        const double wa = cross(b, c, p) / area, wb = cross(c, a, p) / area, wc = cross(a, b, p) / area;
+        const double wa = cross(b, c, p) / area, wb = cross(c, a, p) / area,
+                     wc = cross(a, b, p) / area;
         if (wa <= 0 || wb <= 0 || wc <= 0) continue;
         const float z = static_cast<float>(wa * t[2] + wb * t[6] + wc * t[10]);
         visit(static_cast<std::size_t>(y) * width + x, z, mapped(z));
@@ -121,10 +124,13 @@ void WorstCanvas::rasterize(std::uint32_t element, Verb verb, const Visit& visit
     for (int x = x0; x <= x1; ++x) {
       const Point c = {x + 0.5 - 0.5 * width, y + 0.5 - 0.5 * height};
       bool covered = true;
-      for (int i = 0; i < 4 && covered; ++i) covered = surely_inside(corner[i], corner[(i + 1) % 4], c, orientation);
+      for (int i = 0; i < 4 && covered; ++i)
+        covered = surely_inside(corner[i], corner[(i + 1) % 4], c, orientation);
       if (!covered) continue;
       float entry, exit;
-      if (!solid_.interval_worst(static_cast<float>(c.x), static_cast<float>(c.y), proxy.solid, entry, exit)) continue;
+      if (!solid_.interval_worst(static_cast<float>(c.x), static_cast<float>(c.y), proxy.solid,
+                                 entry, exit))
+        continue;
       const float z = verb == Verb::store ? entry : exit;
       visit(static_cast<std::size_t>(y) * width + x, z, mapped(z));
     }
@@ -153,7 +159,8 @@ std::vector<std::uint8_t> WorstCanvas::run(const Pass& pass) {
 }
 
 std::vector<float> WorstCanvas::samples(Verb verb, const std::vector<Draw>& draws) {
-  if (drawables_->mode == DepthMode::fixed) throw std::logic_error("WorstCanvas::samples: proxies only");
+  if (drawables_->mode == DepthMode::fixed)
+    throw std::logic_error("WorstCanvas::samples: proxies only");
   std::vector<float> out(static_cast<std::size_t>(window_.width) * window_.height,
                          std::numeric_limits<float>::quiet_NaN());
   for (const Draw& draw : draws) {

@@ -1,5 +1,6 @@
-// A canvas without a GPU that keeps the device assumptions (docs/reliability.md) and nothing more: whatever they leave open
-// goes against culling. It knows the steps that a coordinate takes through a rasterizer, not the budget's terms.
+// A canvas without a GPU that keeps the device assumptions (docs/reliability.md) and nothing more:
+// whatever they leave open goes against culling. It knows the steps that a coordinate takes through
+// a rasterizer, not the budget's terms.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +12,19 @@ namespace farcull {
 
 struct WorstCanvasOptions {
   int subpixel_bits = 8;
-  int depth_bits = 32;         // 32: stored as the float that was computed; 24: rounded to a multiple of 2^-24
+  int depth_bits =
+      32;  // 32: stored as the float that was computed; 24: rounded to a multiple of 2^-24
   int max_resolution = 16370;
 };
 
-/// Proxies (A1 to A4): a pixel gets a fragment only if its centre is inside the quadrilateral for every choice of
-/// corners that the roundings of the vertex stage, the division by w, the viewport transform and snapping allow, ties
-/// lost. The solid is evaluated with SolidProgram::interval_worst: discarded where some rounding discards, entry as late
-/// and exit as early as any rounding makes them. Depths (A5): the mapped depth rounds down, so that nearer ones are merged with
-/// farther ones as little as possible; a query sees exactly what passes (A6).
-/// Triangles (fixed depth) are sampled at pixel centres without displacement: that path promises nothing.
+/// Proxies (A1 to A4): a pixel gets a fragment only if its centre is inside the quadrilateral for
+/// every choice of corners that the roundings of the vertex stage, the division by w, the viewport
+/// transform and snapping allow, ties lost. The solid is evaluated with
+/// SolidProgram::interval_worst: discarded where some rounding discards, entry as late and exit as
+/// early as any rounding makes them. Depths (A5): the mapped depth rounds down, so that nearer ones
+/// are merged with farther ones as little as possible; a query sees exactly what passes (A6).
+/// Triangles (fixed depth) are sampled at pixel centres without displacement: that path promises
+/// nothing.
 class WorstCanvas final : public Canvas {
  public:
   explicit WorstCanvas(const SolidProgram& solid, const WorstCanvasOptions& options = {});

@@ -1,4 +1,5 @@
-// The GL canvas against what core/canvas.h specifies, and every fault of assumption A7, injected and noticed.
+// The GL canvas against what core/canvas.h specifies, and every fault of assumption A7, injected
+// and noticed.
 #include <gtest/gtest.h>
 
 #include <cfenv>
@@ -14,7 +15,8 @@ namespace {
 
 using lab::Random;
 
-// Two layers of small triangles, near (z = -10) in item 2i and far (z = 10) in item 2i + 1, on a grid of cells.
+// Two layers of small triangles, near (z = -10) in item 2i and far (z = 10) in item 2i + 1, on a
+// grid of cells.
 struct Layers {
   Window window = lab::window(64);
   std::vector<Patch> patches;
@@ -52,12 +54,18 @@ struct Setting {
 std::vector<Setting> settings() {
   return {{"flags", obb_fattener, {}},
           {"occlusion", obb_fattener, {.query = QueryMode::occlusion}},
-          {"occlusion24", obb_fattener, {.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}},
+          {"occlusion24",
+           obb_fattener,
+           {.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}},
           {"raw flags", raw_triangles, {}},
-          {"raw occlusion24", raw_triangles, {.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}},
+          {"raw occlusion24",
+           raw_triangles,
+           {.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}},
           {"surface occlusion", obb_surface_fattener, {.query = QueryMode::occlusion}},
           {"small blocks flags", obb_fattener, {.storage_limit = 500}},
-          {"small blocks occlusion", obb_surface_fattener, {.query = QueryMode::occlusion, .storage_limit = 500}}};
+          {"small blocks occlusion",
+           obb_surface_fattener,
+           {.query = QueryMode::occlusion, .storage_limit = 500}}};
 }
 
 TEST(GlCanvas, SeesWhatIsBehindAndNotWhatIsInFront) {
@@ -68,9 +76,12 @@ TEST(GlCanvas, SeesWhatIsBehindAndNotWhatIsInFront) {
     GlCanvas canvas(lab::context(), fattener.mode, fattener.solid, setting.options);
     const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
     canvas.begin(layers.window, drawables);
-    EXPECT_EQ(canvas.run(layers.pass(drawables, 0, 1)), std::vector<std::uint8_t>(layers.cells(), 1));
-    EXPECT_EQ(canvas.run(layers.pass(drawables, 1, 0)), std::vector<std::uint8_t>(layers.cells(), 0));
-    EXPECT_EQ(canvas.run(layers.pass(drawables, 0, 0)), std::vector<std::uint8_t>(layers.cells(), 1))
+    EXPECT_EQ(canvas.run(layers.pass(drawables, 0, 1)),
+              std::vector<std::uint8_t>(layers.cells(), 1));
+    EXPECT_EQ(canvas.run(layers.pass(drawables, 1, 0)),
+              std::vector<std::uint8_t>(layers.cells(), 0));
+    EXPECT_EQ(canvas.run(layers.pass(drawables, 0, 0)),
+              std::vector<std::uint8_t>(layers.cells(), 1))
         << "equal depths must be seen";
   }
 }
@@ -108,7 +119,8 @@ TEST(GlCanvas, StoringEverywhereHidesAll) {
     pass.draws.push_back({kEverywhere, 0});
     for (int i = 0; i < layers.cells(); ++i) lab::add(pass.draws, drawables, 2 * i, i);
     pass.slots = layers.cells();
-    pass.steps = {{Verb::store, 0, 1}, {Verb::ask, 1, static_cast<std::uint32_t>(pass.draws.size()) - 1}};
+    pass.steps = {{Verb::store, 0, 1},
+                  {Verb::ask, 1, static_cast<std::uint32_t>(pass.draws.size()) - 1}};
     EXPECT_EQ(canvas.run(pass), std::vector<std::uint8_t>(layers.cells(), 1));
   }
 }
@@ -126,7 +138,8 @@ TEST(GlCanvas, SeveralStoresAddUp) {
     for (int i = 0; i < layers.cells(); ++i) {
       auto first = static_cast<std::uint32_t>(pass.draws.size());
       lab::add(pass.draws, drawables, 2 * i, 0);
-      pass.steps.push_back({Verb::store, first, static_cast<std::uint32_t>(pass.draws.size()) - first});
+      pass.steps.push_back(
+          {Verb::store, first, static_cast<std::uint32_t>(pass.draws.size()) - first});
       first = static_cast<std::uint32_t>(pass.draws.size());
       for (const int cell : {0, i, layers.cells() - 1}) {
         if (cell == 0 && i == 0) continue;
@@ -134,7 +147,8 @@ TEST(GlCanvas, SeveralStoresAddUp) {
         expected.push_back(cell <= i);
         if (cell == layers.cells() - 1 && i == cell) break;
       }
-      pass.steps.push_back({Verb::ask, first, static_cast<std::uint32_t>(pass.draws.size()) - first});
+      pass.steps.push_back(
+          {Verb::ask, first, static_cast<std::uint32_t>(pass.draws.size()) - first});
     }
     pass.slots = static_cast<std::uint32_t>(expected.size());
     EXPECT_EQ(canvas.run(pass), expected);
@@ -147,16 +161,19 @@ TEST(GlCanvas, ReversedDepthTestIsADefectThatShows) {
   GlCanvas canvas(lab::context(), fattener.mode, fattener.solid, {.reversed_depth_test = true});
   const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
   canvas.begin(layers.window, drawables);
-  EXPECT_THROW(canvas.run(layers.pass(drawables, 0, 1)), Error) << "a depth test that stores nothing loses the control item";
+  EXPECT_THROW(canvas.run(layers.pass(drawables, 0, 1)), Error)
+      << "a depth test that stores nothing loses the control item";
 }
 
 TEST(GlCanvas, NoticesEveryFault) {
   const Layers layers;
   const Fattener fattener = obb_fattener();
-  const std::pair<QueryMode, Fault> faults[] = {
-      {QueryMode::flags, Fault::lost_draw},          {QueryMode::flags, Fault::oversized_dispatch},
-      {QueryMode::flags, Fault::unfinished_invocation}, {QueryMode::occlusion, Fault::lost_draw},
-      {QueryMode::occlusion, Fault::lost_query},     {QueryMode::occlusion, Fault::blind_query}};
+  const std::pair<QueryMode, Fault> faults[] = {{QueryMode::flags, Fault::lost_draw},
+                                                {QueryMode::flags, Fault::oversized_dispatch},
+                                                {QueryMode::flags, Fault::unfinished_invocation},
+                                                {QueryMode::occlusion, Fault::lost_draw},
+                                                {QueryMode::occlusion, Fault::lost_query},
+                                                {QueryMode::occlusion, Fault::blind_query}};
   for (const auto& [query, fault] : faults) {
     SCOPED_TRACE(static_cast<int>(fault));
     GlCanvas canvas(lab::context(), fattener.mode, fattener.solid, {.query = query});
@@ -173,7 +190,9 @@ TEST(GlCanvas, NoticesEveryFault) {
 
 TEST(GlCanvas, RefusesFlagsOn24BitDepth) {
   const Fattener fattener = obb_fattener();
-  EXPECT_THROW(GlCanvas(lab::context(), fattener.mode, fattener.solid, {.depth_format = DepthFormat::fixed24}), Error);
+  EXPECT_THROW(GlCanvas(lab::context(), fattener.mode, fattener.solid,
+                        {.depth_format = DepthFormat::fixed24}),
+               Error);
 }
 
 TEST(GlCanvas, LimitsComeFromTheDevice) {
@@ -184,8 +203,8 @@ TEST(GlCanvas, LimitsComeFromTheDevice) {
   EXPECT_LE(viewport_side(canvas.limits().max_resolution + 5), lab::context().info().max_viewport);
 }
 
-// Drivers flush subnormals in their own threads; if that leaked into ours, exact predicates and outward rounding would
-// silently lose their premises.
+// Drivers flush subnormals in their own threads; if that leaked into ours, exact predicates and
+// outward rounding would silently lose their premises.
 TEST(GlCanvas, LeavesTheFloatingPointModeAlone) {
   const Layers layers;
   const Fattener fattener = obb_fattener();

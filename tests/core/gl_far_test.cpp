@@ -128,11 +128,13 @@ TEST(GlFar, RadiusTwinsFailNearPixelCorners) {
   expect_right(scene, run(scene, side, options));
   const std::uint64_t pairs = all_colliding_pairs(scene).pairs.size();
   ASSERT_GT(pairs, 1500u);
-  for (const RadiusRule radius : {RadiusRule{.published = false, .factor = 0.9}, RadiusRule{.published = true, .factor = 1}}) {
+  for (const RadiusRule radius : {RadiusRule{.published = false, .factor = 0.9},
+                                  RadiusRule{.published = true, .factor = 1}}) {
     options.radius = radius;
     const RunRecord record = run(scene, side, options);
     EXPECT_FALSE(record.promises);
-    EXPECT_GT(record.verification->false_negatives, pairs / 50) << (radius.published ? "published" : "0.9");
+    EXPECT_GT(record.verification->false_negatives, pairs / 50)
+        << (radius.published ? "published" : "0.9");
   }
 }
 
@@ -146,7 +148,8 @@ TEST(GlFar, UndrawableItemKeepsItsSmallPartner) {
     const RunRecord record = run(scene, 256, options);
     expect_right(scene, record);
     bool reported = false;
-    for (const Stage& stage : record.stages) reported |= stage.reason.find("beyond the budget") != std::string::npos;
+    for (const Stage& stage : record.stages)
+      reported |= stage.reason.find("beyond the budget") != std::string::npos;
     EXPECT_TRUE(reported) << "the scene must exercise the undrawable path";
   }
 }
@@ -167,7 +170,8 @@ TEST(GlFar, RegionsThatPixelsCannotResolveKeepEverything) {
 Scene permuted(const Scene& scene, Random& random, std::vector<std::uint32_t>& triangle_from) {
   std::vector<std::uint32_t> order(scene.objects.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(static_cast<int>(i))]);
+  for (std::size_t i = order.size(); i > 1; --i)
+    std::swap(order[i - 1], order[random.below(static_cast<int>(i))]);
   Scene out;
   out.name = scene.name;
   out.vertices = scene.vertices;
@@ -189,8 +193,10 @@ Scene permuted(const Scene& scene, Random& random, std::vector<std::uint32_t>& t
   return out;
 }
 
-std::vector<TrianglePair> mapped_back(std::vector<TrianglePair> pairs, const std::vector<std::uint32_t>& from) {
-  for (TrianglePair& p : pairs) p = {std::min(from[p.a], from[p.b]), std::max(from[p.a], from[p.b])};
+std::vector<TrianglePair> mapped_back(std::vector<TrianglePair> pairs,
+                                      const std::vector<std::uint32_t>& from) {
+  for (TrianglePair& p : pairs)
+    p = {std::min(from[p.a], from[p.b]), std::max(from[p.a], from[p.b])};
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
@@ -227,7 +233,8 @@ TEST(GlFar, SignedAxisPermutationsChangeNoAnswer) {
   }
 }
 
-// Powers of two and exactly representable moves change no rounding at all: what is kept is the same too.
+// Powers of two and exactly representable moves change no rounding at all: what is kept is the same
+// too.
 TEST(GlFar, ScalingsByPowersOfTwoAndExactMovesChangeNothingAtAll) {
   Scene scene = make_builtin_scene("random-soup");
   for (Vec3& v : scene.vertices) {
@@ -262,7 +269,8 @@ TEST(GlFar, FarApartDrawsNothingAndSaysWhy) {
   EXPECT_EQ(record.verification->false_negatives, 0u);
 }
 
-// The economy of storing only open items must cost no culling: the fixed point is at least as small.
+// The economy of storing only open items must cost no culling: the fixed point is at least as
+// small.
 TEST(GlFar, EconomyNeverKeepsMore) {
   for (const char* name : {"two-spheres", "crowd", "random-soup"}) {
     SCOPED_TRACE(name);
@@ -270,7 +278,11 @@ TEST(GlFar, EconomyNeverKeepsMore) {
     const Plan plan = make_plan(scene);
     const Fattener fattener = obb_fattener();
     GlCanvas canvas(session().context(), fattener.mode, fattener.solid);
-    CullSettings settings{.views = parse_views("x,y,z"), .resolution = 96, .fattener = fattener, .radius = {}, .economy = true};
+    CullSettings settings{.views = parse_views("x,y,z"),
+                          .resolution = 96,
+                          .fattener = fattener,
+                          .radius = {},
+                          .economy = true};
     const std::vector<std::uint32_t> economical = cull(scene, plan, settings, canvas).live;
     settings.economy = false;
     const std::vector<std::uint32_t> plain = cull(scene, plan, settings, canvas).live;

@@ -23,14 +23,19 @@ TEST(GlLemma, Lemma1FailsAtThePublishedRadiusNearPixelCorners) {
   EXPECT_GT(lab::violation_rate(canvases(), "pixel corners", radius), 0.05);
 }
 
-TEST(GlLemma, LemmasFailWithoutTheSamplingTerm) { lab::expect_term_needed(canvases(), "sampling", 20'000); }
+TEST(GlLemma, LemmasFailWithoutTheSamplingTerm) {
+  lab::expect_term_needed(canvases(), "sampling", 20'000);
+}
 
-TEST(GlLemma, LemmasFailWithoutTheSnapTerm) { lab::expect_term_needed(canvases(), "snap", 100'000); }
+TEST(GlLemma, LemmasFailWithoutTheSnapTerm) {
+  lab::expect_term_needed(canvases(), "snap", 100'000);
+}
 
 TEST(GlLemma, Theorem1IntersectingTrianglesSeeEachOther) {
   lab::expect_theorem1(canvases(), 20);
   lab::expect_theorem1(canvases({.query = QueryMode::occlusion}), 5);
-  lab::expect_theorem1(canvases({.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}), 5);
+  lab::expect_theorem1(
+      canvases({.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}), 5);
 }
 
 TEST(GlLemma, Corollary1UnseenMeansDisjoint) { lab::expect_corollary1(canvases(), 40); }

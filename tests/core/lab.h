@@ -1,4 +1,5 @@
-// A laboratory for canvases: windows and primitives given directly in pixel space, without a scene or a view.
+// A laboratory for canvases: windows and primitives given directly in pixel space, without a scene
+// or a view.
 #pragma once
 
 #include <cmath>
@@ -17,8 +18,14 @@ namespace farcull::lab {
 
 /// A window of side x side px whose pixel space is the world itself; depths within +-depth px.
 inline Window window(int side, double depth = 256) {
-  Window w{.view = parse_view("z"), .origin = Vec3::Zero(), .map = Eigen::Matrix3d::Identity(), .pixel_size = 1,
-           .width = side, .height = side, .lo = {}, .hi = {}};
+  Window w{.view = parse_view("z"),
+           .origin = Vec3::Zero(),
+           .map = Eigen::Matrix3d::Identity(),
+           .pixel_size = 1,
+           .width = side,
+           .height = side,
+           .lo = {},
+           .hi = {}};
   w.hi = Vec3(0.5 * side, 0.5 * side, depth);
   w.lo = -w.hi;
   return w;
@@ -31,7 +38,8 @@ inline Patch patch(std::initializer_list<Vec3> points) {
 }
 
 /// An item per patch.
-inline Drawables fattened(const Window& w, const Fattener& fattener, double radius, std::span<const Patch> patches) {
+inline Drawables fattened(const Window& w, const Fattener& fattener, double radius,
+                          std::span<const Patch> patches) {
   Drawables out;
   out.mode = fattener.mode;
   for (const Patch& p : patches) {
@@ -42,8 +50,10 @@ inline Drawables fattened(const Window& w, const Fattener& fattener, double radi
 }
 
 /// Draws of all elements of an item for a slot.
-inline void add(std::vector<Draw>& draws, const Drawables& drawables, std::uint32_t item, std::uint32_t slot) {
-  for (std::uint32_t e = drawables.first[item]; e < drawables.first[item + 1]; ++e) draws.push_back({e, slot});
+inline void add(std::vector<Draw>& draws, const Drawables& drawables, std::uint32_t item,
+                std::uint32_t slot) {
+  for (std::uint32_t e = drawables.first[item]; e < drawables.first[item + 1]; ++e)
+    draws.push_back({e, slot});
 }
 
 inline double budget_radius(const Canvas& canvas, const Window& w) {
@@ -59,7 +69,9 @@ class Random {
   int below(int n) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(n)); }
   double sign() { return engine_() & 1 ? 1 : -1; }
   /// A multiple of `step` in [lo, hi].
-  double grid(double lo, double hi, double step) { return std::floor(between(lo, hi) / step) * step; }
+  double grid(double lo, double hi, double step) {
+    return std::floor(between(lo, hi) / step) * step;
+  }
 
  private:
   std::mt19937_64 engine_;

@@ -1,4 +1,5 @@
-// The lemmas as properties that every canvas has to pass, and twins that must fail. One suite for all canvases.
+// The lemmas as properties that every canvas has to pass, and twins that must fail. One suite for
+// all canvases.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,7 +23,8 @@ using MakeCanvas = std::function<std::unique_ptr<Canvas>(const Fattener&)>;
 
 inline std::vector<Fattener> fatteners() { return {obb_fattener(), exact_fattener()}; }
 
-inline std::vector<LemmaRow> lemma_rows(const MakeCanvas& make, const Fattener& fattener, std::uint64_t points, bool displace,
+inline std::vector<LemmaRow> lemma_rows(const MakeCanvas& make, const Fattener& fattener,
+                                        std::uint64_t points, bool displace,
                                         std::function<double(const Budget&, double)> radius) {
   LemmaSettings settings;
   settings.points = points;
@@ -42,8 +44,8 @@ inline double radius_without(const std::string& term, Budget b) {
   return b.radius();
 }
 
-/// Lemmas 1 and 2: no point of any generator is violated at the budget radius, for both offsets, also where double
-/// arithmetic displaces by all it may.
+/// Lemmas 1 and 2: no point of any generator is violated at the budget radius, for both offsets,
+/// also where double arithmetic displaces by all it may.
 inline void expect_lemmas(const MakeCanvas& make, std::uint64_t points) {
   for (const Fattener& fattener : fatteners()) {
     for (const bool displace : {false, true}) {
@@ -59,7 +61,8 @@ inline void expect_lemmas(const MakeCanvas& make, std::uint64_t points) {
 }
 
 /// The twin: with the term gone, some point of the experiment is violated.
-inline void expect_term_needed(const MakeCanvas& make, const std::string& term, std::uint64_t points) {
+inline void expect_term_needed(const MakeCanvas& make, const std::string& term,
+                               std::uint64_t points) {
   for (const Fattener& fattener : fatteners()) {
     const auto without = [&term](const Budget& b, double) { return radius_without(term, b); };
     EXPECT_GT(lemma_total(lemma_rows(make, fattener, points, true, without)).violations(), 0u)
@@ -70,13 +73,15 @@ inline void expect_term_needed(const MakeCanvas& make, const std::string& term, 
 inline double violation_rate(const MakeCanvas& make, const std::string& generator,
                              std::function<double(const Budget&, double)> radius) {
   for (const LemmaRow& row : lemma_rows(make, obb_fattener(), 20'000, false, radius)) {
-    if (row.generator == generator) return static_cast<double>(row.violations()) / static_cast<double>(row.points);
+    if (row.generator == generator)
+      return static_cast<double>(row.violations()) / static_cast<double>(row.points);
   }
   ADD_FAILURE() << "no generator " << generator;
   return 0;
 }
 
-/// Pairs of triangles, one to a cell: store the first of each, ask the second; and the other way round.
+/// Pairs of triangles, one to a cell: store the first of each, ask the second; and the other way
+/// round.
 struct Pairs {
   std::vector<std::array<Vec3, 3>> first, second;
 };
@@ -85,7 +90,8 @@ struct Seen {
   std::vector<std::uint8_t> forward, backward;
 };
 
-inline Seen ask_pairs(Canvas& canvas, const Fattener& fattener, const Pairs& pairs, const Window& w, double factor) {
+inline Seen ask_pairs(Canvas& canvas, const Fattener& fattener, const Pairs& pairs, const Window& w,
+                      double factor) {
   const double radius = factor * budget_radius(canvas, w);
   std::vector<Patch> patches;
   for (const auto* side : {&pairs.first, &pairs.second}) {
@@ -106,11 +112,12 @@ inline Seen ask_pairs(Canvas& canvas, const Fattener& fattener, const Pairs& pai
 }
 
 inline Vec3 grid_point(Random& random, double reach) {
-  return {random.grid(-reach, reach, 0x1p-8), random.grid(-reach, reach, 0x1p-8), random.grid(-reach, reach, 0x1p-8)};
+  return {random.grid(-reach, reach, 0x1p-8), random.grid(-reach, reach, 0x1p-8),
+          random.grid(-reach, reach, 0x1p-8)};
 }
 
-/// Pairs that share an exact point: inside both, on edges, at corners; in cells of 96 px, at random offsets that include
-/// pixel corners and centres.
+/// Pairs that share an exact point: inside both, on edges, at corners; in cells of 96 px, at random
+/// offsets that include pixel corners and centres.
 inline Pairs touching_pairs(Random& random, int per_side) {
   Pairs pairs;
   for (int cell = 0; cell < per_side * per_side; ++cell) {
@@ -118,7 +125,8 @@ inline Pairs touching_pairs(Random& random, int per_side) {
     Vec3 centre(96 * (cell % per_side - half) + 48, 96 * (cell / per_side - half) + 48, 0);
     if (random.below(2)) centre += 0.5 * Vec3(random.below(2), random.below(2), 0);
     if (random.below(2)) {
-      centre += Vec3(random.grid(-1, 1, 0x1p-8), random.grid(-1, 1, 0x1p-8), random.grid(-9, 9, 0x1p-8));
+      centre +=
+          Vec3(random.grid(-1, 1, 0x1p-8), random.grid(-1, 1, 0x1p-8), random.grid(-9, 9, 0x1p-8));
     }
     std::array<std::array<Vec3, 3>, 2> pair;
     for (auto& t : pair) {
@@ -126,10 +134,10 @@ inline Pairs touching_pairs(Random& random, int per_side) {
       const int kind = random.below(4);
       const Vec3 a = grid_point(random, reach), b = grid_point(random, reach);
       // The shared point, here the origin, as a combination of the corners with exact weights.
-      if (kind == 0) t = {a, b, -(a + b)};         // the centroid
-      if (kind == 1) t = {a, -a, b};               // on an edge
-      if (kind == 2) t = {Vec3::Zero(), a, b};     // a corner
-      if (kind == 3) t = {a, -a, -a};              // a segment through it
+      if (kind == 0) t = {a, b, -(a + b)};      // the centroid
+      if (kind == 1) t = {a, -a, b};            // on an edge
+      if (kind == 2) t = {Vec3::Zero(), a, b};  // a corner
+      if (kind == 3) t = {a, -a, -a};           // a segment through it
       for (Vec3& c : t) c += centre;
     }
     pairs.first.push_back(pair[0]);
@@ -143,8 +151,8 @@ inline Pairs corner_pairs(Random& random, const Window& w) {
   Pairs pairs;
   for (int y = -w.height / 2 + 3; y < w.height / 2 - 3; y += 6) {
     for (int x = -w.width / 2 + 3; x < w.width / 2 - 3; x += 6) {
-      const Vec3 q(x + random.grid(-0x1p-10, 0x1p-10, 0x1p-14), y + random.grid(-0x1p-10, 0x1p-10, 0x1p-14),
-                   random.grid(-50, 50, 0x1p-8));
+      const Vec3 q(x + random.grid(-0x1p-10, 0x1p-10, 0x1p-14),
+                   y + random.grid(-0x1p-10, 0x1p-10, 0x1p-14), random.grid(-50, 50, 0x1p-8));
       const Vec3 u(0x1p-12, 0x1p-12, 0), v(0x1p-12, -0x1p-12, 0);
       pairs.first.push_back({q - u, q + u, q + u});
       pairs.second.push_back({q - v, q + v, q + v});
@@ -168,7 +176,8 @@ inline void expect_theorem1(const MakeCanvas& make, int rounds) {
     int unseen_without_radius = 0;
     for (int round = 0; round < rounds; ++round) {
       const Pairs pairs = touching_pairs(random, 10);
-      for (std::size_t i = 0; i < pairs.first.size(); ++i) ASSERT_TRUE(intersects(pairs.first[i], pairs.second[i]));
+      for (std::size_t i = 0; i < pairs.first.size(); ++i)
+        ASSERT_TRUE(intersects(pairs.first[i], pairs.second[i]));
       EXPECT_EQ(count_unseen(ask_pairs(*canvas, fattener, pairs, w, 1)), 0) << "round " << round;
       unseen_without_radius += count_unseen(ask_pairs(*canvas, fattener, pairs, w, 0));
     }
@@ -177,7 +186,8 @@ inline void expect_theorem1(const MakeCanvas& make, int rounds) {
     const Window small = window(512, 64);
     const Pairs corners = corner_pairs(random, small);
     EXPECT_EQ(count_unseen(ask_pairs(*canvas, fattener, corners, small, 1)), 0);
-    EXPECT_GT(count_unseen(ask_pairs(*canvas, fattener, corners, small, 0.9)), static_cast<int>(corners.first.size()))
+    EXPECT_GT(count_unseen(ask_pairs(*canvas, fattener, corners, small, 0.9)),
+              static_cast<int>(corners.first.size()))
         << "the twin at nine tenths of the radius must fail";
   }
 }
@@ -213,7 +223,8 @@ inline void expect_corollary1(const MakeCanvas& make, int rounds) {
       }
     }
     EXPECT_GT(unseen, 15 * rounds) << "a canvas that sees everything would pass";
-    EXPECT_GT(intersecting, 8 * rounds) << "the generator makes too few intersecting pairs to find a miss";
+    EXPECT_GT(intersecting, 8 * rounds)
+        << "the generator makes too few intersecting pairs to find a miss";
   }
 }
 

@@ -1,4 +1,5 @@
-// The reliability lemmas, and culling end to end, on the canvas that keeps the device assumptions and nothing more.
+// The reliability lemmas, and culling end to end, on the canvas that keeps the device assumptions
+// and nothing more.
 #include "verify/worst_canvas.h"
 
 #include "core/box_join.h"
@@ -15,7 +16,9 @@ namespace {
 using lab::Random;
 
 lab::MakeCanvas canvases(const WorstCanvasOptions& options = {}) {
-  return [options](const Fattener& fattener) { return std::make_unique<WorstCanvas>(fattener.solid, options); };
+  return [options](const Fattener& fattener) {
+    return std::make_unique<WorstCanvas>(fattener.solid, options);
+  };
 }
 
 TEST(WorstLemma, Lemmas1And2HoldAtTheBudgetRadius) { lab::expect_lemmas(canvases(), 60'000); }
@@ -23,7 +26,8 @@ TEST(WorstLemma, Lemmas1And2HoldAtTheBudgetRadius) { lab::expect_lemmas(canvases
 TEST(WorstLemma, LemmasHoldForAnySubpixelGrid) {
   for (const int bits : {4, 6, 12}) {
     const auto budget = [](const Budget& b, double) { return b.radius(); };
-    const auto rows = lab::lemma_rows(canvases({.subpixel_bits = bits}), obb_fattener(), 20'000, true, budget);
+    const auto rows =
+        lab::lemma_rows(canvases({.subpixel_bits = bits}), obb_fattener(), 20'000, true, budget);
     EXPECT_EQ(lemma_total(rows).violations(), 0u) << bits;
   }
 }
@@ -38,11 +42,21 @@ TEST(WorstLemma, Lemma1FailsAtThePublishedRadiusNearPixelCorners) {
   EXPECT_GT(lab::violation_rate(canvases(), "pixel corners", radius), 0.9);
 }
 
-TEST(WorstLemma, LemmasFailWithoutTheSamplingTerm) { lab::expect_term_needed(canvases(), "sampling", 20'000); }
-TEST(WorstLemma, LemmasFailWithoutTheInputTerm) { lab::expect_term_needed(canvases(), "input", 100'000); }
-TEST(WorstLemma, LemmasFailWithoutTheDoubleTerm) { lab::expect_term_needed(canvases(), "double", 20'000); }
-TEST(WorstLemma, LemmasFailWithoutTheVertexTerm) { lab::expect_term_needed(canvases(), "vertex", 20'000); }
-TEST(WorstLemma, LemmasFailWithoutTheSnapTerm) { lab::expect_term_needed(canvases(), "snap", 20'000); }
+TEST(WorstLemma, LemmasFailWithoutTheSamplingTerm) {
+  lab::expect_term_needed(canvases(), "sampling", 20'000);
+}
+TEST(WorstLemma, LemmasFailWithoutTheInputTerm) {
+  lab::expect_term_needed(canvases(), "input", 100'000);
+}
+TEST(WorstLemma, LemmasFailWithoutTheDoubleTerm) {
+  lab::expect_term_needed(canvases(), "double", 20'000);
+}
+TEST(WorstLemma, LemmasFailWithoutTheVertexTerm) {
+  lab::expect_term_needed(canvases(), "vertex", 20'000);
+}
+TEST(WorstLemma, LemmasFailWithoutTheSnapTerm) {
+  lab::expect_term_needed(canvases(), "snap", 20'000);
+}
 
 TEST(WorstLemma, Theorem1IntersectingTrianglesSeeEachOther) {
   lab::expect_theorem1(canvases(), 6);
@@ -57,11 +71,14 @@ struct Outcome {
   std::size_t live;
 };
 
-Outcome far_on(Canvas& canvas, const Scene& scene, const Fattener& fattener, const std::string& views, int resolution,
-               double factor = 1) {
+Outcome far_on(Canvas& canvas, const Scene& scene, const Fattener& fattener,
+               const std::string& views, int resolution, double factor = 1) {
   const Plan plan = make_plan(scene);
-  const CullSettings settings{.views = parse_views(views), .resolution = resolution, .fattener = fattener,
-                              .radius = {.published = false, .factor = factor}, .economy = true};
+  const CullSettings settings{.views = parse_views(views),
+                              .resolution = resolution,
+                              .fattener = fattener,
+                              .radius = {.published = false, .factor = factor},
+                              .economy = true};
   const std::vector<std::uint32_t> live = cull(scene, plan, settings, canvas).live;
   return {account(scene, box_join(plan.triangle_boxes, owners(scene), live)), live.size()};
 }
@@ -73,7 +90,8 @@ TEST(WorstFar, MissesNothingOnRandomScenes) {
     const Scene scene = lab::random_scene(seed);
     for (const Fattener& fattener : lab::fatteners()) {
       WorstCanvas canvas(fattener.solid, {.depth_bits = seed % 3 ? 32 : 24});
-      const Outcome out = far_on(canvas, scene, fattener, seed % 4 ? "x,y,z" : "1:2:0.5,-x", 1 + static_cast<int>(seed * seed % 61));
+      const Outcome out = far_on(canvas, scene, fattener, seed % 4 ? "x,y,z" : "1:2:0.5,-x",
+                                 1 + static_cast<int>(seed * seed % 61));
       EXPECT_EQ(out.accounting.false_negatives, 0u);
       culled += scene.triangles.size() - out.live;
     }
@@ -97,7 +115,9 @@ TEST(WorstFar, MissesNothingOnHardScenesAndTheirCopiesElsewhere) {
 TEST(WorstFar, UndrawableItemKeepsItsSmallPartner) {
   const Fattener fattener = obb_fattener();
   WorstCanvas canvas(fattener.solid);
-  EXPECT_EQ(far_on(canvas, lab::undrawable_scene(), fattener, "1:1:1", 64).accounting.false_negatives, 0u);
+  EXPECT_EQ(
+      far_on(canvas, lab::undrawable_scene(), fattener, "1:1:1", 64).accounting.false_negatives,
+      0u);
 }
 
 TEST(WorstFar, MissesPairsNearPixelCornersAtNineTenthsOfTheRadius) {

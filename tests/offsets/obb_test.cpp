@@ -18,9 +18,9 @@
 namespace farcull {
 namespace glsl::obb_without_widening {
 #define FAR_WIDEN 0.0f
-// clang-format off: the order matters
+// clang-format off
+#include "offsets/slab.glsl"  // the next one needs it
 #include "offsets/obb.glsl"
-#include "offsets/slab.glsl"
 // clang-format on
 #undef FAR_WIDEN
 }  // namespace glsl::obb_without_widening

@@ -1,0 +1,31 @@
+// `farcull experiment NAME`: the studies.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "experiments/cli_parts.h"
+#include "experiments/lemma_command.h"
+
+namespace farcull {
+
+/// Declares the command and its studies on the program's options; run() runs the one that was
+/// named.
+class ExperimentCommands {
+ public:
+  CLI::App* add_to(CLI::App& app);
+  /// The exit status. Throws Error where no study is named or its arguments are bad.
+  int run();
+
+ private:
+  int run_oracles();
+
+  CLI::App* lemma_ = nullptr;
+  CLI::App* oracles_ = nullptr;
+  LemmaArguments arguments_;
+  Text device_;
+  Outputs lemma_outputs_, oracle_outputs_;
+  std::uint64_t pairs_ = 100000;
+  std::uint64_t seed_ = 1;
+};
+
+}  // namespace farcull

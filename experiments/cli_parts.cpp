@@ -1,0 +1,92 @@
+#include "experiments/cli_parts.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "experiments/mesh.h"
+#include "experiments/mesh_text.h"
+#include "experiments/output.h"
+
+namespace farcull {
+
+void complain(const std::string& message) {
+  std::fprintf(stderr, "farcull: %s\n", clean_name(message).c_str());
+}
+
+Progress TerminalProgress::callback() {
+  const char* const terminal = std::getenv("TERM");
+  if (!::isatty(STDERR_FILENO) || terminal == nullptr || std::string_view(terminal) == "dumb")
+    return {};
+  return [this](const std::string& stage) { show(stage + " ..."); };
+}
+
+void TerminalProgress::clear() {
+  if (std::exchange(shown_, false)) std::fputs("\r\033[K", stderr);
+}
+
+// A line that wraps could not be written over, so it is cut to the terminal as it is now.
+void TerminalProgress::show(std::string line) {
+  winsize size = {};
+  if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1)
+    line = line.substr(0, size.ws_col - 1u);
+  std::fprintf(stderr, "\r\033[K%s", line.c_str());
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+Outputs checked(Outputs outputs) {
+  // By its other name, standard output would be written at two places at once.
+  for (Text* path : {&outputs.json, &outputs.pairs, &outputs.certificate, &outputs.csv}) {
+    if (*path == "/dev/stdout") *path = "-";
+  }
+  std::vector<std::string> seen;
+  for (const auto& [option, path] :
+       {std::pair("--json", outputs.json), std::pair("--pairs", outputs.pairs),
+        std::pair("--certificate", outputs.certificate), std::pair("--csv", outputs.csv)}) {
+    if (!path) continue;
+    if (path->empty())
+      throw Error(option, "the path is empty", "name a file, or - for standard output");
+    // `run a.off --json --pairs b.csv`: CLI11 takes what follows for the value.
+    if (path->starts_with("-") && path != "-") {
+      throw Error(option, "its value is missing before '" + *path + "'",
+                  "name a file, with ./ before a name that begins with -");
+    }
+    // `run --json a.off b.off`: the mesh would be gone.
+    if (has_mesh_extension(*path)) {
+      throw Error(
+          option, *path + " is named like a mesh and would be overwritten",
+          std::string("name the file to write first, as in ") + option + " result" +
+              (option == std::string("--pairs") || option == std::string("--csv") ? ".csv"
+                                                                                  : ".json"));
+    }
+    for (const std::string& other : seen) {
+      if (*path == other)
+        throw Error(option, "goes to the same place as another output",
+                    "give each a place of its own");
+    }
+    seen.push_back(*path);
+    check_output(*path);
+  }
+  if (!outputs.to_stdout()) check_output("-");
+  return outputs;
+}
+
+std::string device_of(const Text& device) {
+  if (device && device->empty())
+    throw Error("--device", "its value is empty", "give software, hardware or a number");
+  return device.value_or("");
+}
+
+void write_json(const nlohmann::ordered_json& json, const std::string& path) {
+  write_output(path, json.dump(2) + "\n");
+}
+
+}  // namespace farcull
