@@ -92,20 +92,17 @@ class PassBuilder {
 
   void add_owner(std::size_t from, std::size_t to) {
     const Step ask{Verb::ask, static_cast<std::uint32_t>(pass_.draws.size()), 0};
-    bool object_open =
-        true;  // false: an undrawable item keeps its object from ever being cleared as a whole
     std::vector<std::uint32_t> asked;
     for (std::size_t i = from; i < to; ++i) {
       if (!is_live(i) || has_bit(i, ask_)) continue;
-      if (undrawable_[i]) {
-        object_open = false;
-      } else if (!anything_stored_ || drawables_.first[i] == drawables_.first[i + 1]) {
+      if (undrawable_[i]) continue;  // never cleared
+      if (!anything_stored_ || drawables_.first[i] == drawables_.first[i + 1]) {
         state_.set(items_[i], ask_);
       } else {
         asked.push_back(static_cast<std::uint32_t>(i));
       }
     }
-    if (!asked.empty() && (level_ == Level::triangle || object_open)) {
+    if (!asked.empty()) {
       for (const std::uint32_t item : asked) {
         if (level_ == Level::triangle || item == asked.front()) slots_.emplace_back();
         slots_.back().push_back(item);

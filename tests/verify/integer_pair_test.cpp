@@ -219,7 +219,7 @@ std::vector<TrianglePair> enumerated(const Scene& scene, std::size_t enough) {
 TEST(BoxPairs, AreThoseOfAllPairsInOrder) {
   std::mt19937 random(31);
   std::size_t total = 0;
-  for (int n = 0; n < 60; ++n) {
+  for (int n = 0; n < 300; ++n) {
     std::vector<std::vector<Triangle>> objects(random() % 6);
     const int extent = 2 + static_cast<int>(random() % 30);
     for (auto& triangles : objects) {

@@ -1,0 +1,172 @@
+// The reader and the checker of certificates, against a scene whose truth verify/exact knows.
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "tests/fuzz/target.h"
+#include "verify/certificate.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+// JSON takes the most where objects hold many short keys ("a":0, is 6 bytes and 48 in a vector that
+// holds 3 times as much while it doubles: 24 a byte) and where they are nested ({"": is 5 bytes with
+// its end, a set of keys of 48, tripled, and a key of 80: 45 a byte; but the depth is bounded).
+// Strings are held three times, once in a buffer that doubles. The largest single allocation is a
+// vector after doubling, 2 * 48 / 6 = 16 a byte. The constant is for deciding the pairs of the
+// scene, besides messages and first steps.
+constexpr AllocationLimits kLimits = {.once_per_byte = 16, .all_per_byte = 64, .constant = 32 << 10};
+
+/// Three objects whose pairs are of every kind: crossing, touching at a corner and along an edge,
+/// coplanar, one ulp apart, beside each other with overlapping boxes, and triangles that are a
+/// segment or a point.
+Scene make_scene() {
+  Scene scene;
+  scene.name = "fuzz";
+  const auto add = [&scene](const Vec3& a, const Vec3& b, const Vec3& c) {
+    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+    scene.vertices.insert(scene.vertices.end(), {a, b, c});
+    scene.triangles.push_back({first, first + 1, first + 2});
+    scene.source_face.push_back(first / 3);
+  };
+  const auto end_object = [&scene](const char* name) {
+    const std::uint32_t first =
+        scene.objects.empty()
+            ? 0
+            : scene.objects.back().first_triangle + scene.objects.back().triangle_count;
+    const auto end = static_cast<std::uint32_t>(scene.triangles.size());
+    scene.objects.push_back({name, first, end - first});
+  };
+  constexpr double kUlp = 0x1p-52;
+  add({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+  add({4, 0, 0}, {4, 4, 0}, {0, 4, 0});
+  end_object("floor");
+  add({1, 1, -1}, {1, 1, 1}, {2, 1, 1});          // through the floor
+  add({0, 0, 0}, {-1, 0, 2}, {0, -1, 2});         // a corner on a corner
+  add({1, 0, 0}, {3, 0, 0}, {2, -1, 1});          // an edge on an edge
+  add({3, 3, 0}, {3.5, 3, 0}, {3, 3.5, 0});       // within the plane and inside
+  add({1, 1, kUlp}, {2, 1, 1}, {1, 2, 1});        // just above
+  end_object("things");
+  add({2, 2, -1}, {2, 2, 1}, {2, 2, 3});          // a segment through the floor
+  add({1, 1, 0}, {1, 1, 0}, {1, 1, 0});           // a point on it
+  add({3.9, 3.9, -1}, {4.5, 3.9, 1}, {4.5, 4.5, 1});
+  add({1, 2, 1}, {2, 1, 1 + kUlp}, {2, 2, 1.5});  // near the one just above
+  end_object("degenerate");
+  return scene;
+}
+
+struct Truth {
+  Scene scene = make_scene();
+  std::vector<TrianglePair> pairs;  // with overlapping boxes, sorted
+  std::vector<bool> meets;
+
+  Truth() {
+    const std::vector<Box> boxes = triangle_boxes(scene);
+    const std::vector<std::uint32_t> owner = owners(scene);
+    for (std::uint32_t a = 0; a < boxes.size(); ++a) {
+      for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
+        if (owner[a] == owner[b] || !overlap(boxes[a], boxes[b])) continue;
+        pairs.push_back({a, b});
+        meets.push_back(intersects(scene.corners(a), scene.corners(b)));
+      }
+    }
+  }
+};
+
+const Truth& truth() {
+  static const Truth truth;
+  return truth;
+}
+
+bool is_kept(std::uint8_t byte) { return (byte & kKept) != 0; }
+
+/// Whether the byte says of its pair what is not so: culled though it meets, or the wrong one of
+/// "meets" and a direction. A byte that says nothing contradicts nothing, but culls.
+bool contradicts(std::uint8_t byte, bool meets) {
+  const int claim = byte & ~kKept;
+  if (!is_kept(byte) && meets) return true;
+  return claim == kMeets ? !meets : claim < kMeets && meets;
+}
+
+Certificate::Claims count(const Certificate& certificate) {
+  Certificate::Claims claims;
+  claims.box_pairs = truth().pairs.size();
+  for (std::size_t i = 0; i < truth().pairs.size(); ++i) {
+    ++(is_kept(certificate.evidence[i]) ? claims.kept : claims.culled);
+    ++(truth().meets[i] ? claims.meeting : claims.separated);
+  }
+  return claims;
+}
+
+Answer judge(const Certificate& certificate, const CheckResult& result) {
+  const Truth& t = truth();
+  require(!result.unattested.empty(), "nothing is unattested");
+  require(result.reason.empty() == (result.verdict == Verdict::proved), "a reason at odds");
+  const bool same_scene = certificate.scene.objects == t.scene.objects.size() &&
+                          certificate.scene.triangles == t.scene.triangles.size() &&
+                          certificate.scene.hash == scene_hash(t.scene);
+  if (!same_scene || certificate.evidence.size() != t.pairs.size()) {
+    require(result.verdict == Verdict::not_proved && !result.pair, "another scene or length");
+    return Answer::not_proved;
+  }
+  const Certificate::Claims found = count(certificate);
+  require(result.found == found, "wrong counts found");
+  std::size_t culled_meeting = 0;
+  std::optional<std::size_t> first;  // that contradicts the truth
+  bool says_nothing = false;
+  for (std::size_t i = 0; i < t.pairs.size(); ++i) {
+    const std::uint8_t byte = certificate.evidence[i];
+    culled_meeting += !is_kept(byte) && t.meets[i];
+    says_nothing |= (byte & ~kKept) > kMeets;
+    if (!first && contradicts(byte, t.meets[i])) first = i;
+  }
+  require(result.culled_meeting == culled_meeting, "wrong number of culled pairs that meet");
+  require((result.verdict == Verdict::refuted) == first.has_value(),
+          first ? "a false claim that is not refuted" : "a refutation of what is true");
+  if (first) {
+    require(result.pair == t.pairs[*first], "another pair than the first false one");
+    return Answer::refuted;
+  }
+  if (result.verdict != Verdict::proved) return Answer::not_proved;
+  require(!result.pair && !says_nothing && certificate.claims == found, "proved, and it is not so");
+  return Answer::proved;
+}
+
+Answer check(std::string_view text) {
+  const auto certificate =
+      answer_of(kLimits, text.size(), [&] { return parse_certificate(text, "fuzz"); });
+  if (!certificate) return Answer::refused;
+  require(parse_certificate(to_text(*certificate), "again") == *certificate,
+          "a certificate that changes when written and read");
+  const auto result = answer_of(kLimits, text.size(),
+                                [&] { return check_certificate(*certificate, truth().scene); });
+  require(result.has_value(), "an Error from the check");
+  return judge(*certificate, *result);
+}
+
+/// A certificate of the scene with this evidence. The counts are right but for one that the first
+/// byte may name (1 .. 5), then raised by 1.
+std::string text_around(std::span<const std::uint8_t> bytes) {
+  const Truth& t = truth();
+  Certificate certificate;
+  certificate.scene = {t.scene.name, t.scene.objects.size(), t.scene.triangles.size(),
+                       scene_hash(t.scene)};
+  if (!bytes.empty()) certificate.evidence.assign(bytes.begin() + 1, bytes.end());
+  if (certificate.evidence.size() != t.pairs.size()) return to_text(certificate);
+  Certificate::Claims& claims = certificate.claims = count(certificate);
+  const std::array<std::uint64_t*, 6> counts = {nullptr,       &claims.box_pairs, &claims.kept,
+                                                &claims.culled, &claims.separated, &claims.meeting};
+  if (bytes[0] > 0 && bytes[0] < counts.size()) ++*counts[bytes[0]];
+  return to_text(certificate);
+}
+
+}  // namespace
+
+Answer fuzz_check(const std::uint8_t* data, std::size_t size) {
+  if (size > 0 && data[0] == 1) return check(text_around({data + 1, size - 1}));
+  return check({reinterpret_cast<const char*>(data), size});
+}
+
+}  // namespace farcull
