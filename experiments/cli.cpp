@@ -331,6 +331,10 @@ int command_line(int argc, char** argv) {
                    "separated by commas;\ndefault 128,256,512,1024,2048")
       ->type_name("LIST");
   compare_app
+      ->add_option("--offsets", comparison.arguments.offsets,
+                   "for far, separated by commas: obb, exact;\ndefault obb")
+      ->type_name("LIST");
+  compare_app
       ->add_option("--repeat", comparison.arguments.repeat,
                    "runs of each, the one with the median time is shown;\ndefault 1")
       ->type_name("N");

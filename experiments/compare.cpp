@@ -37,11 +37,15 @@ std::vector<RunOptions> cells_of(const CompareArguments& arguments) {
   for (const std::string& method : split(arguments.methods)) {
     RunOptions options = arguments.options;
     options.method = parse_method(method, "--methods");
-    for (const std::string& resolution : split(arguments.resolutions)) {
-      options.resolution = parse_resolution(resolution, "--resolutions");
-      validate(options);
-      cells.push_back(options);
-      if (options.method == Method::exact) break;
+    for (const std::string& offset : split(arguments.offsets)) {
+      if (options.method == Method::far) options.offset = offset;
+      for (const std::string& resolution : split(arguments.resolutions)) {
+        options.resolution = parse_resolution(resolution, "--resolutions");
+        validate(options);
+        cells.push_back(options);
+        if (options.method == Method::exact) break;
+      }
+      if (options.method != Method::far) break;
     }
   }
   return cells;

@@ -13,6 +13,7 @@ struct CompareArguments {
   std::vector<std::string> scene;
   std::string methods = "far,cullide,exact";
   std::string resolutions = "128,256,512,1024,2048";
+  std::string offsets = "obb";  // for far
   std::string repeat = "1";
   RunOptions options;  // views, device and seed for all
 };
@@ -27,7 +28,7 @@ struct Comparison {
 /// Throws Error naming the option for bad arguments, before a scene is read.
 void validate(const CompareArguments& arguments);
 
-/// Runs every method at every resolution (`exact` once), each `repeat` times. Throws Error for bad
+/// Runs every method at every resolution (`exact` once; far with every offset), each `repeat` times. Throws Error for bad
 /// arguments, and before the first run for a resolution beyond the device.
 Comparison compare(const Scene& scene, const CompareArguments& arguments,
                    const Progress& progress = {});

@@ -244,13 +244,14 @@ std::string comparison_table(const Scene& scene, const std::vector<RunRecord>& r
   }
   std::string out = scene_line(scene, records[0]);
   out += "device     " + device_text(drawn == records.end() ? records[0] : *drawn) + "\n\n";
-  Table table("lrrrrrrrrr");
-  table.add({"method", "resolution", "objects", "triangles", "candidates", "colliding", "missed",
-             "cull ms", "exact ms", reference ? "x exact" : ""});
+  Table table("llrrrrrrrrr");
+  table.add({"method", "offset", "resolution", "objects", "triangles", "candidates", "colliding",
+             "missed", "cull ms", "exact ms", reference ? "x exact" : ""});
   for (const RunRecord& r : records) {
     const double ratio =
         reference ? (r.ms.cull + r.ms.exact) / (reference->ms.cull + reference->ms.exact) : 0;
     table.add({to_string(r.options.method),
+               r.options.method == Method::far ? r.options.offset : "-",
                r.options.method == Method::exact ? "-" : std::to_string(r.options.resolution),
                grouped(r.pcs_objects), grouped(r.pcs_triangles), grouped(r.candidate_pairs),
                grouped(r.pairs.size()), missed_text(r), fmt::format("{:.1f}", r.ms.cull),

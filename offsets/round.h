@@ -6,9 +6,17 @@
 
 namespace farcull {
 
+/// The nearest float. Through memory: where GCC 12 packs two conversions double -> float -> double
+/// into a vector it drops them, rounding included, and what is measured against the float then is
+/// not what was stored.
+inline float nearest(double x) {
+  const volatile float f = static_cast<float>(x);
+  return f;
+}
+
 /// The smallest float >= x.
 inline float round_up(double x) {
-  const float f = static_cast<float>(x);
+  const float f = nearest(x);
   return f < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
 

@@ -53,7 +53,8 @@ bool far_halfspace(vec2 d, float mz, vec4 n, float h, float reach, FAR_INOUT(flo
   float steep = abs(n.z);
   if (steep < kParallel) {
     FAR_PRECISE float slack = steep * reach * kUp;
-    return wide + slack * kUp >= 0.0f;
+    FAR_PRECISE float rest = wide + slack * kUp;
+    return rest >= 0.0f;
   }
   FAR_PRECISE float t = wide / n.z;
   FAR_PRECISE float w = abs(t) * kEightU + kTiny;

@@ -284,107 +284,120 @@ namespace {
 using BigVector = Vector<mpz_class>;
 using BigCorners = Corners<mpz_class>;
 
-BigVector difference(const BigVector& x, const BigVector& y) {
-  BigVector out;
-  minus(out, x, y);
-  return out;
-}
-
-BigVector product(const BigVector& x, const BigVector& y) {
-  BigVector out;
-  cross(out, x, y);
-  return out;
-}
-
-mpz_class dot_of(const BigVector& x, const BigVector& y) {
-  mpz_class out;
-  dot(out, x, y);
-  return out;
-}
-
-/// numerator / denominator, the denominator > 0.
-struct Point {
-  BigVector numerator;
-  mpz_class denominator;
-};
-
-/// True iff the point lies in the closed hull of the corners, whatever its dimension.
-bool contains(const BigCorners& t, const Point& point) {
-  std::array<BigVector, 3> from;  // denominator * (point - corner i)
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) from[i][k] = point.numerator[k] - point.denominator * t[i][k];
+/// Constructs points and verifies them. Its integers are members because GMP's own memory: a search
+/// that made them anew would spend its time on that.
+class PointSearch {
+ public:
+  /// Each constructs a point; false where there is none. It lies on the edge, but perhaps in
+  /// neither triangle.
+  bool corner(const BigCorners& t, int i) {
+    point_ = t[i];
+    scale_ = 1;
+    return true;
   }
-  const BigVector normal = product(difference(t[1], t[0]), difference(t[2], t[0]));
-  if (!is_zero(normal)) {
-    if (dot_of(normal, from[0]) != 0) return false;
+  /// Where edge i of s crosses the plane of t, if it does so in one point.
+  bool edge_and_plane(const BigCorners& s, int i, const BigCorners& t) {
+    make_normal(t);
+    edge(u_, s, i);
+    minus(w_, t[0], s[i]);
+    dot(numerator_, normal_, w_);
+    dot(scale_, normal_, u_);
+    return along(s[i]);
+  }
+  /// The point of edge i of s nearest to the line of edge j of t, unless they are parallel. Where
+  /// the lines cross it is their common point.
+  bool edge_and_edge(const BigCorners& s, int i, const BigCorners& t, int j) {
+    edge(u_, s, i);
+    edge(v_, t, j);
+    cross(normal_, u_, v_);
+    minus(w_, t[j], s[i]);
+    cross(side_, w_, v_);
+    dot(numerator_, side_, normal_);
+    dot(scale_, normal_, normal_);
+    return along(s[i]);
+  }
+
+  /// True iff the point constructed last lies in the closed hull of the corners, whatever its
+  /// dimension.
+  bool lies_in(const BigCorners& t) {
     for (int i = 0; i < 3; ++i) {
-      const BigVector side = product(difference(t[(i + 1) % 3], t[i]), from[i]);
-      if (dot_of(normal, side) < 0) return false;
+      for (int k = 0; k < 3; ++k) {
+        from_[i][k] = point_[k];
+        subtract_product(from_[i][k], scale_, t[i][k]);
+      }
+    }
+    make_normal(t);
+    if (!is_zero(normal_)) {
+      dot(value_, normal_, from_[0]);
+      if (value_ != 0) return false;
+      for (int i = 0; i < 3; ++i) {
+        edge(v_, t, i);
+        cross(side_, v_, from_[i]);
+        dot(value_, normal_, side_);
+        if (value_ < 0) return false;
+      }
+      return true;
+    }
+    // Collinear corners: the hull is the union of its edges. Between two ends: on their line, and
+    // the offsets from the ends differ in sign in every coordinate or are zero (which pins a point
+    // that both ends coincide in).
+    for (int i = 0; i < 3; ++i) {
+      edge(v_, t, i);
+      cross(side_, v_, from_[i]);
+      if (!is_zero(side_)) continue;
+      bool between = true;
+      for (int k = 0; k < 3; ++k)
+        between = between && sgn(from_[i][k]) * sgn(from_[(i + 1) % 3][k]) <= 0;
+      if (between) return true;
+    }
+    return false;
+  }
+
+ private:
+  void make_normal(const BigCorners& t) {
+    edge(v_, t, 0);
+    edge(w_, t, 1);
+    cross(normal_, v_, w_);
+  }
+  /// from + (numerator / scale) u; none unless the fraction is in [0, 1].
+  bool along(const BigVector& from) {
+    if (scale_ < 0) {
+      mpz_neg(scale_.get_mpz_t(), scale_.get_mpz_t());
+      mpz_neg(numerator_.get_mpz_t(), numerator_.get_mpz_t());
+    }
+    if (scale_ == 0 || numerator_ < 0 || numerator_ > scale_) return false;
+    for (int k = 0; k < 3; ++k) {
+      multiply(point_[k], from[k], scale_);
+      add_product(point_[k], u_[k], numerator_);
     }
     return true;
   }
-  // Collinear corners: the hull is the union of its edges. Between two ends: on their line, and the
-  // offsets from the ends differ in sign in every coordinate or are zero (which pins a point that
-  // both ends coincide in).
-  for (int i = 0; i < 3; ++i) {
-    const BigVector& p = from[i];
-    const BigVector& q = from[(i + 1) % 3];
-    if (!is_zero(product(difference(t[(i + 1) % 3], t[i]), p))) continue;
-    bool between = true;
-    for (int k = 0; k < 3; ++k) between = between && sgn(p[k]) * sgn(q[k]) <= 0;
-    if (between) return true;
-  }
-  return false;
-}
 
-/// p + (numerator / denominator) u; none unless the fraction is in [0, 1].
-std::optional<Point> along(const BigVector& p, const BigVector& u, mpz_class numerator,
-                           mpz_class denominator) {
-  if (denominator < 0) {
-    numerator = -numerator;
-    denominator = -denominator;
-  }
-  if (denominator == 0 || numerator < 0 || numerator > denominator) return std::nullopt;
-  Point point;
-  for (int k = 0; k < 3; ++k) point.numerator[k] = p[k] * denominator + u[k] * numerator;
-  point.denominator = std::move(denominator);
-  return point;
-}
-
-/// Where edge i of s crosses the plane of t, if it does so in one point.
-std::optional<Point> edge_and_plane(const BigCorners& s, int i, const BigCorners& t) {
-  const BigVector normal = product(difference(t[1], t[0]), difference(t[2], t[0]));
-  const BigVector u = difference(s[(i + 1) % 3], s[i]);
-  return along(s[i], u, dot_of(normal, difference(t[0], s[i])), dot_of(normal, u));
-}
-
-/// The point of edge i of s nearest to the line of edge j of t, unless they are parallel. Where the
-/// lines cross it is their common point.
-std::optional<Point> edge_and_edge(const BigCorners& s, int i, const BigCorners& t, int j) {
-  const BigVector u = difference(s[(i + 1) % 3], s[i]);
-  const BigVector v = difference(t[(j + 1) % 3], t[j]);
-  const BigVector c = product(u, v);
-  return along(s[i], u, dot_of(product(difference(t[j], s[i]), v), c), dot_of(c, c));
-}
+  BigVector point_;                // times scale_
+  mpz_class scale_;                // > 0 where there is a point
+  std::array<BigVector, 3> from_;  // from each corner to the point, times scale_
+  BigVector normal_, u_, v_, w_, side_;
+  mpz_class numerator_, value_;
+};
 
 }  // namespace
 
 bool IntegerPair::has_common_point() {
+  thread_local PointSearch search;
   const Big& pair = big();
   // Whatever was constructed, only membership in both triangles counts.
-  const auto in_both = [&](const std::optional<Point>& point) {
-    return point && contains(pair.a, *point) && contains(pair.b, *point);
-  };
+  const auto in_both = [&] { return search.lies_in(pair.a) && search.lies_in(pair.b); };
   for (int i = 0; i < 3; ++i) {
-    if (in_both(edge_and_plane(pair.a, i, pair.b))) return true;
-    if (in_both(edge_and_plane(pair.b, i, pair.a))) return true;
+    if (search.edge_and_plane(pair.a, i, pair.b) && in_both()) return true;
+    if (search.edge_and_plane(pair.b, i, pair.a) && in_both()) return true;
   }
   for (int i = 0; i < 3; ++i) {
-    if (in_both(Point{pair.a[i], 1}) || in_both(Point{pair.b[i], 1})) return true;
+    if (search.corner(pair.a, i) && in_both()) return true;
+    if (search.corner(pair.b, i) && in_both()) return true;
   }
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      if (in_both(edge_and_edge(pair.a, i, pair.b, j))) return true;
+      if (search.edge_and_edge(pair.a, i, pair.b, j) && in_both()) return true;
     }
   }
   return false;

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
+#include <memory>
 #include <random>
 #include <span>
 #include <vector>
@@ -59,6 +61,8 @@ inline void add(std::vector<Draw>& draws, const Drawables& drawables, std::uint3
 inline double budget_radius(const Canvas& canvas, const Window& w) {
   return budget_for(canvas.limits(), viewport_side(w.width)).radius();
 }
+
+using MakeCanvas = std::function<std::unique_ptr<Canvas>(const Fattener&)>;
 
 /// Uniform in [0, 1), the same on every platform.
 class Random {

@@ -19,8 +19,6 @@ namespace farcull::lab {
 
 constexpr std::uint64_t kSeed = 20040711;
 
-using MakeCanvas = std::function<std::unique_ptr<Canvas>(const Fattener&)>;
-
 inline std::vector<Fattener> fatteners() { return {obb_fattener(), exact_fattener()}; }
 
 inline std::vector<LemmaRow> lemma_rows(const MakeCanvas& make, const Fattener& fattener,

@@ -2,13 +2,10 @@
 // and nothing more.
 #include "verify/worst_canvas.h"
 
-#include "core/box_join.h"
-#include "core/cull.h"
-#include "core/plan.h"
 #include "experiments/builtin_scenes.h"
+#include "tests/core/far_properties.h"
 #include "tests/core/lemma_suite.h"
 #include "tests/core/scenes.h"
-#include "verify/accounting.h"
 
 namespace farcull {
 namespace {
@@ -65,27 +62,12 @@ TEST(WorstLemma, Theorem1IntersectingTrianglesSeeEachOther) {
 
 TEST(WorstLemma, Corollary1UnseenMeansDisjoint) { lab::expect_corollary1(canvases(), 12); }
 
-// FAR with a canvas of the caller's: plan, cull, join, account.
-struct Outcome {
-  Accounting accounting;
-  std::size_t live;
-};
-
-Outcome far_on(Canvas& canvas, const Scene& scene, const Fattener& fattener,
-               const std::string& views, int resolution, double factor = 1) {
-  const Plan plan = make_plan(scene);
-  const CullSettings settings{.views = parse_views(views),
-                              .resolution = resolution,
-                              .fattener = fattener,
-                              .radius = {.published = false, .factor = factor},
-                              .economy = true};
-  const std::vector<std::uint32_t> live = cull(scene, plan, settings, canvas).live;
-  return {account(scene, box_join(plan.triangle_boxes, owners(scene), live)), live.size()};
-}
+using lab::far_on;
+using lab::Outcome;
 
 TEST(WorstFar, MissesNothingOnRandomScenes) {
   std::uint64_t culled = 0;
-  for (std::uint64_t seed = 1001; seed <= 1060; ++seed) {
+  for (std::uint64_t seed = 1001; seed <= 1040; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Scene scene = lab::random_scene(seed);
     for (const Fattener& fattener : lab::fatteners()) {
@@ -96,7 +78,7 @@ TEST(WorstFar, MissesNothingOnRandomScenes) {
       culled += scene.triangles.size() - out.live;
     }
   }
-  EXPECT_GT(culled, 500u) << "a method that keeps everything would pass";
+  EXPECT_GT(culled, 300u) << "a method that keeps everything would pass";
 }
 
 TEST(WorstFar, MissesNothingOnHardScenesAndTheirCopiesElsewhere) {

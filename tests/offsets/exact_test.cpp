@@ -1,0 +1,605 @@
+// The exact offset against rationals: exact_of() holds hull and ball, and the kernel's interval
+// holds the exact one of the solid that the floats say, on this machine's floats and on the worst
+// ones.
+#include "offsets/exact.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <iostream>
+
+#include "offsets/kernel.h"
+#include "offsets/obb.h"
+#include "offsets/round.h"
+#include "tests/offsets/exact_line.h"
+
+namespace farcull {
+namespace glsl::exact_without_widening {
+#define FAR_WIDEN 0.0f
+// clang-format off
+#include "offsets/slab.glsl"  // the next one needs it
+#include "offsets/exact.glsl"
+// clang-format on
+#undef FAR_WIDEN
+}  // namespace glsl::exact_without_widening
+
+namespace {
+
+using exact_line::Answer;
+using exact_line::answer;
+using exact_line::Kernel;
+using exact_line::Line;
+using exact_line::Real;
+using exact_line::Tally;
+using exact_line::Weights;
+using rational::Q;
+using rational::Random;
+using Triangle = std::array<Vec3, 3>;
+
+const Kernel kFloat = exact_fattener().solid.interval;
+const Kernel kWorst = exact_fattener().solid.interval_worst;
+constexpr Kernel kWithoutWidening =
+    kernel_interval<glsl::exact_without_widening::solid_interval>;
+
+Solid solid_of(const Triangle& t, double radius) { return exact_of(t[0], t[1], t[2], radius); }
+
+void print(const Solid& solid) {
+  for (const auto& row : solid) std::printf("%a %a %a %a\n", row[0], row[1], row[2], row[3]);
+}
+
+// ---- generators ----
+
+constexpr const char* kKinds[] = {
+    "ordinary",      "needle",  "edge-on", "nearly edge-on", "flat", "vertical edge", "segment",
+    "point",         "huge z",  "tiny",    "needle end-on",  "halves of pixels",
+    "nearly a line", "far and small"};
+constexpr int kKindCount = static_cast<int>(std::size(kKinds));
+
+Triangle random_triangle(Random& random, int kind) {
+  const Vec3 at = random.cube(500);
+  const auto all = [&](const std::function<Vec3(int)>& corner) {
+    return Triangle{at + corner(0), at + corner(1), at + corner(2)};
+  };
+  const double slope = random.uniform(0, 6.3);
+  const Vec3 across(std::cos(slope), std::sin(slope), 0);
+  switch (kind) {
+    case 0:
+      return all([&](int) { return random.cube(20); });
+    case 1: {  // aspect 1e3 .. 1e12
+      const Vec3 e = random.scaled3(0, 9);
+      const double thin = e.norm() * std::pow(10, -random.uniform(3, 12));
+      return {at - e, at + e, at + e * random.uniform(-1, 1) + random.cube(thin)};
+    }
+    case 2:
+    case 3: {
+      const double off = kind == 2 ? 0 : std::abs(random.scaled(-50, -4));
+      return all([&](int) {
+        return Vec3(across * random.uniform(-20, 20) + Vec3(0, 0, random.uniform(-20, 20)) +
+                    random.cube(off));
+      });
+    }
+    case 4: {
+      const double off = random.coin() ? 0 : std::abs(random.scaled(-50, -4));
+      return all([&](int) {
+        return Vec3(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-off, off));
+      });
+    }
+    case 5: {
+      const Vec3 p = random.cube(20);
+      return {at, at + Vec3(0, 0, random.scaled(-10, 9)), at + p};
+    }
+    case 6: {
+      const Vec3 p = random.scaled3(-20, 9);
+      return {at, at + p, random.coin() ? at : Vec3(at + 0.5 * p)};
+    }
+    case 7:
+      return {at, at, at};
+    case 8: {
+      const double most = std::pow(10, random.uniform(3, 9));
+      return all([&](int) {
+        return Vec3(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-most, most));
+      });
+    }
+    case 9: {
+      const double size = std::pow(10, -random.uniform(3, 12));
+      const Vec3 centre(std::floor(at[0]) + 0.5, std::floor(at[1]) + 0.5, random.uniform(-1, 1));
+      return {centre + random.cube(size), centre + random.cube(size), centre + random.cube(size)};
+    }
+    case 10: {
+      const double most = std::pow(10, random.uniform(1, 9));
+      return all([&](int) {
+        return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-most, most));
+      });
+    }
+    case 11:
+      return all([&](int) {
+        return Vec3(0.5 * random.below(20) - at[0] + std::floor(at[0]),
+                    0.5 * random.below(20) - at[1] + std::floor(at[1]), 0.5 * random.below(20));
+      });
+    case 12: {  // a corner a little off the line of the others
+      const Vec3 e = random.cube(20);
+      return {at, at + e, at + e * random.uniform(-1, 2) + random.scaled3(-60, -10)};
+    }
+    default: {
+      const Vec3 far(at[0], at[1], random.sign() * std::pow(10, random.uniform(3, 9)));
+      return {far + random.cube(2), far + random.cube(2), far + random.cube(2)};
+    }
+  }
+}
+
+double random_radius(Random& random) {
+  constexpr double kRadii[] = {0, 0.7, 0.7, 0.7, 5, 0.7166};
+  const int pick = random.below(8);
+  return pick < 6 ? kRadii[pick] : std::abs(random.scaled(-20, 7));
+}
+
+Weights random_weights(Random& random) {
+  switch (random.below(4)) {
+    case 0:
+      return exact_line::on_edge(random.below(3), random.below(2));
+    case 1:
+      return exact_line::on_edge(random.below(3), random.uniform(0, 1));
+    default: {
+      const double a = random.uniform(0, 1), b = random.uniform(0, 1);
+      return exact_line::weights(std::min(a, b), std::abs(a - b));
+    }
+  }
+}
+
+/// A triangle, and the centre of a pixel that it lies around: inside its image, outside, or as far
+/// from a point of it as the radius, give or take 2^-5 to 2^-50 of it.
+struct Case {
+  int kind;
+  Triangle triangle;
+  double radius;
+  float cx, cy;
+};
+
+Case random_case(Random& random, int kind) {
+  Case out{kind, random_triangle(random, kind), random_radius(random), 0, 0};
+  out.cx = static_cast<float>(random.below(1200) - 600 + 0.5);
+  out.cy = static_cast<float>(random.below(1200) - 600 + 0.5);
+  const Weights w = random_weights(random);
+  const Triangle& t = out.triangle;
+  const Vec3 p =
+      t[0] + double(w.w1) * (t[1] - t[0]) + double(w.w2) * (t[2] - t[0]);
+  const int pick = random.below(8);
+  const double angle = pick == 0 ? 1.5707963267948966 * random.below(4) : random.uniform(0, 6.3);
+  double distance = out.radius * random.uniform(0, 1.02);
+  if (pick < 3) distance = out.radius * (1 + random.scaled(-50, -5));
+  if (pick == 3) distance = 0;
+  if (pick == 4) distance = out.radius + random.uniform(0, 20);
+  const Vec3 shift(out.cx + distance * std::cos(angle) - p[0],
+                   out.cy + distance * std::sin(angle) - p[1], 0);
+  for (Vec3& corner : out.triangle) corner += shift;
+  return out;
+}
+
+// ---- exact_of ----
+
+/// Each corner with its ball is in the ball of a corner of the solid, so the hulls are; and inside
+/// the z range.
+bool holds_balls(const Solid& solid, const Triangle& triangle, double radius) {
+  const Q r(radius), room = Q(solid[1][3]) - r;
+  bool held = room >= 0;
+  for (int i = 0; i < 3; ++i) {
+    Q square = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Q d = Q(triangle[i][k]) - Q(solid[0][k]) - Q(solid[1 + i][k]);
+      square += d * d;
+    }
+    held = held && square <= room * room && Q(solid[0][3]) <= Q(triangle[i][2]) - r &&
+           Q(solid[2][3]) >= Q(triangle[i][2]) + r;
+  }
+  return held;
+}
+
+TEST(ExactOf, HoldsHullAndBallOfEveryTriangle) {
+  Random random(601);
+  for (int n = 0; n < 60'000; ++n) {
+    const Case c = random_case(random, n % kKindCount);
+    const Solid solid = solid_of(c.triangle, c.radius);
+    for (const auto& row : solid) {
+      for (const float x : row) ASSERT_TRUE(std::isfinite(x));
+    }
+    for (int k = 1; k < 4; ++k) ASSERT_EQ(solid[4][k], 0);  // the canvas's own numbers
+    ASSERT_TRUE(holds_balls(solid, c.triangle, c.radius)) << kKinds[c.kind] << ", case " << n;
+  }
+}
+
+// Corners whose rounding errors square to nothing in double, with no radius to hide them.
+TEST(ExactOf, HoldsTrianglesBelowTheRangeOfFloats) {
+  Random random(602);
+  for (int n = 0; n < 20'000; ++n) {
+    const double lo = -random.uniform(20, 1020);
+    const Triangle t{random.scaled3(lo, lo + 50), random.scaled3(lo, lo + 50),
+                     random.coin() ? Vec3(Vec3::Zero()) : random.scaled3(lo, -20)};
+    for (const double radius : {0.0, 1e-200, 0.7})
+      ASSERT_TRUE(holds_balls(solid_of(t, radius), t, radius)) << "case " << n << ", r " << radius;
+  }
+}
+
+TEST(ExactOf, WithoutTheRoundingOfItsCornersSomeAreNotHeld) {
+  Random random(601);
+  int lost = 0;
+  for (int n = 0; n < 2'000; ++n) {
+    const Case c = random_case(random, n % kKindCount);
+    Solid solid = solid_of(c.triangle, c.radius);
+    solid[1][3] = round_up(c.radius);
+    lost += !holds_balls(solid, c.triangle, c.radius);
+  }
+  EXPECT_GT(lost, 1000);
+}
+
+// Any solid that is large enough would pass above.
+TEST(ExactOf, IsTightAroundTriangles) {
+  Random random(603);
+  for (int n = 0; n < 20'000; ++n) {
+    const Triangle t = random_triangle(random, 0);
+    const Solid solid = solid_of(t, 0.75);
+    // Half the extent is at most 20 px, so a corner is rounded by 2^-20 per axis.
+    ASSERT_LE(solid[1][3], 0.75f + 0x1p-19f);
+    const auto [lo, hi] = std::minmax({t[0][2], t[1][2], t[2][2]});
+    ASSERT_NEAR(solid[0][3], lo - 0.75, 1e-4);
+    ASSERT_NEAR(solid[2][3], hi + 0.75, 1e-4);
+  }
+}
+
+// ---- the kernel holds the exact interval ----
+
+TEST(ExactKernel, TheFilterInLongDoubleDoubtsEveryViolation) {
+  Random random(604);
+  long violations = 0;
+  for (int n = 0; n < 60'000; ++n) {
+    const Case c = random_case(random, n % kKindCount);
+    const Solid solid = solid_of(c.triangle, c.radius);
+    const Line line(solid, c.cx, c.cy);
+    const Answer a = answer(kWithoutWidening, c.cx, c.cy, solid);
+    for (const int sign : {-1, 1}) {
+      Weights w = random_weights(random);
+      Real depth;
+      if (random.coin()) line.contact(sign, w, depth);
+      if (!violates(solid, c.cx, c.cy, w, a)) continue;
+      ++violations;
+      ASSERT_TRUE(doubtful(solid, line.chord(w), a)) << kKinds[c.kind] << ", case " << n;
+    }
+  }
+  EXPECT_GT(violations, 1000);
+}
+
+/// Per kind of triangle, `cases` lines, each checked at the contacts and at random points.
+void expect_holds(Kernel kernel, int cases, std::uint64_t seed) {
+  Random random(seed);
+  Tally all;
+  for (int kind = 0; kind < kKindCount; ++kind) {
+    Tally tally;
+    long hits = 0;
+    for (int n = 0; n < cases; ++n) {
+      const Case c = random_case(random, kind);
+      const Solid solid = solid_of(c.triangle, c.radius);
+      const Line line(solid, c.cx, c.cy);
+      const Answer a = answer(kernel, c.cx, c.cy, solid);
+      hits += a.hit;
+      check_contacts(line, solid, c.cx, c.cy, a, tally);
+      for (int k = 0; k < 2; ++k)
+        check(line, solid, c.cx, c.cy, random_weights(random), a, tally);
+      if (tally.violations != 0) {
+        print(solid);
+        FAIL() << kKinds[kind] << ", case " << n << " at " << c.cx << ", " << c.cy;
+      }
+    }
+    EXPECT_GT(hits, cases / 4) << kKinds[kind];
+    EXPECT_LT(hits, cases - cases / 100) << kKinds[kind];
+    all.checks += tally.checks;
+    all.rationals += tally.rationals;
+  }
+  std::cout << all.checks << " points, " << all.rationals << " decided with rationals\n";
+}
+
+TEST(ExactKernel, HoldsTheExactIntervalOfRealTriangles) { expect_holds(kFloat, 150'000, 605); }
+
+// The latest entry and the earliest exit of all roundings that GLSL allows.
+TEST(ExactKernel, HoldsTheExactIntervalOnTheWorstDevice) { expect_holds(kWorst, 25'000, 606); }
+
+TEST(ExactKernel, WithoutWideningEveryKindIsViolated) {
+  Random random(605);
+  for (int kind = 0; kind < kKindCount; ++kind) {
+    Tally tally;
+    for (int n = 0; n < 3'000; ++n) {
+      const Case c = random_case(random, kind);
+      const Solid solid = solid_of(c.triangle, c.radius);
+      const Answer a = answer(kWithoutWidening, c.cx, c.cy, solid);
+      check_contacts(Line(solid, c.cx, c.cy), solid, c.cx, c.cy, a, tally);
+    }
+    EXPECT_GT(tally.violations, 0) << kKinds[kind];
+    std::cout << kKinds[kind] << ": " << tally.violations << " of " << tally.checks
+              << " points lost\n";
+  }
+}
+
+float number(double x) { return static_cast<float>(x); }
+
+/// A solid made of floats directly: corners with zeros, denormals and equal coordinates, edges
+/// along and across the line, lengths on either side of the kernel's 1e-12, radii from none to
+/// 2^20, cuts anywhere.
+void adversarial(Random& random, Solid& s, float& cx, float& cy) {
+  s = {};
+  const double far = random.below(3) == 0 ? 1e9 : 1000;
+  cx = number(random.below(1000) - 500 + 0.5);
+  cy = number(random.below(1000) - 500 + 0.5);
+  const double reach = random.scaled(-20, 10), radius = std::abs(random.scaled(-10, 8));
+  s[1][3] = random.below(6) == 0 ? 0 : number(random.below(20) == 0 ? 0x1p20 : radius);
+  for (int i = 1; i <= 3; ++i) {
+    for (int k = 0; k < 3; ++k) s[i][k] = number(reach * random.uniform(-1, 1));
+    switch (random.below(9)) {
+      case 0:
+        s[i][random.below(3)] = 0;
+        break;
+      case 1:
+        s[i][random.below(3)] = number(random.scaled(-149, -30));
+        break;
+      case 2:
+        s[i] = {s[1][0], s[1][1], s[i][2], s[i][3]};
+        break;
+      case 3:  // about 1e-6 px beside the first corner
+        s[i] = {number(s[1][0] + random.scaled(-22, -18)), s[1][1], s[i][2], s[i][3]};
+        break;
+      case 4:
+        s[i][2] = s[1][2];
+        break;
+      case 5:
+        s[i][2] = number(random.uniform(-far, far));
+        break;
+      default:
+        break;
+    }
+  }
+  // The line at about the radius from a point of the triangle.
+  const Weights w = random_weights(random);
+  double p[2];
+  for (int k = 0; k < 2; ++k) {
+    p[k] = s[1][k] + double(w.w1) * (double(s[2][k]) - s[1][k]) +
+           double(w.w2) * (double(s[3][k]) - s[1][k]);
+  }
+  const double distance = s[1][3] * (random.coin() ? 1 + random.scaled(-30, -10)
+                                                   : random.uniform(0, 1.01));
+  const double angle = random.uniform(0, 6.3);
+  s[0] = {number(cx - p[0] + distance * std::cos(angle)),
+          number(cy - p[1] + distance * std::sin(angle)), number(random.uniform(-far, far)), 0};
+  if (random.below(10) == 0) s[0][2] = 0;
+  const double mid = s[0][2] + random.scaled(-6, 8), thick = std::abs(random.scaled(-6, 12));
+  s[0][3] = number(mid - thick);
+  s[2][3] = std::max(number(mid + thick), s[0][3]);
+  if (random.below(3) == 0) {  // the triangle and the ball alone decide
+    s[0][3] = number(-4 * far);
+    s[2][3] = number(4 * far);
+  }
+}
+
+void expect_holds_adversarial(Kernel kernel, int cases) {
+  Random random(607);
+  Tally tally;
+  long hits = 0;
+  for (int n = 0; n < cases; ++n) {
+    Solid solid;
+    float cx, cy;
+    adversarial(random, solid, cx, cy);
+    const Line line(solid, cx, cy);
+    const Answer a = answer(kernel, cx, cy, solid);
+    hits += a.hit;
+    check_contacts(line, solid, cx, cy, a, tally);
+    check(line, solid, cx, cy, random_weights(random), a, tally);
+    if (tally.violations != 0) {
+      print(solid);
+      FAIL() << "case " << n << " at " << cx << ", " << cy;
+    }
+  }
+  EXPECT_GT(hits, cases / 10);
+  EXPECT_LT(hits, cases - cases / 10);
+  std::cout << tally.checks << " points, " << tally.rationals << " decided with rationals\n";
+}
+
+TEST(ExactKernel, HoldsTheExactIntervalOfAdversarialFloats) {
+  expect_holds_adversarial(kFloat, 1'500'000);
+}
+
+TEST(ExactKernel, HoldsTheExactIntervalOfAdversarialFloatsOnTheWorstDevice) {
+  expect_holds_adversarial(kWorst, 200'000);
+}
+
+TEST(ExactKernel, WithoutWideningAdversarialFloatsAreMissed) {
+  Random random(607);
+  Tally tally;
+  for (int n = 0; n < 50'000; ++n) {
+    Solid solid;
+    float cx, cy;
+    adversarial(random, solid, cx, cy);
+    check_contacts(Line(solid, cx, cy), solid, cx, cy, answer(kWithoutWidening, cx, cy, solid),
+                   tally);
+  }
+  EXPECT_GT(tally.violations, 500);
+  std::cout << tally.violations << " of " << tally.checks << " points lost\n";
+}
+
+// The lemma as the kernel serves it: a point of the triangle in a pixel lies in the interval of
+// that pixel's centre, be it in the pixel's corner.
+TEST(ExactKernel, HoldsEveryPointOfThePixel) {
+  Random random(608);
+  for (int n = 0; n < 140'000; ++n) {
+    const Triangle t = random_triangle(random, n % kKindCount);
+    const Solid solid = solid_of(t, 0.7072);
+    for (int k = 0; k < 4; ++k) {
+      const Weights w = random_weights(random);
+      const Vec3 q = t[0] + double(w.w1) * (t[1] - t[0]) + double(w.w2) * (t[2] - t[0]);
+      const float cx = number(std::floor(q[0]) + 0.5), cy = number(std::floor(q[1]) + 0.5);
+      const Answer a = answer(k == 0 ? kWorst : kFloat, cx, cy, solid);
+      ASSERT_TRUE(a.hit) << kKinds[n % kKindCount] << ", case " << n;
+      // q itself is rounded, by less than 2^-50 of the corners.
+      double off = 0;
+      for (const Vec3& p : t) off = std::max(off, 0x1p-50 * p.cwiseAbs().maxCoeff());
+      ASSERT_LE(a.entry, q[2] + off) << kKinds[n % kKindCount] << ", case " << n;
+      ASSERT_GE(a.exit, q[2] - off) << kKinds[n % kKindCount] << ", case " << n;
+    }
+  }
+}
+
+// ---- the worst device ----
+
+struct Pessimism {
+  long worst_hits = 0, contradictions = 0, strict = 0;
+};
+
+Pessimism compare(Kernel better, Kernel worse, int cases) {
+  Random random(609);
+  Pessimism out;
+  for (int n = 0; n < cases; ++n) {
+    Solid solid;
+    float cx, cy;
+    if (n % 3 == 0) {
+      adversarial(random, solid, cx, cy);
+    } else {
+      const Case c = random_case(random, n / 3 % kKindCount);
+      solid = solid_of(c.triangle, c.radius);
+      cx = c.cx;
+      cy = c.cy;
+    }
+    const Answer b = answer(better, cx, cy, solid), w = answer(worse, cx, cy, solid);
+    if (!w.hit) {
+      out.strict += b.hit;
+      continue;
+    }
+    ++out.worst_hits;
+    out.contradictions += !b.hit || b.entry > w.entry || b.exit < w.exit;
+    out.strict += b.hit && (b.entry < w.entry || b.exit > w.exit);
+  }
+  return out;
+}
+
+// The floats of this machine are among those that GLSL allows.
+TEST(ExactKernel, TheWorstDeviceIsAtLeastAsPessimisticAsThisOne) {
+  const Pessimism found = compare(kFloat, kWorst, 200'000);
+  EXPECT_EQ(found.contradictions, 0);
+  EXPECT_GT(found.worst_hits, 50'000);
+  std::cout << found.strict << " lines strictly worse, " << found.worst_hits << " hit\n";
+}
+
+TEST(ExactKernel, ThisDeviceIsNotAsPessimisticAsTheWorstOne) {
+  EXPECT_GT(compare(kWorst, kFloat, 20'000).contradictions, 5'000);
+}
+
+// ---- tightness: a kernel that always answers [zlo, zhi] passes all of the above ----
+
+struct Tightness {
+  std::vector<double> excess;  // px, entry and exit
+  std::vector<double> ratio;   // to the box's interval
+  long clear_misses = 0, false_hits = 0, hits = 0;
+
+  double rank(double part) {
+    const auto at = excess.begin() + static_cast<long>(part * double(excess.size() - 1));
+    std::nth_element(excess.begin(), at, excess.end());
+    return *at;
+  }
+};
+
+Tightness measure(Kernel kernel, int kind, double radius, int cases) {
+  Random random(610);
+  Tightness out;
+  const Kernel box_kernel = obb_fattener().solid.interval;
+  for (int n = 0; n < cases; ++n) {
+    const Triangle t = random_triangle(random, kind);
+    const Solid solid = solid_of(t, radius), box = obb_of(t, radius);
+    Vec3 lo = t[0].cwiseMin(t[1]).cwiseMin(t[2]), hi = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
+    for (int k = 0; k < 20; ++k) {
+      const auto near = [&](int axis) {
+        return number(std::floor(random.uniform(lo[axis] - radius - 2, hi[axis] + radius + 2)) +
+                      0.5);
+      };
+      const float cx = near(0), cy = near(1);
+      const Line line(solid, cx, cy);
+      const Answer a = answer(kernel, cx, cy, solid);
+      if (line.distance() > line.radius() + 1e-3L) {
+        ++out.clear_misses;
+        out.false_hits += a.hit;
+        continue;
+      }
+      Weights w;
+      Real first, last;
+      if (!a.hit || !line.contact(-1, w, first) || !line.contact(1, w, last)) continue;
+      first = std::max<Real>(first, solid[0][3]);
+      last = std::min<Real>(last, solid[2][3]);
+      ++out.hits;
+      out.excess.push_back(static_cast<double>(first - a.entry));
+      out.excess.push_back(static_cast<double>(a.exit - last));
+      const Answer b = answer(box_kernel, cx, cy, box);
+      if (b.hit && b.exit > b.entry)
+        out.ratio.push_back((double(a.exit) - a.entry) / (double(b.exit) - b.entry));
+    }
+  }
+  return out;
+}
+
+bool is_tight(Tightness& found) {
+  return found.rank(0.5) < 1e-3 && found.rank(0.999) < 0.1 && found.clear_misses > 10'000 &&
+         found.false_hits * 1000 < found.clear_misses;
+}
+
+TEST(ExactKernel, IsNotAbsurdlyLooseOnOrdinaryTriangles) {
+  for (const Kernel kernel : {kFloat, kWorst}) {
+    for (const double radius : {0.7, 5.0}) {
+      Tightness found = measure(kernel, 0, radius, kernel == kFloat ? 20'000 : 4'000);
+      std::printf(
+          "%s, radius %g: excess over the exact interval (px) median %.3g, 99.9%% %.3g, most "
+          "%.3g, least %.3g; %ld lines hit; %ld clearly miss, %ld of them reported as hits\n",
+          kernel == kFloat ? "floats" : "worst", radius, found.rank(0.5), found.rank(0.999),
+          found.rank(1), found.rank(0), found.hits, found.clear_misses, found.false_hits);
+      EXPECT_TRUE(is_tight(found));
+    }
+  }
+}
+
+TEST(ExactKernel, AKernelThatAnswersItsCutsIsLoose) {
+  const Kernel cuts = [](float, float, const Solid& solid, float& entry, float& exit) {
+    entry = solid[0][3];
+    exit = solid[2][3];
+    return true;
+  };
+  Tightness found = measure(cuts, 0, 0.7, 4'000);
+  EXPECT_FALSE(is_tight(found));
+  EXPECT_GT(found.rank(0.5), 1);
+  EXPECT_EQ(found.false_hits, found.clear_misses);
+}
+
+// Degenerate, thin and far triangles are reported; only the solid's own rounding may loosen them.
+TEST(ExactKernel, DiscardsLinesThatClearlyMissAnyKindOfTriangle) {
+  for (int kind = 0; kind < kKindCount; ++kind) {
+    Tightness found = measure(kFloat, kind, 0.7, 3'000);
+    std::printf("%-16s excess (px) median %.3g, 99.9%% %.3g, most %.3g; %ld of %ld clear misses "
+                "reported as hits\n",
+                kKinds[kind], found.rank(0.5), found.rank(0.999), found.rank(1), found.false_hits,
+                found.clear_misses);
+    EXPECT_LE(found.false_hits * 1000, found.clear_misses) << kKinds[kind];
+  }
+}
+
+TEST(ExactKernel, IsSeldomWiderThanTheBox) {
+  Tightness found = measure(kFloat, 0, 0.7, 20'000);
+  double sum = 0, most = 0;
+  long wider = 0;
+  for (const double ratio : found.ratio) {
+    sum += ratio;
+    most = std::max(most, ratio);
+    wider += ratio > 1.001;
+  }
+  const double mean = sum / double(found.ratio.size());
+  std::printf("length of the interval relative to the box's: mean %.3f, most %.3f; %ld of %zu "
+              "lines more than 0.1%% longer\n",
+              mean, most, wider, found.ratio.size());
+  EXPECT_LT(mean, 1);
+  EXPECT_LT(wider * 1000, static_cast<long>(found.ratio.size()));
+}
+
+}  // namespace
+}  // namespace farcull
