@@ -1,4 +1,4 @@
-// Pairs of overlapping boxes of different owners, by sweep and prune along one axis.
+// Pairs of overlapping boxes of different owners, by sweep and prune along one axis, in strips of another.
 #pragma once
 
 #include <cstdint>

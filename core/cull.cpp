@@ -160,7 +160,13 @@ void run_pass(State& state, std::span<const std::uint32_t> items, const Drawable
 }
 
 double radius_of(const RadiusRule& rule, const Budget& budget, double step) {
-  return rule.published ? published_radius(step) : rule.factor * budget.radius();
+  const double radius = rule.published ? published_radius(step) : rule.factor * budget.radius();
+  // Beyond it floats overflow in the kernels, and a fragment would be lost instead of seen.
+  if (!(radius >= 0 && radius <= kMaxRadius)) {
+    throw Error("--radius", std::to_string(radius) + " px is beyond the largest ball, 2^20 px",
+                "choose a smaller factor");
+  }
+  return radius;
 }
 
 void bury(State& state) {

@@ -18,6 +18,10 @@ struct ProxyBounds {
 };
 ProxyBounds proxy_bounds(const Window& window);
 
+/// The largest radius (px) that offsets and their kernels are derived for (docs/budget.md, "The
+/// radius").
+constexpr double kMaxRadius = 0x1p20;
+
 struct Fattener {
   std::string name;  // "raw", "obb", ...
   DepthMode mode;

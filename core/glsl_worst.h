@@ -1,9 +1,10 @@
 // A device whose arithmetic is as bad as GLSL allows, for kernels (*.glsl) compiled as C++ with
 // `float` standing for Worst. A Worst is the range of all floats that some permitted rounding could
 // have given: sums, differences and products are rounded in any direction, quotients err by 2.5
-// units in the last place, roots by 4, and results below 2^-126 may be flushed to zero (GLSL 4.50,
-// section 4.7.1; A4). A comparison is true only if it is true for every choice. Include the kernel
-// between `#define float Worst` and `#undef float`, after all other headers.
+// units in the last place, roots (as good as 1 / inversesqrt) by 5, and numbers below 2^-126, given
+// or computed, may be flushed to zero (GLSL 4.50, section 4.7.1; A4). A comparison is true only if
+// it is true for every choice. Include the kernel between `#define float Worst` and `#undef float`,
+// after all other headers.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +16,8 @@ namespace farcull::glsl_worst {
 class Worst {
  public:
   Worst() = default;
-  Worst(float x)
-      : lo_(x), hi_(x) {}  // NOLINT(google-explicit-constructor): kernels mix in literals
+  Worst(float x)  // NOLINT(google-explicit-constructor): kernels mix in literals
+      : Worst(rounded(x, x, 0)) {}
 
   float lo() const { return lo_; }
   float hi() const { return hi_; }
@@ -27,7 +28,7 @@ class Worst {
 
   friend Worst operator-(Worst a) { return {-a.hi_, -a.lo_}; }
   friend Worst operator+(Worst a, Worst b) {
-    return rounded(double(a.lo_) + b.lo_, double(a.hi_) + b.hi_, 0);
+    return rounded(sum(a.lo_, b.lo_, -1), sum(a.hi_, b.hi_, 1), 0);
   }
   friend Worst operator-(Worst a, Worst b) { return a + -b; }
   friend Worst operator*(Worst a, Worst b) {
@@ -54,11 +55,19 @@ class Worst {
   }
   friend Worst sqrt(Worst a) {
     return rounded(std::sqrt(std::max(0.0, double(a.lo_))), std::sqrt(std::max(0.0, double(a.hi_))),
-                   4);
+                   5);
   }
 
  private:
   Worst(float lo, float hi) : lo_(lo), hi_(hi) {}
+
+  // a + b; a double beyond it on the side of `sign` where double rounds too. Knuth's two-sum: what
+  // the rounding lost, exactly.
+  static double sum(double a, double b, double sign) {
+    const double s = a + b, part = s - a;
+    const double lost = (a - (s - part)) + (b - part);
+    return sign * lost > 0 ? std::nextafter(s, sign * HUGE_VAL) : s;
+  }
 
   // The floats around [lo, hi], `units` of the last place farther out. A result that is a float
   // already stays exact, as correct rounding demands, unless it is flushed.

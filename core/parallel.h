@@ -21,10 +21,10 @@ void for_chunks(std::size_t count, std::size_t chunks, const Work& work) {
       failures[chunk] = std::current_exception();
     }
   };
-  std::vector<std::thread> threads;
+  std::vector<std::jthread> threads;  // joined also where starting one of them fails
   for (std::size_t chunk = 1; chunk < chunks; ++chunk) threads.emplace_back(part, chunk);
   part(0);
-  for (std::thread& thread : threads) thread.join();
+  threads.clear();
   for (const std::exception_ptr& failure : failures) {
     if (failure) std::rethrow_exception(failure);
   }

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "core/error.h"
 #include "experiments/mesh_builder.h"
@@ -114,6 +115,7 @@ Header read_header(TextReader& in) {
     in.fail("the file does not begin with 'ply'", "give a PLY file");
   }
   Header header;
+  std::set<std::string> names;
   bool has_format = false;
   for (;;) {
     if (!in.next_line()) in.fail("the file ends within its header", "get the whole file");
@@ -128,10 +130,8 @@ Header read_header(TextReader& in) {
       const std::int64_t count = in.integer("the number of elements");
       if (count < 0) in.fail(fmt::format("{} elements", count), kDamaged);
       element.count = static_cast<std::uint64_t>(count);
-      for (const Element& other : header.elements) {
-        if (other.name == element.name)
-          in.fail("a second element " + quote_token(element.name), kDamaged);
-      }
+      if (!names.insert(element.name).second)
+        in.fail("a second element " + quote_token(element.name), kDamaged);
       header.elements.push_back(element);
     } else if (word == "property") {
       if (header.elements.empty()) in.fail("a property before any element", kDamaged);

@@ -190,10 +190,10 @@ RadiusRule parse_radius(const std::string& text) {
   double factor = 0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), factor);
   if (code != std::errc() || end != text.data() + text.size() || !std::isfinite(factor) ||
-      factor < 0) {
+      factor < 0 || factor > 1e5) {
     throw Error(
         "--radius", "'" + text + "' is no radius",
-        "give budget, published, or a factor of 0 or more on the budget radius, such as 0.9");
+        "give budget, published, or a factor of 0 to 100000 on the budget radius, such as 0.9");
   }
   return {.published = false, .factor = factor};
 }

@@ -21,7 +21,7 @@ std::string to_string(Method method);
 Method parse_method(const std::string& name, const std::string& option = "--method");
 /// A whole number of pixels, 1 or more. Throws Error naming `option`.
 int parse_resolution(const std::string& text, const std::string& option = "--resolution");
-/// "published", "budget" or a factor on the budget radius (finite, >= 0). Throws Error naming
+/// "published", "budget" or a factor on the budget radius (0 to 100000). Throws Error naming
 /// --radius.
 RadiusRule parse_radius(const std::string& text);
 

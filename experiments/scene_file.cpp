@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <initializer_list>
 #include <map>
+#include <memory>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -22,6 +24,9 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uint64_t kMaxSceneFileBytes = std::uint64_t{64} << 20;
+// No file is opened by a longer path (PATH_MAX of Linux), and a byte of one can take 36 in each
+// std::filesystem::path.
+constexpr std::size_t kMaxPathBytes = 4096;
 
 // Reads a text for its syntax alone: the place of the first error, which json::parse does not tell
 // for every error, and keys that occur twice, of which json::parse silently keeps the last.
@@ -77,9 +82,9 @@ std::string stem(const std::string& path) { return std::filesystem::path(path).s
 class MeshCache {
  public:
   const Mesh& get(const std::string& path) {
-    std::error_code error;
-    const std::filesystem::path file = std::filesystem::weakly_canonical(path, error);
-    const std::string key = error ? path : file.string();
+    // realpath: std::filesystem would hold several more paths at once.
+    const std::unique_ptr<char, void (*)(void*)> file(realpath(path.c_str(), nullptr), &std::free);
+    const std::string key = file ? file.get() : path;
     auto entry = meshes_.find(key);
     if (entry == meshes_.end()) entry = meshes_.emplace(key, load_mesh(path)).first;
     return entry->second;
@@ -119,6 +124,11 @@ class SceneFile {
     require(object.contains("mesh"), place + ".mesh", "is missing", "name a mesh file");
     const std::string mesh = text(object["mesh"], place + ".mesh");
     require(!mesh.empty(), place + ".mesh", "is empty", "name a mesh file");
+    require(mesh.size() <= kMaxPathBytes, place + ".mesh",
+            fmt::format("is a path of {} bytes", mesh.size()), "name a mesh file");
+    // The system would end the path there and give a mesh that was read before.
+    require(mesh.find('\0') == std::string::npos, place + ".mesh", "contains a NUL byte",
+            "name a mesh file");
     std::string name = stem(mesh);
     if (object.contains("name")) name = text(object["name"], place + ".name");
     const Placement placement = read_placement(object, place);

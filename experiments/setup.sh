@@ -144,8 +144,9 @@ farcull_configure() {
   fi
 }
 
-# Reads the output of a build, from Ninja or make; lets through what compilers and linkers say
-# (stderr), and of the steps only every fifth part of the way, so that a long build is not silent.
+# farcull_progress JOBS LOG: reads the output of a build, from Ninja or make; lets through what
+# compilers and linkers say (stderr), and of the steps only every fifth part of the way, so that a
+# long build is not silent.
 farcull_progress() {
   local line percent said=-1
   local steps='^\[ *([0-9]+)(/([0-9]+)|%)\] (.*)$'
@@ -156,7 +157,7 @@ farcull_progress() {
       percent=${BASH_REMATCH[1]}
       if [[ -n ${BASH_REMATCH[3]} ]]; then percent=$((100 * percent / BASH_REMATCH[3])); fi
       if ((said < 0)); then
-        echo "build: compiling, $1 at a time (all output: build/build.log)"
+        echo "build: compiling, $1 at a time (all output: $2)"
         said=0
       fi
       if ((percent < 100 && percent / 20 > said / 20)); then
@@ -189,7 +190,7 @@ farcull_build() {
   jobs=$(farcull_jobs)
   what+=(--config Release --parallel "$jobs")
   if ! NINJA_STATUS='[%f/%t] ' LC_ALL=C cmake --build "$build" "${what[@]}" 2>&1 |
-    tee "$build/build.log" | farcull_progress "$jobs"; then
+    tee "$build/build.log" | farcull_progress "$jobs" build/build.log; then
     echo "build: failed (all output: build/build.log)" >&2
     return 2
   fi
@@ -199,6 +200,27 @@ farcull_build() {
   else
     echo "build: up to date (Release, build/)"
   fi
+}
+
+# farcull_build_beside FOLDER "TARGETS" CMAKE-OPTIONS...: brings targets up to date in a folder
+# beside build/.
+farcull_build_beside() {
+  local build=$farcull_root/$1 log=$1/build.log started=$SECONDS jobs said
+  local -a targets how=()
+  read -ra targets <<<"$2"
+  shift 2
+  if [[ ! -e $build/CMakeCache.txt ]] && command -v ninja >/dev/null; then how=(-G Ninja); fi
+  if ! said=$(cmake -S "$farcull_root" -B "$build" "${how[@]}" "$@" 2>&1); then
+    printf '%s\n' "$said" "build: CMake could not configure ${log%/*}/" >&2
+    return 2
+  fi
+  jobs=$(farcull_jobs)
+  if ! NINJA_STATUS='[%f/%t] ' LC_ALL=C cmake --build "$build" --parallel "$jobs" \
+    --target "${targets[@]}" 2>&1 | tee "$farcull_root/$log" | farcull_progress "$jobs" "$log"; then
+    echo "build: failed (all output: $log)" >&2
+    return 2
+  fi
+  echo "build: ${targets[*]} done in $((SECONDS - started)) s (${log%/*}/)"
 }
 
 if [[ ${BASH_SOURCE[0]} == "$0" ]]; then farcull_setup; fi

@@ -76,8 +76,7 @@ Solid exact_of(const Vec3& a, const Vec3& b, const Vec3& c, double radius) {
 
 Fattener exact_fattener() {
   const SolidProgram solid{"exact", std::string(embedded::slab_glsl) + embedded::exact_glsl,
-                           kernel_interval<glsl::exact::solid_interval>,
-                           interval_worst};
+                           kernel_interval<glsl::exact::solid_interval>, interval_worst};
   return {"exact", DepthMode::fragment, solid, fatten_exact};
 }
 

@@ -87,8 +87,10 @@ Slabs slabs_of(std::span<const Vec3> points, double radius) {
     }
     middle += rows.row(i).transpose() * (0.5 * lo + 0.5 * hi);
   }
-  out.centre = middle.cast<float>();
-  out.normals = rows.cast<float>();
+  for (int i = 0; i < 3; ++i) {
+    out.centre[i] = nearest(middle[i]);
+    for (int k = 0; k < 3; ++k) out.normals(i, k) = nearest(rows(i, k));
+  }
   for (int i = 0; i < 3; ++i) {
     const Vec3 normal = out.normals.row(i).cast<double>();
     double reach = 0, size = 0;

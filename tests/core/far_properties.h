@@ -1,5 +1,5 @@
-// FAR on scenes that aim at trouble, as a rapidcheck property of any canvas. A counter-example shrinks to few triangles and is
-// written to tests/cases, where the suite replays it ever after.
+// FAR on scenes that aim at trouble, as a rapidcheck property of any canvas. A counter-example
+// shrinks to few triangles and is written to tests/cases, where the suite replays it ever after.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -36,32 +36,38 @@ struct Outcome {
   std::size_t undrawable_stages = 0;  // how often something was beyond the budget
 };
 
-inline Outcome far_on(Canvas& canvas, const Scene& scene, const Fattener& fattener, const std::string& views, int resolution,
-                      double factor = 1) {
+inline Outcome far_on(Canvas& canvas, const Scene& scene, const Fattener& fattener,
+                      const std::string& views, int resolution, double factor = 1) {
   const Plan plan = make_plan(scene);
-  const CullSettings settings{.views = parse_views(views), .resolution = resolution, .fattener = fattener,
-                              .radius = {.published = false, .factor = factor}, .economy = true};
+  const CullSettings settings{.views = parse_views(views),
+                              .resolution = resolution,
+                              .fattener = fattener,
+                              .radius = {.published = false, .factor = factor},
+                              .economy = true};
   const CullResult result = cull(scene, plan, settings, canvas);
-  Outcome out{account(scene, box_join(plan.triangle_boxes, owners(scene), result.live)), result.live.size()};
+  Outcome out{account(scene, box_join(plan.triangle_boxes, owners(scene), result.live)),
+              result.live.size()};
   for (const Stage& stage : result.stages) {
-    out.undrawable_stages += stage.reason.find("beyond the budget") != std::string::npos || !stage.ran;
+    out.undrawable_stages +=
+        stage.reason.find("beyond the budget") != std::string::npos || !stage.ran;
   }
   return out;
 }
 
-/// A triangle as small numbers; what they mean is up to the family. Small numbers make exact contacts, coplanar overlaps and
-/// degenerate triangles common, and shrink well.
+/// A triangle as small numbers; what they mean is up to the family. Small numbers make exact
+/// contacts, coplanar overlaps and degenerate triangles common, and shrink well.
 struct Spec {
-  int object;                 // 0 .. 2
-  std::array<int, 9> at;      // -8 .. 8
-  std::array<int, 9> nudge;   // -1 .. 1
-  int kind;                   // 0 .. 7
+  int object;                // 0 .. 2
+  std::array<int, 9> at;     // -8 .. 8
+  std::array<int, 9> nudge;  // -1 .. 1
+  int kind;                  // 0 .. 7
 };
 
 inline rc::Gen<Spec> spec() {
   return rc::gen::map(
-      rc::gen::tuple(rc::gen::inRange(0, 3), rc::gen::container<std::array<int, 9>>(rc::gen::inRange(-8, 9)),
-                     rc::gen::container<std::array<int, 9>>(rc::gen::inRange(-1, 2)), rc::gen::inRange(0, 8)),
+      rc::gen::tuple(
+          rc::gen::inRange(0, 3), rc::gen::container<std::array<int, 9>>(rc::gen::inRange(-8, 9)),
+          rc::gen::container<std::array<int, 9>>(rc::gen::inRange(-1, 2)), rc::gen::inRange(0, 8)),
       [](const std::tuple<int, std::array<int, 9>, std::array<int, 9>, int>& t) {
         return Spec{std::get<0>(t), std::get<1>(t), std::get<2>(t), std::get<3>(t)};
       });
@@ -168,9 +174,12 @@ inline Scene scene_of(const std::vector<Spec>& specs, const Family& family) {
   return scene_of(objects);
 }
 
-inline std::filesystem::path cases_folder() { return std::filesystem::path(FARCULL_TEST_DIR) / "cases"; }
+inline std::filesystem::path cases_folder() {
+  return std::filesystem::path(FARCULL_TEST_DIR) / "cases";
+}
 
-/// The scene as OBJ (17 digits give every double back), with the settings it failed at in its first line.
+/// The scene as OBJ (17 digits give every double back), with the settings it failed at in its first
+/// line.
 inline void write_case(const std::string& name, const Scene& scene, const std::string& settings) {
   std::ofstream out(cases_folder() / (name + ".obj"));
   out << "# " << settings << "\n";
@@ -178,7 +187,8 @@ inline void write_case(const std::string& name, const Scene& scene, const std::s
   for (const Object& object : scene.objects) {
     if (object.triangle_count == 0) continue;
     out << "o " << object.name << "\n";
-    for (std::uint32_t t = object.first_triangle; t < object.first_triangle + object.triangle_count; ++t) {
+    for (std::uint32_t t = object.first_triangle; t < object.first_triangle + object.triangle_count;
+         ++t) {
       for (const Vec3& p : scene.corners(t)) {
         std::snprintf(line, sizeof line, "v %.17g %.17g %.17g\n", p[0], p[1], p[2]);
         out << line;
@@ -189,7 +199,8 @@ inline void write_case(const std::string& name, const Scene& scene, const std::s
 }
 
 inline const std::vector<std::string>& property_views() {
-  static const std::vector<std::string> all = {"x,y,z", "z", "x,-x", "1:1:1", "1:2:0.5,y", "-1:0.1:0.1"};
+  static const std::vector<std::string> all = {"x,y,z", "z",         "x,-x",
+                                               "1:1:1", "1:2:0.5,y", "-1:0.1:0.1"};
   return all;
 }
 inline const std::vector<int>& property_resolutions() {
@@ -197,9 +208,12 @@ inline const std::vector<int>& property_resolutions() {
   return all;
 }
 
-/// The property for one family and offset: no colliding pair is culled. `tests` scenes of up to ~40 triangles.
-inline void expect_far_misses_nothing(Canvas& canvas, const Fattener& fattener, const Family& family, int tests,
-                                      const std::string& canvas_name, std::uint64_t& colliding, std::uint64_t& culled) {
+/// The property for one family and offset: no colliding pair is culled. `tests` scenes of up to ~40
+/// triangles.
+inline void expect_far_misses_nothing(Canvas& canvas, const Fattener& fattener,
+                                      const Family& family, int tests,
+                                      const std::string& canvas_name, std::uint64_t& colliding,
+                                      std::uint64_t& culled) {
   SCOPED_TRACE(std::string(family.name) + ", " + fattener.name + ", " + canvas_name);
   rc::detail::TestParams params;
   params.seed = std::hash<std::string>()(std::string(family.name) + fattener.name) ^ 20041110;
@@ -215,8 +229,8 @@ inline void expect_far_misses_nothing(Canvas& canvas, const Fattener& fattener, 
         colliding += all_colliding_pairs(scene, 1).pairs.size();
         culled += scene.triangles.size() - out.live;
         if (out.accounting.false_negatives > 0) {
-          write_case(std::string("far-") + family.name + "-" + fattener.name + "-" + canvas_name, scene,
-                     "views " + views + " resolution " + std::to_string(resolution));
+          write_case(std::string("far-") + family.name + "-" + fattener.name + "-" + canvas_name,
+                     scene, "views " + views + " resolution " + std::to_string(resolution));
         }
         RC_ASSERT(out.accounting.false_negatives == 0u);
       },
@@ -224,7 +238,8 @@ inline void expect_far_misses_nothing(Canvas& canvas, const Fattener& fattener, 
   if (!result.template is<rc::detail::SuccessResult>()) {
     std::ostringstream text;
     rc::detail::printResultMessage(result, text);
-    ADD_FAILURE() << text.str() << "\nseed " << params.seed << "; the smallest scene is in tests/cases";
+    ADD_FAILURE() << text.str() << "\nseed " << params.seed
+                  << "; the smallest scene is in tests/cases";
   }
 }
 
@@ -237,12 +252,16 @@ inline void expect_far_survives_all_families(const MakeCanvas& make, int tests,
     for (const Family& family : families()) {
       expect_far_misses_nothing(*canvas, fattener, family, tests, canvas_name, colliding, culled);
     }
+    std::printf("%s, %s: %llu colliding pairs, %llu triangles culled\n", canvas_name.c_str(),
+                fattener.name.c_str(), static_cast<unsigned long long>(colliding),
+                static_cast<unsigned long long>(culled));
     EXPECT_GT(colliding, 10u * tests) << "too few intersecting pairs to find a miss";
     EXPECT_GT(culled, 2u * tests) << "a method that keeps everything would pass";
   }
 }
 
-/// Replays every scene of tests/cases at the settings of its first line and at others, with both offsets.
+/// Replays every scene of tests/cases at the settings of its first line and at others, with both
+/// offsets.
 inline int replay_cases(const MakeCanvas& make) {
   int replayed = 0;
   for (const Fattener& fattener : {obb_fattener(), exact_fattener()}) {
@@ -250,8 +269,8 @@ inline int replay_cases(const MakeCanvas& make) {
     for (const auto& entry : std::filesystem::directory_iterator(cases_folder())) {
       if (entry.path().extension() != ".obj") continue;
       SCOPED_TRACE(entry.path().filename().string() + ", " + fattener.name);
-      const std::string text =
-          "{\"objects\": [{\"mesh\": \"" + entry.path().filename().string() + "\", \"split\": \"groups\"}]}";
+      const std::string text = "{\"objects\": [{\"mesh\": \"" + entry.path().filename().string() +
+                               "\", \"split\": \"groups\"}]}";
       const Scene scene = parse_scene_file(text, (cases_folder() / "case.json").string());
       std::ifstream file(entry.path());
       std::string word, views = "x,y,z";
@@ -263,7 +282,9 @@ inline int replay_cases(const MakeCanvas& make) {
       }
       EXPECT_EQ(far_on(*canvas, scene, fattener, views, resolution).accounting.false_negatives, 0u);
       for (const int other : {1, 7, 256}) {
-        EXPECT_EQ(far_on(*canvas, scene, fattener, "x,y,z,1:1:1", other).accounting.false_negatives, 0u) << other;
+        EXPECT_EQ(far_on(*canvas, scene, fattener, "x,y,z,1:1:1", other).accounting.false_negatives,
+                  0u)
+            << other;
       }
       ++replayed;
     }

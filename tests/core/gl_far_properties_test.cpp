@@ -12,7 +12,7 @@ lab::MakeCanvas canvases(const GlCanvasOptions& options = {}) {
 }
 
 TEST(GlFarProperty, NoFamilyOfExtremeScenesLosesAPair) {
-  lab::expect_far_survives_all_families(canvases(), 60, "gl");
+  lab::expect_far_survives_all_families(canvases(), 250, "gl");
 }
 
 TEST(GlFarProperty, NorWithOcclusionQueriesOn24BitDepth) {

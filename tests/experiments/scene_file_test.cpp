@@ -233,7 +233,14 @@ TEST_F(SceneFileTest, NamesTheMeshThatIsBad) {
   const Error error = error_of([&] { read(R"({"objects": [{"mesh": "bad.obj"}]})"); });
   EXPECT_EQ(error.where, bad);
   EXPECT_EQ(error.line, 2);
-  error_of([&] { read(R"({"objects": [{"mesh": "a\u0000.obj"}]})"); });
+}
+
+TEST_F(SceneFileTest, RefusesPathsThatTheSystemWouldCutOrNotTake) {
+  // The system ends the path at the NUL, where a mesh stands that was read before.
+  expect_refusal(R"({"objects": [{"mesh": "t.obj"}, {"mesh": "t.obj\u0000.obj"}]})",
+                 "objects[1].mesh contains a NUL byte");
+  expect_refusal(R"({"objects": [{"mesh": ")" + std::string(5000, 'a') + R"(.obj"}]})",
+                 "objects[0].mesh is a path of 5004 bytes");
 }
 
 TEST_F(SceneFileTest, SurvivesDamagedText) {

@@ -16,8 +16,8 @@ struct Count {
   std::ptrdiff_t alive = 0;  // may fall below 0: what is freed may be older than the meter
   std::ptrdiff_t peak = 0;
   std::size_t largest = 0;
-  std::size_t refused = 0;            // bytes of the first allocation that was refused; 0 for none
-  std::ptrdiff_t alive_then = 0;      // bytes that were alive before it
+  std::size_t refused = 0;        // bytes of the first allocation that was refused; 0 for none
+  std::ptrdiff_t alive_then = 0;  // bytes that were alive before it
 };
 
 constinit thread_local Count count;

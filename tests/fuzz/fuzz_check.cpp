@@ -12,12 +12,13 @@ namespace farcull {
 namespace {
 
 // JSON takes the most where objects hold many short keys ("a":0, is 6 bytes and 48 in a vector that
-// holds 3 times as much while it doubles: 24 a byte) and where they are nested ({"": is 5 bytes with
-// its end, a set of keys of 48, tripled, and a key of 80: 45 a byte; but the depth is bounded).
-// Strings are held three times, once in a buffer that doubles. The largest single allocation is a
-// vector after doubling, 2 * 48 / 6 = 16 a byte. The constant is for deciding the pairs of the
-// scene, besides messages and first steps.
-constexpr AllocationLimits kLimits = {.once_per_byte = 16, .all_per_byte = 64, .constant = 32 << 10};
+// holds 3 times as much while it doubles: 24 a byte) and where they are nested ({"": is 5 bytes
+// with its end, a set of keys of 48, tripled, and a key of 80: 45 a byte; but the depth is
+// bounded). Strings are held three times, once in a buffer that doubles. The largest single
+// allocation is a vector after doubling, 2 * 48 / 6 = 16 a byte. The constant is for deciding the
+// pairs of the scene, besides messages and first steps.
+constexpr AllocationLimits kLimits = {
+    .once_per_byte = 16, .all_per_byte = 64, .constant = 32 << 10};
 
 /// Three objects whose pairs are of every kind: crossing, touching at a corner and along an edge,
 /// coplanar, one ulp apart, beside each other with overlapping boxes, and triangles that are a
@@ -32,10 +33,9 @@ Scene make_scene() {
     scene.source_face.push_back(first / 3);
   };
   const auto end_object = [&scene](const char* name) {
-    const std::uint32_t first =
-        scene.objects.empty()
-            ? 0
-            : scene.objects.back().first_triangle + scene.objects.back().triangle_count;
+    const std::uint32_t first = scene.objects.empty() ? 0
+                                                      : scene.objects.back().first_triangle +
+                                                            scene.objects.back().triangle_count;
     const auto end = static_cast<std::uint32_t>(scene.triangles.size());
     scene.objects.push_back({name, first, end - first});
   };
@@ -43,16 +43,16 @@ Scene make_scene() {
   add({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
   add({4, 0, 0}, {4, 4, 0}, {0, 4, 0});
   end_object("floor");
-  add({1, 1, -1}, {1, 1, 1}, {2, 1, 1});          // through the floor
-  add({0, 0, 0}, {-1, 0, 2}, {0, -1, 2});         // a corner on a corner
-  add({1, 0, 0}, {3, 0, 0}, {2, -1, 1});          // an edge on an edge
-  add({3, 3, 0}, {3.5, 3, 0}, {3, 3.5, 0});       // within the plane and inside
-  add({1, 1, kUlp}, {2, 1, 1}, {1, 2, 1});        // just above
+  add({1, 1, -1}, {1, 1, 1}, {2, 1, 1});     // through the floor
+  add({0, 0, 0}, {-1, 0, 2}, {0, -1, 2});    // a corner on a corner
+  add({1, 0, 0}, {3, 0, 0}, {2, -1, 1});     // an edge on an edge
+  add({3, 3, 0}, {3.5, 3, 0}, {3, 3.5, 0});  // within the plane and inside
+  add({1, 1, kUlp}, {2, 1, 1}, {1, 2, 1});
   end_object("things");
-  add({2, 2, -1}, {2, 2, 1}, {2, 2, 3});          // a segment through the floor
-  add({1, 1, 0}, {1, 1, 0}, {1, 1, 0});           // a point on it
+  add({2, 2, -1}, {2, 2, 1}, {2, 2, 3});  // a segment through the floor
+  add({1, 1, 0}, {1, 1, 0}, {1, 1, 0});   // a point on it
   add({3.9, 3.9, -1}, {4.5, 3.9, 1}, {4.5, 4.5, 1});
-  add({1, 2, 1}, {2, 1, 1 + kUlp}, {2, 2, 1.5});  // near the one just above
+  add({2, 1 + kUlp, 1}, {1, 2 + 2 * kUlp, 1}, {2, 2, 1.5});  // one ulp from an edge of a thing
   end_object("degenerate");
   return scene;
 }
@@ -156,7 +156,7 @@ std::string text_around(std::span<const std::uint8_t> bytes) {
   if (!bytes.empty()) certificate.evidence.assign(bytes.begin() + 1, bytes.end());
   if (certificate.evidence.size() != t.pairs.size()) return to_text(certificate);
   Certificate::Claims& claims = certificate.claims = count(certificate);
-  const std::array<std::uint64_t*, 6> counts = {nullptr,       &claims.box_pairs, &claims.kept,
+  const std::array<std::uint64_t*, 6> counts = {nullptr,        &claims.box_pairs, &claims.kept,
                                                 &claims.culled, &claims.separated, &claims.meeting};
   if (bytes[0] > 0 && bytes[0] < counts.size()) ++*counts[bytes[0]];
   return to_text(certificate);

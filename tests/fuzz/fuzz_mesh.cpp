@@ -19,8 +19,8 @@ namespace {
 // projected one (16), the ring (9), the triangle among those of the face (12) and in the mesh (12,
 // while it doubles 36), its face and its group (4 each, doubled). The largest of them are 24 a
 // byte; alive at once are 8 + 24 + 12 + 36 + 8 + 8 = 96 at most, here 128 for what malloc adds to
-// small blocks (a group of OBJ: 5 bytes that take 40 a byte). The constant is for what does not grow:
-// messages of errors, which quote 40 characters, and the first steps of every container.
+// small blocks (a group of OBJ: 5 bytes that take 40 a byte). The constant is for what does not
+// grow: messages of errors, which quote 40 characters, and the first steps of every container.
 constexpr AllocationLimits kLimits = {
     .once_per_byte = 24, .all_per_byte = 128, .constant = 16 << 10};
 

@@ -47,10 +47,32 @@ std::vector<File> corpus(const std::string& folder) {
 }
 
 // What random bytes would not come across: limits of integers, special numbers, structure.
-constexpr std::array<std::string_view, 26> kTokens = {
-    "0", "-1", "3", "127", "255", "65535", "2147483648", "4294967295", "4294967296",
-    "9223372036854775807", "18446744073709551615", "1e308", "-1e309", "5e-324", "nan", "inf",
-    "\n", " ", "\\\n", "#", "\"", "{", "}", "[", "]", ","};
+constexpr std::array<std::string_view, 26> kTokens = {"0",
+                                                      "-1",
+                                                      "3",
+                                                      "127",
+                                                      "255",
+                                                      "65535",
+                                                      "2147483648",
+                                                      "4294967295",
+                                                      "4294967296",
+                                                      "9223372036854775807",
+                                                      "18446744073709551615",
+                                                      "1e308",
+                                                      "-1e309",
+                                                      "5e-324",
+                                                      "nan",
+                                                      "inf",
+                                                      "\n",
+                                                      " ",
+                                                      "\\\n",
+                                                      "#",
+                                                      "\"",
+                                                      "{",
+                                                      "}",
+                                                      "[",
+                                                      "]",
+                                                      ","};
 
 /// One to four random edits: bytes changed, removed, repeated, taken from another file, numbers
 /// replaced.
@@ -79,8 +101,8 @@ std::string mutated(std::string bytes, const std::vector<File>& files, std::uint
         bytes.insert(at, token);
         break;
       case 5: {  // the number at or after the place
-        const auto first = std::find_if(bytes.begin() + static_cast<std::ptrdiff_t>(at),
-                                        bytes.end(), digit);
+        const auto first =
+            std::find_if(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end(), digit);
         const auto last = std::find_if_not(first, bytes.end(), digit);
         bytes.replace(first, last, token);
         break;
@@ -195,13 +217,14 @@ TEST(FuzzHarness, FindsAnAllocationThatTheInputDoesNotPayFor) {
 TEST(FuzzHarness, FindsOtherExceptions) {
   const std::string bytes;
   Answer answer = Answer::refused;
-  EXPECT_EQ(finding_of([](const std::uint8_t*, std::size_t) { return Answer::proved; }, bytes,
-                       answer),
-            "");
+  EXPECT_EQ(
+      finding_of([](const std::uint8_t*, std::size_t) { return Answer::proved; }, bytes, answer),
+      "");
   EXPECT_EQ(answer, Answer::proved);
-  EXPECT_NE(finding_of([](const std::uint8_t*, std::size_t) -> Answer { throw std::length_error(""); },
-                       bytes, answer),
-            "");
+  EXPECT_NE(
+      finding_of([](const std::uint8_t*, std::size_t) -> Answer { throw std::length_error(""); },
+                 bytes, answer),
+      "");
   EXPECT_NE(finding_of([](const std::uint8_t*, std::size_t) -> Answer { throw Finding{"x"}; },
                        bytes, answer),
             "");

@@ -104,8 +104,8 @@ class Line {
       const Real foot = -(px * fx + py * fy) / along2;
       offer(on_edge(edge, foot));
       if (rho2 < 0) continue;
-      offer(on_edge(
-          edge, foot + sign * fz * std::sqrt(rho2 / (along2 + fz * fz)) / std::sqrt(along2)));
+      offer(on_edge(edge,
+                    foot + sign * fz * std::sqrt(rho2 / (along2 + fz * fz)) / std::sqrt(along2)));
     }
     Real3 u, v, n, q;
     for (int k = 0; k < 3; ++k) {

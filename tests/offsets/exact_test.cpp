@@ -8,12 +8,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <iostream>
 
 #include "offsets/kernel.h"
 #include "offsets/obb.h"
 #include "offsets/round.h"
+#include "tests/offsets/exact_cases.h"
 #include "tests/offsets/exact_line.h"
 
 namespace farcull {
@@ -37,145 +37,16 @@ using exact_line::Tally;
 using exact_line::Weights;
 using rational::Q;
 using rational::Random;
-using Triangle = std::array<Vec3, 3>;
+using namespace exact_cases;
 
 const Kernel kFloat = exact_fattener().solid.interval;
 const Kernel kWorst = exact_fattener().solid.interval_worst;
-constexpr Kernel kWithoutWidening =
-    kernel_interval<glsl::exact_without_widening::solid_interval>;
+constexpr Kernel kWithoutWidening = kernel_interval<glsl::exact_without_widening::solid_interval>;
 
 Solid solid_of(const Triangle& t, double radius) { return exact_of(t[0], t[1], t[2], radius); }
 
 void print(const Solid& solid) {
   for (const auto& row : solid) std::printf("%a %a %a %a\n", row[0], row[1], row[2], row[3]);
-}
-
-// ---- generators ----
-
-constexpr const char* kKinds[] = {
-    "ordinary",      "needle",  "edge-on", "nearly edge-on", "flat", "vertical edge", "segment",
-    "point",         "huge z",  "tiny",    "needle end-on",  "halves of pixels",
-    "nearly a line", "far and small"};
-constexpr int kKindCount = static_cast<int>(std::size(kKinds));
-
-Triangle random_triangle(Random& random, int kind) {
-  const Vec3 at = random.cube(500);
-  const auto all = [&](const std::function<Vec3(int)>& corner) {
-    return Triangle{at + corner(0), at + corner(1), at + corner(2)};
-  };
-  const double slope = random.uniform(0, 6.3);
-  const Vec3 across(std::cos(slope), std::sin(slope), 0);
-  switch (kind) {
-    case 0:
-      return all([&](int) { return random.cube(20); });
-    case 1: {  // aspect 1e3 .. 1e12
-      const Vec3 e = random.scaled3(0, 9);
-      const double thin = e.norm() * std::pow(10, -random.uniform(3, 12));
-      return {at - e, at + e, at + e * random.uniform(-1, 1) + random.cube(thin)};
-    }
-    case 2:
-    case 3: {
-      const double off = kind == 2 ? 0 : std::abs(random.scaled(-50, -4));
-      return all([&](int) {
-        return Vec3(across * random.uniform(-20, 20) + Vec3(0, 0, random.uniform(-20, 20)) +
-                    random.cube(off));
-      });
-    }
-    case 4: {
-      const double off = random.coin() ? 0 : std::abs(random.scaled(-50, -4));
-      return all([&](int) {
-        return Vec3(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-off, off));
-      });
-    }
-    case 5: {
-      const Vec3 p = random.cube(20);
-      return {at, at + Vec3(0, 0, random.scaled(-10, 9)), at + p};
-    }
-    case 6: {
-      const Vec3 p = random.scaled3(-20, 9);
-      return {at, at + p, random.coin() ? at : Vec3(at + 0.5 * p)};
-    }
-    case 7:
-      return {at, at, at};
-    case 8: {
-      const double most = std::pow(10, random.uniform(3, 9));
-      return all([&](int) {
-        return Vec3(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-most, most));
-      });
-    }
-    case 9: {
-      const double size = std::pow(10, -random.uniform(3, 12));
-      const Vec3 centre(std::floor(at[0]) + 0.5, std::floor(at[1]) + 0.5, random.uniform(-1, 1));
-      return {centre + random.cube(size), centre + random.cube(size), centre + random.cube(size)};
-    }
-    case 10: {
-      const double most = std::pow(10, random.uniform(1, 9));
-      return all([&](int) {
-        return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-most, most));
-      });
-    }
-    case 11:
-      return all([&](int) {
-        return Vec3(0.5 * random.below(20) - at[0] + std::floor(at[0]),
-                    0.5 * random.below(20) - at[1] + std::floor(at[1]), 0.5 * random.below(20));
-      });
-    case 12: {  // a corner a little off the line of the others
-      const Vec3 e = random.cube(20);
-      return {at, at + e, at + e * random.uniform(-1, 2) + random.scaled3(-60, -10)};
-    }
-    default: {
-      const Vec3 far(at[0], at[1], random.sign() * std::pow(10, random.uniform(3, 9)));
-      return {far + random.cube(2), far + random.cube(2), far + random.cube(2)};
-    }
-  }
-}
-
-double random_radius(Random& random) {
-  constexpr double kRadii[] = {0, 0.7, 0.7, 0.7, 5, 0.7166};
-  const int pick = random.below(8);
-  return pick < 6 ? kRadii[pick] : std::abs(random.scaled(-20, 7));
-}
-
-Weights random_weights(Random& random) {
-  switch (random.below(4)) {
-    case 0:
-      return exact_line::on_edge(random.below(3), random.below(2));
-    case 1:
-      return exact_line::on_edge(random.below(3), random.uniform(0, 1));
-    default: {
-      const double a = random.uniform(0, 1), b = random.uniform(0, 1);
-      return exact_line::weights(std::min(a, b), std::abs(a - b));
-    }
-  }
-}
-
-/// A triangle, and the centre of a pixel that it lies around: inside its image, outside, or as far
-/// from a point of it as the radius, give or take 2^-5 to 2^-50 of it.
-struct Case {
-  int kind;
-  Triangle triangle;
-  double radius;
-  float cx, cy;
-};
-
-Case random_case(Random& random, int kind) {
-  Case out{kind, random_triangle(random, kind), random_radius(random), 0, 0};
-  out.cx = static_cast<float>(random.below(1200) - 600 + 0.5);
-  out.cy = static_cast<float>(random.below(1200) - 600 + 0.5);
-  const Weights w = random_weights(random);
-  const Triangle& t = out.triangle;
-  const Vec3 p =
-      t[0] + double(w.w1) * (t[1] - t[0]) + double(w.w2) * (t[2] - t[0]);
-  const int pick = random.below(8);
-  const double angle = pick == 0 ? 1.5707963267948966 * random.below(4) : random.uniform(0, 6.3);
-  double distance = out.radius * random.uniform(0, 1.02);
-  if (pick < 3) distance = out.radius * (1 + random.scaled(-50, -5));
-  if (pick == 3) distance = 0;
-  if (pick == 4) distance = out.radius + random.uniform(0, 20);
-  const Vec3 shift(out.cx + distance * std::cos(angle) - p[0],
-                   out.cy + distance * std::sin(angle) - p[1], 0);
-  for (Vec3& corner : out.triangle) corner += shift;
-  return out;
 }
 
 // ---- exact_of ----
@@ -284,8 +155,7 @@ void expect_holds(Kernel kernel, int cases, std::uint64_t seed) {
       const Answer a = answer(kernel, c.cx, c.cy, solid);
       hits += a.hit;
       check_contacts(line, solid, c.cx, c.cy, a, tally);
-      for (int k = 0; k < 2; ++k)
-        check(line, solid, c.cx, c.cy, random_weights(random), a, tally);
+      for (int k = 0; k < 2; ++k) check(line, solid, c.cx, c.cy, random_weights(random), a, tally);
       if (tally.violations != 0) {
         print(solid);
         FAIL() << kKinds[kind] << ", case " << n << " at " << c.cx << ", " << c.cy;
@@ -317,65 +187,6 @@ TEST(ExactKernel, WithoutWideningEveryKindIsViolated) {
     EXPECT_GT(tally.violations, 0) << kKinds[kind];
     std::cout << kKinds[kind] << ": " << tally.violations << " of " << tally.checks
               << " points lost\n";
-  }
-}
-
-float number(double x) { return static_cast<float>(x); }
-
-/// A solid made of floats directly: corners with zeros, denormals and equal coordinates, edges
-/// along and across the line, lengths on either side of the kernel's 1e-12, radii from none to
-/// 2^20, cuts anywhere.
-void adversarial(Random& random, Solid& s, float& cx, float& cy) {
-  s = {};
-  const double far = random.below(3) == 0 ? 1e9 : 1000;
-  cx = number(random.below(1000) - 500 + 0.5);
-  cy = number(random.below(1000) - 500 + 0.5);
-  const double reach = random.scaled(-20, 10), radius = std::abs(random.scaled(-10, 8));
-  s[1][3] = random.below(6) == 0 ? 0 : number(random.below(20) == 0 ? 0x1p20 : radius);
-  for (int i = 1; i <= 3; ++i) {
-    for (int k = 0; k < 3; ++k) s[i][k] = number(reach * random.uniform(-1, 1));
-    switch (random.below(9)) {
-      case 0:
-        s[i][random.below(3)] = 0;
-        break;
-      case 1:
-        s[i][random.below(3)] = number(random.scaled(-149, -30));
-        break;
-      case 2:
-        s[i] = {s[1][0], s[1][1], s[i][2], s[i][3]};
-        break;
-      case 3:  // about 1e-6 px beside the first corner
-        s[i] = {number(s[1][0] + random.scaled(-22, -18)), s[1][1], s[i][2], s[i][3]};
-        break;
-      case 4:
-        s[i][2] = s[1][2];
-        break;
-      case 5:
-        s[i][2] = number(random.uniform(-far, far));
-        break;
-      default:
-        break;
-    }
-  }
-  // The line at about the radius from a point of the triangle.
-  const Weights w = random_weights(random);
-  double p[2];
-  for (int k = 0; k < 2; ++k) {
-    p[k] = s[1][k] + double(w.w1) * (double(s[2][k]) - s[1][k]) +
-           double(w.w2) * (double(s[3][k]) - s[1][k]);
-  }
-  const double distance = s[1][3] * (random.coin() ? 1 + random.scaled(-30, -10)
-                                                   : random.uniform(0, 1.01));
-  const double angle = random.uniform(0, 6.3);
-  s[0] = {number(cx - p[0] + distance * std::cos(angle)),
-          number(cy - p[1] + distance * std::sin(angle)), number(random.uniform(-far, far)), 0};
-  if (random.below(10) == 0) s[0][2] = 0;
-  const double mid = s[0][2] + random.scaled(-6, 8), thick = std::abs(random.scaled(-6, 12));
-  s[0][3] = number(mid - thick);
-  s[2][3] = std::max(number(mid + thick), s[0][3]);
-  if (random.below(3) == 0) {  // the triangle and the ball alone decide
-    s[0][3] = number(-4 * far);
-    s[2][3] = number(4 * far);
   }
 }
 
@@ -576,10 +387,11 @@ TEST(ExactKernel, AKernelThatAnswersItsCutsIsLoose) {
 TEST(ExactKernel, DiscardsLinesThatClearlyMissAnyKindOfTriangle) {
   for (int kind = 0; kind < kKindCount; ++kind) {
     Tightness found = measure(kFloat, kind, 0.7, 3'000);
-    std::printf("%-16s excess (px) median %.3g, 99.9%% %.3g, most %.3g; %ld of %ld clear misses "
-                "reported as hits\n",
-                kKinds[kind], found.rank(0.5), found.rank(0.999), found.rank(1), found.false_hits,
-                found.clear_misses);
+    std::printf(
+        "%-16s excess (px) median %.3g, 99.9%% %.3g, most %.3g; %ld of %ld clear misses "
+        "reported as hits\n",
+        kKinds[kind], found.rank(0.5), found.rank(0.999), found.rank(1), found.false_hits,
+        found.clear_misses);
     EXPECT_LE(found.false_hits * 1000, found.clear_misses) << kKinds[kind];
   }
 }
@@ -594,9 +406,10 @@ TEST(ExactKernel, IsSeldomWiderThanTheBox) {
     wider += ratio > 1.001;
   }
   const double mean = sum / double(found.ratio.size());
-  std::printf("length of the interval relative to the box's: mean %.3f, most %.3f; %ld of %zu "
-              "lines more than 0.1%% longer\n",
-              mean, most, wider, found.ratio.size());
+  std::printf(
+      "length of the interval relative to the box's: mean %.3f, most %.3f; %ld of %zu "
+      "lines more than 0.1%% longer\n",
+      mean, most, wider, found.ratio.size());
   EXPECT_LT(mean, 1);
   EXPECT_LT(wider * 1000, static_cast<long>(found.ratio.size()));
 }

@@ -103,18 +103,17 @@ Comparison compare(const Fattener& fattener, const Fattener& reference, std::uin
   }
   for (int i = 0; i < kSide * kSide; ++i) {
     const Cell& cell = out.cells[i];
-    const Answer a =
-        exact_line::answer(reference.solid.interval, cell.cx, cell.cy, cell.solid);
+    const Answer a = exact_line::answer(reference.solid.interval, cell.cx, cell.cy, cell.solid);
     const Answer b{!std::isnan(entry[i]), entry[i], exit[i]};
     EXPECT_EQ(std::isnan(entry[i]), std::isnan(exit[i])) << "pixel " << i;
     out.cpp.push_back(a);
     out.gl.push_back(b);
     out.hits += a.hit && b.hit;
     out.only_one += a.hit != b.hit;
-    out.other_bits += a.hit && b.hit &&
-                      (std::bit_cast<std::uint32_t>(a.entry) !=
-                           std::bit_cast<std::uint32_t>(b.entry) ||
-                       std::bit_cast<std::uint32_t>(a.exit) != std::bit_cast<std::uint32_t>(b.exit));
+    out.other_bits +=
+        a.hit && b.hit &&
+        (std::bit_cast<std::uint32_t>(a.entry) != std::bit_cast<std::uint32_t>(b.entry) ||
+         std::bit_cast<std::uint32_t>(a.exit) != std::bit_cast<std::uint32_t>(b.exit));
   }
   std::printf("%s: %ld lines hit; %ld with other bits, %ld hit by only one of C++ and GL\n",
               fattener.name.c_str(), out.hits, out.other_bits, out.only_one);

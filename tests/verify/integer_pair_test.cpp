@@ -84,25 +84,30 @@ TEST(IntegerPair, EveryDirectionIsTheOneOfThePage) {
   }
 }
 
-// Machine integers give way to GMP at 30, 41 and 62 bits. Corners of a cube of full size reach the
-// bounds as closely as anything does.
+// Machine integers give way to GMP at differences of 30, 41 and 62 bits and coordinates of 125.
+// Corners of a cube whose side just has that many bits come closest to overflow; the 1 pins the
+// common scale.
 TEST(IntegerPair, MachineIntegersNeverOverflow) {
   std::mt19937_64 random(17);
-  for (const int bits : {29, 30, 31, 40, 41, 42, 52, 53, 61, 62, 63, 64, 124, 125, 126}) {
+  for (const int bits :
+       {29, 30, 31, 32, 33, 40, 41, 42, 43, 53, 61, 62, 63, 64, 124, 125, 126, 127, 128, 129}) {
     SCOPED_TRACE(bits);
-    const double half = std::ldexp(1, bits - 1);
-    for (int n = 0; n < 300; ++n) {
+    const double lo = -std::ldexp(1, bits - 1);
+    const double hi = bits <= 53 ? -lo - 1 : std::nextafter(-lo, 0);  // hi - lo < 2^bits
+    for (int n = 0; n < 250; ++n) {
       std::array<Triangle, 2> pair;
       for (Triangle& t : pair) {
         for (Vec3& p : t) {
           for (int k = 0; k < 3; ++k) {
-            p[k] = random() % 2 == 0 ? half : -half;
-            if (random() % 4 == 0) p[k] *= 1 - std::ldexp(1, -static_cast<int>(random() % 53));
+            p[k] = random() % 2 == 0 ? lo : hi;
             if (random() % 16 == 0) p[k] = static_cast<double>(random() % 3) - 1;
             if (random() % 16 == 0) p[k] = std::nextafter(p[k], 0);
+            if (n % 5 == 0) p[k] = random() % 2 == 0 ? lo : -lo;
+            if (n % 5 < 2 && k > 0) p[k] = static_cast<double>(random() % 3) - 1;
           }
         }
       }
+      pair[random() % 2][random() % 3][1 + static_cast<int>(random() % 2)] = 1;
       expect_every_direction_as_on_the_page(pair[0], pair[1]);
     }
   }
