@@ -151,7 +151,8 @@ TEST(ProxyRectangle, IsTightAroundObliqueNeedles) {
 
 bool same(const Drawables& a, const Drawables& b) {
   const auto bytes = [](const auto& x, const auto& y) {
-    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0;
+    return x.size() == y.size() &&  // memcmp takes no null pointer, not even for no bytes
+           (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0);
   };
   return a.mode == b.mode && a.first == b.first && a.undrawable == b.undrawable &&
          bytes(a.proxies, b.proxies) && bytes(a.triangles, b.triangles);
