@@ -1,4 +1,5 @@
-// Pairs of overlapping boxes of different owners, by sweep and prune along one axis, in strips of another.
+// Pairs of overlapping boxes of different owners, by sweep and prune along one axis, in strips of
+// another.
 #pragma once
 
 #include <cstdint>

@@ -28,8 +28,9 @@ struct Comparison {
 /// Throws Error naming the option for bad arguments, before a scene is read.
 void validate(const CompareArguments& arguments);
 
-/// Runs every method at every resolution (`exact` once; far with every offset), each `repeat` times. Throws Error for bad
-/// arguments, and before the first run for a resolution beyond the device.
+/// Runs every method at every resolution (`exact` once; far with every offset), each `repeat`
+/// times. Throws Error for bad arguments, and before the first run for a resolution beyond the
+/// device.
 Comparison compare(const Scene& scene, const CompareArguments& arguments,
                    const Progress& progress = {});
 

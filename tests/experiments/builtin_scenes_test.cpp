@@ -252,7 +252,7 @@ TEST(PackagedScenes, ComeFromTheFolderOfTheEnvironment) {
 }
 
 TEST(PackagedScenes, AreWhatTheirEntrySays) {
-  if (!has_meshes()) GTEST_SKIP() << "no packaged meshes; run bash experiments/meshes.sh";
+  ASSERT_TRUE(has_meshes()) << "no packaged meshes; run bash experiments/meshes.sh";
   for (const BuiltinScene& entry : builtin_scenes()) {
     if (!entry.needs_meshes) continue;
     const Scene scene = entry.make();
@@ -266,7 +266,7 @@ TEST(PackagedScenes, AreWhatTheirEntrySays) {
 }
 
 TEST(PackagedScenes, TwoBunniesAreTheSceneFileOfTheManual) {
-  if (!has_meshes()) GTEST_SKIP() << "no packaged meshes; run bash experiments/meshes.sh";
+  ASSERT_TRUE(has_meshes()) << "no packaged meshes; run bash experiments/meshes.sh";
   const std::string bunny = mesh_folder() + "/bunny00.off";
   const Box box = bounds(load_mesh(bunny));
   const double half = (box.hi.x() - box.lo.x()) / 2;
@@ -281,7 +281,7 @@ TEST(PackagedScenes, TwoBunniesAreTheSceneFileOfTheManual) {
 }
 
 TEST(PackagedScenes, NearCopyIsMovedByABillionthOfItsDiagonal) {
-  if (!has_meshes()) GTEST_SKIP() << "no packaged meshes; run bash experiments/meshes.sh";
+  ASSERT_TRUE(has_meshes()) << "no packaged meshes; run bash experiments/meshes.sh";
   const Scene scene = make_builtin_scene("near-copy");
   const std::size_t half = scene.vertices.size() / 2;
   const double length = diagonal(bounds(scene));
