@@ -131,7 +131,7 @@ TEST(LoadMesh, RefusesAFileOfATerabyteWithoutReadingIt) {
   const std::string path = folder.write("t.off", "OFF\n");
   std::error_code error;
   std::filesystem::resize_file(path, std::uintmax_t{1} << 40, error);
-  if (error) GTEST_SKIP() << "no sparse files here";
+  ASSERT_FALSE(error) << "this folder must hold sparse files: " << error.message();
   expect_error(error_of([&] { load_mesh(path); }), path, 0, "bytes");
 }
 
