@@ -33,6 +33,7 @@ struct Object {
   std::string name;
   std::uint32_t first_triangle = 0;  // index into Scene::triangles
   std::uint32_t triangle_count = 0;  // may be 0
+  bool self = false;  // its own triangles are tested against each other as well
 };
 
 /// Objects own contiguous, ascending, gapless ranges of triangles. Object and triangle order is the
