@@ -3,19 +3,16 @@
 // Why Epick decides exactly here, read from the headers of CGAL 5.5.1 (the tests hold it against
 // integer arithmetic):
 // - do_intersect of triangle/triangle (the coplanar case too) and triangle/segment asks only
-// orientation_3 and
-//   coplanar_orientation_3 about input points (Guigue, Devillers: Fast and robust triangle-triangle
-//   overlap test using orientation predicates, 2003). Both have preconditions on degeneracy, hence
-//   the sorting into shapes first.
+//   orientation_3 and coplanar_orientation_3 about input points (Guigue, Devillers: Fast and robust
+//   triangle-triangle overlap test using orientation predicates, 2003). Both have preconditions on
+//   degeneracy, hence the sorting into shapes first.
 // - The others (segment/segment constructs supporting lines) are one Filtered_predicate each: it
-// runs the whole function,
-//   constructions and all, over intervals and, where that leaves a doubt, over rationals. Nothing
-//   is rounded in between.
+//   runs the whole function, constructions and all, over intervals and, where that leaves a doubt,
+//   over rationals. Nothing is rounded in between.
 // - Overflow: static filters stand aside where a difference of coordinates exceeds 1e102 (1e153 for
-// collinearity) and where
-//   products could underflow; intervals round outward to infinity, and 0 * infinity widens. CGAL's
-//   intersection() is never called: with inexact constructions it misses intersections (CGAL issue
-//   6384).
+//   collinearity) and where products could underflow; intervals round outward to infinity, and
+//   0 * infinity widens. CGAL's intersection() is never called: with inexact constructions it
+//   misses intersections (CGAL issue 6384).
 #include "verify/exact.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -24,10 +21,14 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <future>
+#include <limits>
 #include <stdexcept>
 #include <tuple>
 #include <variant>
+
+#include "verify/distance.h"
 
 namespace farcull {
 namespace {
@@ -63,6 +64,69 @@ Hull hull(const std::array<Vec3, 3>& corners) {
   return point(a);
 }
 
+using Corners = std::array<Vec3, 3>;
+
+bool hulls_meet(const Hull& p, const Hull& q) {
+  return std::visit([](const auto& x, const auto& y) { return CGAL::do_intersect(x, y); }, p, q);
+}
+
+Hull hull(const Vec3& p, const Vec3& q) {
+  if (p == q) return point(p);
+  return Kernel::Segment_3(point(p), point(q));
+}
+
+/// The parts that a degenerate triangle is made of at a corner: the segments from it to the others.
+/// A triangle that is none is its own only part.
+std::vector<Corners> parts_at(const Corners& t, int corner) {
+  if (shape(t) == Shape::triangle) return {t};
+  const Vec3& v = t[corner];
+  return {{v, v, t[(corner + 1) % 3]}, {v, v, t[(corner + 2) % 3]}};
+}
+
+/// The rim of such a part: what a ray from the corner leaves it by.
+Hull rim_at(const Corners& part, const Vec3& v) {
+  std::array<Vec3, 2> others;
+  int count = 0;
+  for (const Vec3& p : part) {
+    if (p != v) others.at(count++) = p;
+  }
+  if (count == 0) return point(v);
+  return hull(others[0], others[count - 1]);
+}
+
+/// Neighbours with one shared position v. Both are unions of parts that are convex, contain v and
+/// do not have v on their rims, unless a part is v itself. A common point of two parts beyond v can
+/// be moved away from v until it leaves one of them, which is at a rim.
+bool meet_beyond_vertex(const Corners& a, int i, const Corners& b, int j) {
+  const Vec3& v = a[i];
+  for (const Corners& s : parts_at(a, i)) {
+    for (const Corners& t : parts_at(b, j)) {
+      const Hull p = hull(s);
+      const Hull q = hull(t);
+      if (std::holds_alternative<Point>(p) || std::holds_alternative<Point>(q)) continue;
+      if (hulls_meet(rim_at(s, v), q) || hulls_meet(rim_at(t, v), p)) return true;
+    }
+  }
+  return false;
+}
+
+/// Neighbours that share the edge from p to q; r and s are the other corners of theirs, anywhere
+/// (also at p or q).
+bool meet_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
+  const bool flat_a = CGAL::collinear(point(p), point(q), point(r));
+  const bool flat_b = CGAL::collinear(point(p), point(q), point(s));
+  if (flat_a != flat_b) return false;  // the one that is no segment meets the line in its edge
+  if (!flat_a) {
+    return CGAL::coplanar(point(p), point(q), point(r), point(s)) &&
+           CGAL::coplanar_orientation(point(p), point(q), point(r), point(s)) == CGAL::POSITIVE;
+  }
+  // Segments on one line, ordered as their coordinates are: beyond the same end?
+  const auto [lo, hi] = std::minmax(p, q, lexicographically_less);
+  const auto below = [&](const Vec3& x) { return lexicographically_less(x, lo); };
+  const auto above = [&](const Vec3& x) { return lexicographically_less(hi, x); };
+  return (below(r) && below(s)) || (above(r) && above(s));
+}
+
 /// What box_intersection_d asks of a box.
 struct JoinBox {
   using NT = double;
@@ -80,35 +144,75 @@ struct JoinBox {
 constexpr std::ptrdiff_t kCutoff =
     2000;  // below it the join scans; the value that issues and reports quote
 
-/// Calls visit(const JoinBox*, const JoinBox*) once for each two boxes of different owners that
-/// overlap.
+/// Calls visit(const JoinBox*, const JoinBox*) once for each two boxes that overlap and whose
+/// triangles make a pair that counts.
 template <typename Visit>
-void join(const Scene& scene, Visit visit) {
-  const std::vector<Box> boxes = triangle_boxes(scene);
-  const std::vector<std::uint32_t> owner = owners(scene);
-  std::vector<JoinBox> join_boxes(boxes.size());
-  for (std::uint32_t t = 0; t < boxes.size(); ++t) join_boxes[t] = {boxes[t], t, owner[t]};
+void join(const Scene& scene, std::vector<JoinBox>& boxes, Visit visit) {
   std::vector<const JoinBox*> all(boxes.size());
-  for (std::size_t t = 0; t < boxes.size(); ++t) all[t] = &join_boxes[t];
-
-  const auto with_triangles = std::count_if(scene.objects.begin(), scene.objects.end(),
-                                            [](const Object& o) { return o.triangle_count > 0; });
-  if (with_triangles < 2) return;
-  if (with_triangles == 2) {
+  for (std::size_t t = 0; t < boxes.size(); ++t) all[t] = &boxes[t];
+  std::size_t with_triangles = 0;
+  bool self = false;
+  for (const Object& object : scene.objects) {
+    with_triangles += object.triangle_count > 0;
+    self = self || (object.self && object.triangle_count > 1);
+  }
+  if (with_triangles < 2 && !self) return;
+  if (with_triangles == 2 && !self) {
     // Objects are contiguous: the second one starts where the owner changes.
-    const auto second = std::find_if(all.begin(), all.end(), [&](const JoinBox* b) {
-      return b->owner != join_boxes.front().owner;
-    });
+    const auto second = std::find_if(
+        all.begin(), all.end(), [&](const JoinBox* b) { return b->owner != boxes.front().owner; });
     CGAL::box_intersection_d(all.begin(), second, second, all.end(), visit, kCutoff,
                              CGAL::Box_intersection_d::CLOSED, CGAL::Box_intersection_d::BIPARTITE);
     return;
   }
   CGAL::box_self_intersection_d(
       all.begin(), all.end(),
-      [&visit](const JoinBox* a, const JoinBox* b) {
-        if (a->owner != b->owner) visit(a, b);
+      [&](const JoinBox* a, const JoinBox* b) {
+        if (a->owner != b->owner || scene.objects[a->owner].self) visit(a, b);
       },
       kCutoff, CGAL::Box_intersection_d::CLOSED);
+}
+
+/// Grown boxes overlap wherever the difference of two coordinates, in double, does not exceed the
+/// clearance D. half is at least D/2 + ulp(D)/2, so that boxes which are disjoint when grown are
+/// apart by more than 2 half >= D + ulp(D), which no rounding takes back to D. What leaves the
+/// range of double stops at its ends, beyond which there is nothing to lose.
+Box grown(Box box, double half) {
+  constexpr double kMax = std::numeric_limits<double>::max();
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = std::max(std::nextafter(box.lo[k] - half, -kInf), -kMax);
+    box.hi[k] = std::min(std::nextafter(box.hi[k] + half, kInf), kMax);
+  }
+  return box;
+}
+
+/// Differences round monotonously, so that one above the clearance proves the same of the exact
+/// one.
+bool farther_along_an_axis(const Box& a, const Box& b, double clearance) {
+  for (int k = 0; k < 3; ++k) {
+    if (b.lo[k] - a.hi[k] > clearance || a.lo[k] - b.hi[k] > clearance) return true;
+  }
+  return false;
+}
+
+void check_clearance(const char* where, double clearance) {
+  if (!(clearance >= 0 && std::isfinite(clearance))) {
+    throw std::logic_error(std::string(where) + ": a clearance must be finite and not negative");
+  }
+}
+
+enum class Answer : std::uint8_t { apart, colliding, neighbours_apart, neighbours_colliding };
+
+Answer answer(const Scene& scene, const TrianglePair& pair, bool one_object,
+              const ExactQuestion& question) {
+  const Corners a = scene.corners(pair.a);
+  const Corners b = scene.corners(pair.b);
+  if (one_object && share_position(a, b)) {
+    return question.neighbours && intersects_beyond_shared(a, b) ? Answer::neighbours_colliding
+                                                                 : Answer::neighbours_apart;
+  }
+  return within(a, b, question.clearance) ? Answer::colliding : Answer::apart;
 }
 
 }  // namespace
@@ -120,8 +224,46 @@ Shape shape(const std::array<Vec3, 3>& corners) {
 }
 
 bool intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  return std::visit([](const auto& p, const auto& q) { return CGAL::do_intersect(p, q); }, hull(a),
-                    hull(b));
+  return hulls_meet(hull(a), hull(b));
+}
+
+bool within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
+  check_clearance("within", clearance);
+  return intersects(a, b) || (clearance > 0 && disjoint_within(a, b, clearance));
+}
+
+bool share_position(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  for (const Vec3& p : a) {
+    for (const Vec3& q : b) {
+      if (p == q) return true;
+    }
+  }
+  return false;
+}
+
+bool intersects_beyond_shared(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  // The shared positions, each once, as corners of a and of b.
+  std::array<int, 3> in_a{};
+  std::array<int, 3> in_b{};
+  int count = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (std::find(a.begin(), a.begin() + i, a[i]) != a.begin() + i) continue;
+    const auto at = std::find(b.begin(), b.end(), a[i]);
+    if (at == b.end()) continue;
+    in_a[count] = i;
+    in_b[count++] = static_cast<int>(at - b.begin());
+  }
+  switch (count) {
+    case 0:
+      return intersects(a, b);
+    case 1:
+      return meet_beyond_vertex(a, in_a[0], b, in_b[0]);
+    case 2:
+      return meet_beyond_edge(a[in_a[0]], a[in_a[1]], a[3 - in_a[0] - in_a[1]],
+                              b[3 - in_b[0] - in_b[1]]);
+    default:
+      return shape(a) == Shape::triangle;
+  }
 }
 
 std::uint64_t degenerate_triangles(const Scene& scene) {
@@ -132,17 +274,19 @@ std::uint64_t degenerate_triangles(const Scene& scene) {
   return count;
 }
 
-std::vector<TrianglePair> colliding_pairs(const Scene& scene,
-                                          std::span<const TrianglePair> candidates,
-                                          unsigned threads) {
+Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
+                  const ExactQuestion& question) {
+  check_clearance("decide", question.clearance);
   for (const TrianglePair& pair : candidates) {
     if (std::max(pair.a, pair.b) >= scene.triangles.size()) {
-      throw std::logic_error("colliding_pairs: a candidate names a triangle that the scene lacks");
+      throw std::logic_error("decide: a candidate names a triangle that the scene lacks");
     }
+    if (pair.a == pair.b) throw std::logic_error("decide: a candidate of one triangle");
   }
+  const std::vector<std::uint32_t> owner = owners(scene);
   constexpr std::size_t kBlock =
       1024;  // enough work to pay for the shared counter, small enough to balance
-  std::vector<std::uint8_t> collides(candidates.size());
+  std::vector<Answer> answers(candidates.size());
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (;;) {
@@ -150,46 +294,68 @@ std::vector<TrianglePair> colliding_pairs(const Scene& scene,
       if (begin >= candidates.size()) return;
       const std::size_t end = std::min(begin + kBlock, candidates.size());
       for (std::size_t i = begin; i < end; ++i) {
-        collides[i] = intersects(scene.corners(candidates[i].a), scene.corners(candidates[i].b));
+        const TrianglePair& pair = candidates[i];
+        answers[i] = answer(scene, pair, owner[pair.a] == owner[pair.b], question);
       }
     }
   };
   const std::size_t blocks = (candidates.size() + kBlock - 1) / kBlock;
   std::vector<std::future<void>> helpers;  // futures, so that what a thread throws is thrown here
-  for (std::size_t i = 1; i < std::min<std::size_t>(threads, blocks); ++i) {
+  for (std::size_t i = 1; i < std::min<std::size_t>(question.threads, blocks); ++i) {
     helpers.push_back(std::async(std::launch::async, work));
   }
   work();
   for (auto& helper : helpers) helper.get();
 
-  std::vector<TrianglePair> result;
+  Collisions result;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (collides[i]) result.push_back(candidates[i]);
+    const Answer found = answers[i];
+    if (found == Answer::colliding) result.pairs.push_back(candidates[i]);
+    if (found == Answer::neighbours_colliding) result.neighbour_pairs.push_back(candidates[i]);
+    result.neighbours += found >= Answer::neighbours_apart;
   }
   return result;
 }
 
-ExactResult all_colliding_pairs(const Scene& scene, unsigned threads) {
+ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& question) {
+  check_clearance("all_colliding_pairs", question.clearance);
   constexpr std::size_t kChunk =
       1 << 18;  // pairs decided at a time: tens of millions of candidates are never stored
   ExactResult result;
   std::vector<TrianglePair> chunk;
-  const auto decide = [&] {
+  const auto decide_chunk = [&] {
     const auto start = Clock::now();
-    const std::vector<TrianglePair> found = colliding_pairs(scene, chunk, threads);
-    result.pairs.insert(result.pairs.end(), found.begin(), found.end());
+    const Collisions found = decide(scene, chunk, question);
+    const auto append = [](std::vector<TrianglePair>& to, const std::vector<TrianglePair>& from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    append(result.pairs, found.pairs);
+    append(result.neighbour_pairs, found.neighbour_pairs);
+    result.neighbours += found.neighbours;
     result.box_pairs += chunk.size();
     chunk.clear();
     result.predicates_ms += ms_since(start);
   };
   const auto start = Clock::now();
-  join(scene, [&](const JoinBox* a, const JoinBox* b) {
+  const std::vector<Box> boxes = triangle_boxes(scene);
+  const std::vector<std::uint32_t> owner = owners(scene);
+  const double half = std::nextafter(question.clearance / 2, std::numeric_limits<double>::max());
+  std::vector<JoinBox> join_boxes(boxes.size());
+  for (std::uint32_t t = 0; t < boxes.size(); ++t) {
+    join_boxes[t] = {question.clearance > 0 ? grown(boxes[t], half) : boxes[t], t, owner[t]};
+  }
+  join(scene, join_boxes, [&](const JoinBox* a, const JoinBox* b) {
+    if (question.clearance > 0 &&
+        farther_along_an_axis(boxes[a->triangle], boxes[b->triangle], question.clearance)) {
+      return;
+    }
     chunk.push_back({std::min(a->triangle, b->triangle), std::max(a->triangle, b->triangle)});
-    if (chunk.size() == kChunk) decide();
+    if (chunk.size() == kChunk) decide_chunk();
   });
-  decide();
+  decide_chunk();
   result.join_ms = ms_since(start) - result.predicates_ms;
   std::sort(result.pairs.begin(), result.pairs.end());
+  std::sort(result.neighbour_pairs.begin(), result.neighbour_pairs.end());
   return result;
 }
 

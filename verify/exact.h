@@ -1,10 +1,20 @@
 // Exact answers about triangles in double coordinates: the truth that culling is measured against,
-// and the method `exact` (every pair of triangles of different objects) that needs no culling.
+// and the method `exact` (every pair of triangles that counts) that needs no culling.
 //
-// Semantics: a triangle is the closed convex hull of its
-// three corners with the doubles as given, so touching counts, and a degenerate triangle is the
-// segment or the point that it is. Every decision is the sign of a polynomial that CGAL evaluates
-// exactly (filtered, then rational); no rounded construction ever decides.
+// Semantics: a triangle is the closed convex hull of its three corners with the doubles as given,
+// so touching counts, and a degenerate triangle is the segment or the point that it is. Every
+// decision is the sign of a polynomial that is evaluated exactly (filtered, then rational); no
+// rounded construction ever decides.
+//
+// Neighbours are two triangles of one object that share a vertex position (-0.0 equals 0.0). What
+// they share for that reason is no collision: the *shared part* is the shared positions and the
+// segments between any two of them. Neighbours collide iff their intersection is more than that:
+// with one shared position, iff a further point is common; with two, iff the intersection is more
+// than the edge between them; triangles with the same three corners collide unless the corners are
+// collinear.
+//
+// With a clearance D > 0 two triangles that are not neighbours collide iff their distance is at
+// most D. Neighbours have distance 0: D does not matter to them.
 //
 // Preconditions everywhere: coordinates finite (any finite double: subnormal, 1e308 and -0.0, which
 // equals 0.0, are fine); the calling thread rounds to nearest and does not flush subnormals to
@@ -30,30 +40,62 @@ Shape shape(const std::array<Vec3, 3>& corners);
 /// True iff the closed convex hulls share a point. Symmetric; the order of corners does not matter.
 bool intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
+/// True iff the distance of the closed convex hulls is at most `clearance` (world units, finite,
+/// >= 0), squared distances compared exactly; with 0 the same as intersects().
+bool within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
+
+/// True iff a corner of a and a corner of b are equal as doubles.
+bool share_position(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
+
+/// True iff the intersection is more than the shared part (see above). For triangles that share no
+/// position the same as intersects().
+bool intersects_beyond_shared(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
+
 /// How many triangles of the scene are segments or points.
 std::uint64_t degenerate_triangles(const Scene& scene);
 
-/// The candidates that intersect, in the order given (duplicates and all); candidates may be of any
-/// two triangles, also of one object. The answer does not depend on `threads` (0 counts as 1).
-/// Throws std::logic_error if a candidate names a triangle that the scene does not have.
-std::vector<TrianglePair> colliding_pairs(const Scene& scene,
-                                          std::span<const TrianglePair> candidates,
-                                          unsigned threads = std::thread::hardware_concurrency());
+/// How to decide.
+struct ExactQuestion {
+  double clearance = 0;                                    // world units, finite, >= 0
+  unsigned threads = std::thread::hardware_concurrency();  // 0 counts as 1; changes no answer
+  bool neighbours = true;  // false: neighbours are counted, not decided
+};
 
+struct Collisions {
+  std::vector<TrianglePair> pairs;            // that collide and are not neighbours
+  std::vector<TrianglePair> neighbour_pairs;  // neighbours that collide
+  std::uint64_t neighbours = 0;               // candidates that are neighbours, colliding or not
+};
+
+/// The candidates that collide, in the order given (duplicates and all). Candidates may be of any
+/// two different triangles, of one object as well, whatever its `self`. Throws std::logic_error if
+/// a candidate names a triangle that the scene does not have or one triangle twice, or if the
+/// clearance is negative or not finite.
+Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
+                  const ExactQuestion& question = {});
+
+/// decide(), without neighbours' pairs and counts.
+inline std::vector<TrianglePair> colliding_pairs(
+    const Scene& scene, std::span<const TrianglePair> candidates,
+    unsigned threads = std::thread::hardware_concurrency()) {
+  return decide(scene, candidates, {.threads = threads}).pairs;
+}
+
+/// The pairs that count: triangles of different objects, and of one object where it is `self`.
 struct ExactResult {
-  std::vector<TrianglePair>
-      pairs;  // all intersecting pairs of triangles of different objects, sorted, each once
-  std::uint64_t box_pairs =
-      0;                     // pairs of triangles of different objects whose closed boxes overlap
-  double join_ms = 0;        // boxes and box join, wall clock
-  double predicates_ms = 0;  // exact predicates on the overlapping pairs, wall clock
+  std::vector<TrianglePair> pairs;            // all that collide, sorted, each once
+  std::vector<TrianglePair> neighbour_pairs;  // the same of neighbours
+  std::uint64_t neighbours = 0;               // of the pairs that count
+  std::uint64_t box_pairs = 0;  // pairs that count whose closed boxes overlap; with a clearance,
+                                // those not farther apart along an axis, by differences in double
+  double join_ms = 0;           // boxes and box join, wall clock
+  double predicates_ms = 0;     // exact decisions on the overlapping pairs, wall clock
 };
 
 /// The method `exact`: closed boxes by CGAL::box_intersection_d (Zomorodian, Edelsbrunner: Fast
-/// software for box intersections, 2002) with cutoff 2000, then intersects(). Where exactly two
-/// objects have triangles the join is bipartite, else the join of all with all, filtered by owner.
-/// Memory O(triangles + colliding pairs): candidates are not kept.
-ExactResult all_colliding_pairs(const Scene& scene,
-                                unsigned threads = std::thread::hardware_concurrency());
+/// software for box intersections, 2002) with cutoff 2000, then decide(). Where exactly two objects
+/// have triangles and neither is `self` the join is bipartite, else the join of all with all,
+/// filtered by owner. Memory O(triangles + colliding pairs): candidates are not kept.
+ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& question = {});
 
 }  // namespace farcull

@@ -226,7 +226,7 @@ inline void expect_far_misses_nothing(Canvas& canvas, const Fattener& fattener,
         const auto resolution = *rc::gen::elementOf(property_resolutions());
         const Scene scene = scene_of(specs, family);
         const Outcome out = far_on(canvas, scene, fattener, views, resolution);
-        colliding += all_colliding_pairs(scene, 1).pairs.size();
+        colliding += all_colliding_pairs(scene, {.threads = 1}).pairs.size();
         culled += scene.triangles.size() - out.live;
         if (out.accounting.false_negatives > 0) {
           write_case(std::string("far-") + family.name + "-" + fattener.name + "-" + canvas_name,

@@ -130,8 +130,8 @@ TEST(Accounting, ReturnsTheFirstExamplesInSortedOrder) {
   const std::vector<Triangle> copies(40, tile(0));
   const Scene scene = reference::scene_of({copies, copies});
   EXPECT_EQ(account(scene, {}).examples.size(), 10u);
-  EXPECT_EQ(account(scene, {}, 0).examples.size(), 0u);
-  const Accounting a = account(scene, Pairs{{0, 40}}, 3);
+  EXPECT_EQ(account(scene, {}, {.max_examples = 0}).examples.size(), 0u);
+  const Accounting a = account(scene, Pairs{{0, 40}}, {.max_examples = 3});
   EXPECT_EQ(a.examples, (Pairs{{0, 41}, {0, 42}, {0, 43}}));
   EXPECT_EQ(a.false_negatives, 1599u);
 }
@@ -140,7 +140,7 @@ TEST(Accounting, ReturnsTheFirstExamplesInSortedOrder) {
 TEST(Accounting, CountsMoreOverlapsThanOnePortion) {
   const std::vector<Triangle> copies(700, tile(0));
   const Scene scene = reference::scene_of({copies, copies, {tile(0.5), beyond_the_hypotenuse(0)}});
-  const Accounting a = account(scene, Pairs{{0, 701}}, 2);
+  const Accounting a = account(scene, Pairs{{0, 701}}, {.max_examples = 2});
   EXPECT_EQ(a.pairs_total, 490'000u + 2 * 1400u);
   EXPECT_EQ(a.false_negatives, 490'000u + 1400u - 1);
   EXPECT_EQ(a.certified_by_predicates, 1400u);
@@ -195,7 +195,8 @@ RC_GTEST_PROP(AccountingProperty, EachClassAsRecountedOverAllPairs, ()) {
     if (random() % keep_one_in == 0) kept.push_back(pair);
   });
   const std::size_t max_examples = *rc::gen::inRange(0, 12);
-  expect_equal(account(scene, kept, max_examples), recount(scene, kept, max_examples));
+  expect_equal(account(scene, kept, {.max_examples = max_examples}),
+               recount(scene, kept, max_examples));
   RC_ASSERT(!::testing::Test::HasFailure());
 }
 

@@ -1,0 +1,98 @@
+// Of two disjoint triangles some two closest points are a corner of one and a point of the other,
+// or lie on an edge of each: where one point lies inside a face and the other inside a face or an
+// edge, that edge or face is parallel to the first face, and both points can be moved along it,
+// keeping their difference, until one of them reaches an edge or a corner (Ericson, Real-Time
+// Collision Detection, 2005, section 5.1.10). A degenerate triangle is the union of its edges.
+#include "verify/distance.h"
+
+#include <gmpxx.h>
+
+#include <algorithm>
+
+namespace farcull {
+namespace {
+
+using Vector = std::array<mpq_class, 3>;
+using Corners = std::array<Vector, 3>;
+
+Corners rational(const std::array<Vec3, 3>& t) {
+  Corners out;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) out[i][k] = t[i][k];
+  }
+  return out;
+}
+
+Vector minus(const Vector& x, const Vector& y) { return {x[0] - y[0], x[1] - y[1], x[2] - y[2]}; }
+
+mpq_class dot(const Vector& x, const Vector& y) { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]; }
+
+Vector cross(const Vector& x, const Vector& y) {
+  return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+}
+
+/// |w - [0, 1] u|^2: the point w from the segment 0 to u, which may be a point.
+mpq_class from_segment(const Vector& w, const Vector& u) {
+  const mpq_class uu = dot(u, u);
+  mpq_class along = dot(w, u);
+  if (uu == 0 || along <= 0) return dot(w, w);
+  if (along > uu) along = uu;
+  return dot(w, w) - along * (2 * dot(w, u) - along) / uu;
+}
+
+/// True iff segments p + [0, 1] u and q + [0, 1] v come as near as the square root of d2.
+bool segments_within(const Vector& p, const Vector& u, const Vector& q, const Vector& v,
+                     const mpq_class& d2) {
+  const Vector w = minus(p, q);
+  const Vector p_end = {w[0] + u[0], w[1] + u[1], w[2] + u[2]};
+  const Vector back = {-w[0], -w[1], -w[2]};
+  const Vector q_end = {back[0] + v[0], back[1] + v[1], back[2] + v[2]};
+  if (from_segment(w, v) <= d2 || from_segment(p_end, v) <= d2) return true;
+  if (from_segment(back, u) <= d2 || from_segment(q_end, u) <= d2) return true;
+  // Else both closest points lie inside: where the difference is perpendicular to both lines.
+  const mpq_class uu = dot(u, u);
+  const mpq_class uv = dot(u, v);
+  const mpq_class vv = dot(v, v);
+  const mpq_class uw = dot(u, w);
+  const mpq_class vw = dot(v, w);
+  const mpq_class den = uu * vv - uv * uv;
+  if (den == 0) return false;  // parallel: an end is as near
+  const mpq_class s = uv * vw - vv * uw;
+  const mpq_class t = uu * vw - uv * uw;
+  if (s < 0 || s > den || t < 0 || t > den) return false;
+  const Vector normal = cross(u, v);
+  const mpq_class height = dot(normal, w);
+  return height * height <= d2 * den;  // |normal|^2 = den
+}
+
+/// True iff p lies over the face of t, not higher than the square root of d2.
+bool face_within(const Vector& p, const Corners& t, const mpq_class& d2) {
+  const Vector normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
+  const mpq_class nn = dot(normal, normal);
+  if (nn == 0) return false;
+  for (int i = 0; i < 3; ++i) {
+    if (dot(normal, cross(minus(t[(i + 1) % 3], t[i]), minus(p, t[i]))) < 0) return false;
+  }
+  const mpq_class height = dot(normal, minus(p, t[0]));
+  return height * height <= d2 * nn;
+}
+
+}  // namespace
+
+bool disjoint_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
+  const Corners s = rational(a);
+  const Corners t = rational(b);
+  const mpq_class d2 = mpq_class(clearance) * mpq_class(clearance);
+  for (int i = 0; i < 3; ++i) {
+    if (face_within(s[i], t, d2) || face_within(t[i], s, d2)) return true;
+  }
+  for (int i = 0; i < 3; ++i) {
+    const Vector u = minus(s[(i + 1) % 3], s[i]);
+    for (int j = 0; j < 3; ++j) {
+      if (segments_within(s[i], u, t[j], minus(t[(j + 1) % 3], t[j]), d2)) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace farcull
