@@ -1,138 +1,17 @@
 #include <Eigen/Geometry>
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <random>
 #include <utility>
 
 #include "experiments/builtin_parts.h"
+#include "experiments/builtin_shapes.h"
 #include "experiments/scene_build.h"
 
 namespace farcull {
+
+using namespace shapes;
+
 namespace {
-
-// Uniform draws made of the 53 high bits of each word, so that every platform sees the same
-// doubles.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : words_(seed) {}
-
-  double unit() { return static_cast<double>(words_() >> 11) * 0x1p-53; }  // [0, 1)
-  double between(double lo, double hi) { return lo + (hi - lo) * unit(); }
-  std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(words_() % n); }
-  Vec3 in_cube(double half) {
-    const double x = between(-half, half);
-    const double y = between(-half, half);
-    const double z = between(-half, half);
-    return {x, y, z};
-  }
-  Vec3 in_ball() {
-    for (;;) {
-      const Vec3 p = in_cube(1);
-      if (p.squaredNorm() <= 1) return p;
-    }
-  }
-  Vec3 direction() {
-    for (;;) {
-      const Vec3 p = in_ball();
-      if (p.squaredNorm() > 0.01) return p / p.norm();
-    }
-  }
-  // About as many in each octave of [2^-octaves, 1).
-  double over_octaves(std::uint32_t octaves) {
-    const auto octave = static_cast<int>(below(octaves));
-    return std::ldexp(between(0.5, 1), -octave);
-  }
-  // Some orientation at `at`.
-  Placement anywhere(const Vec3& at) {
-    const Vec3 axis = direction();
-    return {.scale = {}, .rotate = Placement::Rotation{axis, between(-3, 3)}, .translate = at};
-  }
-
- private:
-  std::mt19937_64 words_;
-};
-
-// A mesh whose faces are its triangles, in one group.
-Mesh finished(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles) {
-  Mesh mesh;
-  mesh.vertices = std::move(vertices);
-  mesh.triangles = std::move(triangles);
-  mesh.source_face.resize(mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.source_face.size(); ++t) mesh.source_face[t] = t;
-  mesh.group.assign(mesh.triangles.size(), 0);
-  mesh.group_names = {"default"};
-  return mesh;
-}
-
-using Corners = std::array<Vec3, 3>;
-
-// Triangles that share no vertices.
-Mesh soup(const std::vector<Corners>& list) {
-  std::vector<Vec3> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (const Corners& corners : list) {
-    const auto first = static_cast<std::uint32_t>(vertices.size());
-    vertices.insert(vertices.end(), corners.begin(), corners.end());
-    triangles.push_back({first, first + 1, first + 2});
-  }
-  return finished(std::move(vertices), std::move(triangles));
-}
-
-// An icosahedron, each triangle divided into 4^level, on the unit sphere. Square roots only, so the
-// same everywhere.
-Mesh sphere(int level) {
-  const double g = (1 + std::sqrt(5.0)) / 2;
-  std::vector<Vec3> vertices = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
-                                {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
-                                {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  std::vector<std::array<std::uint32_t, 3>> triangles = {
-      {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
-  const auto normalize = [](Vec3& p) {
-    p /= std::sqrt(p.x() * p.x() + p.y() * p.y() + p.z() * p.z());
-  };
-  for (Vec3& p : vertices) normalize(p);
-  for (int step = 0; step < level; ++step) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
-    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-      const auto [entry, is_new] =
-          middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(vertices.size()));
-      if (is_new) {
-        Vec3 p = vertices[a] + vertices[b];
-        normalize(p);
-        vertices.push_back(p);
-      }
-      return entry->second;
-    };
-    std::vector<std::array<std::uint32_t, 3>> finer;
-    for (const auto& [a, b, c] : triangles) {
-      const std::uint32_t ab = middle(a, b);
-      const std::uint32_t bc = middle(b, c);
-      const std::uint32_t ca = middle(c, a);
-      finer.insert(finer.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
-    }
-    triangles = std::move(finer);
-  }
-  return finished(std::move(vertices), std::move(triangles));
-}
-
-// A sphere with bumps and dents of up to about a third of its radius.
-Mesh blob(int level, Random& random) {
-  Mesh mesh = sphere(level);
-  const std::array<Vec3, 4> poles = {random.direction(), random.direction(), random.direction(),
-                                     random.direction()};
-  for (Vec3& p : mesh.vertices) {
-    double radius = 1;
-    for (const Vec3& pole : poles) {
-      const double h = pole.dot(p);
-      radius += 0.15 * h * h * h;
-    }
-    p *= radius;
-  }
-  return mesh;
-}
 
 // About the z axis; `around` steps along the ring, `across` around the tube, 2 * around * across
 // triangles.
@@ -174,17 +53,6 @@ Corners needle(Random& random, double width) {
   across *= width / across.norm();
   const Vec3 start = -0.5 * along;
   return {start, start + along, start + random.between(0.2, 0.8) * along + across};
-}
-
-Corners shifted(Corners corners, const Vec3& by) {
-  for (Vec3& p : corners) p += by;
-  return corners;
-}
-
-Vec3 inner_point(const Corners& corners, Random& random) {
-  const double a = random.between(0.2, 0.4);
-  const double b = random.between(0.2, 0.4);
-  return a * corners[0] + b * corners[1] + (1 - a - b) * corners[2];
 }
 
 }  // namespace

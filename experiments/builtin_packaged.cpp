@@ -14,6 +14,7 @@ constexpr const char* kBunny = "bunny00.off";
 constexpr const char* kArmadillo = "armadillo.off";
 constexpr const char* kElephant = "refined_elephant.off";
 constexpr const char* kDragon = "ChineseDragon-10kv.off";
+constexpr const char* kMannequin = "mannequin-devil.off";
 
 Mesh packaged(const char* file) {
   const std::string path = (std::filesystem::path(mesh_folder()) / file).string();
@@ -35,6 +36,14 @@ Placement onto(const Mesh& first, const Mesh& second) {
   return {.scale = Vec3(Vec3::Constant(scale)),
           .rotate = {},
           .translate = Vec3(centre(bounds(first)) - scale * centre(bounds(second)))};
+}
+
+Scene self_colliding(const std::string& name, const char* file) {
+  SceneBuilder builder(name, name);
+  builder.add(packaged(file), name, Split::kNone, {});
+  Scene scene = builder.finish();
+  for (Object& object : scene.objects) object.self = true;
+  return scene;
 }
 
 }  // namespace
@@ -88,5 +97,9 @@ Scene make_bunnies_far_apart() {
   scene.add(bunny, "second", Split::kNone, {.scale = {}, .rotate = {}, .translate = step});
   return scene.finish();
 }
+
+Scene make_mannequin_devil() { return self_colliding("mannequin-devil", kMannequin); }
+Scene make_armadillo() { return self_colliding("armadillo", kArmadillo); }
+Scene make_bunny() { return self_colliding("bunny", kBunny); }
 
 }  // namespace farcull

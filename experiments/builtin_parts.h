@@ -18,12 +18,23 @@ Scene make_ground(std::uint64_t seed);
 Scene make_crowd(std::uint64_t seed);
 Scene make_far_apart();
 
+/// For benchmarks; the counts are those of docs/bench.md.
+Scene make_needles_layers(std::uint64_t seed);
+Scene make_needles_crossed(std::uint64_t seed);
+/// round(triangles / kFieldBlob) blobs, at least one.
+Scene make_field(std::uint64_t triangles, std::uint64_t seed);
+inline constexpr std::uint64_t kFieldBlob = 320;  // triangles of one blob
+
 /// These throw Error where a packaged mesh cannot be read.
 Scene make_two_bunnies();
 Scene make_armadillo_elephant();
 Scene make_dragon_bunny();
 Scene make_near_copy();
 Scene make_bunnies_far_apart();
+/// One object that collides with itself.
+Scene make_mannequin_devil();
+Scene make_armadillo();
+Scene make_bunny();
 
 /// A square of two triangles parallel to the x-y plane.
 struct Square {

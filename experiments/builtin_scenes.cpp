@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 
@@ -27,7 +28,41 @@ BuiltinScene drawn(BuiltinScene entry, Scene (*make)(std::uint64_t), std::uint64
   return entry;
 }
 
-std::string base_of(const std::string& name) { return name.substr(0, name.find('@')); }
+// The same for one whose size is given.
+BuiltinScene drawn(BuiltinScene entry, Scene (*make)(std::uint64_t, std::uint64_t), SceneSize size,
+                   std::uint64_t seed) {
+  size.make = [make, seed](std::uint64_t n) { return make(n, seed); };
+  entry.make = [make, seed, n = size.usual] { return make(n, seed); };
+  entry.size = std::move(size);
+  entry.seed = seed;
+  return entry;
+}
+
+BuiltinScene costly(BuiltinScene entry) {
+  entry.costly = true;
+  return entry;
+}
+
+std::string base_of(const std::string& name) { return name.substr(0, name.find_first_of(":@")); }
+
+// The size in NAME:SIZE@suffixes, or the usual one. Throws Error naming the scene.
+std::uint64_t size_of(const BuiltinScene& entry, const std::string& name) {
+  const std::string text = name.substr(0, name.find('@'));
+  if (text == entry.name) return entry.size ? entry.size->usual : 0;
+  if (!entry.size) {
+    throw Error(name, entry.name + " comes in one size", "leave out what follows the colon");
+  }
+  const std::string number = text.substr(entry.name.size() + 1);
+  std::uint64_t size = 0;
+  const auto [end, code] = std::from_chars(number.data(), number.data() + number.size(), size);
+  if (code != std::errc() || end != number.data() + number.size() || size < entry.size->least ||
+      size > entry.size->most) {
+    throw Error(name, quote_token(number) + " is no number of " + entry.size->what,
+                fmt::format("give {} to {}, as in {}:{}", entry.size->least, entry.size->most,
+                            entry.name, entry.size->usual));
+  }
+  return size;
+}
 
 const BuiltinScene* find_scene(const std::string& base) {
   for (const BuiltinScene& scene : builtin_scenes()) {
@@ -64,6 +99,18 @@ const std::vector<BuiltinScene>& builtin_scenes() {
       drawn({"crowd", "tetrahedra and blobs in a box, some colliding", 400, 9200, false},
             make_crowd, 4),
       {"far-apart", "two spheres far from each other", 2, 2560, false, make_far_apart},
+      costly(drawn({"needles-layers",
+                    "interleaved layers of oblique needles, 4700 x 0.002: 45,775,846 boxes "
+                    "overlap, 1500 collide",
+                    2, 32000, false},
+                   make_needles_layers, 5)),
+      costly(
+          drawn({"needles-crossed",
+                 "the same in two oblique directions at once: 4,569,304 boxes overlap, 625 collide",
+                 2, 10000, false},
+                make_needles_crossed, 6)),
+      drawn({"field", "blobs spread evenly, some colliding with neighbours", 31, 9920, false},
+            make_field, {"triangles", 1000, 1'000'000'000, 10'000}, 7),
       {"two-bunnies", "two interpenetrating Stanford bunnies", 2, 150816, true, make_two_bunnies},
       {"armadillo-elephant", "armadillo and elephant of one size in one place", 2, 140928, true,
        make_armadillo_elephant},
@@ -73,6 +120,12 @@ const std::vector<BuiltinScene>& builtin_scenes() {
        make_near_copy},
       {"bunnies-far-apart", "two bunnies ten diagonals from each other", 2, 150816, true,
        make_bunnies_far_apart},
+      {"mannequin-devil", "a mannequin with horns: 1581 pairs of its triangles collide", 1, 25888,
+       true, make_mannequin_devil},
+      {"armadillo", "the armadillo against itself, where nothing collides", 1, 52000, true,
+       make_armadillo},
+      {"bunny", "the Stanford bunny against itself, where nothing collides", 1, 75408, true,
+       make_bunny},
   };
   return scenes;
 }
@@ -102,9 +155,10 @@ Scene make_builtin_scene(const std::string& name) {
   if (entry == nullptr) {
     throw Error(name, "no built-in scene has this name", "see farcull scenes for the names");
   }
+  const std::uint64_t size = size_of(*entry, name);
   // All suffixes before the scene is made, which may take a while.
   std::vector<const SceneSuffix*> chosen;
-  for (std::size_t at = base.size(); at < name.size();) {
+  for (std::size_t at = std::min(name.find('@'), name.size()); at < name.size();) {
     const std::size_t end = std::min(name.find('@', at + 1), name.size());
     const std::string word = name.substr(at, end - at);
     const auto& known = scene_suffixes();
@@ -116,7 +170,7 @@ Scene make_builtin_scene(const std::string& name) {
     chosen.push_back(&*found);
     at = end;
   }
-  Scene scene = entry->make();
+  Scene scene = entry->size ? entry->size->make(size) : entry->make();
   scene.name = name;
   for (const SceneSuffix* suffix : chosen) scene = suffix->apply(std::move(scene));
   return scene;

@@ -197,6 +197,7 @@ int compare_command(const CompareCommand& command) {
 int scenes_command(const Outputs& asked) {
   const Outputs outputs = checked(asked);
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  std::string sizes;
   Table table("lrrrl");
   table.add({"scene", "objects", "triangles", "seed", ""});
   for (const BuiltinScene& scene : builtin_scenes()) {
@@ -207,15 +208,23 @@ int scenes_command(const Outputs& asked) {
                     {"triangles", scene.triangles},
                     {"needs_meshes", scene.needs_meshes},
                     {"seed", nullptr},
+                    {"size", nullptr},
                     {"description", scene.description}});
     if (scene.seed) list.back()["seed"] = *scene.seed;
+    if (!scene.size) continue;
+    const SceneSize& size = *scene.size;
+    list.back()["size"] = {
+        {"what", size.what}, {"least", size.least}, {"most", size.most}, {"usual", size.usual}};
+    sizes += fmt::format("\n{0} takes its number of {1}, {2} to {3}, as in {0}:{4}.\n", scene.name,
+                         size.what, grouped(size.least), grouped(size.most), 100 * size.usual);
   }
   Table suffixes("ll");
   for (const SceneSuffix& suffix : scene_suffixes())
     suffixes.add({suffix.suffix, suffix.description});
   if (outputs.json) write_json(list, *outputs.json);
   if (!outputs.to_stdout()) {
-    write_output("-", table.text() + "\nEvery name takes suffixes, as in two-spheres@far:\n" +
+    write_output("-", table.text() + sizes +
+                          "\nEvery name takes suffixes, as in two-spheres@far:\n" +
                           suffixes.text());
   }
   return kDone;

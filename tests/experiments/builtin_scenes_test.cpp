@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -102,7 +103,8 @@ TEST(BuiltinScenes, AreWhatTheirEntrySays) {
   }
   for (const char* name : {"two-spheres", "two-tori", "random-soup", "needles", "degenerate",
                            "ground", "crowd", "far-apart", "two-bunnies", "armadillo-elephant",
-                           "dragon-bunny", "near-copy", "bunnies-far-apart"}) {
+                           "dragon-bunny", "near-copy", "bunnies-far-apart", "needles-layers",
+                           "needles-crossed", "field", "mannequin-devil", "armadillo", "bunny"}) {
     EXPECT_TRUE(names.contains(name)) << name;
   }
 }
@@ -172,6 +174,68 @@ TEST(BuiltinScenes, GroundIsAThousandTimesLargerThanItsBlobs) {
   for (std::size_t i = 0; i + 1 < boxes.size(); ++i) {
     EXPECT_GT(diagonal(boxes.back()), 1000 * diagonal(boxes[i]));
   }
+}
+
+// What all needles of a bench scene have in common: one of few oblique directions, a length and a
+// width; and that boxes are no help with them.
+void expect_needles(const Scene& scene, std::size_t directions) {
+  std::vector<Vec3> seen;
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    const auto [a, b, c] = scene.corners(t);
+    const double length = (b - a).norm();
+    const Vec3 along = (b - a) / length;
+    ASSERT_NEAR(length, 4700, 1e-6);
+    ASSERT_NEAR((b - a).cross(c - a).norm() / length, 0.002, 1e-6);
+    ASSERT_GT(along.cwiseAbs().minCoeff(), 0.3) << "not oblique";
+    const auto close = [&](const Vec3& d) { return (d - along).norm() < 3e-4; };
+    if (std::none_of(seen.begin(), seen.end(), close)) seen.push_back(along);
+  }
+  EXPECT_EQ(seen.size(), directions);
+  const std::vector<Box> boxes = triangle_boxes(scene);
+  std::uint64_t looked = 0;
+  std::uint64_t overlapping = 0;
+  const std::uint32_t second = scene.objects[1].first_triangle;
+  for (std::uint32_t a = 0; a < second; a += 50) {
+    for (std::uint32_t b = second; b < boxes.size(); b += 50, ++looked)
+      overlapping += overlap(boxes[a], boxes[b]);
+  }
+  EXPECT_GT(overlapping, looked / 8);
+}
+
+TEST(BuiltinScenes, NeedlesOfBenchScenesAreObliqueAndTheirBoxesOverlap) {
+  expect_needles(make_builtin_scene("needles-layers"), 1);
+  expect_needles(make_builtin_scene("needles-crossed"), 2);
+}
+
+TEST(BuiltinScenes, FieldHasTheSizeOfItsNameAndKeepsItsDensity) {
+  EXPECT_EQ(scene_hash(make_builtin_scene("field")), scene_hash(make_builtin_scene("field:10000")));
+  for (const std::uint64_t size : {1000, 10'000, 100'000, 1'000'000}) {
+    const std::string name = "field:" + std::to_string(size);
+    const Scene scene = make_builtin_scene(name);
+    EXPECT_EQ(scene.name, name);
+    EXPECT_TRUE(builtin_seed(name));
+    EXPECT_NEAR(static_cast<double>(scene.triangles.size()), static_cast<double>(size), 160);
+    const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
+    double filled = 0;  // of the boxes of the blobs, within the box of all
+    for (const Box& box : boxes) filled += (box.hi - box.lo).prod();
+    const Box all = bounds(scene);
+    EXPECT_GT(filled / (all.hi - all.lo).prod(), 0.3) << name;
+    EXPECT_LT(filled / (all.hi - all.lo).prod(), 1.0) << name;
+  }
+  const int collisions = crossings(make_builtin_scene("field"));
+  EXPECT_GT(collisions, 100);
+  EXPECT_LT(collisions, 5000);
+}
+
+TEST(BuiltinScenes, RefuseSizesThatAreNone) {
+  for (const char* name : {"field:", "field:0", "field:999", "field:1e6", "field:-1000",
+                           "field:1000000001", "field:99999999999999999999", "field:5000x",
+                           "field:5000:5000", "crowd:5000", "crowd:", "two-bunnies:1"}) {
+    EXPECT_TRUE(is_builtin_scene(name)) << name;
+    EXPECT_EQ(error_of([&] { make_builtin_scene(name); }).where, name);
+  }
+  EXPECT_EQ(make_builtin_scene("field:2000@tiny").name, "field:2000@tiny");
+  EXPECT_EQ(error_of([] { make_builtin_scene("field@tiny:2000"); }).where, "field@tiny:2000");
 }
 
 TEST(BuiltinScenes, RefuseUnknownNamesAndSuffixes) {
@@ -259,6 +323,9 @@ TEST(PackagedScenes, AreWhatTheirEntrySays) {
     EXPECT_EQ(scene.name, entry.name);
     EXPECT_EQ(scene.objects.size(), entry.objects) << entry.name;
     EXPECT_EQ(scene.triangles.size(), entry.triangles) << entry.name;
+    for (const Object& object : scene.objects)
+      EXPECT_EQ(object.self, entry.objects == 1) << entry.name;
+    if (entry.objects == 1) continue;
     const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
     EXPECT_EQ(overlap(boxes[0], boxes[1]), entry.name != "bunnies-far-apart") << entry.name;
     EXPECT_NEAR(diagonal(boxes[1]) / diagonal(boxes[0]), 1, 0.25) << entry.name;

@@ -1,0 +1,132 @@
+// Scenes for benchmarks: needles whose boxes overlap by the million, and a field of any size.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "experiments/builtin_parts.h"
+#include "experiments/builtin_shapes.h"
+#include "experiments/scene_build.h"
+
+namespace farcull {
+
+using namespace shapes;
+
+namespace {
+
+constexpr double kLength = 4700;  // of a needle
+constexpr double kWidth = 0.002;
+constexpr double kBending = 1e-4;  // radians that a needle may differ from its direction
+constexpr double kSide = 7700;     // of the cube, along a frame of the needles, that holds centres
+constexpr int kLayers = 40;        // of both objects together
+
+// An orthonormal frame whose first axis is the direction of needles.
+struct Frame {
+  Vec3 along, across, up;
+};
+
+Frame frame_of(const Vec3& direction) {
+  const Vec3 along = direction / direction.norm();
+  const Vec3 across = along.cross(Vec3::UnitZ()).normalized();
+  return {along, across, along.cross(across)};
+}
+
+// About the origin.
+Corners hair(const Frame& frame, Random& random) {
+  const Vec3 along = (frame.along + kBending * random.in_ball()).normalized();
+  Vec3 aside = along.cross(random.direction());
+  while (aside.norm() < 0.1) aside = along.cross(random.direction());
+  aside *= kWidth / aside.norm();
+  const Vec3 start = -kLength / 2 * along;
+  const Vec3 end = kLength / 2 * along;
+  return {start, end, start + random.between(0.2, 0.8) * (end - start) + aside};
+}
+
+// Anywhere in a layer: layers of even number are those of the first object, of odd number those of
+// the second, a quarter of their distance thick.
+Vec3 in_layer(const Frame& frame, int object, Random& random) {
+  const auto layer = 2 * static_cast<int>(random.below(kLayers / 2)) + object;
+  const double height = (layer + random.between(0.375, 0.625)) / kLayers - 0.5;
+  return kSide * (random.between(-0.5, 0.5) * frame.along +
+                  random.between(-0.5, 0.5) * frame.across + height * frame.up);
+}
+
+// The needles of two objects take the frames in turn. One in eight of the second object is moved so
+// that it crosses one of the first.
+Scene layers_of_needles(const std::string& name, const std::vector<Frame>& frames,
+                        std::array<std::uint32_t, 2> counts, std::uint64_t seed) {
+  Random random(seed);
+  const auto frame = [&](std::uint32_t i) -> const Frame& { return frames[i % frames.size()]; };
+  std::array<std::vector<Corners>, 2> layers;
+  for (std::uint32_t i = 0; i < counts[0]; ++i) {
+    const Corners corners = hair(frame(i), random);
+    layers[0].push_back(shifted(corners, in_layer(frame(i), 0, random)));
+  }
+  for (std::uint32_t i = 0; i < counts[1]; ++i) {
+    const Corners corners = hair(frame(i), random);
+    Vec3 to = in_layer(frame(i), 1, random);
+    if (i % 8 == 0) {
+      const Corners& crossed = layers[0][random.below(counts[0])];
+      to = inner_point(crossed, random);
+      to -= inner_point(corners, random);
+    }
+    layers[1].push_back(shifted(corners, to));
+  }
+  SceneBuilder scene(name, name);
+  scene.add(soup(layers[0]), "first", Split::kNone, {});
+  scene.add(soup(layers[1]), "second", Split::kNone, {});
+  return scene.finish();
+}
+
+}  // namespace
+
+Scene make_needles_layers(std::uint64_t seed) {
+  return layers_of_needles("needles-layers", {frame_of({3, 2.6, 2.2})}, {20000, 12000}, seed);
+}
+
+Scene make_needles_crossed(std::uint64_t seed) {
+  return layers_of_needles("needles-crossed", {frame_of({3, 2.6, 2.2}), frame_of({-2.3, 2.9, 1.7})},
+                           {5000, 5000}, seed);
+}
+
+Scene make_field(std::uint64_t triangles, std::uint64_t seed) {
+  constexpr double kSpacing = 1.8;  // of the cells, a blob in each
+  constexpr double kJitter = 0.3;   // of a blob in its cell, along each axis
+  constexpr std::size_t kShapes = 16;
+  Random random(seed);
+  std::vector<Mesh> shapes;
+  for (std::size_t i = 0; i < kShapes; ++i) shapes.push_back(blob(2, random));
+
+  const std::uint64_t blobs = std::max<std::uint64_t>(1, (triangles + kFieldBlob / 2) / kFieldBlob);
+  std::uint64_t cells = 1;  // along each axis of the cube that the blobs fill from below
+  while (cells * cells * cells < blobs) ++cells;
+
+  Scene scene;
+  scene.name = "field";
+  scene.objects.reserve(blobs);
+  scene.vertices.reserve(blobs * shapes[0].vertices.size());
+  scene.triangles.reserve(blobs * shapes[0].triangles.size());
+  scene.source_face.reserve(scene.triangles.capacity());
+  for (std::uint64_t i = 0; i < blobs; ++i) {
+    const Vec3 cell(static_cast<double>(i % cells), static_cast<double>(i / cells % cells),
+                    static_cast<double>(i / cells / cells));
+    Placement placement = random.anywhere(kSpacing * cell + random.in_cube(kJitter));
+    placement.scale = Vec3::Constant(random.between(0.5, 1));
+    const Mesh& shape = shapes[random.below(kShapes)];
+    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+    const std::vector<Vec3> placed = place(shape.vertices, placement);
+    scene.objects.push_back({"blob" + std::to_string(i),
+                             static_cast<std::uint32_t>(scene.triangles.size()),
+                             static_cast<std::uint32_t>(shape.triangles.size())});
+    scene.vertices.insert(scene.vertices.end(), placed.begin(), placed.end());
+    for (const auto& [a, b, c] : shape.triangles)
+      scene.triangles.push_back({first + a, first + b, first + c});
+    scene.source_face.insert(scene.source_face.end(), shape.source_face.begin(),
+                             shape.source_face.end());
+  }
+  validate(scene, scene.name);
+  return scene;
+}
+
+}  // namespace farcull
