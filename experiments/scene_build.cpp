@@ -106,7 +106,7 @@ std::string SceneBuilder::free_name(const std::string& name) {
 }
 
 void SceneBuilder::add(const Mesh& mesh, const std::string& name, Split split,
-                       const Placement& placement) {
+                       const Placement& placement, bool self) {
   if (mesh.triangles.size() > kMaxCount - scene_.triangles.size() ||
       mesh.vertices.size() > kMaxCount - scene_.vertices.size()) {
     throw Error(where_,
@@ -145,7 +145,7 @@ void SceneBuilder::add(const Mesh& mesh, const std::string& name, Split split,
       std::string label = clean_name(name);
       if (used > 1)
         label += split == Split::kGroups ? "/" + mesh.group_names[p] : fmt::format("/{}", p + 1);
-      scene_.objects.push_back({free_name(label), start, size[p]});
+      scene_.objects.push_back({free_name(label), start, size[p], self});
     }
     start += size[p];
   }

@@ -120,7 +120,7 @@ class SceneFile {
   void add_object(const json& object, const std::string& place, MeshCache& meshes,
                   SceneBuilder& builder) const {
     require(object.is_object(), place, "must be a JSON object", "write {\"mesh\": FILE}");
-    check_keys(object, place, {"name", "mesh", "scale", "rotate", "translate", "split"});
+    check_keys(object, place, {"name", "mesh", "scale", "rotate", "translate", "split", "self"});
     require(object.contains("mesh"), place + ".mesh", "is missing", "name a mesh file");
     const std::string mesh = text(object["mesh"], place + ".mesh");
     require(!mesh.empty(), place + ".mesh", "is empty", "name a mesh file");
@@ -134,8 +134,9 @@ class SceneFile {
     const Placement placement = read_placement(object, place);
     Split split = Split::kNone;
     if (object.contains("split")) split = read_split(object["split"], place + ".split");
+    const bool self = object.contains("self") && truth(object["self"], place + ".self");
     const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
-    builder.add(meshes.get((folder / mesh).string()), name, split, placement);
+    builder.add(meshes.get((folder / mesh).string()), name, split, placement, self);
   }
 
   Placement read_placement(const json& object, const std::string& place) const {
@@ -181,6 +182,12 @@ class SceneFile {
     require(value.is_string(), place, fmt::format("is {}, not a string", kind(value)),
             "write it in quotes");
     return value.get<std::string>();
+  }
+
+  bool truth(const json& value, const std::string& place) const {
+    require(value.is_boolean(), place, fmt::format("is {}, not true or false", kind(value)),
+            "write true or false, without quotes");
+    return value.get<bool>();
   }
 
   double number(const json& value, const std::string& place) const {

@@ -16,12 +16,15 @@ namespace farcull {
 ///     {"name": "two-bunnies", "objects": [
 ///       {"name": "a", "mesh": "bunny00.off"},
 ///       {"mesh": "bunny00.off", "scale": 1, "rotate": {"axis": [0, 0, 1], "angle": 0.7},
-///        "translate": [0.02, 0.0026, 0.0014], "split": "none"}]}
+///        "translate": [0.02, 0.0026, 0.0014], "split": "none",
+///        "self": false}]}
 ///   Only `objects` and `mesh` must be there. `mesh` is relative to the scene file. `scale` is a
 ///   number or an array of 3, none of them 0; negative ones mirror. Angles are in radians about an
 ///   axis through the origin. Scale, then rotate, then translate, in double; what is absent is left
 ///   out, so that the doubles of the mesh stay as they are. `split` is "none", "groups" (the groups
-///   of an OBJ) or "components" (what is connected through shared vertices).
+///   of an OBJ) or "components" (what is connected through shared vertices). `self` is true or
+///   false (the default): whether the object's own triangles are tested against each other as well;
+///   with a split, each part's own. Triangles of different parts always are.
 /// A mesh that is named several times is read once. Names are completed as SceneBuilder says.
 /// Throws Error for what cannot be read or is not of this form, naming the file and, in a scene
 /// file, the line (syntax) or the place as in objects[1].rotate.axis (contents).

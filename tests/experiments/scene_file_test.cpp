@@ -70,6 +70,18 @@ TEST_F(SceneFileTest, ReadsTheFormOfTheManual) {
   EXPECT_TRUE(same_bits(scene.vertices[3], Vec3(c * 2 - s * 4 + 1, s * 2 + c * 4, 6)));
 }
 
+TEST_F(SceneFileTest, SelfBelongsToTheObjectAndToItsParts) {
+  const Scene scene = read(
+      R"({"objects": [{"mesh": "t.obj"}, {"mesh": "t.obj", "self": true},
+          {"mesh": "t.obj", "self": false},
+          {"mesh": "parts.obj", "split": "groups", "self": true}]})");
+  ASSERT_EQ(scene.objects.size(), 5u);
+  const std::vector<bool> expected = {false, true, false, true, true};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(scene.objects[i].self, expected[i]) << i;
+  }
+}
+
 TEST_F(SceneFileTest, LeavesEveryBitAloneWithoutATransform) {
   const Mesh mesh = load_mesh(folder.path("t.obj"));
   for (const std::string keys :
@@ -191,9 +203,8 @@ TEST_F(SceneFileTest, RefusesWrongFormWithItsPlace) {
   expect_refusal(R"({"Objects": []})", "Objects is an unknown key");
 }
 
-TEST_F(SceneFileTest, RefusesSelfWhichIsNotKnownYet) {
+TEST_F(SceneFileTest, RefusesSelfBesideTheObjects) {
   expect_refusal(R"({"objects": [{"mesh": "t.obj"}], "self": true})", "self is an unknown key");
-  expect_refused_key(R"("self": true)", "self is an unknown key");
 }
 
 TEST_F(SceneFileTest, RefusesWrongValuesWithTheirPlace) {
@@ -219,6 +230,9 @@ TEST_F(SceneFileTest, RefusesWrongValuesWithTheirPlace) {
   expect_refused_key(R"("translate": [0, 0])", "translate must be an array of 3");
   expect_refused_key(R"("split": "halves")", "split is 'halves'");
   expect_refused_key(R"("split": 2)", "split is of type number");
+  expect_refused_key(R"("self": 1)", "self is of type number, not true or false");
+  expect_refused_key(R"("self": "true")", "self is of type string");
+  expect_refused_key(R"("self": null)", "self is of type null");
 }
 
 TEST_F(SceneFileTest, RefusesToMoveAMeshBeyondDoubles) {
@@ -248,7 +262,7 @@ TEST_F(SceneFileTest, SurvivesDamagedText) {
       R"({"name": "s", "objects": [{"name": "a", "mesh": "t.obj"},
           {"mesh": "t.obj", "scale": [1, 2, 3],
           "rotate": {"axis": [0, 0, 2], "angle": 0.7},
-          "translate": [1, 0, 0], "split": "groups"}]})";
+          "translate": [1, 0, 0], "split": "groups", "self": true}]})";
   std::mt19937_64 words(6);
   int refused = 0;
   for (int round = 0; round < 3000; ++round) {

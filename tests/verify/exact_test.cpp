@@ -363,7 +363,9 @@ TEST(Exact, KeepsTheOrderOfCandidatesWhateverTheThreads) {
   for (Triangle& t : triangles) {
     for (Vec3& p : t) p = Vec3(random() % 9, random() % 9, random() % 9);
   }
-  const Scene scene = reference::scene_of({triangles});
+  std::vector<std::vector<Triangle>> objects;  // of one triangle, so that none are neighbours
+  for (const Triangle& t : triangles) objects.push_back({t});
+  const Scene scene = reference::scene_of(objects);
   std::vector<TrianglePair> candidates(20'000);  // many blocks, in no order, with repetitions
   for (TrianglePair& pair : candidates) {
     pair.a = random() % 60;
