@@ -1,6 +1,6 @@
 // Lets a kernel file (*.glsl) compile as C++: the few vector types and functions that kernels use.
 // A kernel says FAR_OUT(t) and FAR_INOUT(t) for its parameters and FAR_PRECISE before a float that
-// no compiler may reassociate; contraction is off for all of farcull (CMakeLists.txt), so both
+// no compiler may reassociate, FAR_KERNEL before a function that several files may compile; contraction is off for all of farcull (CMakeLists.txt), so both
 // compilations round every operation once.
 #pragma once
 
@@ -20,10 +20,13 @@ inline float max(float a, float b) { return a < b ? b : a; }
 inline float abs(float a) { return std::fabs(a); }
 inline float sqrt(float a) { return std::sqrt(a); }
 inline float fixed(float a) { return a; }
+inline float floor(float a) { return std::floor(a); }
+inline float clamp(float a, float lo, float hi) { return min(max(a, lo), hi); }
 
 }  // namespace farcull::glsl
 
 #define FAR_OUT(type) type&
 #define FAR_INOUT(type) type&
 #define FAR_PRECISE
+#define FAR_KERNEL inline
 #define FAR_FIXED(x) fixed(x)

@@ -1,6 +1,6 @@
-// FAR pairs: every pair of triangles whose depth intervals overlap in a pixel, per view. A pair that
-// intersects is among them (docs/reliability.md, "Interval pairs"): between objects, and inside
-// those that collide with themselves. The method decides nothing exactly; that is verify's.
+// FAR pairs: every pair of triangles whose depth intervals overlap in a pixel, per view. A pair
+// that intersects is among them (docs/reliability.md, "Interval pairs"): between objects, and
+// inside those that collide with themselves. The method decides nothing exactly; that is verify's.
 #pragma once
 
 #include <cstdint>
@@ -17,19 +17,19 @@ namespace farcull {
 
 struct PairSettings {
   std::vector<View> views;  // empty: chosen by the scene, by fixed rules
-  int resolution = 0;       // px along the larger side of each view's window; 0: chosen by the scene
-  double clearance = 0;     // world units, finite, >= 0: pairs at this distance or less count too
+  int resolution = 0;    // px along the larger side of each view's window; 0: chosen by the scene
+  double clearance = 0;  // world units, finite, >= 0: pairs at this distance or less count too
 };
 
 /// What was looked at in one view.
 struct PairView {
   std::string name;
-  bool looked = false;  // false: left out or unresolvable, see the stages
-  std::string reason;   // why this direction and this resolution
-  int width = 0;        // px
-  int height = 0;       // px
-  double pixel_size = 0;     // world units
-  double widening_px = 0;    // of footprints and intervals beyond their own float error
+  bool looked = false;     // false: left out or unresolvable, see the stages
+  std::string reason;      // why this direction and this resolution
+  int width = 0;           // px
+  int height = 0;          // px
+  double pixel_size = 0;   // world units
+  double widening_px = 0;  // of footprints and intervals beyond their own float error
   PairCounts counts;
 };
 

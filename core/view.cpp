@@ -121,6 +121,11 @@ PixelPoint to_pixel(const Window& window, const Vec3& x) {
   return out;
 }
 
+Box pixel_box(const Window& window, const Box& box) {
+  double error = 0;
+  return image(window.map, window.origin, box, error);
+}
+
 std::optional<Window> fit_window(const View& view, std::span<const Box> regions, int resolution) {
   Box world = Box::empty();
   for (const Box& region : regions) world.add(region);

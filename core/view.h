@@ -48,6 +48,9 @@ struct PixelPoint {
 };
 PixelPoint to_pixel(const Window& window, const Vec3& x);
 
+/// Contains the image of the box in the window's pixel space.
+Box pixel_box(const Window& window, const Box& box);
+
 /// The largest rounding error (px) that a drawable primitive may carry from double arithmetic.
 constexpr double kMaxDoubleError = 0x1p-10;
 

@@ -1,0 +1,151 @@
+// Where a triangle can be in pixel space: its bounds, and its depth interval over a rectangle of the image. One text for GLSL
+// and C++: GL back end, CPU back end and property tests. Every result contains what it speaks about, for any rounding that
+// GLSL allows; the constants are derived in docs/budget.md, "Interval pairs".
+//
+// A triangle is three float corners (px). Every point of the real triangle is within `widen` (px per axis) plus half a unit in
+// the last place of the point of the float triangle with the same barycentric coordinates. Preconditions: a coordinate is 0 or
+// 2^-60 <= |coordinate| <= 2^20; 2^-40 <= widen <= 2^20.
+
+#ifndef FAR_PAIR_ROUNDING  // 0 in the test that shows what happens without it
+#define FAR_PAIR_ROUNDING 1.0f
+#endif
+const float kBoundUnit = FAR_PAIR_ROUNDING * 4.76837158203125e-7f;  // 4 u, u = 2^-23; powers of two, so exact
+const float kClipUnit = FAR_PAIR_ROUNDING * 7.62939453125e-6f;      // 64 u
+const float kShort = 8.67361737988403547e-19f;                     // 2^-60
+
+// The range of one coordinate of the real triangle.
+FAR_KERNEL void far_bounds(float a, float b, float c, float widen, FAR_OUT(float) lo, FAR_OUT(float) hi) {
+  float least = min(min(a, b), c);
+  float most = max(max(a, b), c);
+  FAR_PRECISE float e = widen + kBoundUnit * (max(abs(least), abs(most)) + widen);
+  lo = least - e;
+  hi = most + e;
+}
+
+// By how much a rectangle grows so that it speaks of the float triangle, whose real one has the bounds lo, hi.
+FAR_KERNEL float far_margin(float lo, float hi, float widen) {
+  FAR_PRECISE float e = widen + kClipUnit * (1.0f + max(abs(lo), abs(hi)));
+  return e;
+}
+
+// The part of a triangle in a strip of the image, seen along y: the boundary of its image in the x-z plane, as segments.
+struct FarStrip {
+  vec4 segment[5];   // x, z of the end with the smaller x; x, z of the other
+  float inverse[5];  // of the length along x; 0 for a short one
+  int count;
+  float lo;          // the range along x; lo > hi where the strip is empty
+  float hi;
+};
+
+FAR_KERNEL void far_segment(FAR_INOUT(FarStrip) strip, float px, float pz, float qx, float qz) {
+  bool ordered = px <= qx;
+  vec4 s;
+  s.x = ordered ? px : qx;
+  s.y = ordered ? pz : qz;
+  s.z = ordered ? qx : px;
+  s.w = ordered ? qz : pz;
+  FAR_PRECISE float length = s.z - s.x;
+  float inverse = 0.0f;
+  if (length > kShort) inverse = 1.0f / length;
+  strip.segment[strip.count] = s;
+  strip.inverse[strip.count] = inverse;
+  strip.count = strip.count + 1;
+  strip.lo = min(strip.lo, s.x);
+  strip.hi = max(strip.hi, s.z);
+}
+
+// Where an edge crosses the strip's two border lines; a line crosses an even number of edges, since each has only one end.
+struct FarChords {
+  vec4 first;  // x, z on the lower line; x, z on the upper line
+  bool lower;  // the first crossing of that line has been seen
+  bool upper;
+};
+
+FAR_KERNEL void far_edge(FAR_INOUT(FarStrip) strip, FAR_INOUT(FarChords) chords, float ax, float ay, float az, float bx,
+                         float by, float bz, float from, float to) {
+  bool up = ay <= by;
+  float px = up ? ax : bx;
+  float py = up ? ay : by;
+  float pz = up ? az : bz;
+  float qx = up ? bx : ax;
+  float qy = up ? by : ay;
+  float qz = up ? bz : az;
+  if (qy < from || py > to) return;
+  float t0 = 0.0f;
+  float t1 = 1.0f;
+  if (py < qy) {
+    FAR_PRECISE float height = qy - py;
+    FAR_PRECISE float below = from - py;
+    FAR_PRECISE float above = to - py;
+    t0 = clamp(below / height, 0.0f, 1.0f);
+    t1 = clamp(above / height, 0.0f, 1.0f);
+  }
+  FAR_PRECISE float x0 = px + (qx - px) * t0;
+  FAR_PRECISE float z0 = pz + (qz - pz) * t0;
+  FAR_PRECISE float x1 = px + (qx - px) * t1;
+  FAR_PRECISE float z1 = pz + (qz - pz) * t1;
+  far_segment(strip, x0, z0, x1, z1);
+  if (py < from && from <= qy) {
+    if (chords.lower) far_segment(strip, chords.first.x, chords.first.y, x0, z0);
+    chords.lower = true;
+    chords.first.x = x0;
+    chords.first.y = z0;
+  }
+  if (py < to && to <= qy) {
+    if (chords.upper) far_segment(strip, chords.first.z, chords.first.w, x1, z1);
+    chords.upper = true;
+    chords.first.z = x1;
+    chords.first.w = z1;
+  }
+}
+
+// The part of the float triangle with from <= y <= to.
+FAR_KERNEL void far_strip(vec4 a, vec4 b, vec4 c, float from, float to, FAR_OUT(FarStrip) strip) {
+  FarChords chords;
+  chords.lower = false;
+  chords.upper = false;
+  strip.count = 0;
+  strip.lo = 3.0e38f;
+  strip.hi = -3.0e38f;
+  far_edge(strip, chords, a.x, a.y, a.z, b.x, b.y, b.z, from, to);
+  far_edge(strip, chords, b.x, b.y, b.z, c.x, c.y, c.z, from, to);
+  far_edge(strip, chords, c.x, c.y, c.z, a.x, a.y, a.z, from, to);
+}
+
+// The depths of the strip with from <= x <= to; false: it has no point there.
+FAR_KERNEL bool far_depths(FAR_INOUT(FarStrip) strip, float from, float to, FAR_OUT(float) near, FAR_OUT(float) far) {
+  near = 3.0e38f;
+  far = -3.0e38f;
+  for (int i = 0; i < strip.count; ++i) {
+    vec4 s = strip.segment[i];
+    if (s.z < from || s.x > to) continue;
+    float z0 = s.y;
+    float z1 = s.w;
+    if (strip.inverse[i] > 0.0f) {
+      FAR_PRECISE float t0 = (from - s.x) * strip.inverse[i];
+      FAR_PRECISE float t1 = (to - s.x) * strip.inverse[i];
+      FAR_PRECISE float rise = s.w - s.y;
+      FAR_PRECISE float at0 = s.y + rise * clamp(t0, 0.0f, 1.0f);
+      FAR_PRECISE float at1 = s.y + rise * clamp(t1, 0.0f, 1.0f);
+      z0 = at0;
+      z1 = at1;
+    }
+    near = min(near, min(z0, z1));
+    far = max(far, max(z0, z1));
+  }
+  return near <= far;
+}
+
+// The depth slice of z: never decreasing in z, so two intervals with a common depth have a common slice.
+FAR_KERNEL int far_slice(float z, float near, float slices_per_px) {
+  FAR_PRECISE float s = (z - near) * slices_per_px;
+  return int(clamp(s, 0.0f, 63.0f));
+}
+
+// How many pixels the triangle meets, on average over its position: the area of its image, grown by a pixel. For choices
+// alone; nothing depends on its accuracy.
+FAR_KERNEL float far_footprint(vec4 a, vec4 b, vec4 c, float width, float height) {
+  FAR_PRECISE float twice = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  FAR_PRECISE float count = 0.5f * abs(twice) + width + height + 1.0f;
+  return count;
+}

@@ -1,0 +1,178 @@
+// The choice of directions and resolutions (core/pair_view.h), by estimates of the work from a
+// sample of triangles. Nothing depends on their accuracy but time.
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "core/pair_view.h"
+
+namespace farcull {
+namespace {
+
+constexpr std::size_t kSample = 2048;
+constexpr int kLeastResolution = 16, kMostResolution = 4096;  // px
+
+// Work in units of one pixel that a triangle meets: measured ratios, rounded.
+constexpr double kPixelWork = 0.3;  // a pixel of the window, whether or not anything is there
+constexpr double kTestWork = 0.05;  // two intervals compared
+// Of the pairs in a pixel, those that the depth slices leave between different objects.
+constexpr double kLeftBySlices = 0.1;
+// A direction that is no axis loses the exact boxes of the axes, so it has to win clearly.
+constexpr double kOblique = 1.25;
+
+/// What the estimates need of a view direction, for triangles of the world in units of `extent`.
+struct Image {
+  double area = 0;   // mean of the triangles' images
+  double girth = 0;  // mean width + height of the images
+  double width = 0;  // of the regions
+  double height = 0;
+  double side() const { return std::max(width, height); }
+};
+
+struct Sample {
+  std::vector<std::array<Vec3, 3>> triangles;  // relative to the regions' centre, scaled to size 1
+  Vec3 size;                                   // of the regions, scaled
+  double count = 0;                            // triangles that the sample stands for
+  bool self = false;
+};
+
+Sample draw(const Scene& scene, const PairRegions& regions) {
+  Sample sample;
+  Box box = Box::empty();
+  for (const Box& region : regions.objects) {
+    if (!region.is_empty()) box.add(region);
+  }
+  const Vec3 centre = 0.5 * box.lo + 0.5 * box.hi;
+  const double extent = std::max((0.5 * box.hi - 0.5 * box.lo).maxCoeff(), 0x1p-1000);
+  sample.size = (0.5 * box.hi - 0.5 * box.lo) / extent;
+  const std::size_t n = regions.triangles.size();
+  const std::size_t count = std::min(n, kSample);
+  std::size_t o = 0, inside = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t t = regions.triangles[n * k / count];
+    while (t >= scene.objects[o].first_triangle + scene.objects[o].triangle_count) ++o;
+    const Box own = grown_box(scene, t, 0);
+    if (!overlap(own, regions.objects[o])) continue;
+    ++inside;
+    std::array<Vec3, 3> corners = scene.corners(t);
+    for (Vec3& corner : corners) corner = (corner - centre) / extent;
+    if (corners[0].allFinite() && corners[1].allFinite() && corners[2].allFinite()) {
+      sample.triangles.push_back(corners);
+    }
+  }
+  sample.count = static_cast<double>(n) * static_cast<double>(inside) / static_cast<double>(count);
+  sample.self = regions.self > 0;
+  return sample;
+}
+
+Image image_of(const Sample& sample, const View& view) {
+  Image out;
+  const Eigen::Vector3d size = view.rows.cwiseAbs() * sample.size;
+  out.width = std::max(2 * size.x(), 0x1p-60);
+  out.height = std::max(2 * size.y(), 0x1p-60);
+  for (const auto& corners : sample.triangles) {
+    const Vec3 a = view.rows * corners[0], b = view.rows * corners[1], c = view.rows * corners[2];
+    const Vec3 u = b - a, v = c - a;
+    out.area += 0.5 * std::abs(u.x() * v.y() - u.y() * v.x());
+    for (const int axis : {0, 1}) {
+      out.girth += std::max({a[axis], b[axis], c[axis]}) - std::min({a[axis], b[axis], c[axis]});
+    }
+  }
+  const double n = static_cast<double>(std::max<std::size_t>(sample.triangles.size(), 1));
+  out.area /= n;
+  out.girth /= n;
+  return out;
+}
+
+/// The work of a resolution: pixels met (the area of an image grown by a pixel), pixels there, and
+/// pairs in them.
+double work(const Sample& sample, const Image& image, int resolution) {
+  const double pixel = image.side() / resolution;
+  const double met = sample.count * (image.area / (pixel * pixel) + image.girth / pixel + 1);
+  const double pixels = (image.width / pixel + 1) * (image.height / pixel + 1);
+  const double tests = 0.5 * met * met / pixels * (sample.self ? 1 : kLeftBySlices);
+  return met + kPixelWork * pixels + kTestWork * tests;
+}
+
+int best_resolution(const Sample& sample, const Image& image, double& least) {
+  int best = kLeastResolution;
+  least = HUGE_VAL;
+  for (int step = 0; step <= 16; ++step) {  // half octaves, even
+    const int resolution = 2 * static_cast<int>(0.5 * kLeastResolution * std::pow(2.0, 0.5 * step));
+    const double w = work(sample, image, resolution);
+    if (w < least) {
+      least = w;
+      best = resolution;
+    }
+  }
+  return std::min(best, kMostResolution);
+}
+
+View view_along(const Vec3& direction) {
+  std::ostringstream text;
+  text.precision(3);
+  text << direction.x() << ':' << direction.y() << ':' << direction.z();
+  return parse_view(text.str());
+}
+
+/// Principal directions of the edges, weighted with their length; the longest first.
+std::vector<View> principal_views(const Sample& sample) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const auto& corners : sample.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 edge = corners[(k + 1) % 3] - corners[k];
+      const double length = edge.norm();
+      if (length > 0) sum += edge * edge.transpose() / length;
+    }
+  }
+  std::vector<View> views;
+  if (!sum.allFinite() || sum.isZero(0)) return views;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum);
+  for (int k = 2; k >= 0; --k) {
+    const Vec3 direction = solver.eigenvectors().col(k);
+    if (direction.allFinite() && direction.norm() > 0.5) views.push_back(view_along(direction));
+  }
+  return views;
+}
+
+}  // namespace
+
+std::vector<PairChoice> choose_pair_views(const Scene& scene, const PairRegions& regions,
+                                          int resolution) {
+  const Sample sample = draw(scene, regions);
+  struct Ranked {
+    PairChoice choice;
+    double work;
+  };
+  std::vector<Ranked> ranked;
+  const auto rank = [&](const View& view, double penalty, const std::string& what) {
+    const Image image = image_of(sample, view);
+    double least = 0;
+    const int best = best_resolution(sample, image, least);
+    const int used = resolution > 0 ? resolution : best;
+    ranked.push_back({{view, used, what}, penalty * work(sample, image, used)});
+  };
+  for (const char* axis : {"x", "y", "z"})
+    rank(parse_view(axis), 1, "axis of least estimated work");
+  for (const View& view : principal_views(sample)) {
+    rank(view, kOblique, "principal direction of the edges, of least estimated work");
+  }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Ranked& a, const Ranked& b) { return a.work < b.work; });
+  std::vector<PairChoice> out;
+  for (Ranked& r : ranked) {
+    r.choice.reason += resolution > 0 ? "; resolution given" : "; pixels by the triangles' sizes";
+    out.push_back(std::move(r.choice));
+  }
+  return out;
+}
+
+int choose_pair_resolution(const Scene& scene, const PairRegions& regions, const View& view) {
+  const Sample sample = draw(scene, regions);
+  double least = 0;
+  return best_resolution(sample, image_of(sample, view), least);
+}
+
+}  // namespace farcull

@@ -1,0 +1,391 @@
+#include "core/pair_tile.h"
+
+#include <array>
+#include <chrono>
+#include <cmath>
+
+namespace farcull {
+namespace {
+
+using interval::FarStrip;
+using Clock = std::chrono::steady_clock;
+
+// Longer lists are sorted by near depth and swept.
+constexpr std::size_t kSweepFrom = 24;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// The slices first .. last as bits.
+std::uint64_t slice_bits(int first, int last) {
+  return (~std::uint64_t{0} >> (kSlices - 1 - last)) & (~std::uint64_t{0} << first);
+}
+
+bool overlap_on(const PairBounds& a, const PairBounds& b, int axis) {
+  return a.lo[axis] <= b.hi[axis] && b.lo[axis] <= a.hi[axis];
+}
+
+// The strip of one triangle over rows of pixels or sub-pixels, and its intervals in them.
+class Rows {
+ public:
+  Rows(const PairGrid& grid, std::uint32_t triangle, const PairBounds& bounds)
+      : bounds_(bounds),
+        a_(grid.corner(triangle, 0)),
+        b_(grid.corner(triangle, 1)),
+        c_(grid.corner(triangle, 2)) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto at = [axis](const interval::vec4& v) {
+        return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+      };
+      float lo, hi;
+      interval::far_bounds(at(a_), at(b_), at(c_), grid.task().widening[axis], lo, hi);
+      margin_[axis] = interval::far_margin(lo, hi, grid.task().widening[axis]);
+    }
+  }
+  /// The range along x of the real triangle between the rows' borders; false: none.
+  bool row(float y0, float y1, float& lo, float& hi) {
+    interval::far_strip(a_, b_, c_, y0 - margin_[1], y1 + margin_[1], strip_);
+    lo = std::max(strip_.lo - margin_[0], bounds_.lo[0]);
+    hi = std::min(strip_.hi + margin_[0], bounds_.hi[0]);
+    return lo <= hi;
+  }
+  /// The interval over a rectangle of the row; false: none.
+  bool depths(float x0, float x1, float& near, float& far) {
+    if (!interval::far_depths(strip_, x0 - margin_[0], x1 + margin_[0], near, far)) return false;
+    near = std::max(near - margin_[2], bounds_.lo[2]);
+    far = std::min(far + margin_[2], bounds_.hi[2]);
+    return near <= far;
+  }
+
+ private:
+  PairBounds bounds_;
+  interval::vec4 a_, b_, c_;
+  float margin_[3];
+  FarStrip strip_;
+};
+
+}  // namespace
+
+PairGrid::PairGrid(const PairTask& task)
+    : task_(task), slices_per_px_(kSlices / std::max(task.far_px - task.near_px, 0x1p-20f)) {}
+
+PairBounds PairGrid::bounds(std::uint32_t triangle) const {
+  const std::array<std::uint32_t, 3>& t = task_.triangles[triangle];
+  const PixelVertex &a = task_.vertices[t[0]], &b = task_.vertices[t[1]], &c = task_.vertices[t[2]];
+  PairBounds out;
+  interval::far_bounds(a.x, b.x, c.x, task_.widening[0], out.lo[0], out.hi[0]);
+  interval::far_bounds(a.y, b.y, c.y, task_.widening[1], out.lo[1], out.hi[1]);
+  interval::far_bounds(a.z, b.z, c.z, task_.widening[2], out.lo[2], out.hi[2]);
+  const PixelBox& limit = task_.limits[task_.owners[triangle]];
+  for (int axis = 0; axis < 3; ++axis) {
+    out.lo[axis] = std::max(out.lo[axis], limit.lo[axis]);
+    out.hi[axis] = std::min(out.hi[axis], limit.hi[axis]);
+  }
+  return out;
+}
+
+PairItem PairGrid::item(std::uint32_t triangle, const PairBounds& b) const {
+  // Clamped as floats, since a conversion beyond int would be undefined; what is not negative is
+  // rounded down by the conversion.
+  const auto pixel = [](float x, int count) {
+    return static_cast<std::uint16_t>(
+        static_cast<int>(interval::clamp(x, 0, static_cast<float>(count - 1))));
+  };
+  PairItem out;
+  out.triangle = triangle;
+  out.i0 = pixel(b.lo[0], task_.width);
+  out.i1 = pixel(b.hi[0], task_.width);
+  out.j0 = pixel(b.lo[1], task_.height);
+  out.j1 = pixel(b.hi[1], task_.height);
+  out.s0 = static_cast<std::uint8_t>(slice(b.lo[2]));
+  out.s1 = static_cast<std::uint8_t>(slice(b.hi[2]));
+  out.whole = (out.i1 - out.i0 + 1) * (out.j1 - out.j0 + 1) <= kWholePixels;
+  return out;
+}
+
+// Calls visit(cell, slices, near, far, whole) for every pixel of the tile that the item may meet;
+// near and far are set where the item is not whole.
+template <class Visit>
+void PairTileWorker::for_each_pixel(const PairItem& item, const Visit& visit) const {
+  const int i0 = std::max<int>(item.i0, tile_.i0), i1 = std::min<int>(item.i1, tile_.i1);
+  const int j0 = std::max<int>(item.j0, tile_.j0), j1 = std::min<int>(item.j1, tile_.j1);
+  if (i0 > i1 || j0 > j1) return;
+  const int width = tile_.width();
+  if (item.whole) {
+    const std::uint64_t bits = slice_bits(item.s0, item.s1);
+    for (int j = j0; j <= j1; ++j) {
+      const std::uint32_t row = static_cast<std::uint32_t>((j - tile_.j0) * width - tile_.i0);
+      for (int i = i0; i <= i1; ++i) visit(row + static_cast<std::uint32_t>(i), bits, 0.f, 0.f);
+    }
+    return;
+  }
+  Rows rows(*grid_, item.triangle, grid_->bounds(item.triangle));
+  for (int j = j0; j <= j1; ++j) {
+    float lo, hi;
+    const float y = static_cast<float>(j);
+    if (!rows.row(y, y + 1, lo, hi)) continue;
+    const int from = std::max(i0, static_cast<int>(interval::clamp(lo, 0, 65536)));
+    const int to = std::min(i1, static_cast<int>(interval::clamp(hi, 0, 65536)));
+    const std::uint32_t row = static_cast<std::uint32_t>((j - tile_.j0) * width - tile_.i0);
+    for (int i = from; i <= to; ++i) {
+      const float x = static_cast<float>(i);
+      float near, far;
+      if (!rows.depths(x, x + 1, near, far)) continue;
+      visit(row + static_cast<std::uint32_t>(i), slice_bits(grid_->slice(near), grid_->slice(far)),
+            near, far);
+    }
+  }
+}
+
+// Owner by owner: first what meets the slices of earlier owners, then the owner's own slices.
+void PairTileWorker::mark(std::span<const PairItem> items) {
+  const std::size_t cells = static_cast<std::size_t>(tile_.width()) * tile_.height();
+  any_.assign(cells, 0);
+  conflict_.assign(cells, 0);
+  const PairTask& task = grid_->task();
+  for (std::size_t begin = 0; begin < items.size();) {
+    const std::uint32_t owner = task.owners[items[begin].triangle];
+    std::size_t end = begin;
+    const bool self = task.self[owner] != 0;
+    const bool first = begin == 0 && !self;
+    for (; end < items.size() && task.owners[items[end].triangle] == owner; ++end) {
+      if (first) {
+        for_each_pixel(items[end], [&](std::uint32_t cell, std::uint64_t bits, float, float) {
+          any_[cell] |= bits;
+        });
+        continue;
+      }
+      for_each_pixel(items[end], [&](std::uint32_t cell, std::uint64_t bits, float, float) {
+        conflict_[cell] |= self ? bits : any_[cell] & bits;
+      });
+    }
+    if (!first && end < items.size()) {
+      for (std::size_t k = begin; k < end; ++k) {
+        for_each_pixel(items[k], [&](std::uint32_t cell, std::uint64_t bits, float, float) {
+          any_[cell] |= bits;
+        });
+      }
+    }
+    begin = end;
+  }
+}
+
+// The lists of the tile's pixels; false: more than `limit` entries.
+bool PairTileWorker::list(std::span<const PairItem> items, bool masked, std::size_t limit) {
+  const PairTask& task = grid_->task();
+  const std::size_t cells = static_cast<std::size_t>(tile_.width()) * tile_.height();
+  first_.assign(cells + 2, 0);
+  raw_.clear();
+  shown_.clear();
+  for (const PairItem& item : items) {
+    const std::uint32_t next = static_cast<std::uint32_t>(shown_.size());
+    const std::size_t before = raw_.size();
+    for_each_pixel(item, [&](std::uint32_t cell, std::uint64_t bits, float near, float far) {
+      if (masked && (conflict_[cell] & bits) == 0) return;
+      raw_.push_back({cell, {next, near, far}});
+      ++first_[cell + 1];
+    });
+    if (raw_.size() == before) continue;
+    const PairBounds bounds = grid_->bounds(item.triangle);
+    shown_.push_back(
+        {item.triangle, task.owners[item.triangle], bounds, item.i0, item.j0, item.whole});
+    if (item.whole) {
+      for (std::size_t k = before; k < raw_.size(); ++k) {
+        raw_[k].entry.near = bounds.lo[2];
+        raw_[k].entry.far = bounds.hi[2];
+      }
+    }
+    if (raw_.size() > limit) return false;
+  }
+  for (std::size_t c = 0; c < cells; ++c) first_[c + 1] += first_[c];
+  first_[cells + 1] = static_cast<std::uint32_t>(raw_.size());
+  entries_.resize(raw_.size());
+  // From the back, so that first_[c + 1], the end of list c, ends as its start.
+  for (std::size_t k = raw_.size(); k-- > 0;) {
+    entries_[--first_[raw_[k].cell + 1]] = raw_[k].entry;
+  }
+  return true;
+}
+
+// Calls emit for each two entries whose intervals and bounds overlap and that may collide. Entries
+// are in the order of triangles, hence of owners.
+template <class Emit>
+void PairTileWorker::sweep(std::span<Entry> entries, const Emit& emit) {
+  const std::size_t n = entries.size();
+  const PairTask& task = grid_->task();
+  const auto try_pair = [&](const Entry& x, const Entry& y) {
+    const Shown &a = shown_[x.shown], &b = shown_[y.shown];
+    if (overlap_on(a.bounds, b.bounds, 0) && overlap_on(a.bounds, b.bounds, 1)) emit(a, b);
+  };
+  if (n <= kSweepFrom) {
+    for (std::size_t begin = 0, end = 0; begin < n; begin = end) {
+      const std::uint32_t owner = shown_[entries[begin].shown].owner;
+      while (end < n && shown_[entries[end].shown].owner == owner) ++end;
+      const bool self = task.self[owner] != 0;
+      for (std::size_t x = begin; x < end; ++x) {
+        const std::size_t from = self ? x + 1 : end;
+        counts_->tests += n - from;
+        const float near = entries[x].near, far = entries[x].far;
+        for (std::size_t y = from; y < n; ++y) {
+          if (near <= entries[y].far && entries[y].near <= far) try_pair(entries[x], entries[y]);
+        }
+      }
+    }
+    return;
+  }
+  std::sort(entries.begin(), entries.end(),
+            [](const Entry& x, const Entry& y) { return x.near < y.near; });
+  for (std::size_t x = 0; x + 1 < n; ++x) {
+    const std::uint32_t owner = shown_[entries[x].shown].owner;
+    const bool self = task.self[owner] != 0;
+    std::size_t y = x + 1;
+    for (; y < n && entries[y].near <= entries[x].far; ++y) {
+      if (self || shown_[entries[y].shown].owner != owner) try_pair(entries[x], entries[y]);
+    }
+    counts_->tests += y - x - 1;
+  }
+}
+
+void PairTileWorker::pair_pixel(std::span<Entry> entries, int i, int j) {
+  if (entries.size() > kCrowded) {
+    ++counts_->crowded;
+    pair_cell(entries, static_cast<float>(i), static_cast<float>(j), 1, 0);
+    return;
+  }
+  const auto size_of = [&](int ri, int rj) {
+    const std::size_t c = static_cast<std::size_t>(rj - tile_.j0) * tile_.width() + (ri - tile_.i0);
+    return first_[c + 2] - first_[c + 1];
+  };
+  sweep(entries, [&](const Shown& a, const Shown& b) {
+    // Two whole triangles overlap in all their common pixels or in none: the first one reports them
+    // unless it is out of reach, or crowded, where their intervals are finer.
+    if (a.whole && b.whole) {
+      const int ri = std::max(a.i0, b.i0), rj = std::max(a.j0, b.j0);
+      const bool here = ri >= tile_.i0 && rj >= tile_.j0;
+      if ((ri != i || rj != j) && here && size_of(ri, rj) <= kCrowded) return;
+    }
+    pairs_->push_back({std::min(a.triangle, b.triangle), std::max(a.triangle, b.triangle)});
+  });
+}
+
+void PairTileWorker::pair_cell(std::span<Entry> entries, float x, float y, float size, int level) {
+  if (entries.size() > kCrowded && level < kMaxLevel && subdivide(entries, x, y, size, level)) {
+    return;
+  }
+  sweep(entries, [&](const Shown& a, const Shown& b) {
+    pairs_->push_back({std::min(a.triangle, b.triangle), std::max(a.triangle, b.triangle)});
+  });
+}
+
+// Cuts a crowded cell, unless that leaves more than half of the tests.
+bool PairTileWorker::subdivide(std::span<Entry> entries, float x, float y, float size, int level) {
+  constexpr int kCells = kSubdivision * kSubdivision;
+  const float part = size / kSubdivision;
+  std::vector<RawEntry> raw;
+  std::array<std::uint32_t, kCells + 1> first{};
+  const auto index = [part](float p, float from) {
+    return static_cast<int>(interval::clamp((p - from) / part, 0, kSubdivision - 1));
+  };
+  for (const Entry& entry : entries) {
+    const Shown& shown = shown_[entry.shown];
+    const PairBounds& b = shown.bounds;
+    const int i0 = index(b.lo[0], x), i1 = index(b.hi[0], x);
+    const int j0 = index(b.lo[1], y), j1 = index(b.hi[1], y);
+    const auto add = [&](int i, int j, float near, float far) {
+      const auto cell = static_cast<std::uint32_t>(j * kSubdivision + i);
+      raw.push_back({cell, {entry.shown, near, far}});
+      ++first[cell + 1];
+    };
+    if ((i1 - i0 + 1) * (j1 - j0 + 1) <= kWholePixels) {
+      for (int j = j0; j <= j1; ++j) {
+        for (int i = i0; i <= i1; ++i) add(i, j, entry.near, entry.far);
+      }
+      continue;
+    }
+    Rows rows(*grid_, shown.triangle, b);
+    for (int j = j0; j <= j1; ++j) {
+      float lo, hi;
+      const float y0 = y + static_cast<float>(j) * part;
+      if (!rows.row(y0, y0 + part, lo, hi)) continue;
+      for (int i = index(lo, x); i <= index(hi, x); ++i) {
+        float near, far;
+        const float x0 = x + static_cast<float>(i) * part;
+        if (!rows.depths(x0, x0 + part, near, far)) continue;
+        near = std::max(near, entry.near);
+        far = std::min(far, entry.far);
+        if (near <= far) add(i, j, near, far);
+      }
+    }
+  }
+  const auto tests = [](std::uint64_t n) { return n * (n - std::min<std::uint64_t>(n, 1)) / 2; };
+  std::uint64_t left = 0;
+  for (int c = 0; c < kCells; ++c) left += tests(first[c + 1]);
+  if (2 * left > tests(entries.size())) return false;
+
+  counts_->entries += raw.size();
+  for (int c = 0; c < kCells; ++c) first[c + 1] += first[c];
+  std::vector<Entry> sorted(raw.size());
+  std::array<std::uint32_t, kCells + 1> next = first;
+  for (const RawEntry& entry : raw) sorted[next[entry.cell]++] = entry.entry;
+  for (int c = 0; c < kCells; ++c) {
+    const std::size_t n = first[c + 1] - first[c];
+    if (n < 2) continue;
+    pair_cell(std::span(sorted).subspan(first[c], n),
+              x + static_cast<float>(c % kSubdivision) * part,
+              y + static_cast<float>(c / kSubdivision) * part, part, level + 1);
+  }
+  return true;
+}
+
+void PairTileWorker::run(const PairGrid& grid, const PairTile& tile,
+                         std::span<const PairItem> items, bool masked, std::size_t memory,
+                         std::vector<TrianglePair>& pairs, PairCounts& counts) {
+  grid_ = &grid;
+  tile_ = tile;
+  pairs_ = &pairs;
+  counts_ = &counts;
+  const std::size_t cells = static_cast<std::size_t>(tile.width()) * tile.height();
+  const std::size_t fixed = cells * (2 * sizeof(std::uint64_t) + sizeof(std::uint32_t));
+  const std::size_t entry_bytes = sizeof(RawEntry) + sizeof(Entry);
+  // A single pixel is done whatever it takes.
+  const std::size_t limit = cells == 1       ? SIZE_MAX
+                            : memory > fixed ? (memory - fixed) / entry_bytes
+                                             : 0;
+  const auto start = Clock::now();
+  bool fits = limit > 0;
+  if (fits) {
+    if (masked) mark(items);
+    counts.mark_ms += ms_since(start);
+    const auto listing = Clock::now();
+    fits = list(items, masked, std::min<std::size_t>(limit, UINT32_MAX));
+    counts.list_ms += ms_since(listing);
+  }
+  if (!fits) {
+    PairTile low = tile, high = tile;
+    if (tile.height() > 1) {
+      low.j1 = tile.j0 + tile.height() / 2 - 1;
+      high.j0 = low.j1 + 1;
+    } else {
+      low.i1 = tile.i0 + tile.width() / 2 - 1;
+      high.i0 = low.i1 + 1;
+    }
+    ++counts.bands;
+    run(grid, low, items, masked, memory, pairs, counts);
+    run(grid, high, items, masked, memory, pairs, counts);
+    return;
+  }
+  counts.listed += shown_.size();
+  counts.entries += entries_.size();
+  const auto pairing = Clock::now();
+  for (std::size_t c = 0; c < cells; ++c) {
+    const std::size_t n = first_[c + 2] - first_[c + 1];
+    if (n < 2) continue;
+    pair_pixel(std::span(entries_).subspan(first_[c + 1], n),
+               tile.i0 + static_cast<int>(c % tile.width()),
+               tile.j0 + static_cast<int>(c / tile.width()));
+  }
+  counts.pair_ms += ms_since(pairing);
+}
+
+}  // namespace farcull

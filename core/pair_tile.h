@@ -1,0 +1,104 @@
+// One tile of the window, on one core: which triangles meet another owner's slices, the lists of
+// its pixels, and the pairs whose intervals overlap in one of them.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/interval.h"
+#include "core/pair_backend.h"
+
+namespace farcull {
+
+/// A triangle in the window: the pixels of its bounds and the slices of its depth.
+struct PairItem {
+  std::uint32_t triangle;
+  std::uint16_t i0, i1, j0, j1;  // inclusive, from the window's lower left pixel
+  std::uint8_t s0, s1;           // slices, inclusive
+  bool whole;                    // one interval in all its pixels
+};
+
+/// Real bounds of a triangle within its owner's limits (px); empty where lo > hi on some axis.
+struct PairBounds {
+  float lo[3], hi[3];
+  bool empty() const { return !(lo[0] <= hi[0] && lo[1] <= hi[1] && lo[2] <= hi[2]); }
+};
+
+/// The parts of a task that every pixel needs.
+class PairGrid {
+ public:
+  explicit PairGrid(const PairTask& task);
+
+  const PairTask& task() const { return task_; }
+  interval::vec4 corner(std::uint32_t triangle, int k) const {
+    const PixelVertex& v = task_.vertices[task_.triangles[triangle][k]];
+    return {v.x, v.y, v.z, 0};
+  }
+  PairBounds bounds(std::uint32_t triangle) const;
+  /// The item of a triangle with bounds that are not empty.
+  PairItem item(std::uint32_t triangle, const PairBounds& bounds) const;
+  int slice(float z) const { return interval::far_slice(z, task_.near_px, slices_per_px_); }
+
+ private:
+  PairTask task_;
+  float slices_per_px_;
+};
+
+struct PairTile {
+  int i0, i1, j0, j1;  // pixels, inclusive
+  int width() const { return i1 - i0 + 1; }
+  int height() const { return j1 - j0 + 1; }
+};
+
+/// Works on tiles one after the other; keeps its buffers.
+class PairTileWorker {
+ public:
+  /// Appends the pairs of the tile, which may repeat. `items`: those that may meet it, ascending by
+  /// triangle. `masked`: leave out entries whose slices no other owner touches. More entries than
+  /// `memory` holds split the tile.
+  void run(const PairGrid& grid, const PairTile& tile, std::span<const PairItem> items, bool masked,
+           std::size_t memory, std::vector<TrianglePair>& pairs, PairCounts& counts);
+
+ private:
+  struct Entry {
+    std::uint32_t shown;  // index into shown_
+    float near, far;      // px
+  };
+  /// A triangle with an entry.
+  struct Shown {
+    std::uint32_t triangle;
+    std::uint32_t owner;
+    PairBounds bounds;
+    std::uint16_t i0, j0;
+    bool whole;
+  };
+  struct RawEntry {
+    std::uint32_t cell;
+    Entry entry;
+  };
+
+  template <class Visit>
+  void for_each_pixel(const PairItem& item, const Visit& visit) const;
+  void mark(std::span<const PairItem> items);
+  bool list(std::span<const PairItem> items, bool masked, std::size_t limit);
+  void pair_pixel(std::span<Entry> entries, int i, int j);
+  void pair_cell(std::span<Entry> entries, float x, float y, float size, int level);
+  bool subdivide(std::span<Entry> entries, float x, float y, float size, int level);
+  template <class Emit>
+  void sweep(std::span<Entry> entries, const Emit& emit);
+
+  const PairGrid* grid_ = nullptr;
+  PairTile tile_{};
+  std::vector<TrianglePair>* pairs_ = nullptr;
+  PairCounts* counts_ = nullptr;
+  std::vector<std::uint64_t> any_;       // per pixel: slices that some owner touches
+  std::vector<std::uint64_t> conflict_;  // per pixel: slices that two owners touch
+  std::vector<Shown> shown_;
+  std::vector<RawEntry> raw_;
+  std::vector<std::uint32_t> first_;  // per pixel: into entries_
+  std::vector<Entry> entries_;
+};
+
+}  // namespace farcull

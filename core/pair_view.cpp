@@ -1,0 +1,213 @@
+#include "core/pair_view.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+
+#include "core/box_join.h"
+#include "core/parallel.h"
+
+namespace farcull {
+namespace {
+
+constexpr double kUnit = 0x1p-53;
+constexpr double kLargest = 0x1p20;         // px, of a coordinate that kernels take
+constexpr double kSmallest = 0x1p-60;       // px, of one that is not zero
+constexpr double kLeastWidening = 0x1p-40;  // px
+
+// Never decreasing, and beyond the exact sum.
+Box grow(Box box, double half) {
+  if (half == 0 || box.is_empty()) return box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.lo[axis] = std::nextafter(box.lo[axis] - half, -HUGE_VAL);
+    box.hi[axis] = std::nextafter(box.hi[axis] + half, HUGE_VAL);
+  }
+  return box;
+}
+
+double half_of(double clearance) {
+  return clearance == 0 ? 0 : std::nextafter(0.5 * clearance, HUGE_VAL);
+}
+
+std::vector<Box> boxes_of_objects(const Scene& scene) {
+  std::vector<Box> boxes(scene.objects.size(), Box::empty());
+  const std::vector<Object>& objects = scene.objects;
+  // In chunks of triangles, whatever the sizes of the objects.
+  const std::size_t chunks = chunks_for(scene.triangles.size(), 4096);
+  struct Part {
+    std::size_t first = 0;
+    std::vector<Box> boxes;
+  };
+  std::vector<Part> parts(chunks);
+  for_chunks(
+      scene.triangles.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        if (begin == end) return;
+        Part& part = parts[chunk];
+        const auto after =
+            std::upper_bound(objects.begin(), objects.end(), begin,
+                             [](std::size_t t, const Object& o) { return t < o.first_triangle; });
+        std::size_t o = static_cast<std::size_t>(after - objects.begin()) - 1;
+        part.first = o;
+        for (std::size_t t = begin; t < end; ++o) {
+          const std::size_t stop = std::min<std::size_t>(
+              end, std::size_t{objects[o].first_triangle} + objects[o].triangle_count);
+          // In locals, which stay in registers.
+          const double inf = HUGE_VAL;
+          double x0 = inf, y0 = inf, z0 = inf, x1 = -inf, y1 = -inf, z1 = -inf;
+          for (; t < stop; ++t) {
+            for (const std::uint32_t v : scene.triangles[t]) {
+              const double* const p = scene.vertices[v].data();
+              x0 = p[0] < x0 ? p[0] : x0;
+              y0 = p[1] < y0 ? p[1] : y0;
+              z0 = p[2] < z0 ? p[2] : z0;
+              x1 = p[0] > x1 ? p[0] : x1;
+              y1 = p[1] > y1 ? p[1] : y1;
+              z1 = p[2] > z1 ? p[2] : z1;
+            }
+          }
+          part.boxes.push_back({{x0, y0, z0}, {x1, y1, z1}});
+        }
+      });
+  for (const Part& part : parts) {
+    for (std::size_t k = 0; k < part.boxes.size(); ++k) boxes[part.first + k].add(part.boxes[k]);
+  }
+  return boxes;
+}
+
+// A float that is not below x.
+float float_above(double x) {
+  const float f = static_cast<float>(x);
+  return f < x ? std::nextafter(f, HUGE_VALF) : f;
+}
+float float_below(double x) { return -float_above(-x); }
+
+double flushed(double x) { return std::abs(x) < kSmallest ? 0 : x; }
+
+}  // namespace
+
+Box grown_box(const Scene& scene, std::uint32_t triangle, double clearance) {
+  Box box = Box::empty();
+  for (const std::uint32_t v : scene.triangles[triangle]) box.add(scene.vertices[v]);
+  return grow(box, half_of(clearance));
+}
+
+PairRegions pair_regions(const Scene& scene, double clearance) {
+  PairRegions out;
+  std::vector<Box> boxes = boxes_of_objects(scene);
+  for (Box& box : boxes) box = grow(box, half_of(clearance));
+  out.objects.assign(boxes.size(), Box::empty());
+  std::vector<std::uint32_t> objects(boxes.size());
+  std::iota(objects.begin(), objects.end(), 0u);
+  for (const TrianglePair& pair : box_join(boxes, objects, objects)) {
+    const Box common = intersection(boxes[pair.a], boxes[pair.b]);
+    out.objects[pair.a].add(common);
+    out.objects[pair.b].add(common);
+    ++out.pairs;
+  }
+  std::size_t count = 0;
+  for (std::size_t o = 0; o < boxes.size(); ++o) {
+    if (scene.objects[o].self && scene.objects[o].triangle_count > 1) {
+      out.objects[o] = boxes[o];
+      ++out.self;
+    }
+    if (!out.objects[o].is_empty()) count += scene.objects[o].triangle_count;
+  }
+  out.triangles.reserve(count);
+  for (std::size_t o = 0; o < boxes.size(); ++o) {
+    if (out.objects[o].is_empty()) continue;
+    const Object& object = scene.objects[o];
+    for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
+      out.triangles.push_back(object.first_triangle + k);
+    }
+  }
+  return out;
+}
+
+bool look(const Scene& scene, const PairRegions& regions, std::span<const std::uint32_t> triangles,
+          const View& view, int resolution, double clearance, PairScene& out) {
+  std::vector<Box> present;
+  Box reach = Box::empty();  // of the regions
+  for (const Box& box : regions.objects) {
+    if (box.is_empty()) continue;
+    present.push_back(box);
+    reach.add(box);
+  }
+  const std::optional<Window> window = fit_window(view, present, resolution);
+  if (!window) return false;
+  out.window = *window;
+
+  // The clearance, and the double arithmetic of the map for a vertex at the limit of drawability.
+  std::array<float, 3> widening;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double ball = half_of(clearance) * window->map.row(axis).norm();
+    const double sum = (ball + kMaxDoubleError + kLeastWidening) * (1 + 0x1p-20);
+    if (!(sum <= kLargest)) return false;
+    widening[axis] = float_above(sum);
+  }
+
+  const Vec3 corner(0.5 * window->width, 0.5 * window->height, 0);
+  out.limits.resize(scene.objects.size());
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    if (regions.objects[o].is_empty()) {
+      out.limits[o] = {{1, 1, 1}, {-1, -1, -1}};
+      continue;
+    }
+    Box px = pixel_box(*window, regions.objects[o]);
+    px.lo += corner;
+    px.hi += corner;
+    for (int axis = 0; axis < 3; ++axis) {
+      out.limits[o].lo[axis] = float_below(px.lo[axis]);
+      out.limits[o].hi[axis] = float_above(px.hi[axis]);
+    }
+  }
+
+  const std::size_t n = scene.vertices.size();
+  out.vertices.resize(n);
+  const std::size_t chunks = chunks_for(n, 4096);
+  std::atomic<bool> some_undrawable = false;
+  for_chunks(n, chunks, [&](std::size_t, std::size_t begin, std::size_t end) {
+    bool bad = false;
+    for (std::size_t v = begin; v < end; ++v) {
+      const PixelPoint point = to_pixel(*window, scene.vertices[v]);
+      const Vec3 p = point.p + corner;
+      const bool drawable = point.error <= kMaxDoubleError && std::abs(p.x()) <= kLargest &&
+                            std::abs(p.y()) <= kLargest && std::abs(p.z()) <= kLargest;
+      bad |= !drawable;
+      out.vertices[v] = drawable ? PixelVertex{static_cast<float>(flushed(p.x())),
+                                               static_cast<float>(flushed(p.y())),
+                                               static_cast<float>(flushed(p.z())), 0}
+                                 : PixelVertex{0, 0, 0, 1};
+    }
+    if (bad) some_undrawable = true;
+  });
+
+  out.undrawable.clear();
+  out.active.assign(triangles.begin(), triangles.end());
+  if (some_undrawable) {
+    out.active.clear();
+    for (const std::uint32_t t : triangles) {
+      const auto& c = scene.triangles[t];
+      const bool bad =
+          out.vertices[c[0]].w != 0 || out.vertices[c[1]].w != 0 || out.vertices[c[2]].w != 0;
+      (bad ? out.undrawable : out.active).push_back(t);
+    }
+  }
+  out.owners = owners(scene);
+  out.self.resize(scene.objects.size());
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) out.self[o] = scene.objects[o].self;
+  out.task = {.vertices = out.vertices,
+              .triangles = scene.triangles,
+              .owners = out.owners,
+              .self = out.self,
+              .limits = out.limits,
+              .active = out.active,
+              .width = window->width,
+              .height = window->height,
+              .near_px = float_below(window->lo[2]),
+              .far_px = float_above(window->hi[2]),
+              .widening = widening};
+  return true;
+}
+
+}  // namespace farcull

@@ -1,0 +1,227 @@
+#include "core/pairs.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/box_join.h"
+#include "core/pair_view.h"
+#include "core/parallel.h"
+
+namespace farcull {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// A further view is looked at where there are more candidates than this for each triangle that
+// takes part: fewer are mostly neighbours and contacts, which no view takes away.
+constexpr std::size_t kFurtherViewFrom = 16;
+constexpr std::size_t kMostViews = 3;  // chosen by the scene
+
+// Pairs of the scene whose grown boxes overlap and one of whose triangles is in `some` (ascending):
+// for triangles of which a view can say nothing.
+std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const PairRegions& regions,
+                                         std::span<const std::uint32_t> some, double clearance) {
+  std::vector<Box> boxes(scene.triangles.size(), Box::empty());
+  std::vector<std::uint32_t> group = owners(scene);
+  // Triangles of an object that collides with itself are owners of themselves.
+  const auto objects = static_cast<std::uint32_t>(scene.objects.size());
+  for (const std::uint32_t t : regions.triangles) {
+    boxes[t] = grown_box(scene, t, clearance);
+    if (scene.objects[group[t]].self) group[t] = objects + t;
+  }
+  std::vector<TrianglePair> pairs = box_join(boxes, group, regions.triangles);
+  if (some.size() < regions.triangles.size()) {
+    std::erase_if(pairs, [&](const TrianglePair& pair) {
+      return !std::binary_search(some.begin(), some.end(), pair.a) &&
+             !std::binary_search(some.begin(), some.end(), pair.b);
+    });
+  }
+  return pairs;
+}
+
+// Those whose boxes overlap, in order.
+void keep_overlapping(const Scene& scene, double clearance, std::vector<TrianglePair>& pairs) {
+  const std::size_t chunks = chunks_for(pairs.size(), 2048);
+  std::vector<std::size_t> kept(chunks, 0);
+  for_chunks(pairs.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    std::size_t to = begin;
+    for (std::size_t k = begin; k < end; ++k) {
+      if (overlap(grown_box(scene, pairs[k].a, clearance), grown_box(scene, pairs[k].b, clearance)))
+        pairs[to++] = pairs[k];
+    }
+    kept[chunk] = to - begin;
+  });
+  std::size_t to = 0;
+  for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+    const std::size_t from = pairs.size() * chunk / chunks;
+    std::copy(pairs.begin() + from, pairs.begin() + from + kept[chunk], pairs.begin() + to);
+    to += kept[chunk];
+  }
+  pairs.resize(to);
+}
+
+std::vector<TrianglePair> common(const std::vector<TrianglePair>& a,
+                                 const std::vector<TrianglePair>& b) {
+  std::vector<TrianglePair> out;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(out));
+  return out;
+}
+
+std::vector<TrianglePair> merged(const std::vector<TrianglePair>& a,
+                                 const std::vector<TrianglePair>& b) {
+  std::vector<TrianglePair> out;
+  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(out));
+  return out;
+}
+
+std::vector<std::uint32_t> members(const std::vector<TrianglePair>& pairs) {
+  std::vector<std::uint32_t> out;
+  out.reserve(2 * pairs.size());
+  for (const TrianglePair& pair : pairs) {
+    out.push_back(pair.a);
+    out.push_back(pair.b);
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+}  // namespace
+
+PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBackend& backend,
+                      const std::function<void(const std::string&)>& progress) {
+  if (!(settings.clearance >= 0) || !std::isfinite(settings.clearance)) {
+    throw std::logic_error("find_pairs: the clearance is negative or not finite");
+  }
+  PairResult out;
+  const auto planning = Clock::now();
+  if (progress) progress("planning");
+  const PairRegions regions = pair_regions(scene, settings.clearance);
+  out.stages.push_back({.name = "boxes",
+                        .ran = true,
+                        .reason = std::to_string(regions.pairs) +
+                                  " pairs of objects' boxes overlap, " +
+                                  std::to_string(regions.self) + " objects collide with themselves",
+                        .ms = ms_since(planning),
+                        .in = scene.triangles.size(),
+                        .out = regions.triangles.size(),
+                        .unit = "triangles"});
+  if (regions.triangles.empty()) {
+    out.stages.push_back({.name = "views",
+                          .reason = "no two objects' boxes overlap, none collides with itself",
+                          .unit = "pairs"});
+    return out;
+  }
+
+  const auto choosing = Clock::now();
+  std::vector<PairChoice> choices;
+  if (settings.views.empty()) {
+    choices = choose_pair_views(scene, regions, settings.resolution);
+  } else {
+    for (const View& view : settings.views) {
+      choices.push_back({view,
+                         settings.resolution > 0 ? settings.resolution
+                                                 : choose_pair_resolution(scene, regions, view),
+                         settings.resolution > 0
+                             ? "direction and resolution given"
+                             : "direction given; pixels by the triangles' sizes"});
+    }
+  }
+  out.stages.push_back(
+      {.name = "choose",
+       .ran = true,
+       .reason = settings.views.empty() ? "views chosen by the scene" : "views given",
+       .ms = ms_since(choosing),
+       .in = choices.size(),
+       .out = settings.views.empty() ? 1 : choices.size(),
+       .unit = "views"});
+
+  bool first = true;  // no view has said anything yet
+  std::size_t looked = 0;
+  PairScene seen;
+  for (const PairChoice& choice : choices) {
+    if (settings.views.empty() && !first) {
+      const bool enough = out.candidates.size() <= kFurtherViewFrom * regions.triangles.size();
+      if (enough || looked == kMostViews) {
+        out.stages.push_back({.name = "view " + choice.view.name,
+                              .reason = enough ? "exact tests of " +
+                                                     std::to_string(out.candidates.size()) +
+                                                     " candidates are cheaper than a further view"
+                                               : "enough views were looked at",
+                              .unit = "pairs"});
+        break;
+      }
+    }
+    const auto start = Clock::now();
+    if (progress) progress("view " + choice.view.name);
+    const std::vector<std::uint32_t> left =
+        first ? std::vector<std::uint32_t>() : members(out.candidates);
+    const std::span<const std::uint32_t> triangles =
+        first ? std::span<const std::uint32_t>(regions.triangles) : left;
+    PairView view{.name = choice.view.name, .reason = choice.reason};
+    Stage stage{.name = "view " + choice.view.name, .in = triangles.size(), .unit = "pairs"};
+    if (!look(scene, regions, triangles, choice.view, choice.resolution, settings.clearance,
+              seen)) {
+      view.reason = "pixel space cannot resolve the scene in this view";
+      stage.reason = view.reason;
+      out.views.push_back(view);
+      out.stages.push_back(stage);
+      continue;
+    }
+    view.looked = true;
+    view.width = seen.window.width;
+    view.height = seen.window.height;
+    view.pixel_size = seen.window.pixel_size;
+    view.widening_px = *std::max_element(seen.task.widening.begin(), seen.task.widening.end());
+    const double prepare_ms = ms_since(start);
+    std::vector<TrianglePair> pairs = backend.raw_pairs(seen.task, view.counts);
+    view.counts.undrawable = seen.undrawable.size();
+    view.counts.prepare_ms = prepare_ms;
+    if (first) {
+      keep_overlapping(scene, settings.clearance, pairs);
+      if (!seen.undrawable.empty()) {
+        pairs = merged(pairs, pairs_by_boxes(scene, regions, seen.undrawable, settings.clearance));
+      }
+      out.candidates = std::move(pairs);
+    } else {
+      std::vector<TrianglePair> unseen;
+      const auto& bad = seen.undrawable;
+      for (const TrianglePair& pair : out.candidates) {
+        if (std::binary_search(bad.begin(), bad.end(), pair.a) ||
+            std::binary_search(bad.begin(), bad.end(), pair.b))
+          unseen.push_back(pair);
+      }
+      out.candidates = common(out.candidates, merged(pairs, unseen));
+    }
+    first = false;
+    ++looked;
+    stage.ran = true;
+    stage.reason = choice.reason + ": " + std::to_string(view.width) + " x " +
+                   std::to_string(view.height) + " px";
+    stage.ms = ms_since(start);
+    stage.out = out.candidates.size();
+    out.views.push_back(view);
+    out.stages.push_back(stage);
+  }
+  if (first) {
+    const auto start = Clock::now();
+    if (progress) progress("joining boxes");
+    out.candidates = pairs_by_boxes(scene, regions, regions.triangles, settings.clearance);
+    out.stages.push_back({.name = "join",
+                          .ran = true,
+                          .reason = "no view can resolve the scene: pairs by their boxes alone",
+                          .ms = ms_since(start),
+                          .in = regions.triangles.size(),
+                          .out = out.candidates.size(),
+                          .unit = "pairs"});
+  }
+  return out;
+}
+
+}  // namespace farcull

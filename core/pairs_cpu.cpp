@@ -1,0 +1,190 @@
+#include "core/pairs_cpu.h"
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include "core/pair_sort.h"
+#include "core/pair_tile.h"
+#include "core/parallel.h"
+
+namespace farcull {
+namespace {
+
+// Bands of rows: several for each thread, so that one dense band does not hold up the others.
+constexpr int kBandsPerThread = 4;
+constexpr int kLeastRows = 4;
+
+struct Bands {
+  int rows;  // of each but the last
+  int count;
+};
+
+Bands bands_for(int height, std::size_t threads) {
+  const int wanted = static_cast<int>(threads) * kBandsPerThread;
+  const int rows = std::max((height + wanted - 1) / wanted, kLeastRows);
+  return {rows, (height + rows - 1) / rows};
+}
+
+bool meet(const PairBounds& a, const PairBounds& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (a.lo[axis] > b.hi[axis] || b.lo[axis] > a.hi[axis]) return false;
+  }
+  return true;
+}
+
+/// A large triangle, and what comparing it with others takes.
+struct Large {
+  std::uint32_t triangle;
+  std::uint32_t owner;
+  PairBounds bounds;
+};
+
+// Whether the depth intervals of a large triangle and a box overlap over the box's own rectangle.
+bool meets_over(const PairGrid& grid, const Large& large, const PairBounds& box) {
+  const auto a = grid.corner(large.triangle, 0), b = grid.corner(large.triangle, 1),
+             c = grid.corner(large.triangle, 2);
+  const auto& widening = grid.task().widening;
+  float lo[3], hi[3], margin[3];
+  interval::far_bounds(a.x, b.x, c.x, widening[0], lo[0], hi[0]);
+  interval::far_bounds(a.y, b.y, c.y, widening[1], lo[1], hi[1]);
+  interval::far_bounds(a.z, b.z, c.z, widening[2], lo[2], hi[2]);
+  for (int axis = 0; axis < 3; ++axis) {
+    margin[axis] = interval::far_margin(lo[axis], hi[axis], widening[axis]);
+  }
+  interval::FarStrip strip;
+  interval::far_strip(a, b, c, std::max(box.lo[1], lo[1]) - margin[1],
+                      std::min(box.hi[1], hi[1]) + margin[1], strip);
+  float near, far;
+  return interval::far_depths(strip, std::max(box.lo[0], lo[0]) - margin[0],
+                              std::min(box.hi[0], hi[0]) + margin[0], near, far) &&
+         near - margin[2] <= box.hi[2] && box.lo[2] <= far + margin[2];
+}
+
+class CpuPairs : public PairBackend {
+ public:
+  CpuPairs(unsigned threads, std::size_t memory)
+      : threads_(threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency())),
+        memory_(memory),
+        workers_(threads_) {}
+
+  std::string name() const override { return "cpu"; }
+
+  std::vector<TrianglePair> raw_pairs(const PairTask& task, PairCounts& counts) override {
+    const PairGrid grid(task);
+    const Bands bands = bands_for(task.height, threads_);
+    const std::size_t chunks = std::clamp<std::size_t>(task.active.size() / 1024, 1, threads_);
+    sort_into_bands(grid, bands, chunks);
+
+    std::vector<std::vector<TrianglePair>> found(bands.count + chunks);
+    std::vector<PairCounts> parts(threads_);
+    compare_large(grid, chunks, found);
+    const bool masked = std::any_of(task.self.begin(), task.self.end(),
+                                    [](std::uint8_t self) { return self == 0; });
+    std::atomic<int> next = 0;
+    for_chunks(threads_, threads_, [&](std::size_t thread, std::size_t, std::size_t) {
+      std::vector<PairItem> items;
+      for (int band = next++; band < bands.count; band = next++) {
+        items.clear();
+        for (const auto& chunk : items_) {
+          items.insert(items.end(), chunk[band].begin(), chunk[band].end());
+        }
+        const PairTile tile{0, task.width - 1, band * bands.rows,
+                            std::min(task.height, (band + 1) * bands.rows) - 1};
+        workers_[thread].run(grid, tile, items, masked, memory_, found[band], parts[thread]);
+      }
+    });
+
+    std::vector<TrianglePair> pairs;
+    std::size_t total = 0;
+    for (const auto& part : found) total += part.size();
+    pairs.reserve(total);
+    for (const auto& part : found) pairs.insert(pairs.end(), part.begin(), part.end());
+    sort_unique(pairs, task.triangles.size());
+    counts = {};
+    counts.bands = bands.count;
+    for (const PairCounts& part : parts) {
+      counts.listed += part.listed;
+      counts.entries += part.entries;
+      counts.crowded += part.crowded;
+      counts.tests += part.tests;
+      counts.bands += part.bands - 1;
+      counts.mark_ms += part.mark_ms;
+      counts.list_ms += part.list_ms;
+      counts.pair_ms += part.pair_ms;
+    }
+    counts.large = large_.size();
+    return pairs;
+  }
+
+ private:
+  // Bounds of all active triangles: the small ones as items of the bands that they meet.
+  void sort_into_bands(const PairGrid& grid, const Bands& bands, std::size_t chunks) {
+    const PairTask& task = grid.task();
+    const float large =
+        std::max<float>(kLargePixels, 0.125f * static_cast<float>(task.active.size()));
+    items_.resize(chunks);
+    std::vector<std::vector<Large>> large_of(chunks);
+    for_chunks(task.active.size(), chunks,
+               [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+                 auto& mine = items_[chunk];
+                 mine.resize(bands.count);
+                 for (auto& band : mine) band.clear();
+                 for (std::size_t k = begin; k < end; ++k) {
+                   const std::uint32_t t = task.active[k];
+                   const PairBounds bounds = grid.bounds(t);
+                   if (bounds.empty()) continue;
+                   const PairItem item = grid.item(t, bounds);
+                   if (!item.whole &&
+                       interval::far_footprint(grid.corner(t, 0), grid.corner(t, 1),
+                                               grid.corner(t, 2), bounds.hi[0] - bounds.lo[0],
+                                               bounds.hi[1] - bounds.lo[1]) > large) {
+                     large_of[chunk].push_back({t, task.owners[t], bounds});
+                     continue;
+                   }
+                   const int last = item.j1 / bands.rows;
+                   for (int band = item.j0 / bands.rows; band <= last; ++band)
+                     mine[band].push_back(item);
+                 }
+               });
+    large_.clear();
+    for (const auto& part : large_of) large_.insert(large_.end(), part.begin(), part.end());
+  }
+
+  // Large triangles with each active one, in the rectangle of that one's bounds.
+  void compare_large(const PairGrid& grid, std::size_t chunks,
+                     std::vector<std::vector<TrianglePair>>& found) {
+    if (large_.empty()) return;
+    const PairTask& task = grid.task();
+    for_chunks(task.active.size(), chunks,
+               [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+                 std::vector<TrianglePair>& pairs = found[found.size() - chunks + chunk];
+                 for (std::size_t k = begin; k < end; ++k) {
+                   const std::uint32_t t = task.active[k];
+                   const PairBounds bounds = grid.bounds(t);
+                   if (bounds.empty()) continue;
+                   const std::uint32_t owner = task.owners[t];
+                   for (const Large& l : large_) {
+                     if (l.triangle == t || (l.owner == owner && !task.self[owner])) continue;
+                     if (meet(l.bounds, bounds) && meets_over(grid, l, bounds)) {
+                       pairs.push_back({std::min(t, l.triangle), std::max(t, l.triangle)});
+                     }
+                   }
+                 }
+               });
+  }
+
+  unsigned threads_;
+  std::size_t memory_;
+  std::vector<PairTileWorker> workers_;
+  std::vector<std::vector<std::vector<PairItem>>> items_;  // per chunk and band
+  std::vector<Large> large_;
+};
+
+}  // namespace
+
+std::unique_ptr<PairBackend> cpu_pair_backend(unsigned threads, std::size_t memory) {
+  return std::make_unique<CpuPairs>(threads, memory);
+}
+
+}  // namespace farcull
