@@ -77,8 +77,9 @@ bool BoxPairs::next(std::vector<TrianglePair>& pairs, std::size_t enough) {
              scene_.objects[object].triangle_count;
     };
     while (triangle_ >= end_of(object_)) ++object_;
-    // Objects are contiguous and ascending: the later triangles of other objects start here.
-    const std::uint64_t later = end_of(object_);
+    // Objects are contiguous and ascending: the later triangles that make a pair start here.
+    const std::uint64_t later =
+        scene_.objects[object_].self ? std::uint64_t{triangle_} + 1 : end_of(object_);
     const Bounds& bounds = bounds_[triangle_];
     const std::size_t before = pairs.size();
     for (std::uint32_t n = 0; n < nodes_.size();) {

@@ -14,10 +14,10 @@
 
 namespace farcull {
 
-/// All pairs of triangles of different objects whose closed boxes share a point (touching counts),
-/// sorted by (a, b), a < b, each once. Boxes are minima and maxima of the coordinates as given and
-/// are only compared, so nothing is rounded. Memory O(triangles).
-/// Precondition: validate() accepts the scene. It must outlive the object.
+/// All pairs of triangles that count (of different objects, and of one object where it is `self`)
+/// whose closed boxes share a point (touching counts), sorted by (a, b), a < b, each once. Boxes
+/// are minima and maxima of the coordinates as given and are only compared, so nothing is rounded.
+/// Memory O(triangles). Precondition: validate() accepts the scene. It must outlive the object.
 class BoxPairs {
  public:
   explicit BoxPairs(const Scene& scene);

@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <future>
@@ -29,6 +30,7 @@
 #include <variant>
 
 #include "verify/distance.h"
+#include "verify/filter.h"
 
 namespace farcull {
 namespace {
@@ -204,16 +206,78 @@ void check_clearance(const char* where, double clearance) {
 
 enum class Answer : std::uint8_t { apart, colliding, neighbours_apart, neighbours_colliding };
 
+/// Which corners of two triangles are at equal positions: bit 3 i + j for corner i of a and j of b.
+/// Equal indices are known to be, without a look at the positions.
+unsigned equal_corners(const std::array<std::uint32_t, 3>& a_index, const Corners& a,
+                       const std::array<std::uint32_t, 3>& b_index, const Corners& b) {
+  unsigned equal = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (a_index[i] == b_index[j] ||
+          (a[i].x() == b[j].x() && a[i].y() == b[j].y() && a[i].z() == b[j].z())) {
+        equal |= 1u << (3 * i + j);
+      }
+    }
+  }
+  return equal;
+}
+
+/// Neighbours decided without exact arithmetic, where that can be.
+Triage filter_neighbours(unsigned equal, const Corners& a, const Corners& b) {
+  const auto lowest = [](unsigned bits) { return std::countr_zero(bits); };
+  const int i = lowest(equal) / 3;
+  const int j = lowest(equal) % 3;
+  const unsigned rest = equal & (equal - 1);
+  if (rest == 0) {
+    return filter_beyond_vertex(a[i], a[(i + 1) % 3], a[(i + 2) % 3], b[(j + 1) % 3],
+                                b[(j + 2) % 3]);
+  }
+  const int k = lowest(rest) / 3;
+  const int l = lowest(rest) % 3;
+  // Else more than an edge is shared, or a corner stands twice in a triangle.
+  if ((rest & (rest - 1)) != 0 || i == k || j == l) return Triage::unknown;
+  return filter_beyond_edge(a[i], a[k], a[3 - i - k], b[3 - j - l]);
+}
+
 Answer answer(const Scene& scene, const TrianglePair& pair, bool one_object,
               const ExactQuestion& question) {
   const Corners a = scene.corners(pair.a);
   const Corners b = scene.corners(pair.b);
-  if (one_object && share_position(a, b)) {
-    return question.neighbours && intersects_beyond_shared(a, b) ? Answer::neighbours_colliding
-                                                                 : Answer::neighbours_apart;
+  if (one_object) {
+    const unsigned equal = equal_corners(scene.triangles[pair.a], a, scene.triangles[pair.b], b);
+    if (equal != 0) {
+      if (!question.neighbours) return Answer::neighbours_apart;
+      const Triage triage = filter_neighbours(equal, a, b);
+      const bool beyond =
+          triage == Triage::unknown ? intersects_beyond_shared(a, b) : triage == Triage::yes;
+      return beyond ? Answer::neighbours_colliding : Answer::neighbours_apart;
+    }
   }
   return within(a, b, question.clearance) ? Answer::colliding : Answer::apart;
 }
+
+/// Which object triangles are of, for pairs whose first members mostly ascend.
+class SameObject {
+ public:
+  explicit SameObject(const Scene& scene) : objects_(scene.objects) {}
+
+  bool operator()(const TrianglePair& pair) {
+    if (pair.a < first_ || pair.a >= end_) {
+      const auto after = std::upper_bound(
+          objects_.begin(), objects_.end(), pair.a,
+          [](std::uint32_t t, const Object& object) { return t < object.first_triangle; });
+      // The last one that starts at or before a; empty ones that start there come earlier.
+      first_ = std::prev(after)->first_triangle;
+      end_ = std::uint64_t{first_} + std::prev(after)->triangle_count;
+    }
+    return pair.b >= first_ && pair.b < end_;
+  }
+
+ private:
+  const std::vector<Object>& objects_;
+  std::uint32_t first_ = 0;
+  std::uint64_t end_ = 0;
+};
 
 }  // namespace
 
@@ -224,7 +288,8 @@ Shape shape(const std::array<Vec3, 3>& corners) {
 }
 
 bool intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  return hulls_meet(hull(a), hull(b));
+  const Triage triage = filter_intersects(a, b);
+  return triage == Triage::unknown ? hulls_meet(hull(a), hull(b)) : triage == Triage::yes;
 }
 
 bool within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
@@ -283,19 +348,18 @@ Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
     }
     if (pair.a == pair.b) throw std::logic_error("decide: a candidate of one triangle");
   }
-  const std::vector<std::uint32_t> owner = owners(scene);
   constexpr std::size_t kBlock =
       1024;  // enough work to pay for the shared counter, small enough to balance
   std::vector<Answer> answers(candidates.size());
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
+    SameObject same_object(scene);
     for (;;) {
       const std::size_t begin = next.fetch_add(kBlock);
       if (begin >= candidates.size()) return;
       const std::size_t end = std::min(begin + kBlock, candidates.size());
       for (std::size_t i = begin; i < end; ++i) {
-        const TrianglePair& pair = candidates[i];
-        answers[i] = answer(scene, pair, owner[pair.a] == owner[pair.b], question);
+        answers[i] = answer(scene, candidates[i], same_object(candidates[i]), question);
       }
     }
   };

@@ -1,0 +1,44 @@
+// Answers about two triangles from plain doubles alone, each proved by a forward error bound; where
+// rounding leaves a doubt they say so, and exact arithmetic decides (verify/exact).
+//
+// No allocation, no change of the rounding mode, no branches on data but the answers: most pairs
+// that reach the exact tests leave them here.
+//
+// Preconditions: finite coordinates of any magnitude; round to nearest, subnormals not flushed,
+// products and sums not contracted.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/scene.h"
+
+namespace farcull {
+
+enum class Triage : std::uint8_t { no, yes, unknown };
+
+/// Bounds on what rounding does, derived in filter.cpp. The defaults are the proved ones; smaller
+/// ones are for the tests, which show that they are needed.
+struct FilterBounds {
+  double side = 9 * 0x1p-53;      // of a determinant, in its permanent
+  double normals = 12 * 0x1p-53;  // of the product of two normals
+  double along = 5 * 0x1p-53;     // of a scalar product with a difference
+  double absolute = 0x1p-1000;    // underflow, per unit of what is multiplied last, plus one
+};
+inline constexpr FilterBounds kFilterBounds;
+
+/// Do the triangles share a point? `yes` and `no` are proved; degenerate triangles and contacts
+/// without overlap are `unknown`, and so is what nearly is one.
+Triage filter_intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                         const FilterBounds& bounds = kFilterBounds);
+
+/// Do the triangles (v, a1, a2) and (v, b1, b2) share more than v?
+Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const Vec3& b1,
+                            const Vec3& b2, const FilterBounds& bounds = kFilterBounds);
+
+/// Do the triangles (p, q, r) and (p, q, s) share more than the segment from p to q? Never `yes`:
+/// that takes four points in one plane.
+Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s,
+                          const FilterBounds& bounds = kFilterBounds);
+
+}  // namespace farcull
