@@ -13,18 +13,23 @@ const float kBoundUnit = FAR_PAIR_ROUNDING * 4.76837158203125e-7f;  // 4 u, u = 
 const float kClipUnit = FAR_PAIR_ROUNDING * 7.62939453125e-6f;      // 64 u
 const float kShort = 8.67361737988403547e-19f;                     // 2^-60
 
-// The range of one coordinate of the real triangle.
-FAR_KERNEL void far_bounds(float a, float b, float c, float widen, FAR_OUT(float) lo, FAR_OUT(float) hi) {
-  float least = min(min(a, b), c);
-  float most = max(max(a, b), c);
-  FAR_PRECISE float e = widen + kBoundUnit * (max(abs(least), abs(most)) + widen);
-  lo = least - e;
-  hi = most + e;
+// The bounds of the real triangle; w stands for nothing.
+FAR_KERNEL void far_bounds(vec4 a, vec4 b, vec4 c, vec4 widen, FAR_OUT(vec4) lo, FAR_OUT(vec4) hi) {
+  vec4 least = min(min(a, b), c);
+  vec4 most = max(max(a, b), c);
+  FAR_PRECISE vec4 e = widen + kBoundUnit * (max(abs(least), abs(most)) + widen);
+  FAR_PRECISE vec4 below = least - e;
+  FAR_PRECISE vec4 above = most + e;
+  lo = below;
+  hi = above;
 }
 
 // By how much a rectangle grows so that it speaks of the float triangle, whose real one has the bounds lo, hi.
-FAR_KERNEL float far_margin(float lo, float hi, float widen) {
-  FAR_PRECISE float e = widen + kClipUnit * (1.0f + max(abs(lo), abs(hi)));
+FAR_KERNEL vec4 far_margin(vec4 lo, vec4 hi, vec4 widen) {
+  FAR_PRECISE vec4 e = widen + kClipUnit * max(abs(lo), abs(hi));
+  e.x += kClipUnit;
+  e.y += kClipUnit;
+  e.z += kClipUnit;
   return e;
 }
 

@@ -6,24 +6,26 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/glsl_shim.h"
 #include "core/scene.h"
 
 namespace farcull {
 
-/// A vertex in pixel space as a float, x and y from the window's lower left corner; w is not used.
-struct alignas(16) PixelVertex {
-  float x, y, z, w;
+/// A vertex in pixel space, x and y from the window's lower left corner; w is 0.
+using PixelVertex = glsl::vec4;
+
+/// A closed box of pixel space; w is 0. Empty where lo > hi on some axis.
+struct PixelBox {
+  glsl::vec4 lo;
+  glsl::vec4 hi;
 };
 
-/// A closed box of pixel space.
-struct PixelBox {
-  std::array<float, 3> lo;
-  std::array<float, 3> hi;
-};
+struct PairScene;
 
 /// The depth of a window is cut into this many slices, one bit each.
 constexpr int kSlices = 64;
@@ -31,7 +33,7 @@ constexpr int kSlices = 64;
 constexpr int kWholePixels = 16;
 /// A pixel with more entries is crowded: it is cut into kSubdivision^2 sub-pixels, and each of them
 /// again, up to kMaxLevel times, wherever that leaves at most half of the tests.
-constexpr int kCrowded = 64;
+constexpr int kCrowded = 256;
 constexpr int kSubdivision = 8;
 constexpr int kMaxLevel = 3;
 /// A triangle that meets more pixels than this, and more than an eighth of the number of active
@@ -51,8 +53,8 @@ struct PairTask {
   int height = 0;                         // px; 0 <= i < width, 0 <= j < height
   float near_px = 0;                      // the depth range of the window, for the slices
   float far_px = 0;
-  std::array<float, 3> widening{};  // px per axis: every point of a triangle is within this of the
-                                    // triangle of its PixelVertex corners, up to float rounding
+  glsl::vec4 widening{};  // px per axis: every point of a triangle is within this of the
+                          // triangle of its PixelVertex corners, up to float rounding
 };
 
 /// Work done, for stages and studies.
@@ -71,7 +73,10 @@ struct PairCounts {
 class PairBackend {
  public:
   virtual ~PairBackend() = default;
+  std::shared_ptr<PairScene> kept;       // what find_pairs keeps from call to call
   virtual std::string name() const = 0;  // "cpu" or the renderer
+  /// Threads of the CPU that the rest of the work may use too; 0: as many as there are cores.
+  virtual unsigned threads() const { return 0; }
   /// Pairs a < b (indices into task.triangles), sorted, each once: of different owners, or of one
   /// that is `self`. Throws Error unless every command is known to have run (A7).
   virtual std::vector<TrianglePair> raw_pairs(const PairTask& task, PairCounts& counts) = 0;

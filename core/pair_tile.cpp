@@ -22,8 +22,8 @@ std::uint64_t slice_bits(int first, int last) {
   return (~std::uint64_t{0} >> (kSlices - 1 - last)) & (~std::uint64_t{0} << first);
 }
 
-bool overlap_on(const PairBounds& a, const PairBounds& b, int axis) {
-  return a.lo[axis] <= b.hi[axis] && b.lo[axis] <= a.hi[axis];
+bool overlap_in_image(const PairBounds& a, const PairBounds& b) {
+  return a.lo.x <= b.hi.x && b.lo.x <= a.hi.x && a.lo.y <= b.hi.y && b.lo.y <= a.hi.y;
 }
 
 // The strip of one triangle over rows of pixels or sub-pixels, and its intervals in them.
@@ -34,34 +34,28 @@ class Rows {
         a_(grid.corner(triangle, 0)),
         b_(grid.corner(triangle, 1)),
         c_(grid.corner(triangle, 2)) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto at = [axis](const interval::vec4& v) {
-        return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-      };
-      float lo, hi;
-      interval::far_bounds(at(a_), at(b_), at(c_), grid.task().widening[axis], lo, hi);
-      margin_[axis] = interval::far_margin(lo, hi, grid.task().widening[axis]);
-    }
+    const PairBounds real = grid.real_bounds(triangle);
+    margin_ = interval::far_margin(real.lo, real.hi, grid.task().widening);
   }
   /// The range along x of the real triangle between the rows' borders; false: none.
   bool row(float y0, float y1, float& lo, float& hi) {
-    interval::far_strip(a_, b_, c_, y0 - margin_[1], y1 + margin_[1], strip_);
-    lo = std::max(strip_.lo - margin_[0], bounds_.lo[0]);
-    hi = std::min(strip_.hi + margin_[0], bounds_.hi[0]);
+    interval::far_strip(a_, b_, c_, y0 - margin_.y, y1 + margin_.y, strip_);
+    lo = std::max(strip_.lo - margin_.x, bounds_.lo.x);
+    hi = std::min(strip_.hi + margin_.x, bounds_.hi.x);
     return lo <= hi;
   }
   /// The interval over a rectangle of the row; false: none.
   bool depths(float x0, float x1, float& near, float& far) {
-    if (!interval::far_depths(strip_, x0 - margin_[0], x1 + margin_[0], near, far)) return false;
-    near = std::max(near - margin_[2], bounds_.lo[2]);
-    far = std::min(far + margin_[2], bounds_.hi[2]);
+    if (!interval::far_depths(strip_, x0 - margin_.x, x1 + margin_.x, near, far)) return false;
+    near = std::max(near - margin_.z, bounds_.lo.z);
+    far = std::min(far + margin_.z, bounds_.hi.z);
     return near <= far;
   }
 
  private:
   PairBounds bounds_;
   interval::vec4 a_, b_, c_;
-  float margin_[3];
+  interval::vec4 margin_;
   FarStrip strip_;
 };
 
@@ -69,21 +63,6 @@ class Rows {
 
 PairGrid::PairGrid(const PairTask& task)
     : task_(task), slices_per_px_(kSlices / std::max(task.far_px - task.near_px, 0x1p-20f)) {}
-
-PairBounds PairGrid::bounds(std::uint32_t triangle) const {
-  const std::array<std::uint32_t, 3>& t = task_.triangles[triangle];
-  const PixelVertex &a = task_.vertices[t[0]], &b = task_.vertices[t[1]], &c = task_.vertices[t[2]];
-  PairBounds out;
-  interval::far_bounds(a.x, b.x, c.x, task_.widening[0], out.lo[0], out.hi[0]);
-  interval::far_bounds(a.y, b.y, c.y, task_.widening[1], out.lo[1], out.hi[1]);
-  interval::far_bounds(a.z, b.z, c.z, task_.widening[2], out.lo[2], out.hi[2]);
-  const PixelBox& limit = task_.limits[task_.owners[triangle]];
-  for (int axis = 0; axis < 3; ++axis) {
-    out.lo[axis] = std::max(out.lo[axis], limit.lo[axis]);
-    out.hi[axis] = std::min(out.hi[axis], limit.hi[axis]);
-  }
-  return out;
-}
 
 PairItem PairGrid::item(std::uint32_t triangle, const PairBounds& b) const {
   // Clamped as floats, since a conversion beyond int would be undefined; what is not negative is
@@ -94,12 +73,12 @@ PairItem PairGrid::item(std::uint32_t triangle, const PairBounds& b) const {
   };
   PairItem out;
   out.triangle = triangle;
-  out.i0 = pixel(b.lo[0], task_.width);
-  out.i1 = pixel(b.hi[0], task_.width);
-  out.j0 = pixel(b.lo[1], task_.height);
-  out.j1 = pixel(b.hi[1], task_.height);
-  out.s0 = static_cast<std::uint8_t>(slice(b.lo[2]));
-  out.s1 = static_cast<std::uint8_t>(slice(b.hi[2]));
+  out.i0 = pixel(b.lo.x, task_.width);
+  out.i1 = pixel(b.hi.x, task_.width);
+  out.j0 = pixel(b.lo.y, task_.height);
+  out.j1 = pixel(b.hi.y, task_.height);
+  out.s0 = static_cast<std::uint8_t>(slice(b.lo.z));
+  out.s1 = static_cast<std::uint8_t>(slice(b.hi.z));
   out.whole = (out.i1 - out.i0 + 1) * (out.j1 - out.j0 + 1) <= kWholePixels;
   return out;
 }
@@ -192,8 +171,8 @@ bool PairTileWorker::list(std::span<const PairItem> items, bool masked, std::siz
         {item.triangle, task.owners[item.triangle], bounds, item.i0, item.j0, item.whole});
     if (item.whole) {
       for (std::size_t k = before; k < raw_.size(); ++k) {
-        raw_[k].entry.near = bounds.lo[2];
-        raw_[k].entry.far = bounds.hi[2];
+        raw_[k].entry.near = bounds.lo.z;
+        raw_[k].entry.far = bounds.hi.z;
       }
     }
     if (raw_.size() > limit) return false;
@@ -216,7 +195,7 @@ void PairTileWorker::sweep(std::span<Entry> entries, const Emit& emit) {
   const PairTask& task = grid_->task();
   const auto try_pair = [&](const Entry& x, const Entry& y) {
     const Shown &a = shown_[x.shown], &b = shown_[y.shown];
-    if (overlap_on(a.bounds, b.bounds, 0) && overlap_on(a.bounds, b.bounds, 1)) emit(a, b);
+    if (overlap_in_image(a.bounds, b.bounds)) emit(a, b);
   };
   if (n <= kSweepFrom) {
     for (std::size_t begin = 0, end = 0; begin < n; begin = end) {
@@ -290,8 +269,8 @@ bool PairTileWorker::subdivide(std::span<Entry> entries, float x, float y, float
   for (const Entry& entry : entries) {
     const Shown& shown = shown_[entry.shown];
     const PairBounds& b = shown.bounds;
-    const int i0 = index(b.lo[0], x), i1 = index(b.hi[0], x);
-    const int j0 = index(b.lo[1], y), j1 = index(b.hi[1], y);
+    const int i0 = index(b.lo.x, x), i1 = index(b.hi.x, x);
+    const int j0 = index(b.lo.y, y), j1 = index(b.hi.y, y);
     const auto add = [&](int i, int j, float near, float far) {
       const auto cell = static_cast<std::uint32_t>(j * kSubdivision + i);
       raw.push_back({cell, {entry.shown, near, far}});

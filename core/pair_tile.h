@@ -22,8 +22,8 @@ struct PairItem {
 
 /// Real bounds of a triangle within its owner's limits (px); empty where lo > hi on some axis.
 struct PairBounds {
-  float lo[3], hi[3];
-  bool empty() const { return !(lo[0] <= hi[0] && lo[1] <= hi[1] && lo[2] <= hi[2]); }
+  interval::vec4 lo, hi;
+  bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
 };
 
 /// The parts of a task that every pixel needs.
@@ -32,11 +32,22 @@ class PairGrid {
   explicit PairGrid(const PairTask& task);
 
   const PairTask& task() const { return task_; }
-  interval::vec4 corner(std::uint32_t triangle, int k) const {
-    const PixelVertex& v = task_.vertices[task_.triangles[triangle][k]];
-    return {v.x, v.y, v.z, 0};
+  const interval::vec4& corner(std::uint32_t triangle, int k) const {
+    return task_.vertices[task_.triangles[triangle][k]];
   }
-  PairBounds bounds(std::uint32_t triangle) const;
+  /// Real bounds, and within the owner's limits.
+  PairBounds real_bounds(std::uint32_t triangle) const {
+    const std::array<std::uint32_t, 3>& t = task_.triangles[triangle];
+    PairBounds out;
+    interval::far_bounds(task_.vertices[t[0]], task_.vertices[t[1]], task_.vertices[t[2]],
+                         task_.widening, out.lo, out.hi);
+    return out;
+  }
+  PairBounds bounds(std::uint32_t triangle) const {
+    const PairBounds real = real_bounds(triangle);
+    const PixelBox& limit = task_.limits[task_.owners[triangle]];
+    return {interval::max(real.lo, limit.lo), interval::min(real.hi, limit.hi)};
+  }
   /// The item of a triangle with bounds that are not empty.
   PairItem item(std::uint32_t triangle, const PairBounds& bounds) const;
   int slice(float z) const { return interval::far_slice(z, task_.near_px, slices_per_px_); }

@@ -30,11 +30,11 @@ double half_of(double clearance) {
   return clearance == 0 ? 0 : std::nextafter(0.5 * clearance, HUGE_VAL);
 }
 
-std::vector<Box> boxes_of_objects(const Scene& scene) {
+std::vector<Box> boxes_of_objects(const Scene& scene, unsigned threads) {
   std::vector<Box> boxes(scene.objects.size(), Box::empty());
   const std::vector<Object>& objects = scene.objects;
   // In chunks of triangles, whatever the sizes of the objects.
-  const std::size_t chunks = chunks_for(scene.triangles.size(), 4096);
+  const std::size_t chunks = chunks_for(scene.triangles.size(), 4096, threads);
   struct Part {
     std::size_t first = 0;
     std::vector<Box> boxes;
@@ -82,7 +82,10 @@ float float_above(double x) {
 }
 float float_below(double x) { return -float_above(-x); }
 
-double flushed(double x) { return std::abs(x) < kSmallest ? 0 : x; }
+PixelVertex pixel_vertex(const Vec3& p) {
+  const auto rounded = [](double x) { return static_cast<float>(std::abs(x) < kSmallest ? 0 : x); };
+  return {rounded(p.x()), rounded(p.y()), rounded(p.z()), 0};
+}
 
 }  // namespace
 
@@ -92,9 +95,9 @@ Box grown_box(const Scene& scene, std::uint32_t triangle, double clearance) {
   return grow(box, half_of(clearance));
 }
 
-PairRegions pair_regions(const Scene& scene, double clearance) {
+PairRegions pair_regions(const Scene& scene, double clearance, unsigned threads) {
   PairRegions out;
-  std::vector<Box> boxes = boxes_of_objects(scene);
+  std::vector<Box> boxes = boxes_of_objects(scene, threads);
   for (Box& box : boxes) box = grow(box, half_of(clearance));
   out.objects.assign(boxes.size(), Box::empty());
   std::vector<std::uint32_t> objects(boxes.size());
@@ -111,7 +114,9 @@ PairRegions pair_regions(const Scene& scene, double clearance) {
       out.objects[o] = boxes[o];
       ++out.self;
     }
-    if (!out.objects[o].is_empty()) count += scene.objects[o].triangle_count;
+    if (out.objects[o].is_empty()) continue;
+    out.reach.add(boxes[o]);
+    count += scene.objects[o].triangle_count;
   }
   out.triangles.reserve(count);
   for (std::size_t o = 0; o < boxes.size(); ++o) {
@@ -125,13 +130,11 @@ PairRegions pair_regions(const Scene& scene, double clearance) {
 }
 
 bool look(const Scene& scene, const PairRegions& regions, std::span<const std::uint32_t> triangles,
-          const View& view, int resolution, double clearance, PairScene& out) {
+          const View& view, int resolution, double clearance, unsigned threads, PairScene& out) {
   std::vector<Box> present;
-  Box reach = Box::empty();  // of the regions
   for (const Box& box : regions.objects) {
     if (box.is_empty()) continue;
     present.push_back(box);
-    reach.add(box);
   }
   const std::optional<Window> window = fit_window(view, present, resolution);
   if (!window) return false;
@@ -150,34 +153,41 @@ bool look(const Scene& scene, const PairRegions& regions, std::span<const std::u
   out.limits.resize(scene.objects.size());
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     if (regions.objects[o].is_empty()) {
-      out.limits[o] = {{1, 1, 1}, {-1, -1, -1}};
+      out.limits[o] = {{1, 1, 1, 0}, {-1, -1, -1, 0}};
       continue;
     }
     Box px = pixel_box(*window, regions.objects[o]);
     px.lo += corner;
     px.hi += corner;
-    for (int axis = 0; axis < 3; ++axis) {
-      out.limits[o].lo[axis] = float_below(px.lo[axis]);
-      out.limits[o].hi[axis] = float_above(px.hi[axis]);
-    }
+    out.limits[o] = {{float_below(px.lo.x()), float_below(px.lo.y()), float_below(px.lo.z()), 0},
+                     {float_above(px.hi.x()), float_above(px.hi.y()), float_above(px.hi.z()), 0}};
   }
 
+  // Where the boxes of the objects already are within the bounds, so is each of their vertices.
+  const Box whole = pixel_box(*window, regions.reach);
+  const double largest = std::max(whole.lo.cwiseAbs().maxCoeff(), whole.hi.cwiseAbs().maxCoeff());
+  const bool all_drawable = largest + corner.maxCoeff() <= kLargest &&
+                            pixel_error(*window, regions.reach) <= kMaxDoubleError;
   const std::size_t n = scene.vertices.size();
   out.vertices.resize(n);
-  const std::size_t chunks = chunks_for(n, 4096);
+  const std::size_t chunks = chunks_for(n, 4096, threads);
   std::atomic<bool> some_undrawable = false;
   for_chunks(n, chunks, [&](std::size_t, std::size_t begin, std::size_t end) {
+    if (all_drawable) {
+      const Eigen::Matrix3d map = window->map;
+      const Vec3 origin = window->origin;
+      for (std::size_t v = begin; v < end; ++v) {
+        out.vertices[v] = pixel_vertex(map * (scene.vertices[v] - origin) + corner);
+      }
+      return;
+    }
     bool bad = false;
     for (std::size_t v = begin; v < end; ++v) {
       const PixelPoint point = to_pixel(*window, scene.vertices[v]);
       const Vec3 p = point.p + corner;
-      const bool drawable = point.error <= kMaxDoubleError && std::abs(p.x()) <= kLargest &&
-                            std::abs(p.y()) <= kLargest && std::abs(p.z()) <= kLargest;
+      const bool drawable = point.error <= kMaxDoubleError && p.cwiseAbs().maxCoeff() <= kLargest;
       bad |= !drawable;
-      out.vertices[v] = drawable ? PixelVertex{static_cast<float>(flushed(p.x())),
-                                               static_cast<float>(flushed(p.y())),
-                                               static_cast<float>(flushed(p.z())), 0}
-                                 : PixelVertex{0, 0, 0, 1};
+      out.vertices[v] = drawable ? pixel_vertex(p) : PixelVertex{0, 0, 0, 1};
     }
     if (bad) some_undrawable = true;
   });
@@ -206,7 +216,7 @@ bool look(const Scene& scene, const PairRegions& regions, std::span<const std::u
               .height = window->height,
               .near_px = float_below(window->lo[2]),
               .far_px = float_above(window->hi[2]),
-              .widening = widening};
+              .widening = {widening[0], widening[1], widening[2], 0}};
   return true;
 }
 

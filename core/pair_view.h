@@ -18,11 +18,12 @@ namespace farcull {
 struct PairRegions {
   std::vector<Box>
       objects;  // per object: contains all its points that can belong to a pair; empty: none
+  Box reach = Box::empty();              // of all their triangles, grown by the clearance
   std::uint64_t pairs = 0;               // of objects whose boxes overlap (grown by the clearance)
   std::uint64_t self = 0;                // objects that collide with themselves
   std::vector<std::uint32_t> triangles;  // ascending: of the objects that can meet anything
 };
-PairRegions pair_regions(const Scene& scene, double clearance);
+PairRegions pair_regions(const Scene& scene, double clearance, unsigned threads = 0);
 
 /// The closed box of a triangle, grown outward by at least half the clearance on every side.
 Box grown_box(const Scene& scene, std::uint32_t triangle, double clearance);
@@ -55,6 +56,6 @@ struct PairScene {
 /// Fills `out` (whose buffers are used again) with the view of `triangles`. False where pixel space
 /// cannot resolve the regions or the clearance: nothing can be said in this view.
 bool look(const Scene& scene, const PairRegions& regions, std::span<const std::uint32_t> triangles,
-          const View& view, int resolution, double clearance, PairScene& out);
+          const View& view, int resolution, double clearance, unsigned threads, PairScene& out);
 
 }  // namespace farcull

@@ -46,8 +46,9 @@ std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const PairRegions& 
 }
 
 // Those whose boxes overlap, in order.
-void keep_overlapping(const Scene& scene, double clearance, std::vector<TrianglePair>& pairs) {
-  const std::size_t chunks = chunks_for(pairs.size(), 2048);
+void keep_overlapping(const Scene& scene, double clearance, unsigned threads,
+                      std::vector<TrianglePair>& pairs) {
+  const std::size_t chunks = chunks_for(pairs.size(), 2048, threads);
   std::vector<std::size_t> kept(chunks, 0);
   for_chunks(pairs.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     std::size_t to = begin;
@@ -102,7 +103,7 @@ PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBack
   PairResult out;
   const auto planning = Clock::now();
   if (progress) progress("planning");
-  const PairRegions regions = pair_regions(scene, settings.clearance);
+  const PairRegions regions = pair_regions(scene, settings.clearance, backend.threads());
   out.stages.push_back({.name = "boxes",
                         .ran = true,
                         .reason = std::to_string(regions.pairs) +
@@ -144,7 +145,8 @@ PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBack
 
   bool first = true;  // no view has said anything yet
   std::size_t looked = 0;
-  PairScene seen;
+  if (!backend.kept) backend.kept = std::make_shared<PairScene>();
+  PairScene& seen = *backend.kept;
   for (const PairChoice& choice : choices) {
     if (settings.views.empty() && !first) {
       const bool enough = out.candidates.size() <= kFurtherViewFrom * regions.triangles.size();
@@ -167,7 +169,7 @@ PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBack
     PairView view{.name = choice.view.name, .reason = choice.reason};
     Stage stage{.name = "view " + choice.view.name, .in = triangles.size(), .unit = "pairs"};
     if (!look(scene, regions, triangles, choice.view, choice.resolution, settings.clearance,
-              seen)) {
+              backend.threads(), seen)) {
       view.reason = "pixel space cannot resolve the scene in this view";
       stage.reason = view.reason;
       out.views.push_back(view);
@@ -178,13 +180,13 @@ PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBack
     view.width = seen.window.width;
     view.height = seen.window.height;
     view.pixel_size = seen.window.pixel_size;
-    view.widening_px = *std::max_element(seen.task.widening.begin(), seen.task.widening.end());
+    view.widening_px = std::max({seen.task.widening.x, seen.task.widening.y, seen.task.widening.z});
     const double prepare_ms = ms_since(start);
     std::vector<TrianglePair> pairs = backend.raw_pairs(seen.task, view.counts);
     view.counts.undrawable = seen.undrawable.size();
     view.counts.prepare_ms = prepare_ms;
     if (first) {
-      keep_overlapping(scene, settings.clearance, pairs);
+      keep_overlapping(scene, settings.clearance, backend.threads(), pairs);
       if (!seen.undrawable.empty()) {
         pairs = merged(pairs, pairs_by_boxes(scene, regions, seen.undrawable, settings.clearance));
       }

@@ -27,10 +27,7 @@ Bands bands_for(int height, std::size_t threads) {
 }
 
 bool meet(const PairBounds& a, const PairBounds& b) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (a.lo[axis] > b.hi[axis] || b.lo[axis] > a.hi[axis]) return false;
-  }
-  return true;
+  return !PairBounds{interval::max(a.lo, b.lo), interval::min(a.hi, b.hi)}.empty();
 }
 
 /// A large triangle, and what comparing it with others takes.
@@ -42,23 +39,16 @@ struct Large {
 
 // Whether the depth intervals of a large triangle and a box overlap over the box's own rectangle.
 bool meets_over(const PairGrid& grid, const Large& large, const PairBounds& box) {
-  const auto a = grid.corner(large.triangle, 0), b = grid.corner(large.triangle, 1),
-             c = grid.corner(large.triangle, 2);
-  const auto& widening = grid.task().widening;
-  float lo[3], hi[3], margin[3];
-  interval::far_bounds(a.x, b.x, c.x, widening[0], lo[0], hi[0]);
-  interval::far_bounds(a.y, b.y, c.y, widening[1], lo[1], hi[1]);
-  interval::far_bounds(a.z, b.z, c.z, widening[2], lo[2], hi[2]);
-  for (int axis = 0; axis < 3; ++axis) {
-    margin[axis] = interval::far_margin(lo[axis], hi[axis], widening[axis]);
-  }
+  const PairBounds real = grid.real_bounds(large.triangle);
+  const interval::vec4 margin = interval::far_margin(real.lo, real.hi, grid.task().widening);
   interval::FarStrip strip;
-  interval::far_strip(a, b, c, std::max(box.lo[1], lo[1]) - margin[1],
-                      std::min(box.hi[1], hi[1]) + margin[1], strip);
+  interval::far_strip(grid.corner(large.triangle, 0), grid.corner(large.triangle, 1),
+                      grid.corner(large.triangle, 2), std::max(box.lo.y, real.lo.y) - margin.y,
+                      std::min(box.hi.y, real.hi.y) + margin.y, strip);
   float near, far;
-  return interval::far_depths(strip, std::max(box.lo[0], lo[0]) - margin[0],
-                              std::min(box.hi[0], hi[0]) + margin[0], near, far) &&
-         near - margin[2] <= box.hi[2] && box.lo[2] <= far + margin[2];
+  return interval::far_depths(strip, std::max(box.lo.x, real.lo.x) - margin.x,
+                              std::min(box.hi.x, real.hi.x) + margin.x, near, far) &&
+         near - margin.z <= box.hi.z && box.lo.z <= far + margin.z;
 }
 
 class CpuPairs : public PairBackend {
@@ -69,6 +59,7 @@ class CpuPairs : public PairBackend {
         workers_(threads_) {}
 
   std::string name() const override { return "cpu"; }
+  unsigned threads() const override { return threads_; }
 
   std::vector<TrianglePair> raw_pairs(const PairTask& task, PairCounts& counts) override {
     const PairGrid grid(task);
@@ -125,28 +116,26 @@ class CpuPairs : public PairBackend {
         std::max<float>(kLargePixels, 0.125f * static_cast<float>(task.active.size()));
     items_.resize(chunks);
     std::vector<std::vector<Large>> large_of(chunks);
-    for_chunks(task.active.size(), chunks,
-               [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-                 auto& mine = items_[chunk];
-                 mine.resize(bands.count);
-                 for (auto& band : mine) band.clear();
-                 for (std::size_t k = begin; k < end; ++k) {
-                   const std::uint32_t t = task.active[k];
-                   const PairBounds bounds = grid.bounds(t);
-                   if (bounds.empty()) continue;
-                   const PairItem item = grid.item(t, bounds);
-                   if (!item.whole &&
-                       interval::far_footprint(grid.corner(t, 0), grid.corner(t, 1),
-                                               grid.corner(t, 2), bounds.hi[0] - bounds.lo[0],
-                                               bounds.hi[1] - bounds.lo[1]) > large) {
-                     large_of[chunk].push_back({t, task.owners[t], bounds});
-                     continue;
-                   }
-                   const int last = item.j1 / bands.rows;
-                   for (int band = item.j0 / bands.rows; band <= last; ++band)
-                     mine[band].push_back(item);
-                 }
-               });
+    for_chunks(
+        task.active.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+          auto& mine = items_[chunk];
+          mine.resize(bands.count);
+          for (auto& band : mine) band.clear();
+          for (std::size_t k = begin; k < end; ++k) {
+            const std::uint32_t t = task.active[k];
+            const PairBounds bounds = grid.bounds(t);
+            if (bounds.empty()) continue;
+            const PairItem item = grid.item(t, bounds);
+            if (!item.whole && interval::far_footprint(grid.corner(t, 0), grid.corner(t, 1),
+                                                       grid.corner(t, 2), bounds.hi.x - bounds.lo.x,
+                                                       bounds.hi.y - bounds.lo.y) > large) {
+              large_of[chunk].push_back({t, task.owners[t], bounds});
+              continue;
+            }
+            const int last = item.j1 / bands.rows;
+            for (int band = item.j0 / bands.rows; band <= last; ++band) mine[band].push_back(item);
+          }
+        });
     large_.clear();
     for (const auto& part : large_of) large_.insert(large_.end(), part.begin(), part.end());
   }

@@ -30,9 +30,10 @@ void for_chunks(std::size_t count, std::size_t chunks, const Work& work) {
   }
 }
 
-/// As many chunks as cores, but none below `least` items.
-inline std::size_t chunks_for(std::size_t count, std::size_t least) {
-  const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+/// As many chunks as cores (or `threads`, where it is not 0), but none below `least` items.
+inline std::size_t chunks_for(std::size_t count, std::size_t least, unsigned threads = 0) {
+  const std::size_t cores =
+      threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
   return std::clamp<std::size_t>(count / std::max<std::size_t>(least, 1), 1, cores);
 }
 

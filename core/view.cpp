@@ -121,6 +121,12 @@ PixelPoint to_pixel(const Window& window, const Vec3& x) {
   return out;
 }
 
+double pixel_error(const Window& window, const Box& box) {
+  double error = 0x1p-1000;
+  image(window.map, window.origin, box, error);
+  return error;
+}
+
 Box pixel_box(const Window& window, const Box& box) {
   double error = 0;
   return image(window.map, window.origin, box, error);

@@ -47,6 +47,8 @@ struct PixelPoint {
   double error;  // px
 };
 PixelPoint to_pixel(const Window& window, const Vec3& x);
+/// The largest error (px) of a point of the box; infinite where one may overflow.
+double pixel_error(const Window& window, const Box& box);
 
 /// Contains the image of the box in the window's pixel space.
 Box pixel_box(const Window& window, const Box& box);
