@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "experiments/builtin_scenes.h"
 #include "experiments/check.h"
+#include "experiments/cli_bench.h"
 #include "experiments/cli_experiment.h"
 #include "experiments/cli_parts.h"
 #include "experiments/compare.h"
@@ -357,6 +358,9 @@ int command_line(int argc, char** argv) {
       "  farcull compare two-bunnies --methods far,exact --resolutions 256,512 --repeat 5\n\n"
       "Exit status 1: a method that promises missed a pair.");
 
+  BenchCommand bench;
+  CLI::App* bench_app = bench.add_to(app, kSceneHelp);
+
   DoctorArguments doctor;
   CLI::App* doctor_app =
       app.add_subcommand("doctor", "the devices, and what each assumption A1-A7 finds there");
@@ -403,6 +407,7 @@ int command_line(int argc, char** argv) {
     if (*run_app) return run_command(run, false);
     if (*verify_app) return run_command(verify, true);
     if (*compare_app) return compare_command(comparison);
+    if (*bench_app) return bench.run();
     if (*check_app) {
       check(certificate.scene);
       certificate.json = checked({.json = check_json, .pairs = {}, .certificate = {}, .csv = {}})

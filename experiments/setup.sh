@@ -27,6 +27,8 @@ farcull_packages=(
   # exact predicates, linear algebra, tests, command line, records, figures
   libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev libgtest-dev librapidcheck-dev libcli11-dev
   nlohmann-json3-dev libfmt-dev libpng-dev
+  # what farcull bench compares with, and the cases of single kernels; a build without them works
+  libfcl-dev libembree-dev libtbb-dev libbenchmark-dev
 )
 
 # Prints those of farcull_packages that dpkg does not hold as completely installed, one per line.

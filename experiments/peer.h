@@ -1,0 +1,50 @@
+// What a user would pick instead of farcull, for `farcull bench`: broad phases of other libraries,
+// each followed by the exact decisions of verify/exact.h. All go from the triangles of a scene to
+// the same list: the pairs of triangles of different objects, and of one object where it is `self`,
+// that collide and are not neighbours (verify/exact.h).
+//
+// Peers stand at their best settings and are given what costs nothing: the threads of the bench for
+// whatever can be divided, and candidates that are decided in bounded parts, so that tens of
+// millions of overlapping boxes are never stored.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/scene.h"
+
+namespace farcull {
+
+struct BenchAnswer {
+  double build_ms = 0;       // of a hierarchy, where there is one
+  double candidates_ms = 0;  // finding the candidates
+  double exact_ms = 0;  // deciding them; where several threads do so between finding, their sum
+                        // divided by the threads
+  std::uint64_t candidate_pairs = 0;     // given to the exact decision
+  std::vector<TrianglePair> pairs = {};  // sorted, each once
+};
+
+/// From the triangles to the pairs. Throws Error where it cannot vouch for its answer.
+using BenchRun = std::function<BenchAnswer(const Scene&)>;
+
+struct Peer {
+  std::string name;     // as in --peers
+  std::string library;  // with its version, such as "CGAL 5.5.1"
+  std::string
+      missing;  // why this build or this number of threads is without it; empty: it is there
+  std::function<BenchRun(unsigned threads)> set_up = {};  // devices, pools; not timed with the run
+  std::function<std::string(const Scene&)> refuses = {};  // why it is not exact on such a scene;
+                                                          // empty: it is. Null: on all
+};
+
+/// All peers, those included that this build was made without. `threads` >= 1.
+std::vector<Peer> all_peers(unsigned threads);
+
+/// Their parts, a library each; peer.cpp joins them.
+std::vector<Peer> cgal_peers(unsigned threads);
+std::vector<Peer> fcl_peers();
+std::vector<Peer> embree_peers();
+
+}  // namespace farcull

@@ -1,0 +1,102 @@
+// What the peers share: which triangles meet which, and the way of candidates to exact decisions.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "core/parallel.h"
+#include "core/scene.h"
+#include "experiments/peer.h"
+
+namespace farcull {
+
+class Stopwatch {
+ public:
+  double ms() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_)
+        .count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// A scene as a peer prepares it, in its own time: the boxes of the triangles, and who meets whom.
+struct PeerScene {
+  explicit PeerScene(const Scene& scene);
+
+  const Scene& scene;
+  std::vector<Box> boxes;            // per triangle
+  std::vector<std::uint32_t> owner;  // per triangle
+  bool two_sides = false;            // exactly two objects have triangles, and neither is self
+  std::uint32_t second = 0;          // the first triangle of the second of them
+
+  /// Whether a pair of these triangles counts.
+  bool counts(std::uint32_t a, std::uint32_t b) const {
+    return owner[a] != owner[b] || scene.objects[owner[a]].self;
+  }
+  /// Whether there can be a pair at all.
+  bool has_pairs() const;
+};
+
+/// Takes candidates from one thread or several and decides them, in parts while they come, the rest
+/// on all threads at the end.
+class Candidates {
+ public:
+  /// `parallel`: candidates come from several threads, and each decides its own full parts. Else
+  /// they come from one, and full parts are decided on all threads.
+  Candidates(const Scene& scene, unsigned threads, bool parallel);
+  ~Candidates();
+
+  /// The part of the calling thread; valid until finish(). A call of add() on it is not locked.
+  class Part {
+   public:
+    void add(std::uint32_t a, std::uint32_t b) {
+      pending_.push_back(a < b ? TrianglePair{a, b} : TrianglePair{b, a});
+      if (pending_.size() == kFull) decide(all_.parallel_ ? 1 : all_.threads_);
+    }
+
+   private:
+    friend class Candidates;
+    explicit Part(const Candidates& all) : all_(all) {}
+    void decide(unsigned threads);
+
+    const Candidates& all_;
+    std::vector<TrianglePair> pending_;
+    std::vector<TrianglePair> pairs_;
+    std::uint64_t decided_ = 0;
+    double exact_ms_ = 0;
+  };
+  Part& part();
+
+  /// What was found, without build_ms; candidates_ms is the time since construction less exact_ms.
+  BenchAnswer finish();
+
+ private:
+  static constexpr std::size_t kFull = std::size_t{1} << 17;  // 1 MiB of candidates
+  const Scene& scene_;
+  const unsigned threads_;
+  const bool parallel_;
+  const std::uint64_t id_;  // no two collectors of a process have the same
+  const Stopwatch since_;
+  std::mutex mutex_;  // of parts_
+  std::vector<std::unique_ptr<Part>> parts_;
+};
+
+/// Calls work(i) for 0 .. count - 1 on `threads` threads, whoever is free takes the next `block`.
+template <class Work>
+void for_each_taken(std::size_t count, std::size_t block, unsigned threads, const Work& work) {
+  std::atomic<std::size_t> next = 0;
+  for_chunks(threads, threads, [&](std::size_t, std::size_t, std::size_t) {
+    for (std::size_t begin; (begin = next.fetch_add(block)) < count;) {
+      for (std::size_t i = begin; i < std::min(begin + block, count); ++i) work(i);
+    }
+  });
+}
+
+}  // namespace farcull
