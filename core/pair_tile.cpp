@@ -11,7 +11,7 @@ using interval::FarStrip;
 using Clock = std::chrono::steady_clock;
 
 // Longer lists are sorted by near depth and swept.
-constexpr std::size_t kSweepFrom = 24;
+constexpr std::size_t kSweepFrom = 64;
 
 double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -20,10 +20,6 @@ double ms_since(Clock::time_point start) {
 // The slices first .. last as bits.
 std::uint64_t slice_bits(int first, int last) {
   return (~std::uint64_t{0} >> (kSlices - 1 - last)) & (~std::uint64_t{0} << first);
-}
-
-bool overlap_in_image(const PairBounds& a, const PairBounds& b) {
-  return a.lo.x <= b.hi.x && b.lo.x <= a.hi.x && a.lo.y <= b.hi.y && b.lo.y <= a.hi.y;
 }
 
 // The strip of one triangle over rows of pixels or sub-pixels, and its intervals in them.
@@ -63,25 +59,6 @@ class Rows {
 
 PairGrid::PairGrid(const PairTask& task)
     : task_(task), slices_per_px_(kSlices / std::max(task.far_px - task.near_px, 0x1p-20f)) {}
-
-PairItem PairGrid::item(std::uint32_t triangle, const PairBounds& b) const {
-  // Clamped as floats, since a conversion beyond int would be undefined; what is not negative is
-  // rounded down by the conversion.
-  const auto pixel = [](float x, int count) {
-    return static_cast<std::uint16_t>(
-        static_cast<int>(interval::clamp(x, 0, static_cast<float>(count - 1))));
-  };
-  PairItem out;
-  out.triangle = triangle;
-  out.i0 = pixel(b.lo.x, task_.width);
-  out.i1 = pixel(b.hi.x, task_.width);
-  out.j0 = pixel(b.lo.y, task_.height);
-  out.j1 = pixel(b.hi.y, task_.height);
-  out.s0 = static_cast<std::uint8_t>(slice(b.lo.z));
-  out.s1 = static_cast<std::uint8_t>(slice(b.hi.z));
-  out.whole = (out.i1 - out.i0 + 1) * (out.j1 - out.j0 + 1) <= kWholePixels;
-  return out;
-}
 
 // Calls visit(cell, slices, near, far, whole) for every pixel of the tile that the item may meet;
 // near and far are set where the item is not whole.
@@ -123,30 +100,24 @@ void PairTileWorker::mark(std::span<const PairItem> items) {
   any_.assign(cells, 0);
   conflict_.assign(cells, 0);
   const PairTask& task = grid_->task();
-  for (std::size_t begin = 0; begin < items.size();) {
+  std::size_t begin = 0, end = 0;
+  for (; begin < items.size(); begin = end) {
     const std::uint32_t owner = task.owners[items[begin].triangle];
-    std::size_t end = begin;
+    while (end < items.size() && task.owners[items[end].triangle] == owner) ++end;
     const bool self = task.self[owner] != 0;
-    const bool first = begin == 0 && !self;
-    for (; end < items.size() && task.owners[items[end].triangle] == owner; ++end) {
-      if (first) {
-        for_each_pixel(items[end], [&](std::uint32_t cell, std::uint64_t bits, float, float) {
-          any_[cell] |= bits;
-        });
-        continue;
-      }
-      for_each_pixel(items[end], [&](std::uint32_t cell, std::uint64_t bits, float, float) {
-        conflict_[cell] |= self ? bits : any_[cell] & bits;
-      });
-    }
-    if (!first && end < items.size()) {
+    if (self || begin > 0) {
       for (std::size_t k = begin; k < end; ++k) {
         for_each_pixel(items[k], [&](std::uint32_t cell, std::uint64_t bits, float, float) {
-          any_[cell] |= bits;
+          conflict_[cell] |= self ? bits : any_[cell] & bits;
         });
       }
     }
-    begin = end;
+    if (end == items.size()) break;
+    for (std::size_t k = begin; k < end; ++k) {
+      for_each_pixel(items[k], [&](std::uint32_t cell, std::uint64_t bits, float, float) {
+        any_[cell] |= bits;
+      });
+    }
   }
 }
 
@@ -162,7 +133,7 @@ bool PairTileWorker::list(std::span<const PairItem> items, bool masked, std::siz
     const std::size_t before = raw_.size();
     for_each_pixel(item, [&](std::uint32_t cell, std::uint64_t bits, float near, float far) {
       if (masked && (conflict_[cell] & bits) == 0) return;
-      raw_.push_back({cell, {next, near, far}});
+      raw_.push_back({cell, next, near, far});
       ++first_[cell + 1];
     });
     if (raw_.size() == before) continue;
@@ -171,8 +142,8 @@ bool PairTileWorker::list(std::span<const PairItem> items, bool masked, std::siz
         {item.triangle, task.owners[item.triangle], bounds, item.i0, item.j0, item.whole});
     if (item.whole) {
       for (std::size_t k = before; k < raw_.size(); ++k) {
-        raw_[k].entry.near = bounds.lo.z;
-        raw_[k].entry.far = bounds.hi.z;
+        raw_[k].near = bounds.lo.z;
+        raw_[k].far = bounds.hi.z;
       }
     }
     if (raw_.size() > limit) return false;
@@ -182,32 +153,47 @@ bool PairTileWorker::list(std::span<const PairItem> items, bool masked, std::siz
   entries_.resize(raw_.size());
   // From the back, so that first_[c + 1], the end of list c, ends as its start.
   for (std::size_t k = raw_.size(); k-- > 0;) {
-    entries_[--first_[raw_[k].cell + 1]] = raw_[k].entry;
+    entries_[--first_[raw_[k].cell + 1]] = entry(raw_[k]);
   }
   return true;
 }
 
-// Calls emit for each two entries whose intervals and bounds overlap and that may collide. Entries
-// are in the order of triangles, hence of owners.
+PairTileWorker::Entry PairTileWorker::entry(const RawEntry& raw) const {
+  const Shown& shown = shown_[raw.shown];
+  const PairBounds& b = shown.bounds;
+  return {b.lo.x, b.lo.y, raw.near, raw.shown, b.hi.x, b.hi.y, raw.far, shown.owner};
+}
+
+// Whether the bounds in the image and the intervals overlap.
+bool PairTileWorker::meet(const Entry& a, const Entry& b) {
+#ifdef __SSE2__
+  const __m128 a_lo = _mm_load_ps(&a.x0), a_hi = _mm_load_ps(&a.x1);
+  const __m128 b_lo = _mm_load_ps(&b.x0), b_hi = _mm_load_ps(&b.x1);
+  const __m128 apart = _mm_or_ps(_mm_cmpgt_ps(a_lo, b_hi), _mm_cmpgt_ps(b_lo, a_hi));
+  return (_mm_movemask_ps(apart) & 7) == 0;
+#else
+  return a.near <= b.far && b.near <= a.far && a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 &&
+         b.y0 <= a.y1;
+#endif
+}
+
+// Calls emit for each two entries that meet and whose triangles may collide. Entries are in the
+// order of triangles, hence of owners; long lists are put into another.
 template <class Emit>
 void PairTileWorker::sweep(std::span<Entry> entries, const Emit& emit) {
   const std::size_t n = entries.size();
   const PairTask& task = grid_->task();
-  const auto try_pair = [&](const Entry& x, const Entry& y) {
-    const Shown &a = shown_[x.shown], &b = shown_[y.shown];
-    if (overlap_in_image(a.bounds, b.bounds)) emit(a, b);
-  };
   if (n <= kSweepFrom) {
     for (std::size_t begin = 0, end = 0; begin < n; begin = end) {
-      const std::uint32_t owner = shown_[entries[begin].shown].owner;
-      while (end < n && shown_[entries[end].shown].owner == owner) ++end;
+      const std::uint32_t owner = entries[begin].owner;
+      while (end < n && entries[end].owner == owner) ++end;
       const bool self = task.self[owner] != 0;
       for (std::size_t x = begin; x < end; ++x) {
+        const Entry a = entries[x];
         const std::size_t from = self ? x + 1 : end;
         counts_->tests += n - from;
-        const float near = entries[x].near, far = entries[x].far;
         for (std::size_t y = from; y < n; ++y) {
-          if (near <= entries[y].far && entries[y].near <= far) try_pair(entries[x], entries[y]);
+          if (meet(a, entries[y])) emit(shown_[a.shown], shown_[entries[y].shown]);
         }
       }
     }
@@ -216,11 +202,13 @@ void PairTileWorker::sweep(std::span<Entry> entries, const Emit& emit) {
   std::sort(entries.begin(), entries.end(),
             [](const Entry& x, const Entry& y) { return x.near < y.near; });
   for (std::size_t x = 0; x + 1 < n; ++x) {
-    const std::uint32_t owner = shown_[entries[x].shown].owner;
-    const bool self = task.self[owner] != 0;
+    const Entry a = entries[x];
+    const bool self = task.self[a.owner] != 0;
     std::size_t y = x + 1;
-    for (; y < n && entries[y].near <= entries[x].far; ++y) {
-      if (self || shown_[entries[y].shown].owner != owner) try_pair(entries[x], entries[y]);
+    for (; y < n && entries[y].near <= a.far; ++y) {
+      if ((self || entries[y].owner != a.owner) && meet(a, entries[y])) {
+        emit(shown_[a.shown], shown_[entries[y].shown]);
+      }
     }
     counts_->tests += y - x - 1;
   }
@@ -273,7 +261,7 @@ bool PairTileWorker::subdivide(std::span<Entry> entries, float x, float y, float
     const int j0 = index(b.lo.y, y), j1 = index(b.hi.y, y);
     const auto add = [&](int i, int j, float near, float far) {
       const auto cell = static_cast<std::uint32_t>(j * kSubdivision + i);
-      raw.push_back({cell, {entry.shown, near, far}});
+      raw.push_back({cell, entry.shown, near, far});
       ++first[cell + 1];
     };
     if ((i1 - i0 + 1) * (j1 - j0 + 1) <= kWholePixels) {
@@ -306,7 +294,7 @@ bool PairTileWorker::subdivide(std::span<Entry> entries, float x, float y, float
   for (int c = 0; c < kCells; ++c) first[c + 1] += first[c];
   std::vector<Entry> sorted(raw.size());
   std::array<std::uint32_t, kCells + 1> next = first;
-  for (const RawEntry& entry : raw) sorted[next[entry.cell]++] = entry.entry;
+  for (const RawEntry& part_of : raw) sorted[next[part_of.cell]++] = entry(part_of);
   for (int c = 0; c < kCells; ++c) {
     const std::size_t n = first[c + 1] - first[c];
     if (n < 2) continue;

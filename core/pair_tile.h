@@ -73,10 +73,6 @@ class PairTileWorker {
            std::size_t memory, std::vector<TrianglePair>& pairs, PairCounts& counts);
 
  private:
-  struct Entry {
-    std::uint32_t shown;  // index into shown_
-    float near, far;      // px
-  };
   /// A triangle with an entry.
   struct Shown {
     std::uint32_t triangle;
@@ -85,10 +81,20 @@ class PairTileWorker {
     std::uint16_t i0, j0;
     bool whole;
   };
+  /// A triangle in a pixel, with all that comparing two of them takes.
+  struct alignas(16) Entry {
+    float x0, y0, near;   // px
+    std::uint32_t shown;  // index into shown_
+    float x1, y1, far;
+    std::uint32_t owner;
+  };
   struct RawEntry {
     std::uint32_t cell;
-    Entry entry;
+    std::uint32_t shown;
+    float near, far;
   };
+  static bool meet(const Entry& a, const Entry& b);
+  Entry entry(const RawEntry& raw) const;
 
   template <class Visit>
   void for_each_pixel(const PairItem& item, const Visit& visit) const;
@@ -111,5 +117,24 @@ class PairTileWorker {
   std::vector<std::uint32_t> first_;  // per pixel: into entries_
   std::vector<Entry> entries_;
 };
+
+inline PairItem PairGrid::item(std::uint32_t triangle, const PairBounds& b) const {
+  // Clamped as floats, since a conversion beyond int would be undefined; what is not negative is
+  // rounded down by the conversion.
+  const auto pixel = [](float x, int count) {
+    return static_cast<std::uint16_t>(
+        static_cast<int>(interval::clamp(x, 0, static_cast<float>(count - 1))));
+  };
+  PairItem out;
+  out.triangle = triangle;
+  out.i0 = pixel(b.lo.x, task_.width);
+  out.i1 = pixel(b.hi.x, task_.width);
+  out.j0 = pixel(b.lo.y, task_.height);
+  out.j1 = pixel(b.hi.y, task_.height);
+  out.s0 = static_cast<std::uint8_t>(slice(b.lo.z));
+  out.s1 = static_cast<std::uint8_t>(slice(b.hi.z));
+  out.whole = (out.i1 - out.i0 + 1) * (out.j1 - out.j0 + 1) <= kWholePixels;
+  return out;
+}
 
 }  // namespace farcull

@@ -26,10 +26,6 @@ Box grow(Box box, double half) {
   return box;
 }
 
-double half_of(double clearance) {
-  return clearance == 0 ? 0 : std::nextafter(0.5 * clearance, HUGE_VAL);
-}
-
 std::vector<Box> boxes_of_objects(const Scene& scene, unsigned threads) {
   std::vector<Box> boxes(scene.objects.size(), Box::empty());
   const std::vector<Object>& objects = scene.objects;
@@ -88,6 +84,10 @@ PixelVertex pixel_vertex(const Vec3& p) {
 }
 
 }  // namespace
+
+double half_of(double clearance) {
+  return clearance == 0 ? 0 : std::nextafter(0.5 * clearance, HUGE_VAL);
+}
 
 Box grown_box(const Scene& scene, std::uint32_t triangle, double clearance) {
   Box box = Box::empty();

@@ -25,6 +25,9 @@ struct PairRegions {
 };
 PairRegions pair_regions(const Scene& scene, double clearance, unsigned threads = 0);
 
+/// By how much each of two triangles grows so that they meet at that distance: half of it, rounded
+/// up.
+double half_of(double clearance);
 /// The closed box of a triangle, grown outward by at least half the clearance on every side.
 Box grown_box(const Scene& scene, std::uint32_t triangle, double clearance);
 

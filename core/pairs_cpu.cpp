@@ -13,17 +13,19 @@ namespace {
 
 // Bands of rows: several for each thread, so that one dense band does not hold up the others.
 constexpr int kBandsPerThread = 4;
-constexpr int kLeastRows = 4;
+constexpr int kLeastShift = 2;
 
 struct Bands {
-  int rows;  // of each but the last
+  int shift;  // of 2^shift rows each, but the last
   int count;
+  int rows() const { return 1 << shift; }
 };
 
 Bands bands_for(int height, std::size_t threads) {
   const int wanted = static_cast<int>(threads) * kBandsPerThread;
-  const int rows = std::max((height + wanted - 1) / wanted, kLeastRows);
-  return {rows, (height + rows - 1) / rows};
+  int shift = kLeastShift;
+  while ((height >> shift) > wanted) ++shift;
+  return {shift, ((height - 1) >> shift) + 1};
 }
 
 bool meet(const PairBounds& a, const PairBounds& b) {
@@ -80,18 +82,13 @@ class CpuPairs : public PairBackend {
         for (const auto& chunk : items_) {
           items.insert(items.end(), chunk[band].begin(), chunk[band].end());
         }
-        const PairTile tile{0, task.width - 1, band * bands.rows,
-                            std::min(task.height, (band + 1) * bands.rows) - 1};
+        const PairTile tile{0, task.width - 1, band * bands.rows(),
+                            std::min(task.height, (band + 1) * bands.rows()) - 1};
         workers_[thread].run(grid, tile, items, masked, memory_, found[band], parts[thread]);
       }
     });
 
-    std::vector<TrianglePair> pairs;
-    std::size_t total = 0;
-    for (const auto& part : found) total += part.size();
-    pairs.reserve(total);
-    for (const auto& part : found) pairs.insert(pairs.end(), part.begin(), part.end());
-    sort_unique(pairs, task.triangles.size());
+    std::vector<TrianglePair> pairs = sorted_unique(found, threads_);
     counts = {};
     counts.bands = bands.count;
     for (const PairCounts& part : parts) {
@@ -132,8 +129,9 @@ class CpuPairs : public PairBackend {
               large_of[chunk].push_back({t, task.owners[t], bounds});
               continue;
             }
-            const int last = item.j1 / bands.rows;
-            for (int band = item.j0 / bands.rows; band <= last; ++band) mine[band].push_back(item);
+            const int last = item.j1 >> bands.shift;
+            for (int band = item.j0 >> bands.shift; band <= last; ++band)
+              mine[band].push_back(item);
           }
         });
     large_.clear();
