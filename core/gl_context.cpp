@@ -160,6 +160,7 @@ GlContext::GlContext(const std::string& device) {
       const std::string problem = open(list[i], handles_->egl);
       if (problem.empty()) {
         GlInfo& info = handles_->info;
+        info.kind = kind;
         info.vendor = gl_text(GL_VENDOR);
         info.renderer = gl_text(GL_RENDERER);
         info.version = gl_text(GL_VERSION);
@@ -187,6 +188,14 @@ GlContext::GlContext(const std::string& device) {
 GlContext::~GlContext() = default;
 
 const GlInfo& GlContext::info() const { return handles_->info; }
+
+bool GlContext::hardware_listed() {
+  require_egl();
+  for (EGLDeviceEXT device : devices()) {
+    if (describe(device, 0).kind == "hardware") return true;
+  }
+  return false;
+}
 
 std::vector<GlDevice> GlContext::list_devices() {
   require_egl();

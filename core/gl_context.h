@@ -20,6 +20,7 @@ struct GlDevice {
 
 /// What answered; recorded with every result.
 struct GlInfo {
+  std::string kind;  // "software" or "hardware"
   std::string vendor, renderer, version, glsl;
   int subpixel_bits = 0;
   int max_texture_size = 0;
@@ -45,6 +46,8 @@ class GlContext {
   /// Every device, each tried with a context of its own; an empty list where there are none. Throws
   /// Error without EGL.
   static std::vector<GlDevice> list_devices();
+  /// Whether EGL lists a hardware device; none is opened. Throws Error without EGL.
+  static bool hardware_listed();
 
  private:
   struct Handles;

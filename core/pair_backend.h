@@ -49,9 +49,10 @@ struct PairTask {
   std::span<const std::uint8_t> self;                       // per object: tested against itself
   std::span<const PixelBox> limits;       // per object: contains every point it can share
   std::span<const std::uint32_t> active;  // ascending indices into triangles: who takes part
-  int width = 0;                          // px; pixel (i, j) is [i, i + 1] x [j, j + 1]
-  int height = 0;                         // px; 0 <= i < width, 0 <= j < height
-  float near_px = 0;                      // the depth range of the window, for the slices
+  bool neighbours = true;  // false: pairs of one object that share a vertex index may be left out
+  int width = 0;           // px; pixel (i, j) is [i, i + 1] x [j, j + 1]
+  int height = 0;          // px; 0 <= i < width, 0 <= j < height
+  float near_px = 0;       // the depth range of the window, for the slices
   float far_px = 0;
   glsl::vec4 widening{};  // px per axis: every point of a triangle is within this of the
                           // triangle of its PixelVertex corners, up to float rounding

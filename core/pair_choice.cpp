@@ -16,9 +16,10 @@ constexpr int kLeastResolution = 16, kMostResolution = 4096;  // px
 
 // Work in units of one pixel that a triangle meets: measured ratios, rounded.
 constexpr double kPixelWork = 0.3;  // a pixel of the window, whether or not anything is there
-constexpr double kTestWork = 0.05;  // two intervals compared
-// Of the pairs in a pixel, those that the depth slices leave between different objects.
-constexpr double kLeftBySlices = 0.1;
+constexpr double kTestWork = 2.5;   // two intervals compared, as estimated: lists are uneven
+// Of the pixels that triangles meet, those that the slices leave between different objects: at
+// least this part, and more where triangles are deep.
+constexpr double kLeftBySlices = 0.15;
 // A direction that is no axis loses the exact boxes of the axes, so it has to win clearly.
 constexpr double kOblique = 1.25;
 
@@ -26,6 +27,7 @@ constexpr double kOblique = 1.25;
 struct Image {
   double area = 0;   // mean of the triangles' images
   double girth = 0;  // mean width + height of the images
+  double depth = 0;  // mean of the triangles' depths, over that of the regions
   double width = 0;  // of the regions
   double height = 0;
   double side() const { return std::max(width, height); }
@@ -75,6 +77,7 @@ Image image_of(const Sample& sample, const View& view) {
   for (const auto& corners : sample.triangles) {
     const Vec3 a = view.rows * corners[0], b = view.rows * corners[1], c = view.rows * corners[2];
     const Vec3 u = b - a, v = c - a;
+    out.depth += std::max({a.z(), b.z(), c.z()}) - std::min({a.z(), b.z(), c.z()});
     out.area += 0.5 * std::abs(u.x() * v.y() - u.y() * v.x());
     for (const int axis : {0, 1}) {
       out.girth += std::max({a[axis], b[axis], c[axis]}) - std::min({a[axis], b[axis], c[axis]});
@@ -83,6 +86,7 @@ Image image_of(const Sample& sample, const View& view) {
   const double n = static_cast<double>(std::max<std::size_t>(sample.triangles.size(), 1));
   out.area /= n;
   out.girth /= n;
+  out.depth /= n * std::max(2 * size.z(), 0x1p-60);
   return out;
 }
 
@@ -92,7 +96,8 @@ double work(const Sample& sample, const Image& image, int resolution) {
   const double pixel = image.side() / resolution;
   const double met = sample.count * (image.area / (pixel * pixel) + image.girth / pixel + 1);
   const double pixels = (image.width / pixel + 1) * (image.height / pixel + 1);
-  const double tests = 0.5 * met * met / pixels * (sample.self ? 1 : kLeftBySlices);
+  const double left = sample.self ? 1 : std::clamp(2 * image.depth, kLeftBySlices, 1.0);
+  const double tests = 0.25 * left * met * left * met / pixels;
   return met + kPixelWork * pixels + kTestWork * tests;
 }
 

@@ -138,8 +138,8 @@ bool PairTileWorker::list(std::span<const PairItem> items, bool masked, std::siz
     });
     if (raw_.size() == before) continue;
     const PairBounds bounds = grid_->bounds(item.triangle);
-    shown_.push_back(
-        {item.triangle, task.owners[item.triangle], bounds, item.i0, item.j0, item.whole});
+    shown_.push_back({item.triangle, task.owners[item.triangle], task.triangles[item.triangle],
+                      bounds, item.whole});
     if (item.whole) {
       for (std::size_t k = before; k < raw_.size(); ++k) {
         raw_[k].near = bounds.lo.z;
@@ -161,7 +161,8 @@ bool PairTileWorker::list(std::span<const PairItem> items, bool masked, std::siz
 PairTileWorker::Entry PairTileWorker::entry(const RawEntry& raw) const {
   const Shown& shown = shown_[raw.shown];
   const PairBounds& b = shown.bounds;
-  return {b.lo.x, b.lo.y, raw.near, raw.shown, b.hi.x, b.hi.y, raw.far, shown.owner};
+  return {b.lo.x, b.lo.y, raw.near, raw.shown | (shown.whole ? kWholeBit : 0),
+          b.hi.x, b.hi.y, raw.far,  shown.owner};
 }
 
 // Whether the bounds in the image and the intervals overlap.
@@ -175,6 +176,15 @@ bool PairTileWorker::meet(const Entry& a, const Entry& b) {
   return a.near <= b.far && b.near <= a.far && a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 &&
          b.y0 <= a.y1;
 #endif
+}
+
+// Neighbours that the task does not ask for.
+bool PairTileWorker::left_out(const Shown& a, const Shown& b) const {
+  if (grid_->task().neighbours || a.owner != b.owner) return false;
+  const auto& [p, q, r] = b.vertices;
+  bool shared = false;
+  for (const std::uint32_t v : a.vertices) shared |= (v == p) | (v == q) | (v == r);
+  return shared;
 }
 
 // Calls emit for each two entries that meet and whose triangles may collide. Entries are in the
@@ -193,7 +203,7 @@ void PairTileWorker::sweep(std::span<Entry> entries, const Emit& emit) {
         const std::size_t from = self ? x + 1 : end;
         counts_->tests += n - from;
         for (std::size_t y = from; y < n; ++y) {
-          if (meet(a, entries[y])) emit(shown_[a.shown], shown_[entries[y].shown]);
+          if (meet(a, entries[y])) emit(a, entries[y]);
         }
       }
     }
@@ -206,9 +216,7 @@ void PairTileWorker::sweep(std::span<Entry> entries, const Emit& emit) {
     const bool self = task.self[a.owner] != 0;
     std::size_t y = x + 1;
     for (; y < n && entries[y].near <= a.far; ++y) {
-      if ((self || entries[y].owner != a.owner) && meet(a, entries[y])) {
-        emit(shown_[a.shown], shown_[entries[y].shown]);
-      }
+      if ((self || entries[y].owner != a.owner) && meet(a, entries[y])) emit(a, entries[y]);
     }
     counts_->tests += y - x - 1;
   }
@@ -220,29 +228,34 @@ void PairTileWorker::pair_pixel(std::span<Entry> entries, int i, int j) {
     pair_cell(entries, static_cast<float>(i), static_cast<float>(j), 1, 0);
     return;
   }
-  const auto size_of = [&](int ri, int rj) {
+  // Two whole triangles overlap in all their common pixels or in none: the first of these reports
+  // them, unless it lies in another tile or is crowded, where their intervals are finer.
+  const auto elsewhere = [&](const Entry& a, const Entry& b) {
+    const auto first = [](float p, int count) {
+      return static_cast<int>(interval::clamp(p, 0, static_cast<float>(count - 1)));
+    };
+    const int ri = first(std::max(a.x0, b.x0), grid_->task().width);
+    const int rj = first(std::max(a.y0, b.y0), grid_->task().height);
+    if ((ri == i && rj == j) || ri < tile_.i0 || rj < tile_.j0) return false;
     const std::size_t c = static_cast<std::size_t>(rj - tile_.j0) * tile_.width() + (ri - tile_.i0);
-    return first_[c + 2] - first_[c + 1];
+    return first_[c + 2] - first_[c + 1] <= kCrowded;
   };
-  sweep(entries, [&](const Shown& a, const Shown& b) {
-    // Two whole triangles overlap in all their common pixels or in none: the first one reports them
-    // unless it is out of reach, or crowded, where their intervals are finer.
-    if (a.whole && b.whole) {
-      const int ri = std::max(a.i0, b.i0), rj = std::max(a.j0, b.j0);
-      const bool here = ri >= tile_.i0 && rj >= tile_.j0;
-      if ((ri != i || rj != j) && here && size_of(ri, rj) <= kCrowded) return;
-    }
-    pairs_->push_back({std::min(a.triangle, b.triangle), std::max(a.triangle, b.triangle)});
+  sweep(entries, [&](const Entry& a, const Entry& b) {
+    if ((a.shown & b.shown & kWholeBit) == 0 || !elsewhere(a, b)) keep(a, b);
   });
+}
+
+void PairTileWorker::keep(const Entry& a, const Entry& b) {
+  const Shown &s = shown(a), &t = shown(b);
+  if (left_out(s, t)) return;
+  pairs_->push_back({std::min(s.triangle, t.triangle), std::max(s.triangle, t.triangle)});
 }
 
 void PairTileWorker::pair_cell(std::span<Entry> entries, float x, float y, float size, int level) {
   if (entries.size() > kCrowded && level < kMaxLevel && subdivide(entries, x, y, size, level)) {
     return;
   }
-  sweep(entries, [&](const Shown& a, const Shown& b) {
-    pairs_->push_back({std::min(a.triangle, b.triangle), std::max(a.triangle, b.triangle)});
-  });
+  sweep(entries, [&](const Entry& a, const Entry& b) { keep(a, b); });
 }
 
 // Cuts a crowded cell, unless that leaves more than half of the tests.
@@ -255,13 +268,13 @@ bool PairTileWorker::subdivide(std::span<Entry> entries, float x, float y, float
     return static_cast<int>(interval::clamp((p - from) / part, 0, kSubdivision - 1));
   };
   for (const Entry& entry : entries) {
-    const Shown& shown = shown_[entry.shown];
-    const PairBounds& b = shown.bounds;
+    const Shown& item = shown(entry);
+    const PairBounds& b = item.bounds;
     const int i0 = index(b.lo.x, x), i1 = index(b.hi.x, x);
     const int j0 = index(b.lo.y, y), j1 = index(b.hi.y, y);
     const auto add = [&](int i, int j, float near, float far) {
       const auto cell = static_cast<std::uint32_t>(j * kSubdivision + i);
-      raw.push_back({cell, entry.shown, near, far});
+      raw.push_back({cell, entry.shown & ~kWholeBit, near, far});
       ++first[cell + 1];
     };
     if ((i1 - i0 + 1) * (j1 - j0 + 1) <= kWholePixels) {
@@ -270,7 +283,7 @@ bool PairTileWorker::subdivide(std::span<Entry> entries, float x, float y, float
       }
       continue;
     }
-    Rows rows(*grid_, shown.triangle, b);
+    Rows rows(*grid_, item.triangle, b);
     for (int j = j0; j <= j1; ++j) {
       float lo, hi;
       const float y0 = y + static_cast<float>(j) * part;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -77,14 +78,15 @@ class PairTileWorker {
   struct Shown {
     std::uint32_t triangle;
     std::uint32_t owner;
+    std::array<std::uint32_t, 3> vertices;
     PairBounds bounds;
-    std::uint16_t i0, j0;
     bool whole;
   };
   /// A triangle in a pixel, with all that comparing two of them takes.
+  static constexpr std::uint32_t kWholeBit = 0x80000000;
   struct alignas(16) Entry {
     float x0, y0, near;   // px
-    std::uint32_t shown;  // index into shown_
+    std::uint32_t shown;  // index into shown_; kWholeBit: one interval in all its pixels
     float x1, y1, far;
     std::uint32_t owner;
   };
@@ -94,6 +96,9 @@ class PairTileWorker {
     float near, far;
   };
   static bool meet(const Entry& a, const Entry& b);
+  const Shown& shown(const Entry& e) const { return shown_[e.shown & ~kWholeBit]; }
+  bool left_out(const Shown& a, const Shown& b) const;
+  void keep(const Entry& a, const Entry& b);
   Entry entry(const RawEntry& raw) const;
 
   template <class Visit>

@@ -71,8 +71,16 @@ bool boxes_meet(const Scene& scene, const TrianglePair& pair, double half) {
   return true;
 }
 
-// Those whose boxes overlap, in order.
-void keep_overlapping(const Scene& scene, double clearance, unsigned threads,
+// Whether two triangles of one object share a vertex index.
+bool share_index(const Scene& scene, const TrianglePair& pair) {
+  const auto& [p, q, r] = scene.triangles[pair.b];
+  bool shared = false;
+  for (const std::uint32_t v : scene.triangles[pair.a]) shared |= (v == p) | (v == q) | (v == r);
+  return shared;
+}
+
+// Those whose boxes overlap, in order; without neighbours where they are not asked for.
+void keep_overlapping(const Scene& scene, const PairScene& seen, double clearance, unsigned threads,
                       std::vector<TrianglePair>& pairs) {
   const double half = half_of(clearance);
   const std::size_t chunks = chunks_for(pairs.size(), 2048, threads);
@@ -81,7 +89,9 @@ void keep_overlapping(const Scene& scene, double clearance, unsigned threads,
     std::size_t to = begin;
     for (std::size_t k = begin; k < end; ++k) {
       pairs[to] = pairs[k];
-      to += boxes_meet(scene, pairs[k], half);
+      to += boxes_meet(scene, pairs[k], half) &&
+            (seen.task.neighbours || seen.owners[pairs[k].a] != seen.owners[pairs[k].b] ||
+             !share_index(scene, pairs[k]));
     }
     kept[chunk] = to - begin;
   });
@@ -208,12 +218,13 @@ PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBack
     view.height = seen.window.height;
     view.pixel_size = seen.window.pixel_size;
     view.widening_px = std::max({seen.task.widening.x, seen.task.widening.y, seen.task.widening.z});
+    seen.task.neighbours = settings.neighbours;
     const double prepare_ms = ms_since(start);
     std::vector<TrianglePair> pairs = backend.raw_pairs(seen.task, view.counts);
     view.counts.undrawable = seen.undrawable.size();
     view.counts.prepare_ms = prepare_ms;
     if (first) {
-      keep_overlapping(scene, settings.clearance, backend.threads(), pairs);
+      keep_overlapping(scene, seen, settings.clearance, backend.threads(), pairs);
       if (!seen.undrawable.empty()) {
         pairs = merged(pairs, pairs_by_boxes(scene, regions, seen.undrawable, settings.clearance));
       }
