@@ -14,7 +14,8 @@
 // 11, and the bound 13 more at most: (1 + u)^11 - 1 over (1 - u)^13 is below 12 u.
 //
 // Projection of w = x - o onto a direction d that is given (however it was found, its doubles are
-// what is meant): one difference, one product, two sums: 4, and the bound 6 more: below 5 u.
+// what is meant): one difference, one product, two sums: 4, and the bound 6 more: below 5 u. The 9
+// u of sides serve.
 //
 // Underflow. Differences and sums of doubles are exact where they are subnormal. A product is off
 // by at most 2^-1075 more. In D: two in each n_k, times w_k, and one in each n_k w_k, which makes
@@ -47,6 +48,12 @@ Triple magnitudes(const Triple& p) { return {std::abs(p.x), std::abs(p.y), std::
 double dot(const Triple& p, const Triple& q) { return p.x * q.x + p.y * q.y + p.z * q.z; }
 double sum(const Triple& p) { return p.x + p.y + p.z; }
 
+/// About p / |p|; not finite where p is zero or products underflow or overflow.
+Triple unit(const Triple& p) {
+  const double length = std::sqrt(dot(p, p));
+  return {p.x / length, p.y / length, p.z / length};
+}
+
 /// The largest magnitudes per axis of two or three.
 Triple largest(const Triple& p, const Triple& q) {
   return {std::max(std::abs(p.x), std::abs(q.x)), std::max(std::abs(p.y), std::abs(q.y)),
@@ -74,16 +81,34 @@ double side_bound(const Normal& normal, const Triple& w, const FilterBounds& bou
 /// -1, 1, or 0 for a doubt.
 int sign(double value, double bound) { return (value > bound) - (value < -bound); }
 
-/// Which sides of the plane through the corners of t the corners of s are on.
-std::array<int, 3> sides(const std::array<Vec3, 3>& s, const std::array<Vec3, 3>& t,
-                         const FilterBounds& bounds) {
+/// Determinants of the corners of s and the plane through the corners of t; each has the sign it
+/// shows where it is beyond +-bound.
+struct Sides {
+  std::array<double, 3> value;
+  double bound;
+
+  bool on_one_side() const {
+    return std::min({value[0], value[1], value[2]}) > bound ||
+           std::max({value[0], value[1], value[2]}) < -bound;
+  }
+  bool certain() const {
+    return std::min({std::abs(value[0]), std::abs(value[1]), std::abs(value[2])}) > bound;
+  }
+  /// The corner that is alone on its side; where all are certain and not on one side.
+  int alone() const {
+    const bool first = value[0] > 0, second = value[1] > 0, third = value[2] > 0;
+    return second == third ? 0 : first == third ? 1 : 2;
+  }
+};
+
+inline Sides sides(const std::array<Vec3, 3>& s, const std::array<Vec3, 3>& t,
+                   const FilterBounds& bounds) {
   const Normal normal = normal_of(difference(t[1], t[0]), difference(t[2], t[0]));
   const Triple w0 = difference(s[0], t[0]);
   const Triple w1 = difference(s[1], t[0]);
   const Triple w2 = difference(s[2], t[0]);
-  const double bound = side_bound(normal, largest(largest(w0, w1), w2), bounds);
-  return {sign(dot(normal.n, w0), bound), sign(dot(normal.n, w1), bound),
-          sign(dot(normal.n, w2), bound)};
+  return {{dot(normal.n, w0), dot(normal.n, w1), dot(normal.n, w2)},
+          side_bound(normal, largest(largest(w0, w1), w2), bounds)};
 }
 
 int side(const Vec3& o, const Vec3& p, const Vec3& q, const Vec3& x, const FilterBounds& bounds) {
@@ -92,27 +117,22 @@ int side(const Vec3& o, const Vec3& p, const Vec3& q, const Vec3& x, const Filte
   return sign(dot(normal.n, w), side_bound(normal, magnitudes(w), bounds));
 }
 
-/// The corner that is alone on its side; all three must be on a side, not all on one.
-int alone(const std::array<int, 3>& sides) {
-  return sides[1] == sides[2] ? 0 : sides[0] == sides[2] ? 1 : 2;
-}
-
 /// Where the planes cross, each triangle covers a segment of their line, from the edge to one of
 /// the other corners to the edge to the other. Seen from the corner that is alone, with the other
 /// two in the order that puts the other triangle's corner on the positive side, the ends are in a
 /// known order along the line, and two determinants compare them (Guigue, Devillers: Fast and
 /// robust triangle-triangle overlap test using orientation predicates, 2003).
-Triage compare_on_line(const std::array<Vec3, 3>& a, const std::array<int, 3>& a_sides,
-                       const std::array<Vec3, 3>& b, const std::array<int, 3>& b_sides,
+Triage compare_on_line(const std::array<Vec3, 3>& a, const Sides& a_sides,
+                       const std::array<Vec3, 3>& b, const Sides& b_sides,
                        const FilterBounds& bounds) {
-  const int i = alone(a_sides);
-  const int j = alone(b_sides);
+  const int i = a_sides.alone();
+  const int j = b_sides.alone();
   const Vec3* a1 = &a[(i + 1) % 3];
   const Vec3* a2 = &a[(i + 2) % 3];
   const Vec3* b1 = &b[(j + 1) % 3];
   const Vec3* b2 = &b[(j + 2) % 3];
-  if (a_sides[i] < 0) std::swap(b1, b2);
-  if (b_sides[j] < 0) std::swap(a1, a2);
+  if (a_sides.value[i] < 0) std::swap(b1, b2);
+  if (b_sides.value[j] < 0) std::swap(a1, a2);
   const int first = side(a[i], *a1, b[j], *b1, bounds);
   if (first > 0) return Triage::no;
   const int second = side(a[i], *a2, *b2, b[j], bounds);
@@ -120,20 +140,12 @@ Triage compare_on_line(const std::array<Vec3, 3>& a, const std::array<int, 3>& a
   return first < 0 && second < 0 ? Triage::yes : Triage::unknown;
 }
 
-bool all_on_a_side(const std::array<int, 3>& sides) {
-  return sides[0] != 0 && sides[1] != 0 && sides[2] != 0;
-}
-
-bool on_one_side(const std::array<int, 3>& sides) {
-  return sides[0] != 0 && sides[0] == sides[1] && sides[0] == sides[2];
-}
-
 /// True where d surely divides: w1, w2 on its positive side, x1, x2 on the negative one. All are
 /// differences of coordinates.
 bool divides(const Triple& d, const Triple& w1, const Triple& w2, const Triple& x1,
              const Triple& x2, const FilterBounds& bounds) {
   const Triple most = largest(largest(w1, w2), largest(x1, x2));
-  const double bound = bounds.along * dot(magnitudes(d), most) + bounds.absolute;
+  const double bound = bounds.side * dot(magnitudes(d), most) + bounds.absolute;
   return dot(d, w1) > bound && dot(d, w2) > bound && dot(d, x1) < -bound && dot(d, x2) < -bound;
 }
 
@@ -141,11 +153,11 @@ bool divides(const Triple& d, const Triple& w1, const Triple& w2, const Triple& 
 
 Triage filter_intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                          const FilterBounds& bounds) {
-  const std::array<int, 3> b_sides = sides(b, a, bounds);
-  if (on_one_side(b_sides)) return Triage::no;
-  const std::array<int, 3> a_sides = sides(a, b, bounds);
-  if (on_one_side(a_sides)) return Triage::no;
-  if (!all_on_a_side(a_sides) || !all_on_a_side(b_sides)) return Triage::unknown;
+  const Sides b_sides = sides(b, a, bounds);
+  if (b_sides.on_one_side()) return Triage::no;
+  const Sides a_sides = sides(a, b, bounds);
+  if (a_sides.on_one_side()) return Triage::no;
+  if (!a_sides.certain() || !b_sides.certain()) return Triage::unknown;
   return compare_on_line(a, a_sides, b, b_sides, bounds);
 }
 
@@ -174,7 +186,9 @@ Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const
   if (a1_side * a2_side * b1_side * b2_side != 0)
     return a2_side * b2_side < 0 ? Triage::yes : Triage::no;
   // Nearly in one plane: a plane through v that has one triangle on each side proves as much.
-  return divides((e1 + e2) - (f1 + f2), e1, e2, f1, f2, bounds) ? Triage::no : Triage::unknown;
+  return divides((unit(e1) + unit(e2)) - (unit(f1) + unit(f2)), e1, e2, f1, f2, bounds)
+             ? Triage::no
+             : Triage::unknown;
 }
 
 // (q - p) x (r - p) . (q - p) x (s - p) is |q - p|^2 times the product of the parts of r - p and

@@ -20,9 +20,8 @@ enum class Triage : std::uint8_t { no, yes, unknown };
 /// Bounds on what rounding does, derived in filter.cpp. The defaults are the proved ones; smaller
 /// ones are for the tests, which show that they are needed.
 struct FilterBounds {
-  double side = 9 * 0x1p-53;      // of a determinant, in its permanent
+  double side = 9 * 0x1p-53;      // of a determinant, in its permanent; of a projection
   double normals = 12 * 0x1p-53;  // of the product of two normals
-  double along = 5 * 0x1p-53;     // of a scalar product with a difference
   double absolute = 0x1p-1000;    // underflow, per unit of what is multiplied last, plus one
 };
 inline constexpr FilterBounds kFilterBounds;

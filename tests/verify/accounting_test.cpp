@@ -19,21 +19,26 @@ using reference::Triangle;
 using Pairs = std::vector<TrianglePair>;
 
 /// Every class recounted over all pairs, by the reference.
-Accounting recount(const Scene& scene, const Pairs& kept, std::size_t max_examples) {
+Accounting recount(const Scene& scene, const Pairs& kept, const AccountOptions& options) {
   Accounting result;
-  reference::for_each_pair(scene, [&](const TrianglePair& pair, bool overlapping) {
-    ++result.pairs_total;
-    if (std::binary_search(kept.begin(), kept.end(), pair)) {
-      ++result.pairs_kept;
-    } else if (!overlapping) {
-      ++result.certified_by_boxes;
-    } else if (!reference::intersects(scene.corners(pair.a), scene.corners(pair.b))) {
-      ++result.certified_by_predicates;
-    } else {
-      ++result.false_negatives;
-      if (result.examples.size() < max_examples) result.examples.push_back(pair);
-    }
-  });
+  reference::for_each_pair(
+      scene,
+      [&](const TrianglePair& pair, bool overlapping) {
+        ++result.pairs_total;
+        if (std::binary_search(kept.begin(), kept.end(), pair)) {
+          ++result.pairs_kept;
+        } else if (!overlapping) {
+          ++result.certified_by_boxes;
+        } else if (reference::collides(scene, pair, options.clearance)) {
+          ++result.false_negatives;
+          if (result.examples.size() < options.max_examples) result.examples.push_back(pair);
+        } else if (reference::neighbours(scene, pair)) {
+          ++result.neighbours;
+        } else {
+          ++result.certified_by_predicates;
+        }
+      },
+      options.clearance);
   return result;
 }
 
@@ -173,31 +178,92 @@ TEST(Accounting, HoldsAtTheEndsOfTheDoubles) {
     wild.push_back({Vec3(s, s, kTiny), Vec3(s, s, kTiny), Vec3(s, s, kTiny)});
   }
   const Scene scene = reference::scene_of({wild, wild, {wild.rbegin(), wild.rend()}});
-  expect_equal(account(scene, {}), recount(scene, {}, 10));
+  expect_equal(account(scene, {}), recount(scene, {}, {}));
 }
 
-RC_GTEST_PROP(AccountingProperty, EachClassAsRecountedOverAllPairs, ()) {
-  const int object_count = *rc::gen::inRange(0, 7);
-  const int extent = *rc::gen::inRange(1, 7);
-  std::mt19937 random(*rc::gen::arbitrary<unsigned>());
+/// Objects of small triangles on a grid, some of them `self`; many touch, share corners or are
+/// degenerate.
+Scene random_scene(std::mt19937& random, int object_count, int extent, int self_one_in) {
   std::vector<std::vector<Triangle>> objects(object_count);
   for (auto& triangles : objects) {
-    triangles.resize(random() % 4 == 0 ? 0 : random() % 60);
+    triangles.resize(random() % 4 == 0 ? 0 : random() % 40);
     for (Triangle& t : triangles) {
       const Vec3 corner(random() % extent, random() % extent, random() % extent);
       for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
     }
   }
-  const Scene scene = reference::scene_of(objects);
+  Scene scene = reference::welded(reference::scene_of(objects), random() % 2 == 0);
+  for (Object& object : scene.objects) object.self = random() % self_one_in == 0;
+  return scene;
+}
+
+RC_GTEST_PROP(AccountingProperty, EachClassAsRecountedOverAllPairs, ()) {
+  const int object_count = *rc::gen::inRange(0, 6);
+  const int extent = *rc::gen::inRange(1, 7);
+  std::mt19937 random(*rc::gen::arbitrary<unsigned>());
+  const Scene scene = random_scene(random, object_count, extent, *rc::gen::inRange(1, 4));
   const unsigned keep_one_in = *rc::gen::inRange(1, 6);
   Pairs kept;  // of all pairs, so that some have disjoint boxes
   reference::for_each_pair(scene, [&](const TrianglePair& pair, bool) {
     if (random() % keep_one_in == 0) kept.push_back(pair);
   });
-  const std::size_t max_examples = *rc::gen::inRange(0, 12);
-  expect_equal(account(scene, kept, {.max_examples = max_examples}),
-               recount(scene, kept, max_examples));
+  const AccountOptions options = {
+      .clearance = *rc::gen::element(0.0, 0.0, 0.5, 0.57735026918962573, 1.0, 3.0),
+      .max_examples = *rc::gen::inRange<std::size_t>(0, 12)};
+  expect_equal(account(scene, kept, options), recount(scene, kept, options));
   RC_ASSERT(!::testing::Test::HasFailure());
+}
+
+/// Two triangles of a sheet, then one that pierces the first from their common edge's end.
+Scene sheet_with_a_fin(bool self) {
+  const Vec3 o(0, 0, 0), x(4, 0, 0), y(0, 4, 0), xy(4, 4, 0);
+  Scene scene = reference::scene_of({{{o, x, y}, {x, xy, y}, {o, Vec3(3, 1, 1), Vec3(2, 1, -1)}}});
+  scene.objects[0].self = self;
+  return scene;
+}
+
+TEST(AccountingSelf, CountsInnerPairsOnlyWhereTheObjectIsSelf) {
+  expect_equal(account(sheet_with_a_fin(false), {}), Accounting{});
+  const Accounting a = account(sheet_with_a_fin(true), {});
+  EXPECT_EQ(a.pairs_total, 3u);
+  EXPECT_EQ(a.neighbours, 1u);               // the two of the sheet share their edge
+  EXPECT_EQ(a.certified_by_predicates, 1u);  // the fin ends before the second
+  EXPECT_EQ(a.false_negatives, 1u);          // and pierces the first
+  EXPECT_EQ(a.examples, (Pairs{{0, 2}}));
+  EXPECT_TRUE(a.adds_up());
+}
+
+TEST(AccountingSelf, ANeighbourThatIsKeptIsNotMissed) {
+  const Accounting a = account(sheet_with_a_fin(true), Pairs{{0, 2}});
+  EXPECT_EQ(a.pairs_kept, 1u);
+  EXPECT_EQ(a.false_negatives, 0u);
+  EXPECT_TRUE(a.adds_up());
+  EXPECT_THROW(account(sheet_with_a_fin(false), Pairs{{0, 2}}), std::logic_error);
+}
+
+TEST(AccountingSelf, SharedPositionsOfTwoObjectsAreNoNeighbours) {
+  Scene scene = reference::scene_of({{tile(0)}, {tile(1)}});
+  for (Object& object : scene.objects) object.self = true;
+  EXPECT_EQ(account(scene, {}).false_negatives, 1u);
+}
+
+TEST(AccountingClearance, ComparesDistancesExactly) {
+  const double gap = std::nextafter(2.0, 3.0) - 1;  // 1 + ulp(2), between tile(0, z) and tile(0)
+  const Scene scene = reference::scene_of({{tile(0)}, {tile(0, gap)}});
+  EXPECT_EQ(account(scene, {}, {.clearance = gap}).false_negatives, 1u);
+  const double less = std::nextafter(gap, 0.0);
+  EXPECT_EQ(account(scene, {}, {.clearance = less}).certified_by_boxes, 1u);
+  // Diagonally: boxes are 3 and 4 apart, so 5 decides.
+  const Triangle far = {Vec3(4, 4, 0), Vec3(5, 4, 0), Vec3(4, 5, 0)};
+  const Triangle point = {Vec3(1, 0, 0), Vec3(1, 0, 0), Vec3(1, 0, 0)};
+  const Scene diagonal = reference::scene_of({{point}, {far}});
+  EXPECT_EQ(account(diagonal, {}, {.clearance = 5}).false_negatives, 1u);
+  EXPECT_EQ(account(diagonal, {}, {.clearance = std::nextafter(5.0, 0.0)}).certified_by_predicates,
+            1u);
+  for (const double wrong :
+       {-1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(account(scene, {}, {.clearance = wrong}), std::logic_error);
+  }
 }
 
 // Two joins that share nothing but the definition: what one loses the other shows. Large enough for
