@@ -14,7 +14,7 @@ constexpr const char* kReport = "report this driver's log with the output of `fa
 // (core/glsl_shim.h).
 constexpr const char* kKernelNames =
     "#define FAR_OUT(type) out type\n#define FAR_INOUT(type) inout type\n#define FAR_PRECISE "
-    "precise\n#define FAR_FIXED(x) (x)\n";
+    "precise\n#define FAR_FIXED(x) (x)\n#define FAR_KERNEL\n";
 
 template <class Get, class Log>
 std::string log_of(GLuint object, Get get, Log log) {

@@ -1,0 +1,14 @@
+// Slices of a pixel that two owners touch: they differ in some bit of their numbers, so one of them touches the region of that
+// bit's 0 and the other that of its 1.
+layout(std430, binding = 2) buffer Masks { uint masks[]; };  // as in pair_lists.comp
+
+// u_extra.x: bits of an owner's number.
+
+void work(uint w) {
+  uint conflict = masks[w];
+  for (uint k = 0u; k < u_extra.x; ++k) {
+    uint zero = (1u + 2u * k) * 2u * u_cells + w;
+    conflict |= masks[zero] & masks[zero + 2u * u_cells];
+  }
+  masks[w] = conflict;
+}
