@@ -288,13 +288,17 @@ Shape shape(const std::array<Vec3, 3>& corners) {
 }
 
 bool intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  const Triage triage = filter_intersects(a, b);
+  const Triage triage = filter_planes(a, b);
   return triage == Triage::unknown ? hulls_meet(hull(a), hull(b)) : triage == Triage::yes;
 }
 
 bool within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
   check_clearance("within", clearance);
-  return intersects(a, b) || (clearance > 0 && disjoint_within(a, b, clearance));
+  Triage triage = filter_planes(a, b, clearance);
+  if (triage == Triage::unknown && clearance > 0) triage = filter_within(a, b, clearance);
+  if (triage != Triage::unknown) return triage == Triage::yes;
+  if (clearance == 0) return hulls_meet(hull(a), hull(b));
+  return intersects(a, b) || disjoint_within(a, b, clearance);
 }
 
 bool share_position(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {

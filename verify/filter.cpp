@@ -86,10 +86,11 @@ int sign(double value, double bound) { return (value > bound) - (value < -bound)
 struct Sides {
   std::array<double, 3> value;
   double bound;
+  double needed;  // by which the value is larger at the clearance from the plane, or more
 
   bool on_one_side() const {
-    return std::min({value[0], value[1], value[2]}) > bound ||
-           std::max({value[0], value[1], value[2]}) < -bound;
+    return std::min({value[0], value[1], value[2]}) > bound + needed ||
+           std::max({value[0], value[1], value[2]}) < -(bound + needed);
   }
   bool certain() const {
     return std::min({std::abs(value[0]), std::abs(value[1]), std::abs(value[2])}) > bound;
@@ -101,14 +102,23 @@ struct Sides {
   }
 };
 
-inline Sides sides(const std::array<Vec3, 3>& s, const std::array<Vec3, 3>& t,
+/// The clearance times the length of the normal, rounded up: the computed normal is within
+/// ((1 + u)^4 - 1) (1 - u)^-4 m of the exact one per axis, and 2^-900 stands for squares that
+/// underflow. 8 roundings follow.
+double at_clearance(const Normal& normal, double clearance) {
+  const double length = std::sqrt(dot(normal.n, normal.n) + 0x1p-900);
+  return clearance * (length + sum(normal.m) * 0x1p-50) * (1 + 0x1p-49) + 0x1p-1000;
+}
+
+inline Sides sides(const std::array<Vec3, 3>& s, const std::array<Vec3, 3>& t, double clearance,
                    const FilterBounds& bounds) {
   const Normal normal = normal_of(difference(t[1], t[0]), difference(t[2], t[0]));
   const Triple w0 = difference(s[0], t[0]);
   const Triple w1 = difference(s[1], t[0]);
   const Triple w2 = difference(s[2], t[0]);
   return {{dot(normal.n, w0), dot(normal.n, w1), dot(normal.n, w2)},
-          side_bound(normal, largest(largest(w0, w1), w2), bounds)};
+          side_bound(normal, largest(largest(w0, w1), w2), bounds),
+          clearance > 0 ? at_clearance(normal, clearance) : 0};
 }
 
 int side(const Vec3& o, const Vec3& p, const Vec3& q, const Vec3& x, const FilterBounds& bounds) {
@@ -151,14 +161,20 @@ bool divides(const Triple& d, const Triple& w1, const Triple& w2, const Triple& 
 
 }  // namespace
 
-Triage filter_intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
-                         const FilterBounds& bounds) {
-  const Sides b_sides = sides(b, a, bounds);
+Triage filter_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance,
+                     const FilterBounds& bounds) {
+  const Sides b_sides = sides(b, a, clearance, bounds);
   if (b_sides.on_one_side()) return Triage::no;
-  const Sides a_sides = sides(a, b, bounds);
+  const Sides a_sides = sides(a, b, clearance, bounds);
   if (a_sides.on_one_side()) return Triage::no;
   if (!a_sides.certain() || !b_sides.certain()) return Triage::unknown;
-  return compare_on_line(a, a_sides, b, b_sides, bounds);
+  if (clearance == 0) return compare_on_line(a, a_sides, b, b_sides, bounds);
+  const auto crosses = [](const Sides& x) {
+    return (x.value[0] > 0) != (x.value[1] > 0) || (x.value[0] > 0) != (x.value[2] > 0);
+  };
+  if (!crosses(a_sides) || !crosses(b_sides)) return Triage::unknown;
+  return compare_on_line(a, a_sides, b, b_sides, bounds) == Triage::yes ? Triage::yes
+                                                                        : Triage::unknown;
 }
 
 // Seen from v, with N = a1 x a2 and M = b1 x b2: A1 = M . a1 and A2 = M . a2 tell the sides of b's

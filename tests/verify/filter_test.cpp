@@ -171,7 +171,7 @@ Tally tally(const Make& make, Sharing sharing, int pairs, const FilterBounds& bo
     for (const Vec3& p : a) shared += std::find(b.begin(), b.end(), p) != b.end();
     switch (sharing) {
       case Sharing::none:
-        out.add(filter_intersects(a, b, bounds), [&] { return reference::intersects(a, b); });
+        out.add(filter_planes(a, b, 0, bounds), [&] { return reference::intersects(a, b); });
         break;
       case Sharing::vertex:
         if (shared == 1) {
@@ -225,10 +225,10 @@ TEST(Filter, DecidesNeighboursInAFlatSheet) {
 TEST(Filter, DoesNotKnowContactsAndDegenerateTriangles) {
   const Triangle unit = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
   const Triangle touching = {Vec3(1, 1, 0), Vec3(1, 1, 4), Vec3(2, 1, 4)};
-  EXPECT_EQ(filter_intersects(unit, touching), Triage::unknown);
-  EXPECT_EQ(filter_intersects(unit, unit), Triage::unknown);
+  EXPECT_EQ(filter_planes(unit, touching), Triage::unknown);
+  EXPECT_EQ(filter_planes(unit, unit), Triage::unknown);
   const Triangle needle = {Vec3(1, 1, -1), Vec3(1, 1, 1), Vec3(1, 1, 1)};
-  EXPECT_EQ(filter_intersects(unit, needle), Triage::unknown);
+  EXPECT_EQ(filter_planes(unit, needle), Triage::unknown);
   EXPECT_EQ(filter_beyond_edge(unit[0], unit[1], unit[2], Vec3(1, 1, 0)), Triage::unknown);
 }
 
@@ -237,7 +237,7 @@ TEST(Filter, SaysNothingWhereArithmeticOverflows) {
   const auto scaled = [s](Triangle t) { return Triangle{s * t[0], s * t[1], s * t[2]}; };
   const Triangle a = scaled({Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)});
   const Triangle b = scaled({Vec3(0, 0, 1), Vec3(4, 0, 1), Vec3(0, 4, 1)});
-  EXPECT_EQ(filter_intersects(a, b), Triage::unknown);
+  EXPECT_EQ(filter_planes(a, b), Triage::unknown);
   EXPECT_FALSE(intersects(a, b));
 }
 

@@ -1,0 +1,202 @@
+// Clearance: squared distances against the square of the clearance, exactly.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "experiments/pair_generators.h"
+#include "tests/verify/reference.h"
+#include "verify/distance.h"
+#include "verify/exact.h"
+#include "verify/filter.h"
+
+namespace farcull {
+namespace {
+
+using reference::Triangle;
+
+double up(double x) { return std::nextafter(x, std::numeric_limits<double>::infinity()); }
+double down(double x) { return std::nextafter(x, 0.0); }
+
+void expect_distance_is(double distance, const Triangle& a, const Triangle& b) {
+  for (const auto& [s, t] : {std::pair(a, b), std::pair(b, a)}) {
+    EXPECT_TRUE(within(s, t, distance));
+    EXPECT_TRUE(within(s, t, up(distance)));
+    EXPECT_FALSE(within(s, t, down(distance)));
+    EXPECT_TRUE(disjoint_within(s, t, distance));
+    EXPECT_FALSE(disjoint_within(s, t, down(distance)));
+  }
+}
+
+const Triangle kUnit = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
+
+Triangle single_point(const Vec3& p) { return {p, p, p}; }
+
+TEST(Clearance, BetweenEveryKindOfFeatures) {
+  expect_distance_is(5, single_point({-3, -4, 0}), kUnit);  // corner and corner
+  expect_distance_is(2, {Vec3(1, -2, 0), Vec3(2, -9, 0), Vec3(1, -9, 0)}, kUnit);  // and edge
+  expect_distance_is(3, {Vec3(1, 1, 3), Vec3(2, 1, 9), Vec3(1, 2, 9)}, kUnit);     // and face
+  expect_distance_is(1, {Vec3(2, -5, 1), Vec3(2, 5, 1), Vec3(2, 0, 9)},
+                     {Vec3(-5, 0, 0), Vec3(5, 0, 0), Vec3(0, 0, -9)});          // edge and edge
+  expect_distance_is(7, kUnit, {Vec3(0, 0, 7), Vec3(4, 0, 7), Vec3(0, 4, 7)});  // parallel faces
+  expect_distance_is(5, {Vec3(0, 0, 0), Vec3(-9, 0, 0), Vec3(-9, 0, 0)},
+                     {Vec3(3, 4, 0), Vec3(9, 4, 0), Vec3(9, 4, 0)});  // segments
+  expect_distance_is(3, single_point({0, 0, 0}), single_point({2, 2, 1}));
+}
+
+TEST(Clearance, CrossingTrianglesAreWithinAny) {
+  const Triangle through = {Vec3(1, 1, -100), Vec3(1, 1, 100), Vec3(1.5, 1, 100)};
+  EXPECT_TRUE(within(kUnit, through, 0));
+  EXPECT_TRUE(within(kUnit, through, 1e-300));
+  EXPECT_TRUE(within(kUnit, {Vec3(1, 1, 0), Vec3(1, 1, 9), Vec3(2, 1, 9)}, 1e-300));  // touching
+}
+
+TEST(Clearance, WhoseSquareUnderflowsOrOverflows) {
+  const double tiny = std::numeric_limits<double>::denorm_min();
+  expect_distance_is(tiny, kUnit, {Vec3(1, 1, tiny), Vec3(1, 1, 9), Vec3(2, 1, 9)});
+  expect_distance_is(0x1p-700, kUnit, {Vec3(1, 1, 0x1p-700), Vec3(1, 1, 9), Vec3(2, 1, 9)});
+  expect_distance_is(0x1p1020, single_point({0, 0, 0}), single_point({0, 0x1p1020, 0}));
+  const double most = std::numeric_limits<double>::max();
+  EXPECT_TRUE(within(single_point({-most / 2, 0, 0}), single_point({most / 2, 0, 0}), most));
+  EXPECT_FALSE(within(single_point({-most, 0, 0}), single_point({most, 0, 0}), most));
+}
+
+/// The least clearance that a disjoint pair is within, by the reference, by bisection of doubles.
+double least_clearance(const Triangle& a, const Triangle& b) {
+  std::uint64_t no = 0;
+  std::uint64_t yes = std::bit_cast<std::uint64_t>(0x1p1000);
+  while (yes - no > 1) {
+    const std::uint64_t middle = no + (yes - no) / 2;
+    (reference::within(a, b, std::bit_cast<double>(middle)) ? yes : no) = middle;
+  }
+  return std::bit_cast<double>(yes);
+}
+
+// Where the answer changes from one double to the next the filter has to stand aside.
+TEST(Clearance, AsTheReferenceAtTheThreshold) {
+  int disjoint = 0;
+  for (const PairGenerator& generator : pair_generators()) {
+    PairRandom random(3);
+    for (int n = 0; n < 8; ++n) {
+      const auto [a, b] = generator.make(random);
+      if (reference::intersects(a, b) || !reference::within(a, b, 0x1p1000)) continue;
+      ++disjoint;
+      const double least = least_clearance(a, b);
+      EXPECT_TRUE(within(a, b, least)) << generator.name;
+      EXPECT_TRUE(within(a, b, up(least))) << generator.name;
+      if (least > std::numeric_limits<double>::denorm_min()) {
+        EXPECT_FALSE(within(a, b, down(least))) << generator.name;
+      }
+    }
+  }
+  EXPECT_GT(disjoint, 30);
+}
+
+struct Count {
+  int decided = 0;
+  int wrong = 0;
+};
+
+/// Corners of a and b much closer than they are to the other corners, the clearance their distance.
+void put_corners_close(PairRandom& random, PairOfTriangles& pair, double& clearance) {
+  const auto point = [&] {
+    const double x = random.between(-1, 1), y = random.between(-1, 1);
+    return Vec3(x, y, random.between(-1, 1));
+  };
+  const Vec3 corner = point();
+  const Vec3 towards = point();
+  const auto away = [&](double side) {
+    const Vec3 p = point();
+    return Vec3((p.dot(towards) > 0 ? side : -side) * p);
+  };
+  pair.b[0] = corner + std::ldexp(1, -random.whole(10, 40)) * towards;
+  pair.a = {corner + away(-1), corner, corner + away(-1)};
+  pair.b = {pair.b[0], pair.b[0] + away(1), pair.b[0] + away(1)};
+  clearance = up((pair.b[0] - corner).norm());
+}
+
+/// The filters at and around clearances that a pair of points of the triangles is apart by, and
+/// around the distance itself.
+Count count(const FilterBounds& bounds, int pairs, std::uint64_t seed) {
+  PairRandom random(seed);
+  Count out;
+  for (int n = 0; n < pairs; ++n) {
+    PairOfTriangles pair =
+        pair_generators()[random.below(static_cast<int>(pair_generators().size()))].make(random);
+    double clearance = (pair.a[random.below(3)] - pair.b[random.below(3)]).norm();
+    if (random.chance(2)) clearance *= random.between(0, 1.5);
+    if (random.chance(4)) {  // near a corner pair's distance, with nothing nearer
+      const Vec3 far = pair.b[0];
+      pair.b = {far, far + (far - pair.a[0]), far + 2 * (far - pair.a[0])};
+      clearance = (pair.a[0] - far).norm();
+      pair.a = {pair.a[0], pair.a[0] - (far - pair.a[0]), pair.a[0]};
+    }
+    if (random.chance(4)) put_corners_close(random, pair, clearance);
+    if (random.chance(3)) clearance = random.chance(2) ? up(clearance) : down(clearance);
+    if (!(clearance > 0) || !std::isfinite(clearance)) continue;
+    const auto check = [&](Triage triage) {
+      if (triage == Triage::unknown) return;
+      ++out.decided;
+      out.wrong += (triage == Triage::yes) != reference::within(pair.a, pair.b, clearance);
+    };
+    check(filter_planes(pair.a, pair.b, clearance, bounds));
+    check(filter_within(pair.a, pair.b, clearance, bounds));
+  }
+  return out;
+}
+
+TEST(ClearanceFilter, NeverContradictsExactArithmetic) {
+  const Count c = count(kFilterBounds, 3000, 1);
+  EXPECT_EQ(c.wrong, 0);
+  EXPECT_GT(c.decided, 1500);
+}
+
+TEST(ClearanceFilterTwin, WithoutItsBoundsItIsWrong) {
+  FilterBounds point;
+  point.point = 0;
+  EXPECT_GT(count(point, 3000, 1).wrong, 0);
+  FilterBounds gap;
+  gap.gap = 0;
+  EXPECT_GT(count(gap, 3000, 1).wrong, 0);
+}
+
+TEST(ClearanceFilter, DecidesWhatIsNotClose) {
+  const Triangle above = {Vec3(1, 1, 3), Vec3(2, 1, 9), Vec3(1, 2, 9)};
+  EXPECT_EQ(filter_planes(kUnit, above, 2.9), Triage::no);
+  EXPECT_EQ(filter_within(kUnit, above, 2.9), Triage::no);
+  EXPECT_EQ(filter_within(kUnit, above, 3.1), Triage::yes);
+  EXPECT_EQ(filter_within(kUnit, above, 3), Triage::unknown);
+  const Triangle beside = {Vec3(-3, 1, 0), Vec3(-9, 1, 1), Vec3(-9, 3, -1)};
+  EXPECT_EQ(filter_planes(kUnit, beside, 2.9), Triage::unknown);
+  EXPECT_EQ(filter_within(kUnit, beside, 2.9), Triage::no);
+  EXPECT_EQ(filter_within(kUnit, beside, 3.1), Triage::yes);
+}
+
+TEST(Clearance, ZeroIsAPlainRun) {
+  std::vector<std::vector<Triangle>> objects(3);
+  PairRandom random(9);
+  for (auto& triangles : objects) {
+    for (int n = 0; n < 150; ++n) {
+      const Vec3 at(random.whole(0, 9), random.whole(0, 9), random.whole(0, 9));
+      Triangle t;
+      for (Vec3& p : t) p = at + Vec3(random.whole(0, 2), random.whole(0, 2), random.whole(0, 2));
+      triangles.push_back(t);
+    }
+  }
+  Scene scene = reference::scene_of(objects);
+  scene.objects[1].self = true;
+  const ExactResult plain = all_colliding_pairs(scene);
+  const ExactResult zero = all_colliding_pairs(scene, {.clearance = 0});
+  const ExactResult tiny = all_colliding_pairs(scene, {.clearance = 1e-300});
+  for (const ExactResult* other : {&zero, &tiny}) {  // on a grid nothing is 1e-300 apart
+    EXPECT_EQ(plain.pairs, other->pairs);
+    EXPECT_EQ(plain.neighbour_pairs, other->neighbour_pairs);
+    EXPECT_EQ(plain.box_pairs, other->box_pairs);
+  }
+  EXPECT_GT(plain.pairs.size(), 100u);
+  EXPECT_GT(plain.neighbour_pairs.size(), 0u);
+}
+
+}  // namespace
+}  // namespace farcull
