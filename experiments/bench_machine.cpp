@@ -27,7 +27,13 @@ std::optional<double> status_kib(const std::string& key) {
 
 }  // namespace
 
-unsigned usable_cores() { return std::max(1u, std::thread::hardware_concurrency()); }
+// The C library counts what is online, also where the process is confined to less.
+unsigned usable_cores() {
+  cpu_set_t cores;
+  if (sched_getaffinity(0, sizeof cores, &cores) != 0)
+    return std::max(1u, std::thread::hardware_concurrency());
+  return static_cast<unsigned>(CPU_COUNT(&cores));
+}
 
 void confine_to_cores(unsigned threads) {
   const unsigned cores = usable_cores();

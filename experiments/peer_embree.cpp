@@ -2,9 +2,12 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <memory>
+#include <span>
 #include <type_traits>
 
 #include "core/error.h"
@@ -14,63 +17,108 @@ namespace farcull {
 namespace {
 
 constexpr const char* kLibrary = "Embree " RTC_VERSION_STRING;
-struct Release {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release>;
-using Hierarchy = std::unique_ptr<std::remove_pointer_t<RTCScene>, Release>;
-
-void check(RTCDevice device) {
-  const RTCError error = rtcGetDeviceError(device);
-  if (error == RTC_ERROR_NONE) return;
-  throw Error(kLibrary, "error " + std::to_string(error), "leave it out with --peers");
-}
-
+// Outward by more than the rounding to float: the step is at least an ulp of f, f -+ an ulp is a
+// float, and rounding is monotone; kTiny is more than half an ulp of the subnormal ones. For
+// |x| < 2^127. (This is faster than the nearest float beyond x, and as good.)
+constexpr float kTiny = std::numeric_limits<float>::min();
 float below(double x) {
   const auto f = static_cast<float>(x);
-  return static_cast<double>(f) > x ? std::nextafter(f, -std::numeric_limits<float>::infinity())
-                                    : f;
+  return f - std::abs(f) * 0x1p-23f - kTiny;
 }
 float above(double x) { return -below(-x); }
 
-/// The triangles from first on, as boxes.
-struct Side {
-  const PeerScene* scene;
-  std::uint32_t first;
-  std::uint32_t count;
+/// What rtcCollide works on: a box around each triangle.
+struct FloatBox {
+  std::array<float, 3> lo, hi;
 };
 
-void bounds(const RTCBoundsFunctionArguments* arguments) {
-  const auto& side = *static_cast<const Side*>(arguments->geometryUserPtr);
-  const Box& box = side.scene->boxes[side.first + arguments->primID];
-  RTCBounds& out = *arguments->bounds_o;
-  out.lower_x = below(box.lo.x());
-  out.lower_y = below(box.lo.y());
-  out.lower_z = below(box.lo.z());
-  out.upper_x = above(box.hi.x());
-  out.upper_y = above(box.hi.y());
-  out.upper_z = above(box.hi.z());
+bool meet(const FloatBox& a, const FloatBox& b) {
+  for (int k = 0; k < 3; ++k) {
+    if (a.hi[k] < b.lo[k] || b.hi[k] < a.lo[k]) return false;
+  }
+  return true;
 }
 
-Hierarchy build(RTCDevice device, Side& side, RTCBuildQuality quality) {
-  Hierarchy hierarchy(rtcNewScene(device));
-  rtcSetSceneBuildQuality(hierarchy.get(), quality);
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, side.count);
-  rtcSetGeometryUserData(geometry, &side);
-  rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
-  rtcSetGeometryBuildQuality(geometry, quality);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(hierarchy.get(), geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(hierarchy.get());
-  check(device);
-  return hierarchy;
+/// The boxes of all triangles. A vertex is rounded once, for all its triangles.
+std::vector<FloatBox> float_boxes(const Scene& scene, unsigned threads) {
+  std::vector<FloatBox> points(scene.vertices.size());
+  for_chunks(points.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      for (int k = 0; k < 3; ++k) {
+        points[v].lo[k] = below(scene.vertices[v][k]);
+        points[v].hi[k] = above(scene.vertices[v][k]);
+      }
+    }
+  });
+  std::vector<FloatBox> boxes(scene.triangles.size());
+  for_chunks(boxes.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto& [a, b, c] = scene.triangles[t];
+      for (int k = 0; k < 3; ++k) {
+        boxes[t].lo[k] = std::min({points[a].lo[k], points[b].lo[k], points[c].lo[k]});
+        boxes[t].hi[k] = std::max({points[a].hi[k], points[b].hi[k], points[c].hi[k]});
+      }
+    }
+  });
+  return boxes;
 }
+
+void bounds(const RTCBoundsFunctionArguments* arguments) {
+  const FloatBox& box = static_cast<const FloatBox*>(arguments->geometryUserPtr)[arguments->primID];
+  *arguments->bounds_o = {box.lo[0], box.lo[1], box.lo[2], 0, box.hi[0], box.hi[1], box.hi[2], 0};
+}
+
+/// A device with two hierarchies that are built anew in each run, in memory that they keep.
+class Embree {
+ public:
+  Embree(RTCBuildQuality quality, unsigned threads)
+      : device_(rtcNewDevice(("threads=" + std::to_string(threads)).c_str())) {
+    for (RTCScene& scene : scenes_) {
+      scene = rtcNewScene(device_);
+      rtcSetSceneBuildQuality(scene, quality);
+      RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+      rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
+      rtcSetGeometryBuildQuality(geometry, quality);
+      rtcAttachGeometryByID(scene, geometry, 0);
+      rtcReleaseGeometry(geometry);
+    }
+    check();
+  }
+  ~Embree() {
+    for (RTCScene scene : scenes_) rtcReleaseScene(scene);
+    rtcReleaseDevice(device_);
+  }
+  Embree(const Embree&) = delete;
+  Embree& operator=(const Embree&) = delete;
+
+  void build(int which, std::span<FloatBox> boxes) {
+    RTCGeometry geometry = rtcGetGeometry(scenes_[which], 0);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(boxes.size()));
+    rtcSetGeometryUserData(geometry, boxes.data());
+    rtcCommitGeometry(geometry);
+    rtcCommitScene(scenes_[which]);
+    check();
+  }
+
+  void collide(int first, int second, RTCCollideFunc collect, void* data) {
+    rtcCollide(scenes_[first], scenes_[second], collect, data);
+    check();
+  }
+
+ private:
+  void check() {
+    const RTCError error = rtcGetDeviceError(device_);
+    if (error == RTC_ERROR_NONE) return;
+    throw Error(kLibrary, "error " + std::to_string(error), "leave it out with --peers");
+  }
+
+  RTCDevice device_;
+  std::array<RTCScene, 2> scenes_{};
+};
 
 struct Found {
   const PeerScene& scene;
+  const std::vector<FloatBox>& boxes;
   Candidates& candidates;
   std::uint32_t second;  // added to what the second hierarchy calls its primitives
 };
@@ -85,27 +133,27 @@ void collect(void* data, RTCCollision* collisions, unsigned count) {
     const std::uint32_t a = collisions[i].primID0;
     const std::uint32_t b = found.second + collisions[i].primID1;
     if (!two_sides && (a >= b || !found.scene.counts(a, b))) continue;
-    if (overlap(found.scene.boxes[a], found.scene.boxes[b])) part.add(a, b);
+    if (meet(found.boxes[a], found.boxes[b])) part.add(a, b);
   }
 }
 
-BenchAnswer collide(RTCDevice device, const Scene& raw, RTCBuildQuality quality, unsigned threads) {
+BenchAnswer collide(Embree& embree, const Scene& raw, unsigned threads) {
   const Stopwatch building;
-  const PeerScene scene(raw);
-  const auto count = static_cast<std::uint32_t>(raw.triangles.size());
-  const std::uint32_t second = scene.two_sides ? scene.second : 0;
-  Side sides[2] = {{&scene, 0, scene.two_sides ? second : count}, {&scene, second, count - second}};
-  Hierarchy first, other;
-  if (scene.has_pairs()) first = build(device, sides[0], quality);
-  if (scene.two_sides) other = build(device, sides[1], quality);
+  const PeerScene scene(raw, false);
+  std::vector<FloatBox> boxes = float_boxes(raw, threads);
+  const std::span all(boxes);
+  const bool any = scene.has_pairs();
+  if (any && scene.two_sides) {
+    embree.build(0, all.first(scene.second));
+    embree.build(1, all.subspan(scene.second));
+  } else if (any) {
+    embree.build(0, all);
+  }
   const double build_ms = building.ms();
 
   Candidates candidates(raw, threads, threads > 1);
-  Found found{scene, candidates, second};
-  if (first) {
-    rtcCollide(first.get(), scene.two_sides ? other.get() : first.get(), collect, &found);
-    check(device);
-  }
+  Found found{scene, boxes, candidates, scene.second};
+  if (any) embree.collide(0, scene.two_sides ? 1 : 0, collect, &found);
   BenchAnswer answer = candidates.finish();
   answer.build_ms = build_ms;
   return answer;
@@ -122,12 +170,8 @@ std::string refuses_large(const Scene& scene) {
 Peer peer(const std::string& name, RTCBuildQuality quality) {
   return {name, kLibrary, "",
           [quality](unsigned threads) -> BenchRun {
-            const std::string config = "threads=" + std::to_string(threads);
-            const std::shared_ptr<Device> device =
-                std::make_shared<Device>(rtcNewDevice(config.c_str()));
-            check(device->get());
-            return
-                [=](const Scene& scene) { return collide(device->get(), scene, quality, threads); };
+            const auto embree = std::make_shared<Embree>(quality, threads);
+            return [=](const Scene& scene) { return collide(*embree, scene, threads); };
           },
           refuses_large};
 }

@@ -15,8 +15,10 @@ std::uint64_t next_id() {
 
 }  // namespace
 
-PeerScene::PeerScene(const Scene& scene)
-    : scene(scene), boxes(triangle_boxes(scene)), owner(owners(scene)) {
+PeerScene::PeerScene(const Scene& scene, bool with_boxes)
+    : scene(scene),
+      boxes(with_boxes ? triangle_boxes(scene) : std::vector<Box>{}),
+      owner(owners(scene)) {
   std::size_t with_triangles = 0;
   two_sides = true;
   for (const Object& object : scene.objects) {
@@ -25,6 +27,7 @@ PeerScene::PeerScene(const Scene& scene)
     two_sides = two_sides && !object.self;
   }
   two_sides = two_sides && with_triangles == 2;
+  if (!two_sides) second = 0;
 }
 
 bool PeerScene::has_pairs() const {

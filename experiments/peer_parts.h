@@ -28,13 +28,14 @@ class Stopwatch {
 
 /// A scene as a peer prepares it, in its own time: the boxes of the triangles, and who meets whom.
 struct PeerScene {
-  explicit PeerScene(const Scene& scene);
+  /// Without boxes where the peer has others.
+  explicit PeerScene(const Scene& scene, bool with_boxes = true);
 
   const Scene& scene;
   std::vector<Box> boxes;            // per triangle
   std::vector<std::uint32_t> owner;  // per triangle
   bool two_sides = false;            // exactly two objects have triangles, and neither is self
-  std::uint32_t second = 0;          // the first triangle of the second of them
+  std::uint32_t second = 0;          // the first triangle of the second of them; else 0
 
   /// Whether a pair of these triangles counts.
   bool counts(std::uint32_t a, std::uint32_t b) const {
