@@ -27,9 +27,9 @@ FAR_KERNEL void far_bounds(vec4 a, vec4 b, vec4 c, vec4 widen, FAR_OUT(vec4) lo,
 // By how much a rectangle grows so that it speaks of the float triangle, whose real one has the bounds lo, hi.
 FAR_KERNEL vec4 far_margin(vec4 lo, vec4 hi, vec4 widen) {
   FAR_PRECISE vec4 e = widen + kClipUnit * max(abs(lo), abs(hi));
-  e.x += kClipUnit;
-  e.y += kClipUnit;
-  e.z += kClipUnit;
+  e.x = e.x + kClipUnit;
+  e.y = e.y + kClipUnit;
+  e.z = e.z + kClipUnit;
   return e;
 }
 

@@ -44,10 +44,15 @@ struct Case {
   std::vector<TrianglePair> pairs;  // with overlapping boxes
   std::vector<TrianglePair> meeting;
   std::vector<TrianglePair> kept;
+  std::uint64_t neighbours = 0;  // that do not meet
   Certificate certificate;
 
   explicit Case(Scene from) : scene(std::move(from)), pairs(box_pairs(scene)) {
-    meeting = colliding_pairs(scene, pairs);
+    const Collisions found = decide(scene, pairs);
+    meeting = found.pairs;
+    meeting.insert(meeting.end(), found.neighbour_pairs.begin(), found.neighbour_pairs.end());
+    std::sort(meeting.begin(), meeting.end());
+    neighbours = found.neighbours - found.neighbour_pairs.size();
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (i % 3 == 0 || meets(i)) kept.push_back(pairs[i]);
     }
@@ -77,7 +82,10 @@ void recount(Certificate& certificate) {
   for (const std::uint8_t byte : certificate.evidence) {
     ++claims.box_pairs;
     ++((byte & kKept) != 0 ? claims.kept : claims.culled);
-    ++((byte & 63) == kMeets ? claims.meeting : claims.separated);
+    const int claim = byte & 63;
+    ++(claim == kMeets        ? claims.meeting
+       : claim == kNeighbours ? claims.neighbours
+                              : claims.separated);
   }
 }
 
@@ -95,9 +103,103 @@ TEST(Certificate, IsProvedOnBuiltinScenes) {
     EXPECT_EQ(result.found.culled, c.pairs.size() - c.kept.size());
     EXPECT_EQ(result.found.meeting, c.meeting.size());
     EXPECT_EQ(result.found.separated, c.pairs.size() - c.meeting.size());
+    EXPECT_EQ(result.found.neighbours, 0u);
     EXPECT_EQ(result.found, c.certificate.claims);
     EXPECT_EQ(result.culled_meeting, 0u);
   }
+}
+
+/// Every object against itself; with neighbours that meet and others.
+const Case& folded() {
+  static const Case folded = [] {
+    std::mt19937 random(4);
+    std::vector<std::vector<reference::Triangle>> objects(3);
+    for (auto& triangles : objects) {
+      triangles.resize(60);
+      for (reference::Triangle& t : triangles) {
+        const Vec3 corner(random() % 4, random() % 4, random() % 4);
+        for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
+      }
+    }
+    Scene scene = reference::welded(reference::scene_of(objects), true);
+    for (Object& object : scene.objects) object.self = true;
+    return Case(std::move(scene));
+  }();
+  return folded;
+}
+
+TEST(CertificateSelf, CountsNeighboursApart) {
+  const Case& c = folded();
+  const CheckResult result = c.check(c.certificate);
+  EXPECT_EQ(result.verdict, Verdict::proved) << result.reason;
+  EXPECT_EQ(result.found, c.certificate.claims);
+  EXPECT_EQ(result.found.neighbours, c.neighbours);
+  EXPECT_EQ(result.found.meeting, c.meeting.size());
+  EXPECT_EQ(result.found.separated, c.pairs.size() - c.meeting.size() - c.neighbours);
+  EXPECT_GT(c.neighbours, 100u);
+}
+
+TEST(CertificateSelf, EveryFalseByteOfNeighboursIsCaught) {
+  const Case& c = folded();
+  int meeting = 0;
+  int apart = 0;
+  for (std::size_t i = 0; i < c.pairs.size() && meeting + apart < 60; ++i) {
+    if (!reference::neighbours(c.scene, c.pairs[i])) continue;
+    const bool meets = c.meets(i);
+    ++(meets ? meeting : apart);
+    for (const int claim : {0, 37, static_cast<int>(kMeets), static_cast<int>(kNeighbours), 40}) {
+      if (claim == (meets ? kMeets : kNeighbours)) continue;
+      Certificate changed = c.certificate;
+      changed.evidence[i] = static_cast<std::uint8_t>(kKept | claim);
+      recount(changed);
+      const CheckResult result = c.check(changed);
+      const bool refuted = meets ? claim != 40 : claim == kMeets;
+      EXPECT_EQ(result.verdict, refuted ? Verdict::refuted : Verdict::not_proved) << claim;
+      EXPECT_EQ(result.pair, c.pairs[i]);
+    }
+    if (!meets) continue;
+    Certificate culled = c.certificate;  // a culled pair of neighbours that meets
+    culled.evidence[i] = kNeighbours;
+    recount(culled);
+    EXPECT_EQ(c.check(culled).verdict, Verdict::refuted);
+    EXPECT_EQ(c.check(culled).culled_meeting, 1u);
+  }
+  EXPECT_GT(meeting, 10);
+  EXPECT_GT(apart, 10);
+}
+
+// For all others the byte means nothing, and a run that lost a pair of neighbours says so itself.
+TEST(CertificateSelf, NeighboursAreOfOneObjectAndALostPairRefutes) {
+  Scene scene = folded().scene;
+  for (Object& object : scene.objects) object.self = false;
+  const Case other(scene);
+  EXPECT_EQ(other.certificate.claims.neighbours, 0u);
+  EXPECT_EQ(other.check(folded().certificate).verdict, Verdict::not_proved);  // another scene
+  const auto apart = std::find_if(other.pairs.begin(), other.pairs.end(), [&](const auto& pair) {
+    return !std::binary_search(other.meeting.begin(), other.meeting.end(), pair);
+  });
+  ASSERT_NE(apart, other.pairs.end());
+  Certificate changed = other.certificate;
+  changed.evidence[static_cast<std::size_t>(apart - other.pairs.begin())] = kNeighbours;
+  recount(changed);
+  EXPECT_EQ(other.check(changed).verdict, Verdict::not_proved);
+
+  const Case& c = folded();
+  std::vector<TrianglePair> kept, colliding;
+  std::optional<TrianglePair> lost;
+  for (const TrianglePair& pair : c.meeting) {
+    if (!lost && reference::neighbours(c.scene, pair)) {
+      lost = pair;
+    } else {
+      kept.push_back(pair);
+    }
+  }
+  const CheckResult culled = c.check(make_certificate(c.scene, kept, kept, {}));
+  EXPECT_EQ(culled.verdict, Verdict::refuted);
+  EXPECT_EQ(culled.pair, lost);
+  const CheckResult wrong = c.check(make_certificate(c.scene, c.meeting, kept, {}));
+  EXPECT_EQ(wrong.verdict, Verdict::refuted);
+  EXPECT_EQ(wrong.pair, lost);
 }
 
 TEST(Certificate, OfASceneWithoutPairsIsProved) {
@@ -201,9 +303,9 @@ TEST(Certificate, AHundredChangesAreCaught) {
     changes.expect(Verdict::not_proved, std::nullopt,
                    [&](Certificate& x) { x.evidence[i] ^= kKept; });
   }
-  for (const auto count :
-       {&Certificate::Claims::box_pairs, &Certificate::Claims::kept, &Certificate::Claims::culled,
-        &Certificate::Claims::separated, &Certificate::Claims::meeting}) {
+  for (const auto count : {&Certificate::Claims::box_pairs, &Certificate::Claims::kept,
+                           &Certificate::Claims::culled, &Certificate::Claims::separated,
+                           &Certificate::Claims::neighbours, &Certificate::Claims::meeting}) {
     for (const std::uint64_t by : {std::uint64_t{1}, ~std::uint64_t{0}, std::uint64_t{1} << 63}) {
       changes.expect(Verdict::not_proved, std::nullopt,
                      [&](Certificate& x) { x.claims.*count += by; });
@@ -268,7 +370,7 @@ TEST(Certificate, AnotherSceneIsNotProved) {
     forged.scene = {other.name, other.objects.size(), other.triangles.size(), scene_hash(other)};
     const CheckResult held = check_certificate(forged, other);
     if (held.verdict == Verdict::proved) {
-      EXPECT_EQ(held.found.meeting, colliding_pairs(other, box_pairs(other)).size());
+      EXPECT_EQ(held.found.meeting, decide(other, box_pairs(other)).pairs.size());
     }
   }
 }
@@ -439,10 +541,10 @@ TEST(CertificateText, RefusesAnotherForm) {
   for (const char* text : {"null", "7", "\"text\"", "[]"}) expect_refused(text, "no object");
   expect_refused("{}", "format is missing");
   expect_refused(changed_text("farcull-certificate", "farcull-record"), "format is not");
-  for (const char* version : {"2", "0", "-1", "1.0", "\"1\"", "null", "[1]"})
-    expect_refused(changed_text("\"version\": 1", std::string("\"version\": ") + version),
+  for (const char* version : {"1", "3", "0", "-1", "1.0", "\"1\"", "null", "[1]"})
+    expect_refused(changed_text("\"version\": 2", std::string("\"version\": ") + version),
                    "version is not");
-  expect_refused(changed_text("\"version\": 1", "\"version\": 1, \"more\": 2"),
+  expect_refused(changed_text("\"version\": 2", "\"version\": 2, \"more\": 2"),
                  "'more' is unknown");
   expect_refused(changed_text("\"kept\": 0", "\"keep\": 0"), "claims.kept is missing");
   expect_refused(changed_text("\"kept\": 0", "\"kept\": 0, \"\xc3\xa9\": 0"), "is unknown");

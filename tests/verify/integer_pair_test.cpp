@@ -221,6 +221,42 @@ std::vector<TrianglePair> enumerated(const Scene& scene, std::size_t enough) {
   return all;
 }
 
+TEST(IntegerPair, DecidesNeighboursAsTheReference) {
+  std::array<int, 2> answers = {0, 0};
+  for (const PairGenerator& generator : pair_generators()) {
+    PairRandom random(8);
+    for (int n = 0; n < 150; ++n) {
+      auto [a, b] = generator.make(random);
+      b[random.below(3)] = a[random.below(3)];
+      if (n % 2 == 0) b[random.below(3)] = a[random.below(3)];
+      IntegerPair pair(a, b);
+      ASSERT_TRUE(pair.shares_position());
+      const bool expected = reference::intersects_beyond_shared(a, b);
+      ASSERT_EQ(pair.meets_beyond_shared(), expected) << generator.name << " " << n;
+      ++answers[expected];
+    }
+  }
+  EXPECT_GT(answers[0], 200);
+  EXPECT_GT(answers[1], 200);
+}
+
+TEST(IntegerPair, DecidesNeighboursOfFewPoints) {
+  std::mt19937 random(2);
+  for (int n = 0; n < 6000; ++n) {
+    std::array<std::array<Vec3, 3>, 2> t;
+    for (auto& triangle : t) {
+      for (Vec3& p : triangle) {
+        const int i = static_cast<int>(random() % 9);
+        p = n % 3 == 0 ? Vec3(i, 2 * i, 0) : Vec3(i % 3, i / 3, n % 3 == 1 ? i % 3 : i % 2);
+      }
+    }
+    IntegerPair pair(t[0], t[1]);
+    ASSERT_EQ(pair.shares_position(), reference::share_position(t[0], t[1]));
+    if (!pair.shares_position()) continue;
+    ASSERT_EQ(pair.meets_beyond_shared(), reference::intersects_beyond_shared(t[0], t[1])) << n;
+  }
+}
+
 TEST(BoxPairs, AreThoseOfAllPairsInOrder) {
   std::mt19937 random(31);
   std::size_t total = 0;
@@ -235,7 +271,8 @@ TEST(BoxPairs, AreThoseOfAllPairsInOrder) {
         for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
       }
     }
-    const Scene scene = reference::scene_of(objects);
+    Scene scene = reference::scene_of(objects);
+    for (Object& object : scene.objects) object.self = random() % 3 == 0;
     std::vector<TrianglePair> expected;
     reference::for_each_pair(scene, [&](const TrianglePair& pair, bool overlap) {
       if (overlap) expected.push_back(pair);
@@ -258,7 +295,9 @@ TEST(BoxPairs, CountTheSameAsCgalsJoin) {
       for (Vec3& p : t) p = corner + 0.2 * Vec3(unit(), unit(), unit());
     }
   }
-  const Scene scene = reference::scene_of(objects);
+  Scene scene = reference::scene_of(objects);
+  EXPECT_EQ(enumerated(scene, 4096).size(), all_colliding_pairs(scene).box_pairs);
+  scene.objects[2].self = true;
   EXPECT_EQ(enumerated(scene, 4096).size(), all_colliding_pairs(scene).box_pairs);
 }
 
