@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/gl_canvas.h"
 #include "core/gl_context.h"
+#include "core/gl_pairs.h"
 #include "core/pairs.h"
 #include "core/pairs_cpu.h"
 #include "core/plan.h"
@@ -108,11 +109,30 @@ BenchRun exact(unsigned threads) {
   };
 }
 
-/// The context that the GL methods share. With llvmpipe, the device that there is without a GPU,
-/// rasterizing takes its threads from the environment.
-std::shared_ptr<GlContext> open_device(const BenchOptions& options) {
-  ::setenv("LP_NUM_THREADS", std::to_string(options.threads).c_str(), 1);
-  return std::make_shared<GlContext>(options.device);
+/// The context that the GL methods share, opened when first needed. With llvmpipe, the device that
+/// there is without a GPU, rasterizing takes its threads from the environment.
+class SharedContext {
+ public:
+  explicit SharedContext(const BenchOptions& options) : options_(options) {}
+
+  std::shared_ptr<GlContext> get() {
+    if (!context_) {
+      ::setenv("LP_NUM_THREADS", std::to_string(options_.threads).c_str(), 1);
+      context_ = std::make_shared<GlContext>(options_.device);
+    }
+    return context_;
+  }
+
+ private:
+  const BenchOptions& options_;
+  std::shared_ptr<GlContext> context_;
+};
+
+/// Owned together with the context that it must not outlive.
+template <class Made>
+std::shared_ptr<Made> beside(std::shared_ptr<GlContext> context, std::unique_ptr<Made> made) {
+  Made* const raw = made.release();
+  return std::shared_ptr<Made>(raw, [context = std::move(context)](Made* old) { delete old; });
 }
 
 /// Sets up one contestant. What cannot run is left out, or an Error where it was asked for by name.
@@ -149,24 +169,30 @@ void add_methods(const Scene& scene, const BenchOptions& options, Gathering& gat
   const bool self = std::any_of(scene.objects.begin(), scene.objects.end(),
                                 [](const Object& object) { return object.self; });
   const bool by_name = options.methods != "all";
+  const bool no_gl = options.device == "cpu";
+  // Without --device, GL is measured where there is one.
+  const bool gl_by_name = by_name && !options.device.empty();
+  SharedContext context(options);
   for (const std::string& method : chosen("--methods", options.methods, kMethods)) {
     if (method == "far-pairs") {
       gathering.add({.name = method}, by_name, "--methods",
                     [&](Contestant& c) { c.run = far_pairs(cpu_pair_backend(threads), threads); });
+      if (no_gl) continue;
+      gathering.add({.name = method, .device = "gl"}, gl_by_name, "--methods", [&](Contestant& c) {
+        const std::shared_ptr<GlContext> gl = context.get();
+        c.device = gl->info().renderer;
+        c.run = far_pairs(beside(gl, gl_pair_backend(*gl)), threads);
+      });
     } else if (method == "far") {
-      Contestant contestant{.name = method};
+      Contestant contestant{.name = method, .device = "gl"};
       if (self) contestant.left_out = "it tests no object against itself";
-      if (options.device == "cpu")
-        contestant.left_out = "it needs a GL device, and --device is cpu";
+      if (no_gl) contestant.left_out = "it needs a GL device, and --device is cpu";
       gathering.add(contestant, by_name, "--methods", [&](Contestant& c) {
-        const std::shared_ptr<GlContext> context = open_device(options);
+        const std::shared_ptr<GlContext> gl = context.get();
         const Fattener fattener = obb_fattener();
-        // The canvas goes before its context.
-        const std::shared_ptr<GlCanvas> canvas(
-            new GlCanvas(*context, fattener.mode, fattener.solid),
-            [context](GlCanvas* old) { delete old; });
-        c.device = context->info().renderer;
-        c.run = far(canvas, threads);
+        c.device = gl->info().renderer;
+        c.run = far(beside(gl, std::make_unique<GlCanvas>(*gl, fattener.mode, fattener.solid)),
+                    threads);
       });
     } else {
       gathering.add({.name = method}, by_name, "--methods",
