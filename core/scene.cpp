@@ -107,7 +107,9 @@ std::string scene_hash(const Scene& scene) {
     }
   };
   mix(scene.objects.size());
-  for (const Object& object : scene.objects) mix(object.triangle_count);
+  for (const Object& object : scene.objects) {
+    mix(object.triangle_count | std::uint64_t{object.self} << 32);
+  }
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
     for (const Vec3& p : scene.corners(t)) {
       for (int i = 0; i < 3; ++i) mix(std::bit_cast<std::uint64_t>(p[i]));

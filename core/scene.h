@@ -33,7 +33,7 @@ struct Object {
   std::string name;
   std::uint32_t first_triangle = 0;  // index into Scene::triangles
   std::uint32_t triangle_count = 0;  // may be 0
-  bool self = false;  // its own triangles are tested against each other as well
+  bool self = false;                 // its own triangles are tested against each other as well
 };
 
 /// Objects own contiguous, ascending, gapless ranges of triangles. Object and triangle order is the
@@ -68,8 +68,8 @@ std::vector<Box> object_boxes(const Scene& scene, std::span<const Box> triangle_
 /// The object of each triangle.
 std::vector<std::uint32_t> owners(const Scene& scene);
 
-/// 16 hex digits: FNV-1a over object starts, triangles and the bits of all coordinates, in order.
-/// Names do not count.
+/// 16 hex digits: FNV-1a over the sizes of the objects, whether they are `self`, and the bits of
+/// the coordinates of all triangles, in order. Names do not count.
 std::string scene_hash(const Scene& scene);
 
 }  // namespace farcull

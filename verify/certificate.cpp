@@ -63,12 +63,16 @@ int likely_direction(const Corners& a, const Corners& b) {
   return best;
 }
 
-std::uint8_t evidence_of(const Scene& scene, const TrianglePair& pair, bool kept, bool colliding) {
+std::uint8_t evidence_of(const Scene& scene, const TrianglePair& pair, bool one_object, bool kept,
+                         bool colliding) {
   if (colliding) return kKept | kMeets;
   const Corners a = scene.corners(pair.a);
   const Corners b = scene.corners(pair.b);
   IntegerPair integers(a, b);
   const std::uint8_t flag = kept ? kKept : 0;
+  if (one_object && integers.shares_position()) {
+    return !kept && integers.meets_beyond_shared() ? kMeets : flag | kNeighbours;
+  }
   if (const int guess = likely_direction(a, b); integers.separated_by(guess)) return flag | guess;
   const std::optional<int> direction = integers.separating_direction();
   if (direction) return flag | *direction;
@@ -116,6 +120,7 @@ Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> k
   Marked kept_pairs(kept, "kept");
   Marked colliding_pairs(colliding, "colliding");
   BoxPairs enumeration(scene);
+  const std::vector<std::uint32_t> owner = owners(scene);
   std::vector<TrianglePair> pairs;
   std::vector<std::array<bool, 2>> marks;
   while (enumeration.next(pairs, kBlock)) {
@@ -130,7 +135,9 @@ Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> k
     for_chunks(pairs.size(), chunks_for(pairs.size(), kPerThread),
                [&](std::size_t, std::size_t begin, std::size_t end) {
                  for (std::size_t i = begin; i < end; ++i) {
-                   out.evidence[done + i] = evidence_of(scene, pairs[i], marks[i][0], marks[i][1]);
+                   const bool one_object = owner[pairs[i].a] == owner[pairs[i].b];
+                   out.evidence[done + i] =
+                       evidence_of(scene, pairs[i], one_object, marks[i][0], marks[i][1]);
                  }
                });
   }
@@ -140,7 +147,10 @@ Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> k
   out.claims.box_pairs = out.evidence.size();
   for (const std::uint8_t byte : out.evidence) {
     ++((byte & kKept) != 0 ? out.claims.kept : out.claims.culled);
-    ++((byte & ~kKept) == kMeets ? out.claims.meeting : out.claims.separated);
+    const int claim = byte & ~kKept;
+    ++(claim == kMeets        ? out.claims.meeting
+       : claim == kNeighbours ? out.claims.neighbours
+                              : out.claims.separated);
   }
   return out;
 }

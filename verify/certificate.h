@@ -2,9 +2,12 @@
 // of evidence a pair, so that a stranger can prove or refute it without any of the code that
 // culled. docs/certificate.md is the format and the proof that 38 directions suffice.
 //
-// What is attested: for the scene with this hash, the pairs of triangles of different objects whose
-// boxes overlap, which of them meet, and that no pair that the method culled meets. Pairs whose
-// boxes are disjoint need no evidence. How the method came to its answer (Run) is beyond any check.
+// What is attested: for the scene with this hash, the pairs of triangles that count (of different
+// objects, and of one object where it is `self`) and whose boxes overlap, which of them meet, and
+// that no pair that the method culled meets. Neighbours (verify/exact.h) meet iff they share more
+// than their shared part. Pairs whose boxes are disjoint need no evidence. How the method came to
+// its answer (Run) is beyond any check. There are no certificates for a clearance above 0: the
+// evidence is about triangles that meet.
 #pragma once
 
 #include <cstdint>
@@ -27,13 +30,15 @@ struct Certificate {
     bool operator==(const SceneKey&) const = default;
   };
 
-  /// Counts of pairs of triangles of different objects whose closed boxes overlap.
+  /// Counts of pairs that count whose closed boxes overlap: separated + neighbours + meeting, and
+  /// kept + culled.
   struct Claims {
     std::uint64_t box_pairs = 0;
-    std::uint64_t kept = 0;       // left to the exact tests by the method
-    std::uint64_t culled = 0;     // the others
-    std::uint64_t separated = 0;  // disjoint
-    std::uint64_t meeting = 0;    // the others
+    std::uint64_t kept = 0;        // left to the exact tests by the method
+    std::uint64_t culled = 0;      // the others
+    std::uint64_t separated = 0;   // disjoint
+    std::uint64_t neighbours = 0;  // neighbours that share only their shared part
+    std::uint64_t meeting = 0;     // the others
     bool operator==(const Claims&) const = default;
   };
 
@@ -65,21 +70,22 @@ struct Certificate {
   Claims claims;
   Run run;
   /// One byte per pair in the order of BoxPairs. Bits 0 .. 5: a direction (integer_pair.h) that
-  /// separates the pair, or kMeets; kKept: the method kept the pair; bit 7 is 0.
+  /// separates the pair, or kMeets, or kNeighbours; kKept: the method kept the pair; bit 7 is 0.
   std::vector<std::uint8_t> evidence;
 
   bool operator==(const Certificate&) const = default;
 };
 
 constexpr std::uint8_t kMeets = 38;
+constexpr std::uint8_t kNeighbours = 39;
 constexpr std::uint8_t kKept = 0x40;
 
-/// kept: what culling left to the exact tests; colliding: which of these the run found to meet.
-/// Both sorted, each pair once, a < b, of different objects, with overlapping boxes; colliding a
-/// part of kept; anything else is a std::logic_error. What the run got wrong is written as the run
-/// had it, so that the check refutes it: a kept pair meets iff it is in `colliding`, and a pair for
-/// which no direction is found though the run calls it disjoint carries direction 0 where it was
-/// kept, kMeets where it was culled.
+/// kept: what culling left to the exact tests; colliding: which of these the run found to meet,
+/// neighbours among them. Both sorted, each pair once, a < b, pairs that count with overlapping
+/// boxes; colliding a part of kept; anything else is a std::logic_error. What the run got wrong is
+/// written as the run had it, so that the check refutes it: a kept pair meets iff it is in
+/// `colliding`, and a pair for which no direction is found though the run calls it disjoint carries
+/// direction 0 (neighbours: kNeighbours) where it was kept, kMeets where it was culled.
 Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> kept,
                              std::span<const TrianglePair> colliding, Certificate::Run run);
 
@@ -112,8 +118,8 @@ struct CheckResult {
 /// that
 ///   it does not, and the contrary is true. The first such pair in order is named.
 /// - not_proved: no such pair, but the scene is another, the evidence is too short or too long, a
-///   byte is no evidence or names a direction that does not separate its disjoint pair, or a count
-///   is wrong.
+///   byte is no evidence or names a direction that does not separate its disjoint pair, or does not
+///   say what neighbours are, or a count is wrong.
 /// - proved: neither.
 /// For another scene or a wrong length nothing is decided: bytes and pairs do not belong together.
 /// Precondition: validate() accepts the scene.

@@ -16,17 +16,21 @@ enum class Finding : std::uint8_t {
   as_claimed,
   // These two leave the certificate unproved:
   wrong_direction,  // the pair is disjoint, but not for the reason given
+  not_neighbours,   // neighbours that share only their shared part, called something else
   no_evidence,      // the byte means nothing
   // and these three refute it:
   culled_meets,
-  meets,      // kept; claimed to be disjoint
-  separated,  // claimed to meet
+  meets,       // kept; claimed to be disjoint
+  separated,   // claimed to meet
+  neighbours,  // claimed to meet, and share only their shared part
 };
 
 bool refutes(Finding finding) { return finding >= Finding::culled_meets; }
 
+enum class Kind : std::uint8_t { separated, neighbours, meeting };
+
 struct Decision {
-  bool meets = false;
+  Kind kind = Kind::separated;
   Finding finding = Finding::as_claimed;
 };
 
@@ -40,23 +44,34 @@ double ms_since(Clock::time_point start) {
       "check_certificate: neither a separating direction nor a common point of a pair");
 }
 
-/// Decides the pair whatever the byte says: by a direction that separates or by a point in both.
-Decision decide(const Scene& scene, const TrianglePair& pair, std::uint8_t byte) {
+/// Decides the pair whatever the byte says: by a direction that separates or by a point in both;
+/// neighbours by themselves.
+Decision decide(const Scene& scene, const TrianglePair& pair, bool one_object, std::uint8_t byte) {
   IntegerPair integers(scene.corners(pair.a), scene.corners(pair.b));
   const bool kept = (byte & kKept) != 0;
   const int claim = byte & ~kKept;
   const auto meeting = [&](Finding if_kept) {
-    return Decision{true, kept ? if_kept : Finding::culled_meets};
+    return Decision{Kind::meeting, kept ? if_kept : Finding::culled_meets};
   };
+  if (one_object && integers.shares_position()) {
+    if (integers.meets_beyond_shared()) {
+      return meeting(claim == kMeets                               ? Finding::as_claimed
+                     : claim < kDirections || claim == kNeighbours ? Finding::meets
+                                                                   : Finding::no_evidence);
+    }
+    return {Kind::neighbours, claim == kNeighbours ? Finding::as_claimed
+                              : claim == kMeets    ? Finding::neighbours
+                                                   : Finding::not_neighbours};
+  }
   if (claim == kMeets) {
     if (integers.has_common_point()) return meeting(Finding::as_claimed);
     if (!integers.separating_direction()) contradiction();
-    return {false, Finding::separated};
+    return {Kind::separated, Finding::separated};
   }
   const bool direction = claim < kDirections;
-  if (direction && integers.separated_by(claim)) return {false, Finding::as_claimed};
+  if (direction && integers.separated_by(claim)) return {Kind::separated, Finding::as_claimed};
   if (integers.separating_direction())
-    return {false, direction ? Finding::wrong_direction : Finding::no_evidence};
+    return {Kind::separated, direction ? Finding::wrong_direction : Finding::no_evidence};
   if (!integers.has_common_point()) contradiction();
   return meeting(direction ? Finding::meets : Finding::no_evidence);
 }
@@ -72,6 +87,11 @@ std::string sentence(Finding finding, int byte) {
     case Finding::wrong_direction:
       return "direction " + std::to_string(byte & ~kKept) +
              " does not separate the pair, which is disjoint";
+    case Finding::neighbours:
+      return "the pair is said to meet, and these neighbours share only vertices or an edge";
+    case Finding::not_neighbours:
+      return "the byte " + std::to_string(byte) +
+             " does not say that these are neighbours that share only vertices or an edge";
     case Finding::no_evidence:
       return "the byte " + std::to_string(byte) + " is no evidence";
     case Finding::as_claimed:
@@ -110,11 +130,9 @@ std::string other_scene(const Certificate::SceneKey& key, const Scene& scene) {
 std::string wrong_count(const Certificate::Claims& claimed, const Certificate::Claims& found) {
   using Claims = Certificate::Claims;
   constexpr std::pair<const char*, std::uint64_t Claims::*> kCounts[] = {
-      {"box_pairs", &Claims::box_pairs},
-      {"kept", &Claims::kept},
-      {"culled", &Claims::culled},
-      {"separated", &Claims::separated},
-      {"meeting", &Claims::meeting}};
+      {"box_pairs", &Claims::box_pairs},   {"kept", &Claims::kept},
+      {"culled", &Claims::culled},         {"separated", &Claims::separated},
+      {"neighbours", &Claims::neighbours}, {"meeting", &Claims::meeting}};
   for (const auto& [name, count] : kCounts) {
     if (claimed.*count != found.*count) {
       return std::string("the count ") + name + " is " + std::to_string(claimed.*count) +
@@ -131,8 +149,11 @@ class Tally {
     ++result_.found.box_pairs;
     const bool kept = (byte & kKept) != 0;
     ++(kept ? result_.found.kept : result_.found.culled);
-    ++(decision.meets ? result_.found.meeting : result_.found.separated);
-    if (decision.meets && !kept) ++result_.culled_meeting;
+    const bool meets = decision.kind == Kind::meeting;
+    ++(meets                               ? result_.found.meeting
+       : decision.kind == Kind::neighbours ? result_.found.neighbours
+                                           : result_.found.separated);
+    if (meets && !kept) ++result_.culled_meeting;
     if (decision.finding == Finding::as_claimed) return;
     // The first pair that refutes; before there is one, the first that is not proved.
     const bool refuted = refutes(decision.finding);
@@ -166,6 +187,7 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene) {
   constexpr std::size_t kBlock = 1 << 16;  // pairs at a time: their number may be many millions
   constexpr std::size_t kPerThread = 1024;
   BoxPairs enumeration(scene);
+  const std::vector<std::uint32_t> owner = owners(scene);
   Tally tally;
   std::vector<TrianglePair> pairs;
   std::vector<Decision> decisions;
@@ -182,7 +204,8 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene) {
     for_chunks(pairs.size(), chunks_for(pairs.size(), kPerThread),
                [&](std::size_t, std::size_t begin, std::size_t end) {
                  for (std::size_t i = begin; i < end; ++i)
-                   decisions[i] = decide(scene, pairs[i], certificate.evidence[done + i]);
+                   decisions[i] = decide(scene, pairs[i], owner[pairs[i].a] == owner[pairs[i].b],
+                                         certificate.evidence[done + i]);
                });
     decide_ms += ms_since(start);
     for (std::size_t i = 0; i < pairs.size(); ++i)

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "farcull-certificate";
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 constexpr const char* kRemedy =
     "give a file that `farcull run ... --certificate` wrote; docs/certificate.md is the format";
 
@@ -190,11 +190,13 @@ Certificate::SceneKey read_scene(const Reader& reader, const Json& value) {
 }
 
 Certificate::Claims read_claims(const Reader& reader, const Json& value) {
-  reader.object(value, "claims", {"box_pairs", "kept", "culled", "separated", "meeting"});
+  reader.object(value, "claims",
+                {"box_pairs", "kept", "culled", "separated", "neighbours", "meeting"});
   return {reader.count(value["box_pairs"], "claims.box_pairs"),
           reader.count(value["kept"], "claims.kept"),
           reader.count(value["culled"], "claims.culled"),
           reader.count(value["separated"], "claims.separated"),
+          reader.count(value["neighbours"], "claims.neighbours"),
           reader.count(value["meeting"], "claims.meeting")};
 }
 
@@ -264,6 +266,7 @@ std::string to_text(const Certificate& certificate) {
                        {"kept", certificate.claims.kept},
                        {"culled", certificate.claims.culled},
                        {"separated", certificate.claims.separated},
+                       {"neighbours", certificate.claims.neighbours},
                        {"meeting", certificate.claims.meeting}}},
                      {"unattested",
                       {{"method", run.method},

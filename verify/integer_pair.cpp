@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <stdexcept>
 
 namespace farcull {
 namespace {
@@ -132,6 +133,35 @@ bool has_gap(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integ
   return all_less(s.on_a, s.on_b) || all_less(s.on_b, s.on_a);
 }
 
+/// True iff the direction s.d proves that a and b share no more than their shared part; shared_a
+/// and shared_b are the corners that stand in both. Where all of a lies on one side of a plane
+/// across d and all of b on the other, they meet only in what both have in the plane: in the hulls
+/// of their corners there. That is no more than the shared part where these corners of one triangle
+/// are all shared, or where two edges that are not parallel (d is their product) lie in the plane.
+template <class Integer>
+bool parts_at_shared(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b,
+                     int direction, unsigned shared_a, unsigned shared_b) {
+  for (int i = 0; i < 3; ++i) {
+    dot(s.on_a[i], s.d, a[i]);
+    dot(s.on_b[i], s.d, b[i]);
+  }
+  const auto [a_lo, a_hi] = std::minmax_element(s.on_a.begin(), s.on_a.end());
+  const auto [b_lo, b_hi] = std::minmax_element(s.on_b.begin(), s.on_b.end());
+  const bool a_below = *a_hi <= *b_lo;
+  if (!a_below && !(*b_hi <= *a_lo)) return false;
+  const Integer plane = a_below ? *a_hi : *a_lo;  // a shared corner lies in it
+  unsigned in_a = 0;
+  unsigned in_b = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (s.on_a[i] == plane) in_a |= 1u << i;
+    if (s.on_b[i] == plane) in_b |= 1u << i;
+  }
+  if ((in_a & ~shared_a) == 0 || (in_b & ~shared_b) == 0) return true;
+  if (direction < 2 || direction >= 11 || is_zero(s.d)) return false;
+  const auto edge_of = [](int i) { return 1u << i | 1u << ((i + 1) % 3); };
+  return in_a == edge_of((direction - 2) / 3) && in_b == edge_of((direction - 2) % 3);
+}
+
 /// The largest bits for which has_gap(make_direction()) stays in 127 bits. With |differences| < D =
 /// 2^bits, each coordinate itself the difference from a's first corner:
 ///   corner-corner: |d| < D, |projection| < 3 D^2 < 2^(2 bits + 2)
@@ -212,6 +242,13 @@ IntegerPair::IntegerPair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
     }
   }
   constexpr int kWidest = 125;  // of a coordinate, so that a difference still is a Wide
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (corners_[0][i] != corners_[1][j]) continue;
+      shared_[0] |= 1u << i;
+      shared_[1] |= 1u << j;
+    }
+  }
   if (top > least && top - least > kWidest) return;
   const auto value = [&](int i, int k) {
     const Parts x = all[i][k];
@@ -273,6 +310,26 @@ std::optional<int> IntegerPair::separating_direction() {
   return std::nullopt;
 }
 
+bool IntegerPair::only_shared_by(int direction) {
+  if (bits_ <= most_bits(direction)) {
+    Corners<Wide> a;
+    Corners<Wide> b;
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        a[i][k] = small_[i][k];
+        b[i][k] = small_[i + 3][k];
+      }
+    }
+    Scratch<Wide> s;
+    make_direction(s, a, b, direction);
+    return parts_at_shared(s, a, b, direction, shared_[0], shared_[1]);
+  }
+  thread_local Scratch<mpz_class> s;
+  const Big& pair = big();
+  make_direction(s, pair.a, pair.b, direction);
+  return parts_at_shared(s, pair.a, pair.b, direction, shared_[0], shared_[1]);
+}
+
 bool integer_intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
   return !IntegerPair(a, b).separating_direction().has_value();
 }
@@ -315,6 +372,12 @@ class PointSearch {
     dot(numerator_, side_, normal_);
     dot(scale_, normal_, normal_);
     return along(s[i]);
+  }
+
+  /// True iff the normal of t is not zero.
+  bool is_triangle(const BigCorners& t) {
+    make_normal(t);
+    return !is_zero(normal_);
   }
 
   /// True iff the point constructed last lies in the closed hull of the corners, whatever its
@@ -382,25 +445,59 @@ class PointSearch {
 
 }  // namespace
 
+namespace {
+
+/// True iff one of the 21 points passes.
+template <class Test>
+bool any_point(PointSearch& search, const BigCorners& a, const BigCorners& b, const Test& test) {
+  for (int i = 0; i < 3; ++i) {
+    if (search.edge_and_plane(a, i, b) && test()) return true;
+    if (search.edge_and_plane(b, i, a) && test()) return true;
+  }
+  for (int i = 0; i < 3; ++i) {
+    if (search.corner(a, i) && test()) return true;
+    if (search.corner(b, i) && test()) return true;
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (search.edge_and_edge(a, i, b, j) && test()) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
 bool IntegerPair::has_common_point() {
   thread_local PointSearch search;
   const Big& pair = big();
   // Whatever was constructed, only membership in both triangles counts.
-  const auto in_both = [&] { return search.lies_in(pair.a) && search.lies_in(pair.b); };
+  return any_point(search, pair.a, pair.b,
+                   [&] { return search.lies_in(pair.a) && search.lies_in(pair.b); });
+}
+
+bool IntegerPair::meets_beyond_shared() {
+  // The corners of a that are shared, one of them repeated where there are fewer than three.
+  std::array<int, 3> shared = {-1, -1, -1};
+  std::size_t count = 0;
   for (int i = 0; i < 3; ++i) {
-    if (search.edge_and_plane(pair.a, i, pair.b) && in_both()) return true;
-    if (search.edge_and_plane(pair.b, i, pair.a) && in_both()) return true;
+    if ((shared_[0] >> i & 1) != 0) shared[count++] = i;
   }
-  for (int i = 0; i < 3; ++i) {
-    if (search.corner(pair.a, i) && in_both()) return true;
-    if (search.corner(pair.b, i) && in_both()) return true;
+  if (count == 0) throw std::logic_error("IntegerPair: no shared position");
+  for (; count < 3; ++count) shared[count] = shared[count - 1];
+
+  thread_local PointSearch search;
+  const bool all = shared_[0] == 7 && shared_[1] == 7;
+  // The hull of the shared corners is the shared part unless they are the corners of a triangle.
+  if (all && search.is_triangle(big().a)) return true;
+  for (int direction = 0; direction < 11; ++direction) {
+    if (only_shared_by(direction)) return false;
   }
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      if (search.edge_and_edge(pair.a, i, pair.b, j) && in_both()) return true;
-    }
-  }
-  return false;
+  const Big& pair = big();
+  const BigCorners part = {pair.a[shared[0]], pair.a[shared[1]], pair.a[shared[2]]};
+  return any_point(search, pair.a, pair.b, [&] {
+    return search.lies_in(pair.a) && search.lies_in(pair.b) && !search.lies_in(part);
+  });
 }
 
 }  // namespace farcull

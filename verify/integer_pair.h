@@ -47,11 +47,22 @@ class IntegerPair {
   /// a point, found without any of the directions.
   bool has_common_point();
 
+  /// True iff a corner of a and a corner of b are equal.
+  bool shares_position() const { return shared_[0] != 0; }
+  /// True iff the triangles share more than the shared part, as verify/exact.h defines it for
+  /// neighbours: the equal corners and the segments between any two of them. By a direction that
+  /// shows the contrary (docs/certificate.md), else by the 21 points. Precondition:
+  /// shares_position().
+  bool meets_beyond_shared();
+
  private:
   struct Big;
   Big& big();
 
+  bool only_shared_by(int direction);
+
   std::array<std::array<Vec3, 3>, 2> corners_;
+  std::array<unsigned, 2> shared_{};  // bit i: corner i equals one of the other triangle
   // Relative to the first corner of a, where bits_ allows; the corners of a, then of b.
   std::array<std::array<std::int64_t, 3>, 6> small_;
   int bits_ = 0;  // |difference of two coordinates| < 2^bits_
