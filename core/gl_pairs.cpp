@@ -16,12 +16,14 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kWord = sizeof(std::uint32_t);
-constexpr std::size_t kItemBytes = 5 * 16 + 16 + kWord;  // item, head, listed
-constexpr std::size_t kEntryBytes = 16 + 3 * kWord;      // entry, its cell, units of tests
+constexpr std::size_t kVec4 = 16;
+constexpr std::size_t kRecord = 5 * kVec4;
+constexpr std::size_t kEntry = 2 * kVec4;
 constexpr std::size_t kSubCells = kSubdivision * kSubdivision;
 constexpr std::size_t kBins = std::size_t{1} << 20;         // that are wanted at most
 constexpr std::uint64_t kEmitted = std::uint64_t{1} << 22;  // work items of one emission
 constexpr std::size_t kLeastPairs = std::size_t{64} << 10;  // bytes for pairs
+constexpr std::size_t kSentBytes = 3 * kVec4;               // of a triangle that is sent by itself
 
 struct Tile {
   int i0, i1, j0, j1;  // pixels, inclusive
@@ -51,21 +53,23 @@ struct Room {
 
 // Lists of the cells of one level: pixels, then parts of crowded ones.
 struct Level {
-  PairStore counts, first, entries, entry_cells, state, parents;
+  PairStore counts, first, entries, places, state, parents;
   std::size_t cells = 0;
-  std::size_t listed = 0;  // entries
-  std::array<std::uint32_t, 2> bins{1, 6};
-  bool dirty = false;  // counts are not all 0
+  std::size_t listed = 0;                         // entries
+  std::array<std::uint32_t, 4> bins{1, 6, 1, 0};  // as u_bins
+  bool dirty = false;                             // counts are not all 0
 
   std::size_t all_bins() const { return cells * bins[0]; }
-  /// As many bins a cell as are wanted and fit into `bytes`, and room for their counts.
-  bool shape(std::size_t n, std::size_t bytes, Room& room) {
+  /// About as many bins as entries are `expected`, within the memory, and room for their counts.
+  bool shape(std::size_t n, std::uint32_t groups, std::uint64_t expected, Room& room) {
     cells = n;
-    bins = {64, 0};
-    while (bins[0] > 1 && (all_bins() > kBins || 2 * all_bins() * kWord > bytes)) {
-      bins[0] /= 2;
-      ++bins[1];
+    std::uint32_t slices = kSlices, shift = 0;
+    const std::size_t most = std::min<std::uint64_t>({expected, kBins, room.left / (8 * kWord)});
+    while (slices > 1 && cells * groups * slices > most) {
+      slices /= 2;
+      ++shift;
     }
+    bins = {groups * slices, shift, slices, groups - 1};
     const std::size_t wanted = (all_bins() + 1) * kWord;
     if (!room.take(wanted) || !room.take(wanted)) return false;
     if (counts.reserve(wanted, room.block)) dirty = true;
@@ -76,6 +80,15 @@ struct Level {
     }
     dirty = true;  // until all that is counted is filled in
     first.reserve(wanted, room.block);
+    for (PairStore* store : {&entries, &places}) store->reserve(kVec4, kVec4);
+    return true;
+  }
+  /// Room for n entries.
+  bool fill(std::size_t n, Room& room) {
+    listed = n;
+    if (!room.take(n * kEntry) || !room.take(n * 2 * kWord)) return false;
+    entries.reserve(n * kEntry, room.block);
+    places.reserve(n * 2 * kWord, room.block);
     return true;
   }
 };
@@ -91,15 +104,20 @@ struct GlPairs::State {
   GlPairOptions options;
   PairDevice device;
   PairMirror vertices, triangles, owners, active, objects;
-  PairStore items, heads, listed, rows, rows_before, masks, large, pairs, units, units_before;
+  PairStore heads, records, record_heads, listed, shown, rows, rows_before, masks, large, pairs,
+      units, units_before;
   std::array<Level, kMaxLevel + 1> levels;
   bool gathered = false;  // triangles are sent one by one, since an array is beyond a block
   std::size_t sent = 0;
 
   const PairTask* task = nullptr;
-  PairUniforms common;  // of the part
-  std::uint32_t owner_bits = 0;
-  std::vector<std::uint32_t> object_words;  // as in pair_items.comp
+  PairUniforms common;                      // of the part
+  std::uint32_t owner_bits = 0;             // of an owner's number
+  std::uint32_t groups = 1;                 // of entries, by owner
+  bool same_group = true;                   // entries of one group may collide
+  std::vector<std::uint32_t> object_words;  // as in pair_source.glsl
+  std::size_t wholes = 0, items = 0, large_ones = 0, shown_ones = 0;  // of the part
+  std::uint64_t row_items = 0;
   std::vector<TrianglePair> found;
   PairCounts counts;
 
@@ -108,13 +126,15 @@ struct GlPairs::State {
   void begin(const PairTask& t);
   void split(const Tile& tile);
   bool run(const Tile& tile);
-  bool make_items(Room& room, std::size_t& n, std::size_t& large_ones, std::uint64_t& row_items);
-  void launch_items(std::uint32_t capacity);
-  bool lists(const Tile& tile, Room& room, std::uint64_t row_items);
-  void visit(std::uint32_t step, std::uint64_t row_items, std::size_t capacity);
+  template <class Launch>
+  void send(const Launch& launch);
+  bool make_items(Room& room);
+  bool lists(const Tile& tile, Room& room);
+  void visit(PairProgram wholes_program, PairProgram rows_program, std::size_t capacity);
+  bool make_records(Room& room);
   bool cut(std::size_t l, std::size_t crowded, Room& room, std::size_t& crowded_below);
   bool test(std::size_t l, bool some_cut, Room& room);
-  void compare_large(std::size_t n, std::size_t large_ones, const Room& room);
+  void compare_large(const Room& room);
   template <class Launch>
   std::uint32_t emit(std::uint64_t count, const Room& room, const Launch& launch);
   void check(const std::array<std::uint32_t, kTotals>& totals) const;
@@ -139,14 +159,19 @@ void GlPairs::State::begin(const PairTask& t) {
 
   object_words.assign(8 * t.limits.size(), 0);
   std::uint32_t number = 0;
+  bool self = false;
   for (std::size_t o = 0; o < t.limits.size(); ++o) {
     const PixelBox& b = t.limits[o];
     std::uint32_t* const out = &object_words[8 * o];
     const float words[6] = {b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y, b.hi.z};
     for (int k = 0; k < 6; ++k) out[k] = std::bit_cast<std::uint32_t>(words[k]);
     out[6] = number << 3 | (t.self[o] != 0 ? 2u : 0u);
-    number += b.lo.x <= b.hi.x && b.lo.y <= b.hi.y && b.lo.z <= b.hi.z;
+    if (!(b.lo.x <= b.hi.x && b.lo.y <= b.hi.y && b.lo.z <= b.hi.z)) continue;
+    ++number;
+    self |= t.self[o] != 0;
   }
+  groups = common.masked && number > 1 ? 2 : 1;
+  same_group = groups == 1 || number > 2 || self;
   owner_bits = static_cast<std::uint32_t>(std::bit_width(number - (number > 0)));
 
   const std::size_t block = device.block();
@@ -182,27 +207,15 @@ bool GlPairs::State::overflow(const std::array<std::uint32_t, kTotals>& totals,
   return true;
 }
 
-void GlPairs::State::launch_items(std::uint32_t capacity) {
-  PairUniforms u = common;
-  u.capacity = capacity;
-  u.numbers[0] = std::max<float>(kLargePixels, 0.125f * static_cast<float>(task->active.size()));
-  const auto dispatch = [&](std::size_t count) {
-    device.run(PairProgram::items, count, u,
-               {{0, vertices.name()},
-                {1, triangles.name()},
-                {2, owners.name()},
-                {3, active.name()},
-                {4, objects.name()},
-                {5, items.name},
-                {6, heads.name},
-                {8, listed.name}});
-  };
+// Calls launch(first, count) for the active triangles, all at once or as many as a block holds,
+// when they are there.
+template <class Launch>
+void GlPairs::State::send(const Launch& launch) {
   if (!gathered) {
-    dispatch(task->active.size());
+    launch(0, task->active.size());
     return;
   }
-  u.extra[0] = 1;
-  const std::size_t most = std::max<std::size_t>(device.block() / 48, 1);
+  const std::size_t most = std::max<std::size_t>(device.block() / kSentBytes, 1);
   std::vector<PixelVertex> corners;
   std::vector<std::array<std::uint32_t, 3>> numbers;
   std::vector<std::uint32_t> own, own_words;
@@ -212,7 +225,7 @@ void GlPairs::State::launch_items(std::uint32_t capacity) {
     numbers.clear();
     own.clear();
     own_words.clear();
-    std::uint32_t last = 0xffffffff;
+    std::uint32_t last = 0;
     for (std::size_t k = 0; k < n; ++k) {
       const std::uint32_t t = task->active[begin + k];
       const auto v = static_cast<std::uint32_t>(3 * k);
@@ -230,53 +243,111 @@ void GlPairs::State::launch_items(std::uint32_t capacity) {
     sent += owners.update(std::as_bytes(std::span(own)));
     sent += active.update(std::as_bytes(task->active.subspan(begin, n)));
     sent += objects.update(std::as_bytes(std::span(own_words)));
-    dispatch(n);
+    launch(begin, n);
   }
 }
 
 // The triangles that meet the part; false: too many.
-bool GlPairs::State::make_items(Room& room, std::size_t& n, std::size_t& large_ones,
-                                std::uint64_t& row_items) {
+bool GlPairs::State::make_items(Room& room) {
+  PairUniforms u = common;
+  u.extra[1] = gathered;
+  u.numbers[0] = std::max<float>(kLargePixels, 0.125f * static_cast<float>(task->active.size()));
+  for (PairStore* store : {&heads, &records, &record_heads, &listed, &shown}) {
+    store->reserve(kVec4, kVec4);
+  }
   for (;;) {
+    const std::size_t whole_capacity = heads.bytes / kVec4;
     const std::size_t capacity =
-        items.name == 0 ? 0 : std::min({items.bytes / 80, heads.bytes / 16, listed.bytes / kWord});
-    device.reset(kTotalItems, 4);
-    launch_items(static_cast<std::uint32_t>(capacity));
+        std::min({records.bytes / kRecord, record_heads.bytes / kVec4, listed.bytes / kWord});
+    u.capacity = static_cast<std::uint32_t>(capacity);
+    u.extra[2] = static_cast<std::uint32_t>(whole_capacity);
+    device.reset(kTotalWholes, kTotalOverflow);
+    send([&](std::size_t first, std::size_t count) {
+      u.extra[0] = static_cast<std::uint32_t>(first);
+      device.run(PairProgram::items, count, u,
+                 {{0, vertices.name()},
+                  {1, triangles.name()},
+                  {2, owners.name()},
+                  {3, active.name()},
+                  {4, objects.name()},
+                  {5, records.name},
+                  {6, record_heads.name},
+                  {8, heads.name},
+                  {9, listed.name}});
+    });
     const auto totals = device.read("pair items");
-    n = totals[kTotalItems];
+    wholes = totals[kTotalWholes];
+    items = totals[kTotalItems];
     large_ones = totals[kTotalLarge];
     row_items = two_words(totals, kTotalRows);
-    if (!(room.last ? room.take(n * 80) : n * 80 <= room.block && room.take(n * kItemBytes))) {
-      return false;
-    }
-    if (n <= capacity) return row_items >> 31 == 0;
-    items.reserve(n * 80, room.block);
-    heads.reserve(n * 16, room.block);
-    listed.reserve(n * kWord, room.block);
+    if (wholes <= whole_capacity && items <= capacity) break;
+    Room trial = room;
+    if (!trial.take(wholes * kVec4) || !trial.take(items * kRecord)) return false;
+    heads.reserve(wholes * kVec4, room.block);
+    records.reserve(items * kRecord, room.block);
+    record_heads.reserve(items * kVec4, room.block);
+    listed.reserve(items * kWord, room.block);
   }
+  common.items = static_cast<std::uint32_t>(items);
+  if (!room.take(wholes * kVec4) || !room.take(wholes * kWord) || !room.take(items * kRecord) ||
+      !room.take(items * (kVec4 + 3 * kWord))) {
+    return false;
+  }
+  shown.reserve(wholes * kWord, room.block);
+  return row_items >> 31 == 0 || room.last;
 }
 
 // One step of pair_lists.comp.
-void GlPairs::State::visit(std::uint32_t step, std::uint64_t row_items, std::size_t capacity) {
+void GlPairs::State::visit(PairProgram wholes_program, PairProgram rows_program,
+                           std::size_t capacity) {
   PairUniforms u = common;
   const Level& pixels = levels[0];
-  u.step = step;
+  const bool fill = wholes_program == PairProgram::fill_wholes;
   u.bins = pixels.bins;
   u.capacity = static_cast<std::uint32_t>(capacity);
   u.extra[0] = owner_bits;
   for (const bool by_rows : {false, true}) {
-    device.run(by_rows ? PairProgram::row_lists : PairProgram::wholes,
-               by_rows ? row_items : u.items, u,
-               {{0, items.name},
-                {1, heads.name},
+    device.run(by_rows ? rows_program : wholes_program,
+               by_rows ? row_items : (fill ? shown_ones : wholes), u,
+               {{0, records.name},
+                {1, rows_before.name},
                 {2, masks.name},
                 {3, pixels.counts.name},
                 {4, pixels.first.name},
-                {5, pixels.entries.name},
-                {6, pixels.entry_cells.name},
-                {8, listed.name},
-                {9, rows_before.name}});
+                {6, by_rows || fill ? record_heads.name : heads.name},
+                {8, by_rows ? listed.name : shown.name},
+                {9, pixels.entries.name},
+                {10, pixels.places.name}});
   }
+}
+
+// The whole items that are listed become records; false: too many.
+bool GlPairs::State::make_records(Room& room) {
+  if (shown_ones == 0) return true;
+  const std::size_t all = items + shown_ones;
+  if (!room.take(shown_ones * kRecord) || !room.take(shown_ones * kVec4) ||
+      all * kRecord > room.block) {
+    return false;
+  }
+  records.reserve(all * kRecord, room.block, items * kRecord);
+  record_heads.reserve(all * kVec4, room.block, items * kVec4);
+  PairUniforms u = common;
+  u.extra[1] = gathered;
+  send([&](std::size_t first, std::size_t count) {
+    u.extra[0] = static_cast<std::uint32_t>(first);
+    u.extra[2] = static_cast<std::uint32_t>(count);
+    device.run(PairProgram::records, shown_ones, u,
+               {{0, vertices.name()},
+                {1, triangles.name()},
+                {2, owners.name()},
+                {3, active.name()},
+                {4, objects.name()},
+                {5, records.name},
+                {6, record_heads.name},
+                {8, heads.name},
+                {9, shown.name}});
+  });
+  return true;
 }
 
 // Runs launch(first, count) over work items that append pairs, in as many parts as the memory for
@@ -319,37 +390,32 @@ std::uint32_t GlPairs::State::emit(std::uint64_t count, const Room& room, const 
 }
 
 // The lists of the part's pixels; false: too much.
-bool GlPairs::State::lists(const Tile& tile, Room& room, std::uint64_t row_items) {
+bool GlPairs::State::lists(const Tile& tile, Room& room) {
   Level& pixels = levels[0];
   common.cells = static_cast<std::uint32_t>(tile.cells());
+  rows_before.reserve(std::max<std::size_t>(items * kWord, kVec4), room.block);
   if (row_items > 0) {
-    const std::size_t bytes = (common.items + 1) * kWord;
-    if (!room.take(2 * bytes)) return false;
-    rows.reserve(bytes, room.block);
-    rows_before.reserve(bytes, room.block);
-    device.run(PairProgram::rows, common.items, common, {{1, heads.name}, {3, rows.name}});
-    device.scan(rows.name, rows_before.name, common.items);
+    rows.reserve(items * kWord, room.block);
+    device.run(PairProgram::spans, items, common, {{3, rows.name}, {6, record_heads.name}});
+    device.scan(rows.name, rows_before.name, items);
   }
-  const std::size_t mask_bytes = common.masked ? tile.cells() * 8 * (1 + 2 * owner_bits) : 16;
+  const std::size_t mask_bytes = common.masked ? tile.cells() * 8 * (1 + 2 * owner_bits) : kVec4;
   if (!room.take(mask_bytes)) return false;
   masks.reserve(mask_bytes, room.block);
-  if (!pixels.shape(tile.cells(), room.left / 4, room)) return false;
-  pixels.entries.reserve(16, room.block);
-  pixels.entry_cells.reserve(16, room.block);
-  rows_before.reserve(16, room.block);
+  if (!pixels.shape(tile.cells(), groups, wholes + 4 * row_items, room)) return false;
   if (common.masked) {
+    const auto start = Clock::now();
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, masks.name);
     glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, static_cast<GLsizeiptr>(mask_bytes),
                          GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
-    const auto start = Clock::now();
-    visit(0, row_items, 0);
+    visit(PairProgram::mark_wholes, PairProgram::mark_rows, 0);
     PairUniforms u = common;
     u.extra[0] = owner_bits;
     device.run(PairProgram::conflicts, 2 * tile.cells(), u, {{2, masks.name}});
     counts.mark_ms += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   }
-  visit(1, row_items, 0);
-  if (device.fault == PairFault::corrupted_count && device.dispatches > 0) {
+  visit(PairProgram::count_wholes, PairProgram::count_rows, 0);
+  if (device.fault == PairFault::corrupted_count) {
     const std::size_t at = device.fault_at % pixels.all_bins() * kWord;
     std::uint32_t count = 0;
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, pixels.counts.name);
@@ -358,27 +424,20 @@ bool GlPairs::State::lists(const Tile& tile, Room& room, std::uint64_t row_items
     glBufferSubData(GL_SHADER_STORAGE_BUFFER, static_cast<GLintptr>(at), kWord, &count);
     device.fault = PairFault::none;
   }
-  device.reset(kTotalOverflow, kTotalPairs - kTotalOverflow);
   device.scan(pixels.counts.name, pixels.first.name, pixels.all_bins() + 1);
   PairUniforms u = common;
   u.bins = pixels.bins;
-  const auto check_with = [&](std::uint32_t step, std::size_t n) {
-    u.step = step;
-    u.extra[0] = static_cast<std::uint32_t>(pixels.all_bins());
-    device.run(PairProgram::check, n, u,
-               {{3, pixels.counts.name}, {4, pixels.first.name}, {8, listed.name}});
-  };
-  check_with(0, tile.cells());
+  device.run(PairProgram::crowded, tile.cells(), u,
+             {{3, pixels.counts.name}, {4, pixels.first.name}});
   const auto totals = device.read("pair lists");
   if (overflow(totals, room)) return false;
-  pixels.listed = totals[kTotalScanned];
+  shown_ones = totals[kTotalListed];
   counts.crowded += totals[kTotalCrowded];
-  if (!room.take(pixels.listed * 16) || !room.take(pixels.listed * (kEntryBytes - 16)))
-    return false;
-  pixels.entries.reserve(pixels.listed * 16, room.block);
-  pixels.entry_cells.reserve(pixels.listed * kWord, room.block);
-  visit(2, row_items, pixels.listed);
-  check_with(1, std::max<std::size_t>(pixels.all_bins(), common.items));
+  if (!make_records(room) || !pixels.fill(totals[kTotalScanned], room)) return false;
+  visit(PairProgram::fill_wholes, PairProgram::fill_rows, pixels.listed);
+  device.run(PairProgram::filled, pixels.all_bins(), u,
+             {{3, pixels.counts.name}, {4, pixels.first.name}});
+  counts.listed += totals[kTotalListed] + totals[kTotalListedRows];
   return true;
 }
 
@@ -387,12 +446,10 @@ bool GlPairs::State::cut(std::size_t l, std::size_t crowded, Room& room,
                          std::size_t& crowded_below) {
   Level& level = levels[l];
   Level& below = levels[l + 1];
-  if (!room.take(level.cells * kWord) || !room.take(crowded * 16)) return false;
+  if (!room.take(level.cells * kWord) || !room.take(crowded * kVec4)) return false;
   level.state.reserve(level.cells * kWord, room.block);
-  level.parents.reserve(crowded * 16, room.block);
-  if (!below.shape(crowded * kSubCells, room.left / 4, room)) return false;
-  below.entries.reserve(16, room.block);
-  below.entry_cells.reserve(16, room.block);
+  level.parents.reserve(crowded * kVec4, room.block);
+  if (!below.shape(crowded * kSubCells, groups, level.listed, room)) return false;
 
   PairUniforms u = common;
   u.bins = below.bins;
@@ -400,50 +457,38 @@ bool GlPairs::State::cut(std::size_t l, std::size_t crowded, Room& room,
   u.extra = {static_cast<std::uint32_t>(l), level.bins[0], 0, 0};
   u.numbers[0] = 1;
   for (std::size_t k = 0; k <= l; ++k) u.numbers[0] /= kSubdivision;
-  const auto step = [&](std::uint32_t step, std::size_t n) {
-    u.step = step;
-    device.run(PairProgram::cut, n, u,
-               {{0, items.name},
+  const auto step = [&](PairProgram program, std::size_t n) {
+    device.run(program, n, u,
+               {{0, records.name},
                 {1, l > 0 ? levels[l - 1].parents.name : level.parents.name},
                 {2, level.parents.name},
                 {3, below.counts.name},
-                {4, step == 0 ? level.first.name : below.first.name},
+                {4, program == PairProgram::parents ? level.first.name : below.first.name},
                 {5, level.entries.name},
-                {6, level.entry_cells.name},
+                {6, level.places.name},
                 {8, level.state.name},
                 {9, below.entries.name},
-                {10, below.entry_cells.name}});
-  };
-  PairUniforms checking = common;
-  checking.bins = below.bins;
-  checking.items = 0;
-  checking.extra[0] = static_cast<std::uint32_t>(below.all_bins());
-  const auto check_with = [&](std::uint32_t step, std::size_t n) {
-    checking.step = step;
-    device.run(PairProgram::check, n, checking,
-               {{3, below.counts.name}, {4, below.first.name}, {8, listed.name}});
+                {10, below.places.name}});
   };
   device.reset(kTotalCrowded, 1);
   device.reset(kTotalParents, 1);
-  step(0, level.cells);
-  step(1, level.listed);
-  step(2, crowded);
+  step(PairProgram::parents, level.cells);
+  step(PairProgram::cut_count, level.listed);
+  step(PairProgram::cut_decide, crowded);
   device.scan(below.counts.name, below.first.name, below.all_bins() + 1);
-  check_with(0, below.cells);
+  device.run(PairProgram::crowded, below.cells, u, {{3, below.counts.name}, {4, below.first.name}});
   const auto totals = device.read("pair subdivision");
   if (totals[kTotalParents] != crowded) {
     throw Error("GL pairs", "crowded pixels were counted twice with different results",
                 "a compute invocation was lost: run again, or with another --device");
   }
   if (overflow(totals, room)) return false;
-  below.listed = totals[kTotalScanned];
   crowded_below = totals[kTotalCrowded];
-  if (!room.take(below.listed * 16) || !room.take(below.listed * (kEntryBytes - 16))) return false;
-  below.entries.reserve(below.listed * 16, room.block);
-  below.entry_cells.reserve(below.listed * kWord, room.block);
+  if (!below.fill(totals[kTotalScanned], room)) return false;
   u.capacity = static_cast<std::uint32_t>(below.listed);
-  if (below.listed > 0) step(3, level.listed);
-  check_with(1, below.all_bins());
+  if (below.listed > 0) step(PairProgram::cut_fill, level.listed);
+  device.run(PairProgram::filled, below.all_bins(), u,
+             {{3, below.counts.name}, {4, below.first.name}});
   return true;
 }
 
@@ -451,66 +496,74 @@ bool GlPairs::State::cut(std::size_t l, std::size_t crowded, Room& room,
 bool GlPairs::State::test(std::size_t l, bool some_cut, Room& room) {
   Level& level = levels[l];
   if (level.listed == 0) return true;
+  if (!room.take(level.listed * kWord) || !room.take(level.listed * kWord)) return false;
   units.reserve(level.listed * kWord, room.block);
   PairUniforms u = common;
   u.bins = level.bins;
-  u.extra = {static_cast<std::uint32_t>(l), some_cut, static_cast<std::uint32_t>(level.listed), 0};
-  const auto launch = [&](std::uint32_t step, GLuint unit_buffer) {
-    return [&, step, unit_buffer](std::uint64_t first, std::uint64_t n, std::uint32_t capacity) {
-      u.step = step;
+  u.extra = {l == 0, same_group, static_cast<std::uint32_t>(level.listed), 0};
+  const auto launch = [&](PairProgram program, GLuint unit_buffer) {
+    return [&, program, unit_buffer](std::uint64_t first, std::uint64_t n, std::uint32_t capacity) {
       u.capacity = capacity;
       u.extra[3] = static_cast<std::uint32_t>(first);
-      device.run(PairProgram::tests, n, u,
-                 {{0, items.name},
-                  {1, heads.name},
-                  {2, pairs.name},
+      device.run(program, n, u,
+                 {{2, pairs.name},
                   {3, unit_buffer},
                   {4, level.first.name},
-                  {5, level.entries.name},
-                  {6, level.entry_cells.name},
-                  {8, some_cut ? level.state.name : level.first.name}});
+                  {8, some_cut ? level.state.name : level.first.name},
+                  {9, level.entries.name},
+                  {10, level.places.name}});
     };
   };
-  const std::uint32_t more = emit(level.listed, room, launch(0, units.name));
-  level.dirty = false;  // a mismatch would have thrown
+  const std::uint32_t more =
+      emit(level.listed, room,
+           launch(some_cut ? PairProgram::uncut_tests : PairProgram::tests, units.name));
   if (more == 0) return true;
   units_before.reserve(level.listed * kWord, room.block);
   device.scan(units.name, units_before.name, level.listed);
   const auto totals = device.read("pair tests");
   if (overflow(totals, room)) return false;
-  emit(totals[kTotalScanned], room, launch(1, units_before.name));
+  emit(totals[kTotalScanned], room,
+       launch(some_cut ? PairProgram::more_uncut_tests : PairProgram::more_tests,
+              units_before.name));
   return true;
 }
 
-void GlPairs::State::compare_large(std::size_t n, std::size_t large_ones, const Room& room) {
+void GlPairs::State::compare_large(const Room& room) {
   if (large_ones == 0) return;
   large.reserve(large_ones * kWord, room.block);
   PairUniforms u = common;
-  const auto dispatch = [&](std::uint64_t count) {
-    device.run(PairProgram::large, count, u,
-               {{0, items.name}, {1, heads.name}, {2, pairs.name}, {3, large.name}});
-  };
-  pairs.reserve(kLeastPairs, room.block);
   u.capacity = static_cast<std::uint32_t>(large_ones);
   device.reset(kTotalParents, 1);
-  dispatch(n);
-  u.step = 1;
-  u.extra[1] = static_cast<std::uint32_t>(large_ones);
-  for (std::size_t first = 0; first < large_ones; first += kLargeBatch) {
-    u.extra[0] = static_cast<std::uint32_t>(first);
-    emit(n, room, [&](std::uint64_t begin, std::uint64_t count, std::uint32_t capacity) {
-      u.extra[2] = static_cast<std::uint32_t>(begin);
-      u.capacity = capacity;
-      dispatch(count);
-    });
-  }
+  device.run(PairProgram::find_large, items, u,
+             {{5, records.name}, {6, record_heads.name}, {8, large.name}});
+  u.extra = {0, gathered, 0, static_cast<std::uint32_t>(large_ones)};
+  send([&](std::size_t, std::size_t sent_ones) {
+    for (std::size_t first = 0; first < large_ones; first += kLargeBatch) {
+      u.extra[2] = static_cast<std::uint32_t>(first);
+      emit(sent_ones, room, [&](std::uint64_t begin, std::uint64_t count, std::uint32_t capacity) {
+        u.items = static_cast<std::uint32_t>(begin);
+        u.capacity = capacity;
+        device.run(PairProgram::large, count, u,
+                   {{0, vertices.name()},
+                    {1, triangles.name()},
+                    {2, owners.name()},
+                    {3, active.name()},
+                    {4, objects.name()},
+                    {5, records.name},
+                    {6, record_heads.name},
+                    {8, large.name},
+                    {9, pairs.name}});
+      });
+    }
+  });
 }
 
 // One part of the window; false: too much for the memory.
 bool GlPairs::State::run(const Tile& tile) {
   Room room{options.memory, device.block(), tile.cells() == 1};
   // What every pixel needs, before any work is done.
-  const std::size_t fixed = tile.cells() * (2 * kWord + (common.masked ? 8 + 16 * owner_bits : 0));
+  const std::size_t fixed =
+      tile.cells() * (2 * groups * kWord + (common.masked ? 8 + 16 * owner_bits : 0));
   if (!room.last && (fixed > room.left / 2 || fixed > room.block)) return false;
 
   const auto start = Clock::now();
@@ -519,22 +572,18 @@ bool GlPairs::State::run(const Tile& tile) {
   };
   device.start(false);
   common.tile = {tile.i0, tile.i1, tile.j0, tile.j1};
-  std::size_t n = 0, large_ones = 0;
-  std::uint64_t row_items = 0;
-  if (!make_items(room, n, large_ones, row_items)) return false;
+  if (!make_items(room)) return false;
   counts.mark_ms += since(start);
-  if (n == 0) return true;
-  common.items = static_cast<std::uint32_t>(n);
+  if (wholes + items == 0) return true;
 
   const double marked = counts.mark_ms;
   const auto listing = Clock::now();
-  if (!lists(tile, room, row_items)) return false;
+  if (!lists(tile, room)) return false;
   counts.list_ms += since(listing) - (counts.mark_ms - marked);
 
   const auto pairing = Clock::now();
-  std::size_t l = 0;
   std::size_t crowded = counts.crowded;
-  for (;; ++l) {
+  for (std::size_t l = 0;; ++l) {
     std::size_t crowded_below = 0;
     const bool some_cut = crowded > 0 && l < kMaxLevel;
     if (some_cut && !cut(l, crowded, room, crowded_below)) return false;
@@ -543,11 +592,9 @@ bool GlPairs::State::run(const Tile& tile) {
     if (!some_cut) break;
     crowded = crowded_below;
   }
-  compare_large(n, large_ones, room);
-  const auto totals = device.read("pairs");
-  check(totals);
+  compare_large(room);
+  check(device.read("pairs"));
   for (Level& level : levels) level.dirty = false;
-  counts.listed += totals[kTotalListed];
   counts.large = std::max<std::uint64_t>(counts.large, large_ones);
   counts.pair_ms += since(pairing);
   return true;

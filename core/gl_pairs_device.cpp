@@ -13,9 +13,10 @@
 #include "embedded/pair_items_comp.h"
 #include "embedded/pair_large_comp.h"
 #include "embedded/pair_lists_comp.h"
-#include "embedded/pair_rows_comp.h"
 #include "embedded/pair_rows_glsl.h"
 #include "embedded/pair_scan_comp.h"
+#include "embedded/pair_source_glsl.h"
+#include "embedded/pair_spans_comp.h"
 #include "embedded/pair_tests_comp.h"
 
 namespace farcull {
@@ -32,47 +33,83 @@ struct Source {
   const char* name;
   std::uint32_t batch;  // work items of an invocation
   const char* text;
-  bool rows = false;     // needs the strips of an item
-  bool by_rows = false;  // FAR_ROWS
+  int step;
+  const char* before = "";  // a text that it needs
+  std::vector<std::string> defines = {};
 };
-constexpr std::array<Source, kPairPrograms> kSources = {{
-    {"pair items", 8, embedded::pair_items_comp},
-    {"pair rows", 16, embedded::pair_rows_comp},
-    {"pair lists", 4, embedded::pair_lists_comp},
-    {"pair lists by rows", 2, embedded::pair_lists_comp, true, true},
-    {"pair conflicts", 16, embedded::pair_conflicts_comp},
-    {"pair scan", 4, embedded::pair_scan_comp},
-    {"pair check", 32, embedded::pair_check_comp},
-    {"pair tests", 4, embedded::pair_tests_comp},
-    {"pair cut", 1, embedded::pair_cut_comp, true},
-    {"pair large", 1, embedded::pair_large_comp},
-}};
+const std::array<Source, kPairPrograms>& sources() {
+  using namespace embedded;
+  static const std::array<Source, kPairPrograms> all = {{
+      {"pair items", 8, pair_items_comp, 0, pair_source_glsl},
+      {"pair records", 4, pair_items_comp, 1, pair_source_glsl},
+      {"pair spans", 16, pair_spans_comp, 0},
+      {"pair lists, marking", 8, pair_lists_comp, 0},
+      {"pair lists, counting", 8, pair_lists_comp, 1},
+      {"pair lists, filling", 4, pair_lists_comp, 2},
+      {"pair lists by rows, marking", 2, pair_lists_comp, 0, pair_rows_glsl, {"FAR_ROWS"}},
+      {"pair lists by rows, counting", 2, pair_lists_comp, 1, pair_rows_glsl, {"FAR_ROWS"}},
+      {"pair lists by rows, filling", 2, pair_lists_comp, 2, pair_rows_glsl, {"FAR_ROWS"}},
+      {"pair conflicts", 16, pair_conflicts_comp, 0},
+      {"pair scan, sums", 4, pair_scan_comp, 0},
+      {"pair scan, sums of sums", 4, pair_scan_comp, 1},
+      {"pair scan, top", 1, pair_scan_comp, 2},
+      {"pair scan, down to sums", 4, pair_scan_comp, 3},
+      {"pair scan, down", 4, pair_scan_comp, 4},
+      {"pair check of crowds", 32, pair_check_comp, 0},
+      {"pair check of lists", 64, pair_check_comp, 1},
+      {"pair tests", 4, pair_tests_comp, 0, "", {"FAR_SUM FAR_TESTS"}},
+      {"pair tests left", 4, pair_tests_comp, 1, "", {"FAR_SUM FAR_TESTS"}},
+      {"pair tests of uncut cells",
+       4,
+       pair_tests_comp,
+       0,
+       "",
+       {"FAR_SUM FAR_TESTS", "FAR_SOME_CROWDED"}},
+      {"pair tests left of uncut cells",
+       4,
+       pair_tests_comp,
+       1,
+       "",
+       {"FAR_SUM FAR_TESTS", "FAR_SOME_CROWDED"}},
+      {"pair subdivision, parents", 16, pair_cut_comp, 0},
+      {"pair subdivision, counting", 1, pair_cut_comp, 1, pair_rows_glsl},
+      {"pair subdivision, deciding", 1, pair_cut_comp, 2},
+      {"pair subdivision, filling", 1, pair_cut_comp, 3, pair_rows_glsl},
+      {"pair large ones", 16, pair_large_comp, 0},
+      {"pair comparison with large ones", 1, pair_large_comp, 1, pair_source_glsl},
+  }};
+  return all;
+}
 
 std::vector<std::string> defines_of(const Source& source, bool rounding) {
   const auto number = [](const char* name, std::uint32_t value) {
     return std::string(name) + " " + std::to_string(value) + "u";
   };
-  std::vector<std::string> out = {
-      number("FAR_ITEMS", kTotalItems),
-      number("FAR_LARGE", kTotalLarge),
-      number("FAR_ROWS_TOTAL", kTotalRows),
-      number("FAR_OVERFLOW", kTotalOverflow),
-      number("FAR_CROWDED_CELLS", kTotalCrowded),
-      number("FAR_MISMATCHES", kTotalMismatches),
-      number("FAR_LISTED", kTotalListed),
-      number("FAR_PARENTS", kTotalParents),
-      number("FAR_PAIRS", kTotalPairs),
-      number("FAR_TESTS", kTotalTests),
-      number("FAR_MORE", kTotalMore),
-      number("FAR_CROWDED", kCrowded),
-      number("FAR_SUBDIVISION", kSubdivision),
-      number("FAR_SPAN", kSpan),
-      number("FAR_UNIT", kUnit),
-      number("FAR_LARGE_BATCH", kLargeBatch),
-      number("FAR_BATCH", source.batch),
-      "FAR_WHOLE_PIXELS " + std::to_string(kWholePixels),
-  };
-  if (source.by_rows) out.push_back("FAR_ROWS");
+  std::vector<std::string> out = source.defines;
+  for (const std::string& define : {
+           number("FAR_WHOLES", kTotalWholes),
+           number("FAR_ITEMS", kTotalItems),
+           number("FAR_LARGE", kTotalLarge),
+           number("FAR_ROWS_TOTAL", kTotalRows),
+           number("FAR_OVERFLOW", kTotalOverflow),
+           number("FAR_CROWDED_CELLS", kTotalCrowded),
+           number("FAR_MISMATCHES", kTotalMismatches),
+           number("FAR_LISTED", kTotalListed),
+           number("FAR_LISTED_ROWS", kTotalListedRows),
+           number("FAR_PARENTS", kTotalParents),
+           number("FAR_PAIRS", kTotalPairs),
+           number("FAR_TESTS", kTotalTests),
+           number("FAR_MORE", kTotalMore),
+           number("FAR_CROWDED", kCrowded),
+           number("FAR_SUBDIVISION", kSubdivision),
+           number("FAR_SPAN", kSpan),
+           number("FAR_UNIT", kUnit),
+           number("FAR_LARGE_BATCH", kLargeBatch),
+           number("FAR_BATCH", source.batch),
+           "FAR_STEP " + std::to_string(source.step),
+           "FAR_WHOLE_PIXELS " + std::to_string(kWholePixels),
+       })
+    out.push_back(define);
   if (!rounding) out.push_back("FAR_PAIR_ROUNDING 0.0f");
   return out;
 }
@@ -85,13 +122,20 @@ GLint limit_of(GLenum name) {
 
 }  // namespace
 
-bool PairStore::reserve(std::size_t wanted, std::size_t most) {
+bool PairStore::reserve(std::size_t wanted, std::size_t most, std::size_t keep) {
   wanted = std::max<std::size_t>(wanted, 16);
   if (name != 0 && wanted <= bytes) return false;
-  if (name == 0) name = gl_make<GlBuffer>(glGenBuffers);
-  bytes = (std::max(wanted, std::min(most, bytes + bytes / 2)) + 15) / 16 * 16;
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
-  glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_COPY);
+  GlBuffer grown = gl_make<GlBuffer>(glGenBuffers);
+  const std::size_t size = (std::max(wanted, std::min(most, bytes + bytes / 2)) + 15) / 16 * 16;
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, grown);
+  glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(size), nullptr, GL_DYNAMIC_COPY);
+  if (keep > 0) {
+    glBindBuffer(GL_COPY_READ_BUFFER, name);
+    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_SHADER_STORAGE_BUFFER, 0, 0,
+                        static_cast<GLsizeiptr>(keep));
+  }
+  name = std::move(grown);
+  bytes = size;
   return true;
 }
 
@@ -120,7 +164,9 @@ std::size_t PairMirror::update(std::span<const std::byte> data) {
 }
 
 PairDevice::PairDevice(const GlContext& context, const GlPairOptions& options)
-    : context_(context), block_(static_cast<std::size_t>(context.info().max_storage_block)) {
+    : context_(context),
+      block_(static_cast<std::size_t>(context.info().max_storage_block)),
+      rounding_(options.rounding) {
   if (options.storage_limit > 0) {
     block_ = std::min(block_, static_cast<std::size_t>(options.storage_limit));
   }
@@ -132,18 +178,24 @@ PairDevice::PairDevice(const GlContext& context, const GlPairOptions& options)
                     " storage bindings, FAR pairs needs " + std::to_string(kBindings),
                 "use --device cpu or another device");
   }
-  for (std::size_t p = 0; p < kPairPrograms; ++p) {
-    const Source& source = kSources[p];
-    std::vector<std::string> texts = {embedded::interval_glsl, embedded::pair_common_glsl};
-    if (source.rows) texts.push_back(embedded::pair_rows_glsl);
-    texts.push_back(source.text);
-    programs_[p] = gl_program(source.name, defines_of(source, options.rounding),
-                              {{GL_COMPUTE_SHADER, std::move(texts)}});
-  }
+  // Those that every scene needs.
+  for (std::size_t p = 0; p <= static_cast<std::size_t>(PairProgram::tests); ++p) program(p);
   counters_ = gl_make<GlBuffer>(glGenBuffers);
   words_.assign(kTotals + kDispatches, 0);
   start(true);
   check_gl("pairs");
+}
+
+GLuint PairDevice::program(std::size_t which) {
+  GlProgram& out = programs_[which];
+  if (out == 0) {
+    const Source& source = sources()[which];
+    out = gl_program(
+        source.name, defines_of(source, rounding_),
+        {{GL_COMPUTE_SHADER,
+          {embedded::interval_glsl, embedded::pair_common_glsl, source.before, source.text}}});
+  }
+  return out;
 }
 
 void PairDevice::start(bool fresh) {
@@ -165,30 +217,29 @@ void PairDevice::run(PairProgram which, std::uint64_t count, const PairUniforms&
   if (count == 0) return;
   if (count >> 31 != 0) throw std::logic_error("PairDevice::run: too much work for one dispatch");
   if (expected_.size() == kDispatches) check_finished("pairs");
-  const auto program = static_cast<std::size_t>(which);
+  const auto index = static_cast<std::size_t>(which);
   const bool at_fault = fault != PairFault::none && dispatches == fault_at;
   const auto n = static_cast<std::uint32_t>(count);
-  glUseProgram(programs_[program]);
+  glUseProgram(program(index));
   glUniform1ui(0, n);
   glUniform1ui(1, kTotals + static_cast<std::uint32_t>(expected_.size()));
   glUniform1ui(2, at_fault && fault == PairFault::unfinished_item ? n / 2 : n);
-  glUniform1ui(3, u.step);
-  glUniform4fv(4, 1, u.widen.data());
-  glUniform4iv(5, 1, u.tile.data());
-  glUniform2iv(6, 1, u.window.data());
-  glUniform2fv(7, 1, u.depth.data());
-  glUniform2uiv(8, 1, u.bins.data());
-  glUniform1ui(9, u.cells);
-  glUniform1ui(10, u.masked);
-  glUniform1ui(11, u.capacity);
-  glUniform1ui(12, u.items);
-  glUniform4uiv(13, 1, u.extra.data());
-  glUniform4fv(14, 1, u.numbers.data());
+  glUniform4fv(3, 1, u.widen.data());
+  glUniform4iv(4, 1, u.tile.data());
+  glUniform2iv(5, 1, u.window.data());
+  glUniform2fv(6, 1, u.depth.data());
+  glUniform4uiv(7, 1, u.bins.data());
+  glUniform1ui(8, u.cells);
+  glUniform1ui(9, u.masked);
+  glUniform1ui(10, u.capacity);
+  glUniform1ui(11, u.items);
+  glUniform4uiv(12, 1, u.extra.data());
+  glUniform4fv(13, 1, u.numbers.data());
   for (const PairBinding& b : bindings) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, b.index, b.buffer);
   }
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kCounters, counters_);
-  const std::uint32_t per_group = kGroup * kSources[program].batch;
+  const std::uint32_t per_group = kGroup * sources()[index].batch;
   const std::uint32_t groups = (n + per_group - 1) / per_group;
   const std::uint32_t most = static_cast<std::uint32_t>(context_.info().max_compute_groups);
   const std::uint32_t columns = std::min(groups, most);
@@ -213,23 +264,22 @@ void PairDevice::scan(GLuint numbers, GLuint before, std::size_t count) {
     if (n <= kScanned) break;
   }
   sums_.reserve(at * sizeof(std::uint32_t), block_);
-  const auto step = [&](std::uint32_t step, std::uint32_t from, std::size_t length,
+  const auto step = [&](PairProgram program, std::uint32_t from, std::size_t length,
                         std::uint32_t to) {
     PairUniforms u;
-    u.step = step;
     u.extra = {from, static_cast<std::uint32_t>(length), to, kTotalScanned};
-    run(PairProgram::scan, (length + kScanned - 1) / kScanned, u,
+    run(program, (length + kScanned - 1) / kScanned, u,
         {{0, numbers}, {1, before}, {2, sums_.name}});
   };
-  step(0, 0, count, levels[0].first);
+  step(PairProgram::sum_numbers, 0, count, levels[0].first);
   for (std::size_t l = 1; l < levels.size(); ++l) {
-    step(1, levels[l - 1].first, levels[l - 1].second, levels[l].first);
+    step(PairProgram::sum_sums, levels[l - 1].first, levels[l - 1].second, levels[l].first);
   }
-  step(2, levels.back().first, levels.back().second, 0);
+  step(PairProgram::scan_top, levels.back().first, levels.back().second, 0);
   for (std::size_t l = levels.size(); l-- > 1;) {
-    step(3, levels[l - 1].first, levels[l - 1].second, levels[l].first);
+    step(PairProgram::scan_sums, levels[l - 1].first, levels[l - 1].second, levels[l].first);
   }
-  step(4, 0, count, levels[0].first);
+  step(PairProgram::scan_numbers, 0, count, levels[0].first);
 }
 
 void PairDevice::check_finished(const std::string& stage) {

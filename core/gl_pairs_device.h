@@ -17,6 +17,7 @@ namespace farcull {
 /// Totals that programs count, as words of the counter buffer; two words, low first, where noted.
 /// The same names with FAR_ are macros of the shaders.
 enum PairTotal : std::uint32_t {
+  kTotalWholes,  // the first five belong to the items
   kTotalItems,
   kTotalLarge,
   kTotalRows,  // two words
@@ -25,19 +26,21 @@ enum PairTotal : std::uint32_t {
   kTotalCrowded,
   kTotalMismatches,
   kTotalListed,
+  kTotalListedRows,
   kTotalParents,
-  kTotalPairs,  // the next three belong together: an emission starts with all of them 0
+  kTotalPairs,  // the last four belong together: an emission starts with all of them 0
   kTotalTests,  // two words
   kTotalMore = kTotalTests + 2,
-  kTotals = 16,
+  kTotals,
 };
 
 /// A storage buffer that grows and never shrinks.
 struct PairStore {
   GlBuffer name;
   std::size_t bytes = 0;
-  /// Makes room; true where the contents are lost.
-  bool reserve(std::size_t wanted, std::size_t most);
+  /// Makes room for `wanted` bytes, up to half as much again within `most`; the first `keep` bytes
+  /// survive. True where the others are lost.
+  bool reserve(std::size_t wanted, std::size_t most, std::size_t keep = 0);
 };
 
 /// A storage buffer with the contents of an array, of which only what changed is sent.
@@ -54,12 +57,11 @@ class PairMirror {
 
 /// The uniforms of core/shaders/pair_common.glsl that do not belong to counting.
 struct PairUniforms {
-  std::uint32_t step = 0;
   std::array<float, 4> widen{};
   std::array<std::int32_t, 4> tile{};
   std::array<std::int32_t, 2> window{};
   std::array<float, 2> depth{};
-  std::array<std::uint32_t, 2> bins{1, 6};
+  std::array<std::uint32_t, 4> bins{1, 6, 1, 0};
   std::uint32_t cells = 0;
   std::uint32_t masked = 0;
   std::uint32_t capacity = 0;
@@ -68,19 +70,37 @@ struct PairUniforms {
   std::array<float, 4> numbers{};
 };
 
+/// A text of core/shaders and a step of it each.
 enum class PairProgram {
   items,
-  rows,
-  wholes,
-  row_lists,
+  records,
+  spans,
+  mark_wholes,
+  count_wholes,
+  fill_wholes,
+  mark_rows,
+  count_rows,
+  fill_rows,
   conflicts,
-  scan,
-  check,
+  sum_numbers,
+  sum_sums,
+  scan_top,
+  scan_sums,
+  scan_numbers,
+  crowded,
+  filled,
   tests,
-  cut,
-  large
+  more_tests,
+  uncut_tests,
+  more_uncut_tests,
+  parents,
+  cut_count,
+  cut_decide,
+  cut_fill,
+  find_large,
+  large,
 };
-constexpr std::size_t kPairPrograms = 10;
+constexpr std::size_t kPairPrograms = 27;
 
 // Work of one invocation, bounded far below the 65,535 iterations after which llvmpipe stops.
 constexpr std::uint32_t kSpan = 1024;      // pixels of a row
@@ -114,11 +134,13 @@ class PairDevice {
   std::size_t dispatches = 0;
 
  private:
+  GLuint program(std::size_t which);
   void check_finished(const std::string& stage);
 
   const GlContext& context_;
   std::size_t block_;
-  std::array<GlProgram, kPairPrograms> programs_;
+  bool rounding_;
+  std::array<GlProgram, kPairPrograms> programs_;  // compiled when first used
   GlBuffer counters_;
   PairStore sums_;
   std::vector<std::uint32_t> expected_;  // finished work items of each dispatch since the last read

@@ -1,12 +1,17 @@
-// What the programs of FAR pairs share, after core/interval.glsl: the bindings and uniforms that several of them use, and the
-// loop over work items. A program defines work(w) for each w < u_count; FAR_BATCH of them are one invocation's, so that no
-// invocation comes near 65,535 iterations (llvmpipe then stops without a word) and the finished ones are counted together.
+// What the programs of FAR pairs share, after core/interval.glsl: uniforms, records, and the loop over work items. A program
+// defines work(w) for each w < u_count; FAR_BATCH of them are one invocation's, so that no invocation comes near 65,535
+// iterations (llvmpipe then stops without a word) and the finished ones are counted together. Where a text has several steps,
+// each is a program of its own with another FAR_STEP: a device may run both sides of every branch.
 layout(local_size_x = 64) in;
 
-// Five vec4 an item: its corners a, b, c with the three margins (far_margin) in their w, and its bounds lo, hi within the limits
-// of its owner. A head: triangle, code, pixels of the bounds i0 | j0 << 16 and i1 | j1 << 16.
-const uint kItemSize = 5u;
-// Code of an item: number of its owner << 3 and these.
+// Triangles that meet the part of the window are items. Whole ones (one interval in all their pixels) are heads alone until they
+// are listed; the others, and those that are listed, are records.
+// Record: five vec4: corners a, b, c with the three margins (far_margin) in their w; bounds lo, hi within the owner's limits.
+// Head of a record: triangle, code, pixels i0 | j0 << 16, i1 | j1 << 16; of a whole item the last is as far_pack makes it, and
+// until it is a record the first is its position among the active triangles.
+// Entry: two uvec4: bits of lo.x, lo.y, near; triangle; bits of hi.x, hi.y, far; code. Beside it: cell, record.
+const uint kRecordSize = 5u;
+// Code: number of the owner << 3 and these.
 const uint kWhole = 1u;
 const uint kSelf = 2u;
 const uint kLarge = 4u;
@@ -16,32 +21,35 @@ layout(std430, binding = 7) buffer Counters { uint counters[]; };  // totals, th
 layout(location = 0) uniform uint u_count;       // work items of this dispatch
 layout(location = 1) uniform uint u_finished;    // index of the counter of those that finished
 layout(location = 2) uniform uint u_unfinished;  // a work item that gives up, for tests of the count; none where >= u_count
-layout(location = 3) uniform uint u_step;        // what the program does now
-layout(location = 4) uniform vec4 u_widen;       // as in core/interval.glsl
-layout(location = 5) uniform ivec4 u_tile;       // pixels i0, i1, j0, j1, inclusive
-layout(location = 6) uniform ivec2 u_window;     // px
-layout(location = 7) uniform vec2 u_depth;       // near end of the window (px), slices per px
-layout(location = 8) uniform uvec2 u_bins;       // of a cell, by the slice of near depths: number, shift of the slice
-layout(location = 9) uniform uint u_cells;       // pixels of the tile, or cells of the level
-layout(location = 10) uniform uint u_masked;     // not 0: entries whose slices no other owner touches are left out
-layout(location = 11) uniform uint u_capacity;   // records that the program's output holds
-layout(location = 12) uniform uint u_items;      // items of the tile
-layout(location = 13) uniform uvec4 u_extra;     // what one program alone needs
-layout(location = 14) uniform vec4 u_numbers;    // the same
+layout(location = 3) uniform vec4 u_widen;       // as in core/interval.glsl
+layout(location = 4) uniform ivec4 u_tile;       // pixels i0, i1, j0, j1, inclusive
+layout(location = 5) uniform ivec2 u_window;     // px
+layout(location = 6) uniform vec2 u_depth;       // near end of the window (px), slices per px
+layout(location = 7) uniform uvec4 u_bins;       // of a cell: number, shift of a slice, number of a group, number of groups - 1
+layout(location = 8) uniform uint u_cells;       // pixels of the tile
+layout(location = 9) uniform uint u_masked;      // not 0: entries whose slices no other owner touches are left out
+layout(location = 10) uniform uint u_capacity;   // that the program's output holds
+layout(location = 11) uniform uint u_items;      // records of triangles that are not whole
+layout(location = 12) uniform uvec4 u_extra;     // what one program alone needs
+layout(location = 13) uniform vec4 u_numbers;    // the same
 
 uint far_group() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 
+int far_pixel(float x, int count) { return int(clamp(x, 0.0f, float(count - 1))); }
 int far_depth_slice(float z) { return far_slice(z, u_depth.x, u_depth.y); }
 
-// The bin of a near depth in a cell.
-uint far_bin(uint cell, float near) { return cell * u_bins.x + (uint(far_depth_slice(near)) >> u_bins.y); }
+// Entries of a cell lie in bins by the last bit of their owner's number (where there are two groups), then by near slice.
+uint far_bin(uint cell, uint code, uint slice) {
+  return cell * u_bins.x + ((code >> 3) & u_bins.w) * u_bins.z + (slice >> u_bins.y);
+}
 
-// The owners of two items may collide.
-bool far_may_meet(uint a, uint b) { return (a & kSelf) != 0u || ((a ^ b) >> 3) != 0u; }
+// Pixels and slices of a whole item, beside its first pixel.
+uint far_pack(int width, int height, int first_slice, int last_slice) {
+  return uint(width - 1) | uint(height - 1) << 4 | uint(first_slice) << 8 | uint(last_slice) << 14;
+}
 
 // Adds to a total of two words.
 void far_add(uint counter, uint n) {
-  if (n == 0u) return;
   uint before = atomicAdd(counters[counter], n);
   if (before + n < before) atomicAdd(counters[counter + 1u], 1u);
 }
@@ -60,6 +68,10 @@ void far_add(uint counter, uint n) {
 
 void work(uint w);
 
+#ifdef FAR_SUM
+uint far_sum_of_batch = 0u;  // added to the total FAR_SUM by main
+#endif
+
 void main() {
   uint base = far_group() * (64u * FAR_BATCH) + gl_LocalInvocationID.x;
   uint done = 0u;
@@ -69,5 +81,8 @@ void main() {
     work(w);
     ++done;
   }
+#ifdef FAR_SUM
+  if (far_sum_of_batch > 0u) far_add(FAR_SUM, far_sum_of_batch);
+#endif
   if (done > 0u) atomicAdd(counters[u_finished], done);
 }

@@ -1,24 +1,23 @@
 // Crowded cells, cut into FAR_SUBDIVISION^2 smaller ones wherever that leaves at most half of the tests: the function subdivide
-// of core/pair_tile.cpp. Parents are the crowded cells of a level, u_bins and u_cells those of the level below.
-layout(std430, binding = 0) readonly buffer Items { vec4 items[]; };
+// of core/pair_tile.cpp. Parents are the crowded cells of a level, u_bins those of the level below. Steps: 0 lists the parents, 1 counts
+// entries of smaller cells, 2 decides, 3 fills the entries in.
+layout(std430, binding = 0) readonly buffer Records { vec4 records[]; };
 layout(std430, binding = 1) readonly buffer Above { uvec4 above[]; };  // the parents of the level before, where there is one
 layout(std430, binding = 2) buffer Parents { uvec4 parents[]; };  // cell, entries, bits of the lower left corner x, y (px)
 layout(std430, binding = 3) buffer Counts { uint counts[]; };
-layout(std430, binding = 4) readonly buffer First { uint first[]; };  // of the level itself for kList, else of the level below
+layout(std430, binding = 4) readonly buffer First { uint first[]; };  // step 0: of the level itself; else of the level below
 layout(std430, binding = 5) readonly buffer Entries { uvec4 entries[]; };
-layout(std430, binding = 6) readonly buffer EntryCells { uint entry_cells[]; };
+layout(std430, binding = 6) readonly buffer Places { uvec2 places[]; };
 layout(std430, binding = 8) buffer State { uint state[]; };  // of a cell: its number as a parent + 1, 0 where it is not cut
 layout(std430, binding = 9) writeonly buffer SubEntries { uvec4 sub_entries[]; };
-layout(std430, binding = 10) writeonly buffer SubEntryCells { uint sub_entry_cells[]; };
+layout(std430, binding = 10) writeonly buffer SubPlaces { uvec2 sub_places[]; };
 
-const uint kList = 0u;
-const uint kCount = 1u;
-const uint kDecide = 2u;
 const uint kSubCells = FAR_SUBDIVISION * FAR_SUBDIVISION;
 
 // u_extra: x level, y bins of a cell of the level. u_numbers.x: side of a smaller cell (px).
 
-void far_list(uint cell) {
+#if FAR_STEP == 0
+void work(uint cell) {
   uint n = first[(cell + 1u) * u_extra.y] - first[cell * u_extra.y];
   uint number = 0u;
   if (n > FAR_CROWDED) {
@@ -44,6 +43,7 @@ void far_list(uint cell) {
   state[cell] = number;
 }
 
+#elif FAR_STEP == 2
 // n (n - 1), which may need 64 bits: low, high.
 uvec2 far_twice_tests(uint n) {
   uvec2 product;
@@ -51,7 +51,7 @@ uvec2 far_twice_tests(uint n) {
   return product;
 }
 
-void far_decide(uint p) {
+void work(uint p) {
   uvec2 left = uvec2(0u);
   for (uint c = 0u; c < kSubCells; ++c) {
     uint n = 0u;
@@ -68,18 +68,20 @@ void far_decide(uint p) {
   }
 }
 
-void far_add_entry(uint cell, uvec4 entry, float near, float far) {
-  uint bin = far_bin(cell, near);
-  if (u_step == kCount) {
-    atomicAdd(counts[bin], 1u);
-    return;
-  }
+#else
+void far_add_entry(uint cell, uvec4 lo, uvec4 hi, uint record, float near, float far) {
+  uint bin = far_bin(cell, hi.w, uint(far_depth_slice(near)));
+#if FAR_STEP == 1
+  atomicAdd(counts[bin], 1u);
+#else
   uint left = atomicAdd(counts[bin], 0xffffffffu);
   if (left == 0u) return;  // more than was counted: the count is not 0 in the end
   uint at = first[bin] + left - 1u;
   if (at >= u_capacity) return;
-  sub_entries[at] = uvec4(entry.xy, floatBitsToUint(near), floatBitsToUint(far));
-  sub_entry_cells[at] = cell;
+  sub_entries[2u * at] = uvec4(lo.xy, floatBitsToUint(near), lo.w);
+  sub_entries[2u * at + 1u] = uvec4(hi.xy, floatBitsToUint(far), hi.w);
+  sub_places[at] = uvec2(cell, record);
+#endif
 }
 
 int far_part(float p, float from) {
@@ -87,32 +89,35 @@ int far_part(float p, float from) {
   return int(clamp(part, 0.0f, float(FAR_SUBDIVISION - 1u)));
 }
 
-void far_cut(uint e) {
-  uint p = state[entry_cells[e]];
+void work(uint e) {
+  uvec2 place = places[e];
+  uint p = state[place.x];
   if (p == 0u) return;
   p -= 1u;
   uvec4 parent = parents[p];
-  uvec4 entry = entries[e];
+  uvec4 lo_bits = entries[2u * e];
+  uvec4 hi_bits = entries[2u * e + 1u];
+  uint record = place.y;
   float x = uintBitsToFloat(parent.z);
   float y = uintBitsToFloat(parent.w);
-  float near = uintBitsToFloat(entry.z);
-  float far = uintBitsToFloat(entry.w);
+  float near = uintBitsToFloat(lo_bits.z);
+  float far = uintBitsToFloat(hi_bits.z);
   FarRows r;
-  r.lo = items[kItemSize * entry.x + 3u];
-  r.hi = items[kItemSize * entry.x + 4u];
+  r.lo = records[kRecordSize * record + 3u];
+  r.hi = records[kRecordSize * record + 4u];
   int i0 = far_part(r.lo.x, x);
   int i1 = far_part(r.hi.x, x);
   int j0 = far_part(r.lo.y, y);
   int j1 = far_part(r.hi.y, y);
   if ((i1 - i0 + 1) * (j1 - j0 + 1) <= FAR_WHOLE_PIXELS) {
     for (int j = j0; j <= j1; ++j) {
-      for (int i = i0; i <= i1; ++i) far_add_entry(p * kSubCells + uint(j) * FAR_SUBDIVISION + uint(i), entry, near, far);
+      for (int i = i0; i <= i1; ++i) far_add_entry(p * kSubCells + uint(j) * FAR_SUBDIVISION + uint(i), lo_bits, hi_bits, record, near, far);
     }
     return;
   }
-  r.a = items[kItemSize * entry.x];
-  r.b = items[kItemSize * entry.x + 1u];
-  r.c = items[kItemSize * entry.x + 2u];
+  r.a = records[kRecordSize * record];
+  r.b = records[kRecordSize * record + 1u];
+  r.c = records[kRecordSize * record + 2u];
   for (int j = j0; j <= j1; ++j) {
     float lo;
     float hi;
@@ -128,17 +133,8 @@ void far_cut(uint e) {
       if (!far_cell(r, x0, x1, sub_near, sub_far)) continue;
       sub_near = max(sub_near, near);
       sub_far = min(sub_far, far);
-      if (sub_near <= sub_far) far_add_entry(p * kSubCells + uint(j) * FAR_SUBDIVISION + uint(i), entry, sub_near, sub_far);
+      if (sub_near <= sub_far) far_add_entry(p * kSubCells + uint(j) * FAR_SUBDIVISION + uint(i), lo_bits, hi_bits, record, sub_near, sub_far);
     }
   }
 }
-
-void work(uint w) {
-  if (u_step == kList) {
-    far_list(w);
-  } else if (u_step == kDecide) {
-    far_decide(w);
-  } else {
-    far_cut(w);
-  }
-}
+#endif

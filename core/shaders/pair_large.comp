@@ -1,16 +1,24 @@
-// Large triangles with each item of the tile, in the rectangle of that one's bounds: compare_large of core/pairs_cpu.cpp.
-layout(std430, binding = 0) readonly buffer Items { vec4 items[]; };
-layout(std430, binding = 1) readonly buffer Heads { uvec4 heads[]; };
-layout(std430, binding = 2) writeonly buffer Pairs { uvec2 pairs[]; };
-layout(std430, binding = 3) buffer Large { uint large[]; };  // items
+// Large triangles with each active one, in the rectangle of that one's bounds: compare_large of core/pairs_cpu.cpp. Step 0 lists
+// the large ones among the records; step 1 compares FAR_LARGE_BATCH of them with each triangle that was sent.
+layout(std430, binding = 5) readonly buffer Records { vec4 records[]; };
+layout(std430, binding = 6) readonly buffer RecordHeads { uvec4 record_heads[]; };
+layout(std430, binding = 8) buffer Large { uint large[]; };  // records
+#if FAR_STEP == 0
+void work(uint w) {
+  if ((record_heads[w].y & kLarge) == 0u) return;
+  uint at = atomicAdd(counters[FAR_PARENTS], 1u);
+  if (at < u_capacity) large[at] = w;
+}
+#else
+layout(std430, binding = 9) writeonly buffer Pairs { uvec2 pairs[]; };
 
-// u_step 0: lists the large ones. 1: FAR_LARGE_BATCH of them with one item; u_extra: x the first of them, y how many there are in all,
-// z the first item.
+// u_extra: z the first large triangle, w how many there are in all. u_items: the first triangle of this dispatch among those that
+// were sent.
 
 bool far_meets_over(uint l, vec4 box_lo, vec4 box_hi) {
-  vec4 a = items[kItemSize * l];
-  vec4 b = items[kItemSize * l + 1u];
-  vec4 c = items[kItemSize * l + 2u];
+  vec4 a = records[kRecordSize * l];
+  vec4 b = records[kRecordSize * l + 1u];
+  vec4 c = records[kRecordSize * l + 2u];
   vec4 lo;
   vec4 hi;
   far_bounds(a, b, c, u_widen, lo, hi);
@@ -29,26 +37,22 @@ bool far_meets_over(uint l, vec4 box_lo, vec4 box_hi) {
 }
 
 void work(uint w) {
-  if (u_step == 0u) {
-    if ((heads[w].y & kLarge) == 0u) return;
-    uint at = atomicAdd(counters[FAR_PARENTS], 1u);
-    if (at < u_capacity) large[at] = w;
+  FarTriangle t;
+  if (!far_triangle(u_items + w, t)) return;
+  // Two triangles that meet do so in a pixel of some part, where both are found.
+  if (far_pixel(t.hi.x, u_window.x) < u_tile.x || far_pixel(t.lo.x, u_window.x) > u_tile.y ||
+      far_pixel(t.hi.y, u_window.y) < u_tile.z || far_pixel(t.lo.y, u_window.y) > u_tile.w)
     return;
-  }
-  uint item = u_extra.z + w;
-  uvec4 head = heads[item];
-  vec4 lo = items[kItemSize * item + 3u];
-  vec4 hi = items[kItemSize * item + 4u];
-  uint end = min(u_extra.x + FAR_LARGE_BATCH, u_extra.y);
-  for (uint k = u_extra.x; k < end; ++k) {
+  uint end = min(u_extra.z + FAR_LARGE_BATCH, u_extra.w);
+  for (uint k = u_extra.z; k < end; ++k) {
     uint l = large[k];
-    if (l == item) continue;
-    uvec4 other = heads[l];
-    if (!far_may_meet(head.y, other.y)) continue;
-    vec4 lo2 = max(lo, items[kItemSize * l + 3u]);
-    vec4 hi2 = min(hi, items[kItemSize * l + 4u]);
-    if (!(lo2.x <= hi2.x && lo2.y <= hi2.y && lo2.z <= hi2.z) || !far_meets_over(l, lo, hi)) continue;
+    uvec4 other = record_heads[l];
+    if (other.x == t.triangle || !((t.code & kSelf) != 0u || ((t.code ^ other.y) >> 3) != 0u)) continue;
+    vec4 lo = max(t.lo, records[kRecordSize * l + 3u]);
+    vec4 hi = min(t.hi, records[kRecordSize * l + 4u]);
+    if (!(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z) || !far_meets_over(l, t.lo, t.hi)) continue;
     uint at = atomicAdd(counters[FAR_PAIRS], 1u);
-    if (at < u_capacity) pairs[at] = uvec2(min(head.x, other.x), max(head.x, other.x));
+    if (at < u_capacity) pairs[at] = uvec2(min(t.triangle, other.x), max(t.triangle, other.x));
   }
 }
+#endif

@@ -1,80 +1,98 @@
-// The pixels that items meet, in three steps of one program, so that what is counted is what is filled in. A work item is a
-// whole item or, with FAR_ROWS, one row of another, FAR_SPAN pixels of it.
-layout(std430, binding = 0) readonly buffer Items { vec4 items[]; };
-layout(std430, binding = 1) readonly buffer Heads { uvec4 heads[]; };
+// The pixels that items meet. One text for three steps, so that what is counted is what is filled in: 0 marks the slices of each
+// owner, 1 counts the entries of each bin, 2 fills them in. A work item is a whole item or, with FAR_ROWS, one row of another,
+// FAR_SPAN pixels of it.
+#define FAR_MARK 0
+#define FAR_COUNT 1
+#define FAR_FILL 2
+#if FAR_STEP != FAR_FILL || defined(FAR_ROWS)
 // Two words a pixel (64 slices) and region. Region 0: slices that two owners touch, or one that collides with itself; 1 + 2 k + b:
 // those that an owner touches whose number has b as bit k.
 layout(std430, binding = 2) buffer Masks { uint masks[]; };
+#else
+layout(std430, binding = 2) readonly buffer Masks { uint masks[]; };
+#endif
+#if FAR_STEP != FAR_MARK
 layout(std430, binding = 3) buffer Counts { uint counts[]; };  // of each bin; what is filled in is taken away
+#endif
+#if FAR_STEP == FAR_FILL
 layout(std430, binding = 4) readonly buffer First { uint first[]; };
-layout(std430, binding = 5) writeonly buffer Entries { uvec4 entries[]; };  // item, code, bits of near, of far
-layout(std430, binding = 6) writeonly buffer EntryCells { uint entry_cells[]; };
-layout(std430, binding = 8) buffer Listed { uint listed[]; };  // not 0: the item has an entry
+layout(std430, binding = 9) writeonly buffer Entries { uvec4 entries[]; };
+layout(std430, binding = 10) writeonly buffer Places { uvec2 places[]; };
+#endif
+#if FAR_STEP == FAR_FILL || defined(FAR_ROWS)
+layout(std430, binding = 0) readonly buffer Records { vec4 records[]; };
+#endif
+layout(std430, binding = 6) readonly buffer Heads { uvec4 heads[]; };
+#if FAR_STEP == FAR_COUNT
+layout(std430, binding = 8) buffer Listed { uint listed[]; };  // FAR_ROWS: not 0: has an entry; else the whole items that have one
+#endif
 #ifdef FAR_ROWS
-layout(std430, binding = 9) readonly buffer Rows { uint rows[]; };  // of the items before each
-FAR_LAST_AT_MOST(far_item_of_row, rows)
+layout(std430, binding = 1) readonly buffer Rows { uint rows[]; };  // of the records before each
+FAR_LAST_AT_MOST(far_record_of_row, rows)
 #endif
 
-const uint kMark = 0u;
-const uint kCount = 1u;
+// u_extra.x: bits of an owner's number. u_extra.y: bins of the part. u_items: records before the whole ones.
 
-// u_extra.x: bits of an owner's number.
-
-uvec2 far_slice_bits(int first_slice, int last_slice) {
-  uint low = 0u;
-  uint high = 0u;
-  if (first_slice < 32) low = (0xffffffffu << first_slice) & (0xffffffffu >> (31 - min(last_slice, 31)));
-  if (last_slice >= 32) high = (0xffffffffu << max(first_slice - 32, 0)) & (0xffffffffu >> (63 - last_slice));
-  return uvec2(low, high);
+// The slices first .. last that lie in one of the two words.
+uint far_slice_bits(int first_slice, int last_slice, int word) {
+  int low = max(first_slice - 32 * word, 0);
+  int high = min(last_slice - 32 * word, 31);
+  return low <= high ? (0xffffffffu << low) & (0xffffffffu >> (31 - high)) : 0u;
 }
 
-void far_touch(uint at, uvec2 bits) {
-  if ((bits.x & ~masks[2u * at]) != 0u) atomicOr(masks[2u * at], bits.x);
-  if ((bits.y & ~masks[2u * at + 1u]) != 0u) atomicOr(masks[2u * at + 1u], bits.y);
-}
-
-// One pixel of an item; true: it has an entry there.
-bool far_visit(uint cell, uvec2 bits, uint bin, uint item, uint code, float near, float far) {
-  if (u_step == kMark) {
-    if ((code & kSelf) != 0u) {
-      far_touch(cell, bits);
-      return false;
+// One pixel of an item, whose slices are `near_bits` in `word` and `far_bits` in the next; true: it has an entry there.
+bool far_visit(uint cell, uint word, uint near_bits, uint far_bits, uint bin, uint record, uvec4 lo, uvec4 hi) {
+#if FAR_STEP == FAR_MARK
+  uint at = 2u * cell + word;
+  if ((hi.w & kSelf) != 0u) {
+    atomicOr(masks[at], near_bits);
+    if (far_bits != 0u) atomicOr(masks[at + 1u], far_bits);
+  } else {
+    for (uint k = 0u; k < u_extra.x; ++k) {
+      uint region = 2u * u_cells * (1u + 2u * k + ((hi.w >> (3u + k)) & 1u));
+      atomicOr(masks[region + at], near_bits);
+      if (far_bits != 0u) atomicOr(masks[region + at + 1u], far_bits);
     }
-    for (uint k = 0u; k < u_extra.x; ++k) far_touch((1u + 2u * k + ((code >> (3u + k)) & 1u)) * u_cells + cell, bits);
-    return false;
   }
-  if (u_masked != 0u && (masks[2u * cell] & bits.x) == 0u && (masks[2u * cell + 1u] & bits.y) == 0u) return false;
-  if (u_step == kCount) {
-    atomicAdd(counts[bin], 1u);
-    return true;
+  return false;
+#else
+  if (u_masked != 0u) {
+    uint conflict = masks[2u * cell + word] & near_bits;
+    if (far_bits != 0u) conflict |= masks[2u * cell + word + 1u] & far_bits;
+    if (conflict == 0u) return false;
   }
+#if FAR_STEP == FAR_COUNT
+  atomicAdd(counts[bin], 1u);
+#else
   uint left = atomicAdd(counts[bin], 0xffffffffu);
   if (left == 0u) return true;  // more than was counted: the count is not 0 in the end
   uint at = first[bin] + left - 1u;
   if (at >= u_capacity) return true;
-  entries[at] = uvec4(item, code, floatBitsToUint(near), floatBitsToUint(far));
-  entry_cells[at] = cell;
+  entries[2u * at] = lo;
+  entries[2u * at + 1u] = hi;
+  places[at] = uvec2(cell, record);
+#endif
   return true;
+#endif
 }
 
 #ifdef FAR_ROWS
 void work(uint w) {
-  uint item = far_item_of_row(w, u_items);
-  if (u_step > kCount && listed[item] == 0u) return;
-  uvec4 head = heads[item];
+  uint record = far_record_of_row(w, u_items);
+  uvec4 head = heads[record];
   int i0 = max(int(head.z & 0xffffu), u_tile.x);
   int i1 = min(int(head.w & 0xffffu), u_tile.y);
   int j0 = max(int(head.z >> 16), u_tile.z);
   uint spans = uint(i1 - i0) / FAR_SPAN + 1u;
-  uint part = w - rows[item];
+  uint part = w - rows[record];
   int j = j0 + int(part / spans);
   int start = i0 + int(part % spans * FAR_SPAN);
   FarRows r;
-  r.a = items[kItemSize * item];
-  r.b = items[kItemSize * item + 1u];
-  r.c = items[kItemSize * item + 2u];
-  r.lo = items[kItemSize * item + 3u];
-  r.hi = items[kItemSize * item + 4u];
+  r.a = records[kRecordSize * record];
+  r.b = records[kRecordSize * record + 1u];
+  r.c = records[kRecordSize * record + 2u];
+  r.lo = records[kRecordSize * record + 3u];
+  r.hi = records[kRecordSize * record + 4u];
   float lo;
   float hi;
   float y = float(j);
@@ -89,33 +107,56 @@ void work(uint w) {
     float far;
     if (!far_cell(r, x, x + 1.0f, near, far)) continue;
     int first_slice = far_depth_slice(near);
+    int last_slice = far_depth_slice(far);
+    int word = first_slice >> 5;
     uint cell = row + uint(i - u_tile.x);
-    uint bin = cell * u_bins.x + (uint(first_slice) >> u_bins.y);
-    if (far_visit(cell, far_slice_bits(first_slice, far_depth_slice(far)), bin, item, head.y, near, far)) any = true;
+    if (far_visit(cell, uint(word), far_slice_bits(first_slice, last_slice, word), far_slice_bits(first_slice, last_slice, word + 1),
+                  far_bin(cell, head.y, uint(first_slice)), record,
+                  uvec4(floatBitsToUint(r.lo.x), floatBitsToUint(r.lo.y), floatBitsToUint(near), head.x),
+                  uvec4(floatBitsToUint(r.hi.x), floatBitsToUint(r.hi.y), floatBitsToUint(far), head.y)))
+      any = true;
   }
-  if (any && u_step == kCount) listed[item] = 1u;
+#if FAR_STEP == FAR_COUNT
+  if (any && atomicExchange(listed[record], 1u) == 0u) atomicAdd(counters[FAR_LISTED_ROWS], 1u);
+#endif
 }
 #else
-void work(uint item) {
-  uvec4 head = heads[item];
-  if ((head.y & kWhole) == 0u) return;
-  if (u_step > kCount && listed[item] == 0u) return;
-  float near = items[kItemSize * item + 3u].z;
-  float far = items[kItemSize * item + 4u].z;
+void work(uint w) {
+#if FAR_STEP == FAR_FILL
+  uint record = u_items + w;
+  vec4 least = records[kRecordSize * record + 3u];
+  vec4 most = records[kRecordSize * record + 4u];
+#else
+  uint record = w;
+  vec4 least = vec4(0.0f);
+  vec4 most = vec4(0.0f);
+#endif
+  uvec4 head = heads[record];
+  uvec4 lo = uvec4(floatBitsToUint(least.xyz), head.x);
+  uvec4 hi = uvec4(floatBitsToUint(most.xyz), head.y);
   int i0 = max(int(head.z & 0xffffu), u_tile.x);
-  int i1 = min(int(head.w & 0xffffu), u_tile.y);
+  int i1 = min(int(head.z & 0xffffu) + int(head.w & 15u), u_tile.y);
   int j0 = max(int(head.z >> 16), u_tile.z);
-  int j1 = min(int(head.w >> 16), u_tile.w);
-  int first_slice = far_depth_slice(near);
-  uvec2 bits = far_slice_bits(first_slice, far_depth_slice(far));
-  uint bin = uint(first_slice) >> u_bins.y;
+  int j1 = min(int(head.z >> 16) + int((head.w >> 4) & 15u), u_tile.w);
+  int first_slice = int((head.w >> 8) & 63u);
+  int last_slice = int((head.w >> 14) & 63u);
+  int word = first_slice >> 5;
+  uint near_bits = far_slice_bits(first_slice, last_slice, word);
+  uint far_bits = far_slice_bits(first_slice, last_slice, word + 1);
+  uint bin = far_bin(0u, head.y, uint(first_slice));
+  int i = i0;
+  uint stride = uint(u_tile.y - u_tile.x + 1);
+  uint cell = uint(j0 - u_tile.z) * stride + uint(i0 - u_tile.x);
+  uint next_row = stride - uint(i1 - i0);
+  int left = (i1 - i0 + 1) * (j1 - j0 + 1);
   bool any = false;
-  for (int j = j0; j <= j1; ++j) {
-    for (int i = i0; i <= i1; ++i) {
-      uint cell = uint((j - u_tile.z) * (u_tile.y - u_tile.x + 1) + i - u_tile.x);
-      if (far_visit(cell, bits, cell * u_bins.x + bin, item, head.y, near, far)) any = true;
-    }
+  for (; left > 0; --left) {
+    if (far_visit(cell, uint(word), near_bits, far_bits, cell * u_bins.x + bin, record, lo, hi)) any = true;
+    cell += i == i1 ? next_row : 1u;
+    i = i == i1 ? i0 : i + 1;
   }
-  if (any && u_step == kCount) listed[item] = 1u;
+#if FAR_STEP == FAR_COUNT
+  if (any) listed[atomicAdd(counters[FAR_LISTED], 1u)] = w;
+#endif
 }
 #endif

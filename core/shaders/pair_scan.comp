@@ -15,32 +15,32 @@ void work(uint w) {
   uint begin = 64u * w;
   uint end = min(begin + 64u, u_extra.y);
   uint total = 0u;
-  if (u_step == 0u) {  // sums of the numbers
-    for (uint i = begin; i < end; ++i) far_sum(total, numbers[i], total);
-    sums[u_extra.z + w] = total;
-  } else if (u_step == 1u) {  // sums of sums
-    for (uint i = begin; i < end; ++i) far_sum(total, sums[u_extra.x + i], total);
-    sums[u_extra.z + w] = total;
-  } else if (u_step == 2u) {  // the last level, of up to 64 sums
-    for (uint i = begin; i < end; ++i) {
-      uint here = sums[u_extra.x + i];
-      sums[u_extra.x + i] = total;
-      far_sum(total, here, total);
-    }
-    counters[u_extra.w] = total;
-  } else if (u_step == 3u) {  // down to sums
-    total = sums[u_extra.z + w];
-    for (uint i = begin; i < end; ++i) {
-      uint here = sums[u_extra.x + i];
-      sums[u_extra.x + i] = total;
-      total += here;
-    }
-  } else {  // down to the numbers
-    total = sums[u_extra.z + w];
-    for (uint i = begin; i < end; ++i) {
-      uint here = numbers[i];
-      before[i] = total;
-      total += here;
-    }
+#if FAR_STEP == 0  // sums of the numbers
+  for (uint i = begin; i < end; ++i) far_sum(total, numbers[i], total);
+  sums[u_extra.z + w] = total;
+#elif FAR_STEP == 1  // sums of sums
+  for (uint i = begin; i < end; ++i) far_sum(total, sums[u_extra.x + i], total);
+  sums[u_extra.z + w] = total;
+#elif FAR_STEP == 2  // the last level, of up to 64 sums
+  for (uint i = begin; i < end; ++i) {
+    uint here = sums[u_extra.x + i];
+    sums[u_extra.x + i] = total;
+    far_sum(total, here, total);
   }
+  counters[u_extra.w] = total;
+#elif FAR_STEP == 3  // down to sums
+  total = sums[u_extra.z + w];
+  for (uint i = begin; i < end; ++i) {
+    uint here = sums[u_extra.x + i];
+    sums[u_extra.x + i] = total;
+    total += here;
+  }
+#else  // down to the numbers
+  total = sums[u_extra.z + w];
+  for (uint i = begin; i < end; ++i) {
+    uint here = numbers[i];
+    before[i] = total;
+    total += here;
+  }
+#endif
 }

@@ -1,71 +1,90 @@
-// Pairs of entries of one cell whose intervals overlap. The entries of a cell are in the order of the slices of their near
-// depths, so the partners of an entry are among those after it, up to the bin of its far depth.
-layout(std430, binding = 0) readonly buffer Items { vec4 items[]; };
-layout(std430, binding = 1) readonly buffer Heads { uvec4 heads[]; };
+// Pairs of entries of one cell that overlap in depth and whose bounds overlap in the image. Entries lie in groups by owner, and
+// there by the slice of their near depth, so the partners of an entry are two ranges: of the other group those with a near slice
+// within the entry's slices (for the second group: after its first), and of its own group those after it up to its far slice.
+// Step 0: each entry with up to FAR_UNIT partners. Step 1: with the partners left, FAR_UNIT a work item.
 layout(std430, binding = 2) writeonly buffer Pairs { uvec2 pairs[]; };
-layout(std430, binding = 3) buffer Units { uint units[]; };  // work items left of each entry; of the entries before it
-layout(std430, binding = 4) readonly buffer First { uint first[]; };
-layout(std430, binding = 5) readonly buffer Entries { uvec4 entries[]; };
-layout(std430, binding = 6) readonly buffer EntryCells { uint entry_cells[]; };
-layout(std430, binding = 8) readonly buffer State { uint state[]; };  // not 0: the cell is cut into smaller ones
+#if FAR_STEP == 0
+layout(std430, binding = 3) writeonly buffer Units { uint units[]; };  // work items of step 1 of each entry
+#else
+layout(std430, binding = 3) readonly buffer Units { uint units[]; };  // of the entries before each
 FAR_LAST_AT_MOST(far_entry_of_unit, units)
+#endif
+layout(std430, binding = 4) readonly buffer First { uint first[]; };
+layout(std430, binding = 9) readonly buffer Entries { uvec4 entries[]; };
+layout(std430, binding = 10) readonly buffer Places { uvec2 places[]; };
+#ifdef FAR_SOME_CROWDED
+layout(std430, binding = 8) readonly buffer State { uint state[]; };  // not 0: the cell is cut into smaller ones
+#endif
 
-// u_extra: x level, y not 0 where a cell may be cut, z entries, w the first work item.
-
-uint far_size(uint cell) { return first[(cell + 1u) * u_bins.x] - first[cell * u_bins.x]; }
-
-// Two whole triangles overlap in all their common pixels or in none: the first one reports them unless it is out of reach, or
-// crowded, where their intervals are finer.
-bool far_elsewhere(uvec4 a, uvec4 b, uint cell) {
-  uint i = max(a.z & 0xffffu, b.z & 0xffffu);
-  uint j = max(a.z >> 16, b.z >> 16);
-  if (int(i) < u_tile.x || int(j) < u_tile.z) return false;
-  uint at = (j - uint(u_tile.z)) * uint(u_tile.y - u_tile.x + 1) + i - uint(u_tile.x);
-  return at != cell && far_size(at) <= FAR_CROWDED;
-}
-
-void far_test(uvec4 x, uint cell, uint begin, uint end) {
-  float near = uintBitsToFloat(x.z);
-  float far = uintBitsToFloat(x.w);
-  vec4 lo = items[kItemSize * x.x + 3u];
-  vec4 hi = items[kItemSize * x.x + 4u];
-  for (uint k = begin; k < end; ++k) {
-    uvec4 y = entries[k];
-    if (!far_may_meet(x.y, y.y) || !(near <= uintBitsToFloat(y.w) && uintBitsToFloat(y.z) <= far)) continue;
-    vec4 lo2 = items[kItemSize * y.x + 3u];
-    vec4 hi2 = items[kItemSize * y.x + 4u];
-    if (!(lo.x <= hi2.x && lo2.x <= hi.x && lo.y <= hi2.y && lo2.y <= hi.y)) continue;
-    uvec4 a = heads[x.x];
-    uvec4 b = heads[y.x];
-    if (u_extra.x == 0u && (a.y & b.y & kWhole) != 0u && far_size(cell) <= FAR_CROWDED && far_elsewhere(a, b, cell)) continue;
-    uint at = atomicAdd(counters[FAR_PAIRS], 1u);
-    if (at < u_capacity) pairs[at] = uvec2(min(a.x, b.x), max(a.x, b.x));
-  }
-  far_add(FAR_TESTS, end - begin);
-}
+// u_extra: x not 0 where the level is that of pixels, y not 0 where entries of one group may collide, z entries, w the first work
+// item.
 
 void work(uint index) {
   uint w = u_extra.w + index;
-  if (u_step == 0u) {
-    uint cell = entry_cells[w];
-    uint more = 0u;
-    if (u_extra.y == 0u || state[cell] == 0u) {
-      uvec4 x = entries[w];
-      uint end = first[far_bin(cell, uintBitsToFloat(x.w)) + 1u];
-      if (end - w - 1u > FAR_UNIT) {
-        more = (end - w - 2u) / FAR_UNIT;
-        end = w + 1u + FAR_UNIT;
-        counters[FAR_MORE] = 1u;
-      }
-      if (end > w + 1u) far_test(x, cell, w + 1u, end);
-    }
-    units[w] = more;
-    return;
-  }
+#if FAR_STEP == 0
+  uint e = w;
+  uint skip = 0u;
+#else
   uint e = far_entry_of_unit(w, u_extra.z);
-  uint cell = entry_cells[e];
-  uvec4 x = entries[e];
-  uint begin = e + 1u + (w - units[e] + 1u) * FAR_UNIT;
-  uint end = first[far_bin(cell, uintBitsToFloat(x.w)) + 1u];
-  far_test(x, cell, begin, min(begin + FAR_UNIT, end));
+  uint skip = (w - units[e] + 1u) * FAR_UNIT;
+#endif
+  uint cell = places[e].x;
+  uvec4 lo_bits = entries[2u * e];
+  uvec4 hi_bits = entries[2u * e + 1u];
+  vec3 lo = uintBitsToFloat(lo_bits.xyz);
+  vec3 hi = uintBitsToFloat(hi_bits.xyz);
+  uint group = (hi_bits.w >> 3) & u_bins.w;
+  uint near_slice = uint(far_depth_slice(lo.z)) >> u_bins.y;
+  uint far_slice_bin = uint(far_depth_slice(hi.z)) >> u_bins.y;
+  uint own = cell * u_bins.x + group * u_bins.z;
+  uint other = cell * u_bins.x + (1u - group) * u_bins.z;
+  uint other_begin = 0u;
+  uint others = 0u;
+  if (u_bins.w != 0u) {
+    other_begin = first[other + near_slice + group];
+    others = first[other + far_slice_bin + 1u] - other_begin;
+  }
+  uint all = others;
+  if (u_extra.y != 0u) all += first[own + far_slice_bin + 1u] - e - 1u;
+#ifdef FAR_SOME_CROWDED
+  bool crowded = first[(cell + 1u) * u_bins.x] - first[cell * u_bins.x] > FAR_CROWDED;
+  if (state[cell] != 0u) all = 0u;
+#endif
+#if FAR_STEP == 0
+  uint more = all > FAR_UNIT ? (all - 1u) / FAR_UNIT : 0u;
+  units[w] = more;
+  if (more != 0u) counters[FAR_MORE] = 1u;
+#endif
+  uint begin = min(skip, all);
+  uint end = min(skip + FAR_UNIT, all);
+  uint owner = hi_bits.w >> 3;
+  bool self = (hi_bits.w & kSelf) != 0u;
+  bool dedupe = u_extra.x != 0u && (hi_bits.w & kWhole) != 0u;
+#ifdef FAR_SOME_CROWDED
+  if (crowded) dedupe = false;
+#endif
+  int stride = u_tile.y - u_tile.x + 1;
+  for (uint k = begin; k < end; ++k) {
+    uint p = k < others ? other_begin + k : e + 1u + (k - others);
+    uvec4 lo2_bits = entries[2u * p];
+    uvec4 hi2_bits = entries[2u * p + 1u];
+    vec3 lo2 = uintBitsToFloat(lo2_bits.xyz);
+    vec3 hi2 = uintBitsToFloat(hi2_bits.xyz);
+    bool hit = lo.x <= hi2.x && lo2.x <= hi.x && lo.y <= hi2.y && lo2.y <= hi.y && lo.z <= hi2.z && lo2.z <= hi.z &&
+               (self || owner != hi2_bits.w >> 3);
+    if (!hit) continue;
+    // Two whole triangles overlap in all their common pixels or in none: the first of these reports them, unless it lies in
+    // another part of the window or is crowded, where their intervals are finer.
+    int i = far_pixel(max(lo.x, lo2.x), u_window.x) - u_tile.x;
+    int j = far_pixel(max(lo.y, lo2.y), u_window.y) - u_tile.z;
+    uint at = uint(j * stride + i);
+    bool elsewhere = dedupe && (hi2_bits.w & kWhole) != 0u && i >= 0 && j >= 0 && at != cell;
+#ifdef FAR_SOME_CROWDED
+    if (elsewhere) elsewhere = first[(at + 1u) * u_bins.x] - first[at * u_bins.x] <= FAR_CROWDED;
+#endif
+    if (elsewhere) continue;
+    uint to = atomicAdd(counters[FAR_PAIRS], 1u);
+    if (to < u_capacity) pairs[to] = uvec2(min(lo_bits.w, lo2_bits.w), max(lo_bits.w, lo2_bits.w));
+  }
+  far_sum_of_batch += end - begin;
 }

@@ -1,0 +1,39 @@
+// The active triangles as they were sent, and their bounds.
+layout(std430, binding = 0) readonly buffer Vertices { vec4 vertices[]; };
+layout(std430, binding = 1) readonly buffer Triangles { uint triangles[]; };  // three vertices each
+layout(std430, binding = 2) readonly buffer Owners { uint owners[]; };        // object of each triangle
+layout(std430, binding = 3) readonly buffer Active { uint active_ones[]; };   // triangles
+// Eight words an object: bits of its limits lo.xyz and hi.xyz, its number << 3 | kSelf, -.
+layout(std430, binding = 4) readonly buffer Objects { uint objects[]; };
+
+// u_extra.x: position of the first active triangle that was sent. u_extra.y: not 0 where triangles and owners are those of the
+// active ones, in their order.
+
+struct FarTriangle {
+  vec4 a;
+  vec4 b;
+  vec4 c;
+  vec4 lo;
+  vec4 hi;
+  vec4 margin;
+  uint triangle;
+  uint code;
+};
+
+// The triangle at a position among those that were sent; false: nothing of it is within the limits of its owner.
+bool far_triangle(uint w, out FarTriangle t) {
+  t.triangle = active_ones[w];
+  uint at = u_extra.y != 0u ? w : t.triangle;
+  t.a = vec4(vertices[triangles[3u * at]].xyz, 0.0f);
+  t.b = vec4(vertices[triangles[3u * at + 1u]].xyz, 0.0f);
+  t.c = vec4(vertices[triangles[3u * at + 2u]].xyz, 0.0f);
+  far_bounds(t.a, t.b, t.c, u_widen, t.lo, t.hi);
+  t.margin = far_margin(t.lo, t.hi, u_widen);
+  uint object = 8u * owners[at];
+  t.lo.xyz = max(t.lo.xyz, vec3(uintBitsToFloat(objects[object]), uintBitsToFloat(objects[object + 1u]),
+                                uintBitsToFloat(objects[object + 2u])));
+  t.hi.xyz = min(t.hi.xyz, vec3(uintBitsToFloat(objects[object + 3u]), uintBitsToFloat(objects[object + 4u]),
+                                uintBitsToFloat(objects[object + 5u])));
+  t.code = objects[object + 6u];
+  return t.lo.x <= t.hi.x && t.lo.y <= t.hi.y && t.lo.z <= t.hi.z;
+}
