@@ -124,7 +124,8 @@ std::string other_scene(const Certificate::SceneKey& key, const Scene& scene) {
                   std::to_string(scene.triangles.size()));
   }
   const std::string hash = scene_hash(scene);
-  return key.hash == hash ? "" : differ("hash", key.hash, hash);
+  return key.hash == hash ? ""
+                          : differ("hash (coordinates, or which objects are self)", key.hash, hash);
 }
 
 std::string wrong_count(const Certificate::Claims& claimed, const Certificate::Claims& found) {
