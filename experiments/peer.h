@@ -8,6 +8,7 @@
 // millions of overlapping boxes are never stored.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -46,5 +47,9 @@ std::vector<Peer> all_peers(unsigned threads);
 std::vector<Peer> cgal_peers(unsigned threads);
 std::vector<Peer> fcl_peers();
 std::vector<Peer> embree_peers();
+
+/// CGAL's exact predicate by itself, as its users call it: what decide() falls back to. Neither may
+/// be degenerate.
+bool cgal_do_intersect(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 }  // namespace farcull

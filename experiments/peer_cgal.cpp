@@ -142,8 +142,8 @@ using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterato
 using Traits = CGAL::AABB_traits<Kernel, Primitive>;
 using Tree = CGAL::AABB_tree<Traits>;
 
-Kernel::Triangle_3 triangle(const Scene& scene, std::uint32_t t) {
-  const auto [a, b, c] = scene.corners(t);
+Kernel::Triangle_3 triangle(const std::array<Vec3, 3>& corners) {
+  const auto& [a, b, c] = corners;
   return {{a.x(), a.y(), a.z()}, {b.x(), b.y(), b.z()}, {c.x(), c.y(), c.z()}};
 }
 
@@ -184,7 +184,7 @@ BenchAnswer search_tree(const Scene& raw, unsigned threads) {
   }
   Triangles triangles;
   triangles.reserve(end - begin);
-  for (std::uint32_t t = begin; t < end; ++t) triangles.push_back(triangle(raw, t));
+  for (std::uint32_t t = begin; t < end; ++t) triangles.push_back(triangle(raw.corners(t)));
   std::optional<Tree> tree;
   if (scene.has_pairs()) {
     tree.emplace(triangles.cbegin(), triangles.cend());
@@ -201,7 +201,7 @@ BenchAnswer search_tree(const Scene& raw, unsigned threads) {
       const auto other = begin + static_cast<std::uint32_t>(at - triangles.cbegin());
       if (scene.two_sides || (other > t && scene.counts(t, other))) part.add(t, other);
     };
-    const Kernel::Triangle_3 query = scene.two_sides ? triangle(raw, t) : triangles[i];
+    const Kernel::Triangle_3 query = scene.two_sides ? triangle(raw.corners(t)) : triangles[i];
     const CGAL::Bbox_3 box = query.bbox();
     // The test of a triangle against a box takes no degenerate ones.
     if (by_triangle && shape(raw.corners(t)) == Shape::triangle) {
@@ -240,6 +240,10 @@ std::function<BenchRun(unsigned)> parallel_boxes(std::ptrdiff_t cutoff) {
 #endif
 
 }  // namespace
+
+bool cgal_do_intersect(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  return CGAL::do_intersect(triangle(a), triangle(b));
+}
 
 std::vector<Peer> cgal_peers(unsigned threads) {
   const auto by = [](BenchAnswer (*run)(const Scene&, unsigned)) {
