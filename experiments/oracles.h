@@ -1,5 +1,6 @@
-// The two exact oracles against each other: CGAL's predicates (verify/exact), which every run is
-// measured by, and the integers (verify/integer_pair), on which certificates rest.
+// The two exact oracles against each other: verify/exact (a filter, CGAL's predicates, rational
+// distances), which every run is measured by, and the integers (verify/integer_pair), on which
+// certificates rest.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +11,19 @@
 
 namespace farcull {
 
+/// What the oracles are asked about a pair.
+enum class OracleQuestion {
+  intersects,  // do the triangles share a point?
+  neighbours,  // given a common corner or two: do they share more than the shared part?
+  clearance    // are they within a clearance, which is near a distance of two corners?
+};
+std::string to_string(OracleQuestion question);
+
 struct OracleRow {
   std::string generator;
+  OracleQuestion question = OracleQuestion::intersects;
   std::uint64_t pairs = 0;
-  std::uint64_t intersecting = 0;   // by CGAL
+  std::uint64_t intersecting = 0;   // by CGAL; the answers that are yes
   std::uint64_t disagreements = 0;  // 0, or one of the two is wrong
   double cgal_ns = 0;               // per pair, in one thread
   double integer_ns = 0;
@@ -23,8 +33,10 @@ struct OracleRow {
 /// Called with a generator's name before its pairs; may be empty.
 using OracleProgress = std::function<void(const std::string&)>;
 
-/// Every generator of pair_generators(), on all cores. The pairs and the answers depend on the seed
-/// alone, neither on the cores nor on how many pairs are asked for: more pairs begin with the same.
+/// Every generator of pair_generators() with every question, on all cores; neighbours and clearance
+/// with a tenth of the pairs, rounded up, since they take longer. The pairs and the answers depend
+/// on the seed alone, neither on the cores nor on how many pairs are asked for: more pairs begin
+/// with the same.
 std::vector<OracleRow> compare_oracles(std::uint64_t pairs_per_generator, std::uint64_t seed,
                                        const OracleProgress& progress = {});
 

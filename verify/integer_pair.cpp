@@ -199,9 +199,11 @@ int bit_length(Wide magnitude) {
 
 struct IntegerPair::Big {
   Corners<mpz_class> a, b;
+  mpz_class clearance;
 
-  Big(const std::array<Vec3, 3>& from_a, const std::array<Vec3, 3>& from_b) {
+  Big(const std::array<Vec3, 3>& from_a, const std::array<Vec3, 3>& from_b, double distance = 0) {
     int least = std::numeric_limits<int>::max();
+    if (distance != 0) least = parts(distance).exponent;
     for (const auto* t : {&from_a, &from_b}) {
       for (const Vec3& p : *t) {
         for (int k = 0; k < 3; ++k) {
@@ -209,15 +211,17 @@ struct IntegerPair::Big {
         }
       }
     }
-    const auto convert = [least](Corners<mpz_class>& to, const std::array<Vec3, 3>& from) {
+    const auto scale = [least](mpz_class& to, double from) {
+      const Parts x = parts(from);
+      to = static_cast<long>(x.mantissa);
+      if (x.mantissa != 0) to <<= x.exponent - least;
+    };
+    const auto convert = [&](Corners<mpz_class>& to, const std::array<Vec3, 3>& from) {
       for (int i = 0; i < 3; ++i) {
-        for (int k = 0; k < 3; ++k) {
-          const Parts x = parts(from[i][k]);
-          to[i][k] = static_cast<long>(x.mantissa);
-          if (x.mantissa != 0) to[i][k] <<= x.exponent - least;
-        }
+        for (int k = 0; k < 3; ++k) scale(to[i][k], from[i][k]);
       }
     };
+    scale(clearance, distance);
     convert(a, from_a);
     convert(b, from_b);
     // Every direction and every gap is about differences, and differences are shorter.
@@ -332,6 +336,22 @@ bool IntegerPair::only_shared_by(int direction) {
 
 bool integer_intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
   return !IntegerPair(a, b).separating_direction().has_value();
+}
+
+bool integer_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
+  const IntegerPair::Big pair(a, b, clearance);
+  Scratch<mpz_class> s;
+  for (int direction = 0; direction < kDirections; ++direction) {
+    make_direction(s, pair.a, pair.b, direction);
+    if (!has_gap(s, pair.a, pair.b)) continue;  // and leaves the projections in s
+    const auto [a_lo, a_hi] = std::minmax_element(s.on_a.begin(), s.on_a.end());
+    const auto [b_lo, b_hi] = std::minmax_element(s.on_b.begin(), s.on_b.end());
+    const mpz_class gap = *a_hi < *b_lo ? mpz_class(*b_lo - *a_hi) : mpz_class(*a_lo - *b_hi);
+    mpz_class square;  // of the direction's length
+    dot(square, s.d, s.d);
+    if (gap * gap > pair.clearance * pair.clearance * square) return false;
+  }
+  return true;
 }
 
 // ---- points ----

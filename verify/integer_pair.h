@@ -59,6 +59,8 @@ class IntegerPair {
   struct Big;
   Big& big();
 
+  friend bool integer_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                             double clearance);
   bool only_shared_by(int direction);
 
   std::array<std::array<Vec3, 3>, 2> corners_;
@@ -71,5 +73,10 @@ class IntegerPair {
 
 /// True iff the closed convex hulls share a point: iff none of the 38 directions separates them.
 bool integer_intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
+
+/// True iff the distance of the closed convex hulls is at most `clearance` (finite, >= 0): iff
+/// along none of the 38 directions the gap is longer. The direction between two closest points is a
+/// multiple of one of them, and along no direction is the gap longer than the distance.
+bool integer_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
 }  // namespace farcull
