@@ -116,7 +116,7 @@ void run_culled(const Scene& scene, Session& session, const Progress& progress, 
 
   const Clock exact;
   if (progress) progress("exact tests");
-  record.pairs = colliding_pairs(scene, candidates);
+  record.pairs = decide(scene, candidates).pairs;
   record.ms.exact = exact.ms();
   record.stages.push_back({.name = "exact",
                            .ran = true,

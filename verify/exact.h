@@ -74,13 +74,6 @@ struct Collisions {
 Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
                   const ExactQuestion& question = {});
 
-/// decide(), without neighbours' pairs and counts.
-inline std::vector<TrianglePair> colliding_pairs(
-    const Scene& scene, std::span<const TrianglePair> candidates,
-    unsigned threads = std::thread::hardware_concurrency()) {
-  return decide(scene, candidates, {.threads = threads}).pairs;
-}
-
 /// The pairs that count: triangles of different objects, and of one object where it is `self`.
 struct ExactResult {
   std::vector<TrianglePair> pairs;            // all that collide, sorted, each once

@@ -378,15 +378,15 @@ TEST(Exact, KeepsTheOrderOfCandidatesWhateverTheThreads) {
   ASSERT_GT(expected.size(), 1000u);
   ASSERT_LT(expected.size(), candidates.size() - 1000);
   for (const unsigned threads : {0u, 1u, 2u, 7u}) {
-    EXPECT_EQ(colliding_pairs(scene, candidates, threads), expected) << threads;
+    EXPECT_EQ(decide(scene, candidates, {.threads = threads}).pairs, expected) << threads;
   }
 }
 
 TEST(Exact, RefusesCandidatesOutOfRange) {
   const Scene scene = reference::scene_of({{kUnit}, {kUnit}});
-  EXPECT_THROW(colliding_pairs(scene, std::vector<TrianglePair>{{0, 2}}), std::logic_error);
-  EXPECT_THROW(colliding_pairs(Scene{}, std::vector<TrianglePair>{{0, 1}}), std::logic_error);
-  EXPECT_TRUE(colliding_pairs(scene, {}).empty());
+  EXPECT_THROW(decide(scene, std::vector<TrianglePair>{{0, 2}}), std::logic_error);
+  EXPECT_THROW(decide(Scene{}, std::vector<TrianglePair>{{0, 1}}), std::logic_error);
+  EXPECT_TRUE(decide(scene, {}).pairs.empty());
 }
 
 /// Objects of small triangles on a coarse grid: boxes are flat, points, touching and equal again
