@@ -33,7 +33,7 @@ constexpr int kSlices = 64;
 constexpr int kWholePixels = 16;
 /// A pixel with more entries is crowded: it is cut into kSubdivision^2 sub-pixels, and each of them
 /// again, up to kMaxLevel times, wherever that leaves at most half of the tests.
-constexpr int kCrowded = 256;
+constexpr int kCrowded = 1024;
 constexpr int kSubdivision = 8;
 constexpr int kMaxLevel = 3;
 /// A triangle that meets more pixels than this, and more than an eighth of the number of active

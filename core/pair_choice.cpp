@@ -16,7 +16,9 @@ constexpr int kLeastResolution = 16, kMostResolution = 4096;  // px
 
 // Work in units of one pixel that a triangle meets: measured ratios, rounded.
 constexpr double kPixelWork = 0.3;  // a pixel of the window, whether or not anything is there
-constexpr double kTestWork = 2.5;   // two intervals compared, as estimated: lists are uneven
+// Two intervals compared, for each that the estimate of evenly filled pixels gives: between objects
+// lists are uneven, which makes more tests.
+constexpr double kTestWork = 2.5, kTestWorkSelf = 0.25;
 // Of the pixels that triangles meet, those that the slices leave between different objects: at
 // least this part, and more where triangles are deep.
 constexpr double kLeftBySlices = 0.15;
@@ -98,7 +100,7 @@ double work(const Sample& sample, const Image& image, int resolution) {
   const double pixels = (image.width / pixel + 1) * (image.height / pixel + 1);
   const double left = sample.self ? 1 : std::clamp(2 * image.depth, kLeftBySlices, 1.0);
   const double tests = 0.25 * left * met * left * met / pixels;
-  return met + kPixelWork * pixels + kTestWork * tests;
+  return met + kPixelWork * pixels + (sample.self ? kTestWorkSelf : kTestWork) * tests;
 }
 
 int best_resolution(const Sample& sample, const Image& image, double& least) {

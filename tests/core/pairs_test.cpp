@@ -191,7 +191,7 @@ TEST(Pairs, DependOnNeitherThreadsNorMemoryNorEarlierCalls) {
 TEST(Pairs, CutCrowdedPixels) {
   lab::Random random(5);
   std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
-  for (int n = 0; n < 3000; ++n) {
+  for (int n = 0; n < 20000; ++n) {
     std::array<Vec3, 3> t;
     const Vec3 at(random.grid(0, 1, 0x1p-12), random.grid(0, 1, 0x1p-12),
                   random.grid(0, 1, 0x1p-12));
@@ -206,7 +206,7 @@ TEST(Pairs, CutCrowdedPixels) {
     const PairSettings settings{.views = parse_views("z"), .resolution = 2};
     const PairResult result = find_pairs(scene, settings, *backend);
     EXPECT_GT(result.views[0].counts.crowded, 0u);
-    EXPECT_LT(result.views[0].counts.tests, 3000u * 3000 / 8);
+    EXPECT_LT(result.views[0].counts.tests, std::uint64_t{20000} * 20000 / 8);
     EXPECT_EQ(missed(truth_of(scene), result.candidates), 0u);
   }
 }
