@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "experiments/mesh_text.h"
@@ -54,11 +55,9 @@ Json place_json(const Scene& scene, std::uint32_t triangle) {
 }
 
 Json claims_json(const Certificate::Claims& claims) {
-  return {{"box_pairs", claims.box_pairs},
-          {"kept", claims.kept},
-          {"culled", claims.culled},
-          {"separated", claims.separated},
-          {"meeting", claims.meeting}};
+  return {{"box_pairs", claims.box_pairs},   {"kept", claims.kept},
+          {"culled", claims.culled},         {"separated", claims.separated},
+          {"neighbours", claims.neighbours}, {"meeting", claims.meeting}};
 }
 
 double ns_per_pair(const CheckResult& result) {
@@ -103,9 +102,9 @@ std::string result_text(const Scene& scene, const CheckResult& result) {
   const Certificate::Claims& found = result.found;
   if (found.box_pairs > 0 || result.verdict == Verdict::proved) {
     out += fmt::format(
-        "pairs with overlapping boxes: {}; {} separated, {} meet\n"
+        "pairs with overlapping boxes: {}; {} separated, {} neighbours, {} meet\n"
         "called kept: {}; called culled: {}, of which {} meet\n",
-        found.box_pairs, found.separated, found.meeting, found.kept, found.culled,
+        found.box_pairs, found.separated, found.neighbours, found.meeting, found.kept, found.culled,
         result.culled_meeting);
   }
   out += "unattested:\n";
@@ -120,7 +119,10 @@ std::string result_text(const Scene& scene, const CheckResult& result) {
 int check_command(const CheckArguments& arguments) {
   const Certificate certificate = parse_certificate(
       read_file(arguments.certificate, kMaxCertificateBytes), clean_name(arguments.certificate));
-  const Scene scene = load_scene(arguments.scene);
+  Scene scene = load_scene(arguments.scene);
+  if (arguments.self) {
+    for (Object& object : scene.objects) object.self = true;
+  }
   const CheckResult result = check_certificate(certificate, scene);
   if (!arguments.json.empty()) {
     write_output(arguments.json, result_json(arguments, certificate, scene, result).dump(2) + "\n");
@@ -134,7 +136,7 @@ Certificate certificate_of(const Scene& scene, const RunRecord& record,
   const RunOptions& options = record.options;
   Certificate::Run run;
   run.method = to_string(options.method);
-  if (record.device) run.resolution = static_cast<std::uint64_t>(options.resolution);
+  if (record.device) run.resolution = static_cast<std::uint64_t>(resolution_of(options));
   run.offset = options.method == Method::far ? options.offset : "none";
   for (const ViewReport& view : record.views) {
     if (!view.drawn) continue;
@@ -142,12 +144,21 @@ Certificate certificate_of(const Scene& scene, const RunRecord& record,
                          static_cast<std::uint64_t>(view.height), view.radius_px});
     run.radius_px = std::max(run.radius_px, view.radius_px);
   }
+  for (const PairView& view : record.pair_views) {
+    if (!view.looked) continue;
+    run.views.push_back({view.name, static_cast<std::uint64_t>(view.width),
+                         static_cast<std::uint64_t>(view.height), 0});
+    run.resolution = std::max({run.resolution, run.views.back().width, run.views.back().height});
+  }
   if (record.device) {
     const GlInfo& device = *record.device;
     run.device = {device.vendor, device.renderer, device.version, device.glsl};
     run.assumptions = assumptions();
   }
-  return make_certificate(scene, kept, record.pairs, std::move(run));
+  std::vector<TrianglePair> colliding;
+  std::merge(record.pairs.begin(), record.pairs.end(), record.neighbour_pairs.begin(),
+             record.neighbour_pairs.end(), std::back_inserter(colliding));
+  return make_certificate(scene, kept, colliding, std::move(run));
 }
 
 }  // namespace farcull

@@ -13,6 +13,7 @@ namespace farcull {
 struct CheckArguments {
   std::string certificate;         // a file
   std::vector<std::string> scene;  // as of `farcull run`
+  bool self = false;               // the same: every object is tested against itself
   std::string json;                // "" for none, "-" for standard output instead of the text
 };
 

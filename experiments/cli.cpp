@@ -3,25 +3,24 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <utility>
 
 #include "commit.h"
 #include "core/error.h"
+#include "experiments/builtin_motion.h"
 #include "experiments/builtin_scenes.h"
 #include "experiments/check.h"
 #include "experiments/cli_bench.h"
 #include "experiments/cli_experiment.h"
 #include "experiments/cli_parts.h"
+#include "experiments/cli_run.h"
 #include "experiments/compare.h"
 #include "experiments/doctor.h"
 #include "experiments/output.h"
-#include "experiments/run.h"
 #include "experiments/scene_file.h"
 #include "experiments/tables.h"
 
@@ -30,144 +29,9 @@ namespace {
 
 constexpr int kDone = 0, kBroken = 1, kBad = 2;
 
-void check(const std::vector<std::string>& scene) {
-  if (std::find(scene.begin(), scene.end(), "") != scene.end())
-    throw Error("SCENE", "a name is empty", "name mesh files, a scene file or a built-in scene");
-}
-
-std::optional<std::uint64_t> seed_of(const std::vector<std::string>& scene) {
-  return scene.size() == 1 ? builtin_seed(scene[0]) : std::nullopt;
-}
-
-template <class Value>
-Value choose(const std::string& option, const std::string& given,
-             const std::map<std::string, Value>& values) {
-  const auto found = values.find(given);
-  if (found != values.end()) return found->second;
-  std::string known;
-  for (const auto& [name, value] : values) known += (known.empty() ? "" : " or ") + name;
-  throw Error(option, "'" + given + "' is no choice", "give " + known);
-}
-
-// The options as they stand on the command line; parsed into RunOptions after CLI11 is done, so
-// that every refusal is an Error with a remedy.
-struct RunArguments {
-  std::vector<std::string> scene;
-  Text method, resolution, radius, offset, depth, depth_format, query, views, device;
-  Outputs outputs;
-  bool no_verify = false;
-
-  RunOptions parse() const {
-    RunOptions out;
-    if (method) out.method = parse_method(*method);
-    if (resolution) out.resolution = parse_resolution(*resolution);
-    if (radius) out.radius = parse_radius(*radius);
-    if (offset) out.offset = *offset;
-    if (depth) {
-      out.depth = choose<DepthMode>(
-          "--depth", *depth, {{"fragment", DepthMode::fragment}, {"fixed", DepthMode::fixed}});
-    }
-    if (depth_format) {
-      out.depth_format =
-          choose<DepthFormat>("--depth-format", *depth_format,
-                              {{"32f", DepthFormat::float32}, {"24", DepthFormat::fixed24}});
-    }
-    if (query) {
-      out.query = choose<QueryMode>(
-          "--query", *query, {{"flags", QueryMode::flags}, {"occlusion", QueryMode::occlusion}});
-    }
-    if (views) out.views = *views;
-    out.device = device_of(device);
-    out.verify = !no_verify;
-    out.seed = seed_of(scene);
-    validate(out);
-    refuse_idle(out.method);
-    return out;
-  }
-
- private:
-  // An option that the method has no use for was meant for something: no result without it.
-  void refuse_idle(Method chosen) const {
-    const auto refuse = [&](const char* option, const Text& given) {
-      if (!given) return;
-      throw Error(option, "has no meaning for --method " + to_string(chosen),
-                  std::string("leave ") + option + " out, or use --method far");
-    };
-    if (chosen == Method::far) return;
-    refuse("--radius", radius);
-    refuse("--offset", offset);
-    if (chosen == Method::cullide) return;
-    refuse("--depth", depth);
-    refuse("--depth-format", depth_format);
-    refuse("--query", query);
-  }
-};
-
-constexpr const char* kSceneHelp =
-    "mesh files (.obj .off .ply .stl), each an object;\n"
-    "or one scene file (.json); or one built-in scene\n"
-    "(`farcull scenes` lists them)";
-void add_run_options(CLI::App& command, RunArguments& a) {
-  command.add_option("SCENE", a.scene, kSceneHelp)->required()->type_name("");
-  const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
-    command.add_option(name, text, help)->type_name(type);
-  };
-  add("--method", a.method, "METHOD", "far, cullide or exact; default far");
-  add("--resolution", a.resolution, "N",
-      "pixels along the larger side of each view's window;\ndefault 512");
-  add("--radius", a.radius, "RADIUS",
-      "of the ball that fattens a primitive, for far: budget,\n"
-      "published, or a factor on the budget; default budget");
-  add("--offset", a.offset, "OFFSET",
-      "what a primitive is fattened to, for far: obb or\nexact; default obb");
-  add("--depth", a.depth, "fragment|fixed",
-      "entry and exit depth by the fragment program\n"
-      "(reliable), or fixed function as published;\n"
-      "default fragment for far, fixed for cullide");
-  add("--depth-format", a.depth_format, "32f|24", "of the depth buffer; default 32f");
-  add("--query", a.query, "flags|occlusion",
-      "how visibility is asked; default flags, but\n"
-      "occlusion with --depth-format 24");
-  add("--views", a.views, "VIEWS", kViewsHelp);
-  add("--device", a.device, "DEVICE", kDeviceHelp);
-  add("--pairs", a.outputs.pairs, "FILE",
-      "write the colliding pairs as CSV to this file; - for\n"
-      "standard output, without the table");
-  add("--json", a.outputs.json, "FILE", kJsonHelp);
-  add("--certificate", a.outputs.certificate, "FILE",
-      "write evidence for every pair to this file, for\n`farcull check`");
-}
-
-std::string missed(const RunRecord& record) {
-  return fmt::format("{} culled pairs that collide: {}", describe(record.options),
-                     grouped(record.verification->false_negatives));
-}
-
-int run_command(const RunArguments& arguments, bool strict) {
-  const RunOptions options = arguments.parse();
-  check(arguments.scene);
-  const Outputs outputs = checked(arguments.outputs);
-  TerminalProgress terminal;
-  const Progress progress = terminal.callback();
-  if (progress) progress("reading the scene");
-  const Scene scene = load_scene(arguments.scene);
-  Session session(options.device);
-  const RunRecord record = run_scene(scene, options, session, progress);
-  terminal.clear();
-  if (outputs.pairs) write_output(*outputs.pairs, pairs_csv(scene, record.pairs));
-  if (outputs.certificate) {
-    write_output(*outputs.certificate, to_text(certificate_of(scene, record, record.kept)));
-  }
-  if (outputs.json) write_json(to_json(scene, record), *outputs.json);
-  if (!outputs.to_stdout()) write_output("-", run_table(scene, record));
-  if (!broken(record, strict)) return kDone;
-  complain(missed(record));
-  return kBroken;
-}
-
 struct CompareCommand {
   CompareArguments arguments;
-  Text device;
+  Text device, views, clearance;
   Outputs outputs;
 };
 
@@ -175,13 +39,20 @@ int compare_command(const CompareCommand& command) {
   CompareArguments arguments = command.arguments;
   arguments.options.device = device_of(command.device);
   arguments.options.seed = seed_of(arguments.scene);
+  if (command.views) {
+    const bool pairs =
+        !arguments.methods || arguments.methods->find("far-pairs") != std::string::npos;
+    arguments.options.views = parse_views_option(*command.views, pairs);
+  }
+  if (command.clearance) arguments.options.clearance = parse_clearance(*command.clearance);
   validate(arguments);
-  check(arguments.scene);
+  check_scene(arguments.scene);
   const Outputs outputs = checked(command.outputs);
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
-  const Scene scene = load_scene(arguments.scene);
+  Scene scene = load_scene(arguments.scene);
+  if (arguments.self) make_self(scene);
   const Comparison comparison = compare(scene, arguments, progress);
   terminal.clear();
   const std::vector<RunRecord> records = comparison.median_records();
@@ -208,6 +79,7 @@ int scenes_command(const Outputs& asked) {
                     {"objects", scene.objects},
                     {"triangles", scene.triangles},
                     {"needs_meshes", scene.needs_meshes},
+                    {"moves", has_motion(scene.name)},
                     {"seed", nullptr},
                     {"size", nullptr},
                     {"description", scene.description}});
@@ -219,6 +91,9 @@ int scenes_command(const Outputs& asked) {
     sizes += fmt::format("\n{0} takes its number of {1}, {2} to {3}, as in {0}:{4}.\n", scene.name,
                          size.what, grouped(size.least), grouped(size.most), 100 * size.usual);
   }
+  Table motions("ll");
+  for (const BuiltinMotion& motion : builtin_motions())
+    motions.add({motion.scene, motion.description});
   Table suffixes("ll");
   for (const SceneSuffix& suffix : scene_suffixes())
     suffixes.add({suffix.suffix, suffix.description});
@@ -226,7 +101,10 @@ int scenes_command(const Outputs& asked) {
   if (!outputs.to_stdout()) {
     write_output("-", table.text() + sizes +
                           "\nEvery name takes suffixes, as in two-spheres@far:\n" +
-                          suffixes.text());
+                          suffixes.text() +
+                          "\nThese move, as in farcull run two-bunnies --method "
+                          "far-pairs --frames 30:\n" +
+                          motions.text());
   }
   return kDone;
 }
@@ -300,32 +178,13 @@ int command_line(int argc, char** argv) {
       "Examples:\n"
       "  farcull run two-spheres\n"
       "  farcull run a.obj b.ply --resolution 1024 --pairs pairs.csv\n"
+      "  farcull run cloth.obj --method far-pairs --self\n"
       "  farcull compare two-tori\n"
       "  farcull doctor");
 
-  RunArguments run, verify;
-  CLI::App* run_app =
-      app.add_subcommand("run", "cull a scene, test what is left, account for every pair");
-  add_run_options(*run_app, run);
-  run_app->add_flag("--no-verify", run.no_verify, "leave out the accounting of all pairs")
-      ->disable_flag_override();
-  run_app->footer(
-      "Examples:\n"
-      "  farcull run two-spheres\n"
-      "  farcull run bunny.off dragon.off --method cullide --resolution 256\n"
-      "  farcull run scene.json --json - | jq .verification\n"
-      "  farcull run two-spheres --radius published --depth fixed --depth-format 24\n\n"
-      "Exit status 1: a method that promises missed a pair. far promises at the budget radius or\n"
-      "more with fragment depth; farcull verify asks it of every method.");
-  CLI::App* verify_app =
-      app.add_subcommand("verify", "run; status 1 if any culled pair intersects");
-  add_run_options(*verify_app, verify);
-  verify_app->footer(
-      "Examples:\n"
-      "  farcull verify two-spheres\n"
-      "  farcull verify two-spheres --method cullide --resolution 64\n"
-      "  farcull verify scene.json --json record.json\n\n"
-      "Exit status 1: a culled pair intersects, whatever the method.");
+  RunCommand run(false), verify(true);
+  CLI::App* run_app = run.add_to(app);
+  CLI::App* verify_app = verify.add_to(app);
 
   CompareCommand comparison;
   CLI::App* compare_app = app.add_subcommand("compare", "methods and resolutions side by side");
@@ -334,11 +193,11 @@ int command_line(int argc, char** argv) {
       ->type_name("");
   compare_app
       ->add_option("--methods", comparison.arguments.methods,
-                   "separated by commas;\ndefault far,cullide,exact")
+                   "separated by commas;\ndefault far,cullide,far-pairs,exact")
       ->type_name("LIST");
   compare_app
       ->add_option("--resolutions", comparison.arguments.resolutions,
-                   "separated by commas;\ndefault 128,256,512,1024,2048")
+                   "separated by commas;\ndefault 128,256,512,1024,2048; for far-pairs auto")
       ->type_name("LIST");
   compare_app
       ->add_option("--offsets", comparison.arguments.offsets,
@@ -348,14 +207,16 @@ int command_line(int argc, char** argv) {
       ->add_option("--repeat", comparison.arguments.repeat,
                    "runs of each, the one with the median time is shown;\ndefault 1")
       ->type_name("N");
-  compare_app->add_option("--views", comparison.arguments.options.views, kViewsHelp)
-      ->type_name("VIEWS");
-  compare_app->add_option("--device", comparison.device, kDeviceHelp)->type_name("DEVICE");
+  compare_app->add_option("--views", comparison.views, kViewsHelp)->type_name("VIEWS");
+  compare_app->add_option("--device", comparison.device, kRunDeviceHelp)->type_name("DEVICE");
+  compare_app->add_flag("--self", comparison.arguments.self, kSelfHelp)->disable_flag_override();
+  compare_app->add_option("--clearance", comparison.clearance, kClearanceHelp)->type_name("D");
   compare_app->add_option("--json", comparison.outputs.json, kJsonHelp)->type_name("FILE");
   compare_app->footer(
       "Examples:\n"
       "  farcull compare two-tori\n"
-      "  farcull compare two-bunnies --methods far,exact --resolutions 256,512 --repeat 5\n\n"
+      "  farcull compare two-bunnies --methods far,exact --resolutions 256,512 --repeat 5\n"
+      "  farcull compare mannequin-devil --methods far-pairs,exact --self\n\n"
       "Exit status 1: a method that promises missed a pair.");
 
   BenchCommand bench;
@@ -378,6 +239,10 @@ int command_line(int argc, char** argv) {
       ->required()
       ->type_name("");
   check_app->add_option("SCENE", certificate.scene, kSceneHelp)->required()->type_name("");
+  check_app
+      ->add_flag("--self", certificate.self,
+                 "every object was tested against itself, as by\nfarcull run --self")
+      ->disable_flag_override();
   check_app->add_option("--json", check_json, kJsonHelp)->type_name("FILE");
   check_app->footer(
       "Examples:\n"
@@ -404,12 +269,12 @@ int command_line(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
       throw refusal(app, error);
     }
-    if (*run_app) return run_command(run, false);
-    if (*verify_app) return run_command(verify, true);
+    if (*run_app) return run.run();
+    if (*verify_app) return verify.run();
     if (*compare_app) return compare_command(comparison);
     if (*bench_app) return bench.run();
     if (*check_app) {
-      check(certificate.scene);
+      check_scene(certificate.scene);
       certificate.json = checked({.json = check_json, .pairs = {}, .certificate = {}, .csv = {}})
                              .json.value_or("");
       return check_command(certificate);

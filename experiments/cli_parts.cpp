@@ -3,6 +3,11 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -11,9 +16,11 @@
 #include <vector>
 
 #include "core/error.h"
+#include "experiments/builtin_scenes.h"
 #include "experiments/mesh.h"
 #include "experiments/mesh_text.h"
 #include "experiments/output.h"
+#include "experiments/tables.h"
 
 namespace farcull {
 
@@ -77,6 +84,45 @@ Outputs checked(Outputs outputs) {
   }
   if (!outputs.to_stdout()) check_output("-");
   return outputs;
+}
+
+void check_scene(const std::vector<std::string>& scene) {
+  if (std::find(scene.begin(), scene.end(), "") != scene.end())
+    throw Error("SCENE", "a name is empty", "name mesh files, a scene file or a built-in scene");
+}
+
+std::optional<std::uint64_t> seed_of(const std::vector<std::string>& scene) {
+  return scene.size() == 1 ? builtin_seed(scene[0]) : std::nullopt;
+}
+
+double parse_clearance(const std::string& text) {
+  double value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc() || end != text.data() + text.size() || !std::isfinite(value) ||
+      value < 0) {
+    throw Error("--clearance", "'" + text + "' is no distance",
+                "give a finite distance in world units, 0 or more");
+  }
+  return value;
+}
+
+std::string parse_views_option(const std::string& text, bool may_choose) {
+  if (text.empty()) throw Error("--views", "its value is empty", "give directions, as in x,y,z");
+  if (text != "auto") return text;
+  if (!may_choose) {
+    throw Error("--views", "auto has a meaning for far-pairs alone",
+                "give directions, as in x,y,z, or use far-pairs");
+  }
+  return "";
+}
+
+void make_self(Scene& scene) {
+  for (Object& object : scene.objects) object.self = true;
+}
+
+std::string missed(const RunRecord& record) {
+  return fmt::format("{} culled pairs that collide: {}", describe(record.options),
+                     grouped(record.verification->false_negatives));
 }
 
 std::string device_of(const Text& device) {

@@ -4,8 +4,10 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/cull.h"
+#include "experiments/run.h"
 
 namespace farcull {
 
@@ -45,6 +47,21 @@ struct Outputs {
 /// run.
 Outputs checked(Outputs outputs);
 
+/// Throws Error where a name of the scene is empty.
+void check_scene(const std::vector<std::string>& scene);
+/// What the scene was drawn with, where it is a random built-in one.
+std::optional<std::uint64_t> seed_of(const std::vector<std::string>& scene);
+
+/// A distance in world units. Throws Error naming --clearance.
+double parse_clearance(const std::string& text);
+/// --views as RunOptions takes it: `auto` is "". Throws Error where the value is empty.
+std::string parse_views_option(const std::string& text, bool may_choose);
+/// --self: every object of the scene is tested against itself.
+void make_self(Scene& scene);
+
+/// What `record` broke, for complain().
+std::string missed(const RunRecord& record);
+
 /// Empty where none is asked for. Throws Error where the value is empty.
 std::string device_of(const Text& device);
 
@@ -52,10 +69,26 @@ void write_json(const nlohmann::ordered_json& json, const std::string& path);
 
 inline constexpr const char* kViewsHelp =
     "axes or directions to look along, by commas, as in\n"
-    "x,-y,1:1:0.5; default x,y,z";
+    "x,-y,1:1:0.5; default x,y,z; for far-pairs auto:\n"
+    "chosen by the scene";
 inline constexpr const char* kDeviceHelp =
     "software, hardware or a number that `farcull doctor`\n"
     "lists; default hardware first, then software";
+inline constexpr const char* kRunDeviceHelp =
+    "cpu (far-pairs), software, hardware or a number that\n"
+    "`farcull doctor` lists; default hardware first, then\n"
+    "software; for far-pairs hardware first, then cpu";
+inline constexpr const char* kSelfHelp =
+    "every object is tested against itself as well\n"
+    "(far-pairs, exact); collisions of triangles that share\n"
+    "a vertex position are listed apart";
+inline constexpr const char* kClearanceHelp =
+    "pairs at this distance or less collide, in world\n"
+    "units (far-pairs, exact); default 0";
+inline constexpr const char* kSceneHelp =
+    "mesh files (.obj .off .ply .stl), each an object;\n"
+    "or one scene file (.json); or one built-in scene\n"
+    "(`farcull scenes` lists them)";
 inline constexpr const char* kJsonHelp =
     "write the record as JSON to this file; - for standard\n"
     "output, without the table";

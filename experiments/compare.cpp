@@ -32,18 +32,51 @@ int parse_repeat(const std::string& text) {
   return value;
 }
 
-std::vector<RunOptions> cells_of(const CompareArguments& arguments) {
+constexpr const char* kAllMethods = "far,cullide,far-pairs,exact";
+constexpr const char* kBeyondCulling = "far-pairs,exact";
+constexpr const char* kUsualResolutions = "128,256,512,1024,2048";
+constexpr const char* kAuto = "auto";
+
+// What a method is run at; `exact` is, once.
+std::vector<int> resolutions_of(const CompareArguments& arguments, Method method) {
+  const bool pairs = method == Method::far_pairs;
+  if (method == Method::exact) return {0};
+  const std::string text = arguments.resolutions.value_or(pairs ? kAuto : kUsualResolutions);
+  std::vector<int> out;
+  for (const std::string& resolution : split(text)) {
+    if (resolution != kAuto) {
+      out.push_back(parse_resolution(resolution, "--resolutions"));
+      if (pairs) require_pair_resolution(out.back(), "--resolutions");
+    } else if (pairs) {
+      out.push_back(0);
+    }
+  }
+  if (out.empty()) {
+    throw Error("--resolutions", "auto has no meaning for " + to_string(method),
+                "give a number of pixels as well, or --methods far-pairs");
+  }
+  return out;
+}
+
+// self: whether an object is tested against itself.
+std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
   std::vector<RunOptions> cells;
-  for (const std::string& method : split(arguments.methods)) {
+  const bool beyond = self || arguments.options.clearance > 0;
+  for (const std::string& method :
+       split(arguments.methods.value_or(beyond ? kBeyondCulling : kAllMethods))) {
     RunOptions options = arguments.options;
     options.method = parse_method(method, "--methods");
+    if (self && (options.method == Method::far || options.method == Method::cullide)) {
+      throw Error("--methods",
+                  method + " tests no object against itself, as one of the scene has to be",
+                  "give far-pairs or exact");
+    }
     for (const std::string& offset : split(arguments.offsets)) {
       if (options.method == Method::far) options.offset = offset;
-      for (const std::string& resolution : split(arguments.resolutions)) {
-        options.resolution = parse_resolution(resolution, "--resolutions");
+      for (const int resolution : resolutions_of(arguments, options.method)) {
+        options.resolution = resolution;
         validate(options);
         cells.push_back(options);
-        if (options.method == Method::exact) break;
       }
       if (options.method != Method::far) break;
     }
@@ -56,7 +89,8 @@ std::vector<RunOptions> cells_of(const CompareArguments& arguments) {
 void require_room(const std::vector<RunOptions>& cells, Session& session) {
   int largest = 0;
   for (const RunOptions& cell : cells) {
-    if (cell.method != Method::exact) largest = std::max(largest, cell.resolution);
+    if (cell.method == Method::far || cell.method == Method::cullide)
+      largest = std::max(largest, cell.resolution);
   }
   if (largest <= 8192) return;
   const int limit = GlCanvas(session.context(), DepthMode::fixed, {}).limits().max_resolution;
@@ -85,13 +119,13 @@ std::vector<RunRecord> Comparison::median_records() const {
 
 void validate(const CompareArguments& arguments) {
   parse_repeat(arguments.repeat);
-  cells_of(arguments);
+  cells_of(arguments, arguments.self);
 }
 
 Comparison compare(const Scene& scene, const CompareArguments& arguments,
                    const Progress& progress) {
   const int repeats = parse_repeat(arguments.repeat);
-  const std::vector<RunOptions> cells = cells_of(arguments);
+  const std::vector<RunOptions> cells = cells_of(arguments, has_self(scene));
   Comparison out;
   out.runs.resize(cells.size());
   Session session(arguments.options.device);

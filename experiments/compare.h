@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,11 +12,15 @@ namespace farcull {
 
 struct CompareArguments {
   std::vector<std::string> scene;
-  std::string methods = "far,cullide,exact";
-  std::string resolutions = "128,256,512,1024,2048";
+  /// By commas; where none is given all, or those that can where an object is tested against
+  /// itself or there is a clearance.
+  std::optional<std::string> methods;
+  /// px, by commas; `auto` for far-pairs alone, which takes nothing else where none is given.
+  std::optional<std::string> resolutions;
   std::string offsets = "obb";  // for far
+  bool self = false;            // every object was made to be tested against itself
   std::string repeat = "1";
-  RunOptions options;  // views, device and seed for all
+  RunOptions options;  // views, device, clearance and seed for all
 };
 
 struct Comparison {
@@ -29,8 +34,8 @@ struct Comparison {
 void validate(const CompareArguments& arguments);
 
 /// Runs every method at every resolution (`exact` once; far with every offset), each `repeat`
-/// times. Throws Error for bad arguments, and before the first run for a resolution beyond the
-/// device.
+/// times. `auto` is passed over by far and cullide where they have another resolution. Throws Error
+/// for bad arguments, and before the first run for a resolution beyond the device.
 Comparison compare(const Scene& scene, const CompareArguments& arguments,
                    const Progress& progress = {});
 

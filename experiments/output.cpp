@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -35,21 +36,51 @@ Json view_json(const ViewReport& view) {
           {"budget", budget}};
 }
 
+Json view_json(const PairView& view) {
+  const PairCounts& c = view.counts;
+  return {{"name", view.name},
+          {"looked", view.looked},
+          {"reason", view.reason},
+          {"width", view.width},
+          {"height", view.height},
+          {"pixel_size", view.pixel_size},
+          {"widening_px", view.widening_px},
+          {"listed", c.listed},
+          {"entries", c.entries},
+          {"crowded", c.crowded},
+          {"large", c.large},
+          {"tests", c.tests},
+          {"bands", c.bands},
+          {"undrawable", c.undrawable}};
+}
+
 Json budget_json(const std::vector<ViewReport>& views) {
   const ViewReport* widest = widest_budget(views);
   return widest ? view_json(*widest)["budget"] : Json(nullptr);
 }
 
 Json device_json(const RunRecord& record) {
+  if (record.on_cpu) return {{"cpu", record.device_note}};
   if (!record.device) return {{"none", record.device_note}};
   const GlInfo& device = *record.device;
-  return {{"vendor", device.vendor},
-          {"renderer", device.renderer},
-          {"version", device.version},
-          {"glsl", device.glsl},
-          {"subpixel_bits", device.subpixel_bits},
-          {"depth_bits", record.depth_bits},
-          {"reset_detection", device.reset_detection}};
+  Json out = {{"vendor", device.vendor},
+              {"renderer", device.renderer},
+              {"version", device.version},
+              {"glsl", device.glsl},
+              {"subpixel_bits", device.subpixel_bits},
+              {"depth_bits", record.depth_bits},
+              {"reset_detection", device.reset_detection}};
+  if (record.options.method == Method::far_pairs) {
+    out.erase("depth_bits");
+    out["reason"] = record.device_note;
+  }
+  return out;
+}
+
+std::uint64_t self_objects(const Scene& scene) {
+  return static_cast<std::uint64_t>(
+      std::count_if(scene.objects.begin(), scene.objects.end(),
+                    [](const Object& object) { return object.self; }));
 }
 
 // A triangle as a person finds it again: its object, its place there and the face of the file it
@@ -180,9 +211,13 @@ int write_and_close(std::FILE* file, const std::string& text, bool to_disk) {
 
 nlohmann::ordered_json to_json(const Scene& scene, const RunRecord& record) {
   const RunOptions& o = record.options;
-  const bool draws = o.method != Method::exact;  // the others have no use for a resolution
+  const bool draws = o.method == Method::far || o.method == Method::cullide;
+  const bool pairs = o.method == Method::far_pairs;
+  Json resolution = nullptr;
+  if (draws || pairs) resolution = resolution_of(o) > 0 ? Json(resolution_of(o)) : Json("auto");
   Json views = Json::array();
   for (const ViewReport& view : record.views) views.push_back(view_json(view));
+  for (const PairView& view : record.pair_views) views.push_back(view_json(view));
   Json stages = Json::array();
   for (const Stage& s : record.stages) {
     stages.push_back({{"name", s.name},
@@ -198,11 +233,12 @@ nlohmann::ordered_json to_json(const Scene& scene, const RunRecord& record) {
   return {{"scene",
            {{"name", scene.name},
             {"objects", scene.objects.size()},
+            {"self_objects", self_objects(scene)},
             {"triangles", scene.triangles.size()},
             {"degenerate_triangles", record.degenerate_triangles},
             {"hash", record.scene_hash}}},
           {"method", to_string(o.method)},
-          {"resolution", draws ? Json(o.resolution) : Json(nullptr)},
+          {"resolution", resolution},
           {"radius", o.method == Method::far ? Json(radius_text(o.radius)) : Json(nullptr)},
           {"offset", o.method == Method::far ? Json(o.offset) : Json(nullptr)},
           {"depth", !draws ? Json(nullptr)
@@ -211,6 +247,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const RunRecord& record) {
            draws ? Json(o.depth_format == DepthFormat::float32 ? "32f" : "24") : Json(nullptr)},
           {"query",
            draws ? Json(query_of(o) == QueryMode::flags ? "flags" : "occlusion") : Json(nullptr)},
+          {"clearance", draws ? Json(nullptr) : Json(o.clearance)},
           {"promises", record.promises},
           {"views", views},
           {"budget", budget_json(record.views)},
@@ -219,6 +256,8 @@ nlohmann::ordered_json to_json(const Scene& scene, const RunRecord& record) {
           {"pcs", {{"objects", record.pcs_objects}, {"triangles", record.pcs_triangles}}},
           {"candidate_pairs", record.candidate_pairs},
           {"colliding_pairs", record.pairs.size()},
+          {"neighbour_pairs", record.neighbour_pairs.size()},
+          {"neighbours", record.neighbours},
           {"verification", verification_json(scene, record.verification)},
           {"time_ms",
            {{"setup", record.ms.setup},
@@ -229,16 +268,31 @@ nlohmann::ordered_json to_json(const Scene& scene, const RunRecord& record) {
           {"commit", FARCULL_COMMIT}};
 }
 
-std::string pairs_csv(const Scene& scene, const std::vector<TrianglePair>& pairs) {
+std::string pairs_header(const Scene& scene) {
+  return std::string("object_a,triangle_a,object_b,triangle_b") +
+         (has_self(scene) ? ",neighbours\n" : "\n");
+}
+
+std::string pairs_rows(const Scene& scene, const RunRecord& record, const std::string& before) {
   const std::vector<std::uint32_t> owner = owners(scene);
+  const bool self = has_self(scene);
   fmt::memory_buffer out;
-  fmt::format_to(std::back_inserter(out), "object_a,triangle_a,object_b,triangle_b\n");
-  for (const TrianglePair& p : pairs) {
-    fmt::format_to(std::back_inserter(out), "{},{},{},{}\n", owner[p.a],
+  const auto add = [&](const TrianglePair& p, const char* neighbours) {
+    fmt::format_to(std::back_inserter(out), "{}{},{},{},{}{}\n", before, owner[p.a],
                    p.a - scene.objects[owner[p.a]].first_triangle, owner[p.b],
-                   p.b - scene.objects[owner[p.b]].first_triangle);
+                   p.b - scene.objects[owner[p.b]].first_triangle, self ? neighbours : "");
+  };
+  auto next = record.neighbour_pairs.begin();
+  for (const TrianglePair& p : record.pairs) {
+    for (; next != record.neighbour_pairs.end() && *next < p; ++next) add(*next, ",1");
+    add(p, ",0");
   }
+  for (; next != record.neighbour_pairs.end(); ++next) add(*next, ",1");
   return fmt::to_string(out);
+}
+
+std::string pairs_csv(const Scene& scene, const RunRecord& record) {
+  return pairs_header(scene) + pairs_rows(scene, record, "");
 }
 
 void check_output(const std::string& path) {

@@ -13,8 +13,12 @@ namespace farcull {
 nlohmann::ordered_json to_json(const Scene& scene, const RunRecord& record);
 
 /// object_a,triangle_a,object_b,triangle_b: 0-based, triangles within their object, one colliding
-/// pair a line, sorted.
-std::string pairs_csv(const Scene& scene, const std::vector<TrianglePair>& pairs);
+/// pair a line, sorted. Where an object of the scene is tested against itself, colliding neighbours
+/// are among them and a fifth column `neighbours` tells them: 1, else 0.
+std::string pairs_csv(const Scene& scene, const RunRecord& record);
+/// Its parts, `before` at the start of each row.
+std::string pairs_header(const Scene& scene);
+std::string pairs_rows(const Scene& scene, const RunRecord& record, const std::string& before);
 
 /// Throws Error naming the path if write_output would refuse it for what is known before anything
 /// is written: no such folder, a directory, no permission, a closed standard output. So a run of an

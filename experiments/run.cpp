@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <cmath>
 
 #include "core/box_join.h"
 #include "core/error.h"
 #include "core/plan.h"
+#include "experiments/run_pairs.h"
 #include "offsets/exact.h"
 #include "offsets/obb.h"
 #include "verify/exact.h"
@@ -16,33 +17,13 @@
 namespace farcull {
 namespace {
 
-class Clock {
- public:
-  double ms() const {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_)
-        .count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
+constexpr int kUsualResolution = 512;
+constexpr const char* kUsualViews = "x,y,z";
 
 Fattener fattener_of(const RunOptions& options) {
   if (options.method == Method::cullide) return raw_triangles();
   if (options.offset == "exact") return exact_fattener();
   return depth_of(options) == DepthMode::fragment ? obb_fattener() : obb_surface_fattener();
-}
-
-std::uint64_t count_objects(const Scene& scene, const std::vector<std::uint32_t>& triangles) {
-  std::uint64_t objects = 0;
-  std::size_t t = 0;
-  for (const Object& object : scene.objects) {
-    const std::size_t end = static_cast<std::size_t>(object.first_triangle) + object.triangle_count;
-    const std::size_t before = t;
-    while (t < triangles.size() && triangles[t] < end) ++t;
-    objects += t > before;
-  }
-  return objects;
 }
 
 // Culls on a canvas of its own, or says in the record why nothing had to be drawn.
@@ -71,8 +52,8 @@ std::vector<std::uint32_t> cull_stage(const Scene& scene, const Plan& plan, Sess
                            .ms = record.ms.setup,
                            .unit = ""});
 
-  CullSettings settings{.views = parse_views(options.views),
-                        .resolution = options.resolution,
+  CullSettings settings{.views = parse_views(views_of(options)),
+                        .resolution = resolution_of(options),
                         .fattener = fattener,
                         .radius = options.radius,
                         .economy = options.method == Method::far};
@@ -129,12 +110,16 @@ void run_culled(const Scene& scene, Session& session, const Progress& progress, 
 
 void run_exact(const Scene& scene, const Progress& progress, RunRecord& record) {
   if (progress) progress("exact tests of every pair");
-  const ExactResult result = all_colliding_pairs(scene);
+  ExactResult result = all_colliding_pairs(scene, {.clearance = record.options.clearance});
   record.device_note = "the method draws nothing";
   record.pcs_triangles = scene.triangles.size();
   for (const Object& object : scene.objects) record.pcs_objects += object.triangle_count > 0;
   record.candidate_pairs = result.box_pairs;
-  record.pairs = result.pairs;
+  record.pairs = std::move(result.pairs);
+  record.neighbour_pairs = std::move(result.neighbour_pairs);
+  record.neighbours = result.neighbours;
+  std::set_union(record.pairs.begin(), record.pairs.end(), record.neighbour_pairs.begin(),
+                 record.neighbour_pairs.end(), std::back_inserter(record.kept));
   record.ms.cull = result.join_ms;
   record.ms.exact = result.predicates_ms;
   record.stages.push_back({.name = "join",
@@ -149,7 +134,7 @@ void run_exact(const Scene& scene, const Progress& progress, RunRecord& record) 
                            .reason = "exact predicates on the candidates",
                            .ms = result.predicates_ms,
                            .in = result.box_pairs,
-                           .out = result.pairs.size(),
+                           .out = record.kept.size(),
                            .unit = "pairs"});
 }
 
@@ -161,6 +146,8 @@ std::string to_string(Method method) {
       return "far";
     case Method::cullide:
       return "cullide";
+    case Method::far_pairs:
+      return "far-pairs";
     case Method::exact:
       return "exact";
   }
@@ -168,10 +155,10 @@ std::string to_string(Method method) {
 }
 
 Method parse_method(const std::string& name, const std::string& option) {
-  for (const Method method : {Method::far, Method::cullide, Method::exact}) {
+  for (const Method method : {Method::far, Method::cullide, Method::far_pairs, Method::exact}) {
     if (name == to_string(method)) return method;
   }
-  throw Error(option, "'" + name + "' is no method", "give far, cullide or exact");
+  throw Error(option, "'" + name + "' is no method", "give far, cullide, far-pairs or exact");
 }
 
 int parse_resolution(const std::string& text, const std::string& option) {
@@ -198,6 +185,24 @@ RadiusRule parse_radius(const std::string& text) {
   return {.published = false, .factor = factor};
 }
 
+void require_pair_resolution(int resolution, const std::string& option) {
+  if (resolution <= kMostPairResolution) return;
+  throw Error(
+      option,
+      fmt::format("{} is outside 1 .. {}, the limit of far-pairs", resolution, kMostPairResolution),
+      "give a number in that range, or auto");
+}
+
+int resolution_of(const RunOptions& options) {
+  if (options.resolution > 0 || options.method == Method::far_pairs) return options.resolution;
+  return kUsualResolution;
+}
+
+std::string views_of(const RunOptions& options) {
+  if (!options.views.empty() || options.method == Method::far_pairs) return options.views;
+  return kUsualViews;
+}
+
 DepthMode depth_of(const RunOptions& options) {
   return options.depth.value_or(options.method == Method::far ? DepthMode::fragment
                                                               : DepthMode::fixed);
@@ -210,13 +215,25 @@ QueryMode query_of(const RunOptions& options) {
 
 std::string describe(const RunOptions& options) {
   if (options.method == Method::exact) return "exact";
-  return fmt::format("{} at {} px", to_string(options.method), options.resolution);
+  const int resolution = resolution_of(options);
+  if (resolution == 0) return to_string(options.method);
+  return fmt::format("{} at {} px", to_string(options.method), resolution);
 }
 
 void validate(const RunOptions& options) {
-  if (options.resolution < 1) {
+  if (options.resolution < 0) {
     throw Error("--resolution", fmt::format("{} is no resolution", options.resolution),
                 "give 1 px or more");
+  }
+  const bool pairs = options.method == Method::far_pairs;
+  if (pairs) require_pair_resolution(options.resolution);
+  if (!(options.clearance >= 0) || !std::isfinite(options.clearance)) {
+    throw Error("--clearance", fmt::format("{} is no distance", options.clearance),
+                "give a finite distance in world units, 0 or more");
+  }
+  if (options.clearance > 0 && !pairs && options.method != Method::exact) {
+    throw Error("--clearance", to_string(options.method) + " finds what meets, not what is near",
+                "use --method far-pairs or exact");
   }
   if (options.offset != "obb" && options.offset != "exact") {
     throw Error("--offset", "'" + options.offset + "' is no offset", "give obb or exact");
@@ -238,12 +255,16 @@ void validate(const RunOptions& options) {
   }
   // Whether there is such a device is seen when one is needed; what can be none is refused at once.
   const std::string& device = options.device;
-  if (device != "" && device != "hardware" && device != "software" &&
+  if (device == "cpu" && (options.method == Method::far || options.method == Method::cullide)) {
+    throw Error("--device", to_string(options.method) + " draws with OpenGL, not on the cpu",
+                "give software, or use --method far-pairs");
+  }
+  if (device != "" && device != "cpu" && device != "hardware" && device != "software" &&
       device.find_first_not_of("0123456789") != std::string::npos) {
     throw Error("--device", "'" + device + "' is no device",
-                "give software, hardware or a number that `farcull doctor` lists");
+                "give cpu (far-pairs), software, hardware or a number that `farcull doctor` lists");
   }
-  parse_views(options.views);
+  if (!options.views.empty()) parse_views(options.views);
 }
 
 const GlContext& Session::context() {
@@ -251,26 +272,45 @@ const GlContext& Session::context() {
   return *context_;
 }
 
+PairDevice& Session::pairs() {
+  if (!pairs_)
+    pairs_ = open_pair_device(device_, 0, [this]() -> const GlContext& { return context(); });
+  return *pairs_;
+}
+
+bool has_self(const Scene& scene) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [](const Object& object) { return object.self; });
+}
+
 RunRecord run_scene(const Scene& scene, const RunOptions& options, Session& session,
                     const Progress& progress) {
   validate(options);
+  if (has_self(scene) && (options.method == Method::far || options.method == Method::cullide)) {
+    throw Error(
+        scene.name,
+        to_string(options.method) + " tests no object against itself, as one of it has to be",
+        "use --method far-pairs or exact");
+  }
   RunRecord record;
   record.options = options;
-  record.promises = options.method == Method::far && depth_of(options) == DepthMode::fragment &&
-                    !options.radius.published && options.radius.factor >= 1;
+  record.promises = options.method == Method::far_pairs ||
+                    (options.method == Method::far && depth_of(options) == DepthMode::fragment &&
+                     !options.radius.published && options.radius.factor >= 1);
   record.scene_hash = scene_hash(scene);
   record.degenerate_triangles = degenerate_triangles(scene);
 
   if (options.method == Method::exact) {
     run_exact(scene, progress, record);
-    record.kept = record.pairs;
+  } else if (options.method == Method::far_pairs) {
+    run_far_pairs(scene, session, progress, record);
   } else {
     run_culled(scene, session, progress, record);
   }
   record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
   if (options.verify) {
     if (progress) progress("accounting for every pair");
-    record.verification = account(scene, record.kept);
+    record.verification = account(scene, record.kept, {.clearance = options.clearance});
     if (!record.verification->adds_up())
       throw std::logic_error("the classes of the accounting do not add up");
   }

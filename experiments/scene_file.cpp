@@ -7,8 +7,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <initializer_list>
-#include <map>
-#include <memory>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -78,26 +76,10 @@ class Syntax : public nlohmann::json_sax<json> {
 
 std::string stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
 
-// Meshes by file, each read once.
-class MeshCache {
- public:
-  const Mesh& get(const std::string& path) {
-    // realpath: std::filesystem would hold several more paths at once.
-    const std::unique_ptr<char, void (*)(void*)> file(realpath(path.c_str(), nullptr), &std::free);
-    const std::string key = file ? file.get() : path;
-    auto entry = meshes_.find(key);
-    if (entry == meshes_.end()) entry = meshes_.emplace(key, load_mesh(path)).first;
-    return entry->second;
-  }
-
- private:
-  std::map<std::string, Mesh> meshes_;
-};
-
 // The readers of values: each takes the value and its place in the file, as in objects[1].scale.
 class SceneFile {
  public:
-  explicit SceneFile(std::string path) : path_(std::move(path)) {}
+  SceneFile(std::string path, MeshCache& meshes) : path_(std::move(path)), meshes_(meshes) {}
 
   Scene read(const json& root) {
     require(root.is_object(), "", "the file must be a JSON object", "write {\"objects\": [...]}");
@@ -109,16 +91,14 @@ class SceneFile {
     require(objects.is_array(), "objects", "must be an array", form);
     require(!objects.empty(), "objects", "is empty", form);
     SceneBuilder builder(clean_name(name), path_);
-    MeshCache meshes;
     for (std::size_t i = 0; i < objects.size(); ++i) {
-      add_object(objects[i], fmt::format("objects[{}]", i), meshes, builder);
+      add_object(objects[i], fmt::format("objects[{}]", i), builder);
     }
     return builder.finish();
   }
 
  private:
-  void add_object(const json& object, const std::string& place, MeshCache& meshes,
-                  SceneBuilder& builder) const {
+  void add_object(const json& object, const std::string& place, SceneBuilder& builder) const {
     require(object.is_object(), place, "must be a JSON object", "write {\"mesh\": FILE}");
     check_keys(object, place, {"name", "mesh", "scale", "rotate", "translate", "split", "self"});
     require(object.contains("mesh"), place + ".mesh", "is missing", "name a mesh file");
@@ -136,7 +116,7 @@ class SceneFile {
     if (object.contains("split")) split = read_split(object["split"], place + ".split");
     const bool self = object.contains("self") && truth(object["self"], place + ".self");
     const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
-    builder.add(meshes.get((folder / mesh).string()), name, split, placement, self);
+    builder.add(meshes_.get((folder / mesh).string()), name, split, placement, self);
   }
 
   Placement read_placement(const json& object, const std::string& place) const {
@@ -233,6 +213,7 @@ class SceneFile {
   }
 
   std::string path_;
+  MeshCache& meshes_;
 };
 
 std::string extension(const std::string& path) {
@@ -241,52 +222,7 @@ std::string extension(const std::string& path) {
   return text;
 }
 
-Scene scene_of_meshes(const std::vector<std::string>& paths) {
-  // Every extension first, so that nothing is read for minutes before the last argument is refused.
-  for (const std::string& path : paths) {
-    if (extension(path) == ".json" || is_builtin_scene(path)) {
-      throw Error(path, "a scene stands among other arguments",
-                  "name one scene alone, or only mesh files");
-    }
-    mesh_format(path);
-  }
-  std::string name = stem(paths[0]);
-  for (std::size_t i = 1; i < paths.size() && i < 3; ++i) name += "+" + stem(paths[i]);
-  if (paths.size() > 3) name += fmt::format("+{} more", paths.size() - 3);
-  SceneBuilder builder(clean_name(name), paths[0]);
-  MeshCache meshes;
-  for (const std::string& path : paths) builder.add(meshes.get(path), stem(path), Split::kNone, {});
-  return builder.finish();
-}
-
-Scene load_any_scene(const std::vector<std::string>& arguments) {
-  if (arguments.empty()) {
-    throw Error("SCENE", "no scene is named",
-                "name mesh files, a scene file or a built-in scene (farcull scenes lists them)");
-  }
-  if (arguments.size() > 1) return scene_of_meshes(arguments);
-  const std::string& name = arguments[0];
-  if (is_builtin_scene(name)) return make_builtin_scene(name);
-  if (extension(name) == ".json")
-    return parse_scene_file(read_file(name, kMaxSceneFileBytes), name);
-  if (has_mesh_extension(name)) return scene_of_meshes(arguments);
-  throw Error(name,
-              "neither a built-in scene nor a file that ends in .obj, .off, .ply, .stl or .json",
-              "correct the name; farcull scenes lists the built-in scenes");
-}
-
-}  // namespace
-
-Scene load_scene(const std::vector<std::string>& arguments) {
-  try {
-    return load_any_scene(arguments);
-  } catch (const std::bad_alloc&) {
-    throw Error(arguments[0], "the scene does not fit into memory",
-                "give fewer or smaller objects, or use a larger machine");
-  }
-}
-
-Scene parse_scene_file(const std::string& text, const std::string& path) {
+Scene parse(const std::string& text, const std::string& path, MeshCache& meshes) {
   const std::string remedy = "correct the JSON";
   if (text.empty()) throw Error(path, "the file is empty", "write {\"objects\": [...]}");
   Syntax syntax;
@@ -299,7 +235,60 @@ Scene parse_scene_file(const std::string& text, const std::string& path) {
     throw Error(path, "the key " + quote_token(syntax.twice) + " occurs twice in one object",
                 "delete one of them");
   }
-  return SceneFile(path).read(json::parse(text));
+  return SceneFile(path, meshes).read(json::parse(text));
+}
+
+Scene scene_of_meshes(const std::vector<std::string>& paths, MeshCache& meshes) {
+  // Every extension first, so that nothing is read for minutes before the last argument is refused.
+  for (const std::string& path : paths) {
+    if (extension(path) == ".json" || is_builtin_scene(path)) {
+      throw Error(path, "a scene stands among other arguments",
+                  "name one scene alone, or only mesh files");
+    }
+    mesh_format(path);
+  }
+  std::string name = stem(paths[0]);
+  for (std::size_t i = 1; i < paths.size() && i < 3; ++i) name += "+" + stem(paths[i]);
+  if (paths.size() > 3) name += fmt::format("+{} more", paths.size() - 3);
+  SceneBuilder builder(clean_name(name), paths[0]);
+  for (const std::string& path : paths) builder.add(meshes.get(path), stem(path), Split::kNone, {});
+  return builder.finish();
+}
+
+Scene load_any_scene(const std::vector<std::string>& arguments, MeshCache& meshes) {
+  if (arguments.empty()) {
+    throw Error("SCENE", "no scene is named",
+                "name mesh files, a scene file or a built-in scene (farcull scenes lists them)");
+  }
+  if (arguments.size() > 1) return scene_of_meshes(arguments, meshes);
+  const std::string& name = arguments[0];
+  if (is_builtin_scene(name)) return make_builtin_scene(name);
+  if (extension(name) == ".json") return parse(read_file(name, kMaxSceneFileBytes), name, meshes);
+  if (has_mesh_extension(name)) return scene_of_meshes(arguments, meshes);
+  throw Error(name,
+              "neither a built-in scene nor a file that ends in .obj, .off, .ply, .stl or .json",
+              "correct the name; farcull scenes lists the built-in scenes");
+}
+
+}  // namespace
+
+Scene load_scene(const std::vector<std::string>& arguments) {
+  MeshCache meshes;
+  return load_scene(arguments, meshes);
+}
+
+Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes) {
+  try {
+    return load_any_scene(arguments, meshes);
+  } catch (const std::bad_alloc&) {
+    throw Error(arguments[0], "the scene does not fit into memory",
+                "give fewer or smaller objects, or use a larger machine");
+  }
+}
+
+Scene parse_scene_file(const std::string& text, const std::string& path) {
+  MeshCache meshes;
+  return parse(text, path, meshes);
 }
 
 }  // namespace farcull

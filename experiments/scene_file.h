@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/scene.h"
+#include "experiments/mesh_cache.h"
 
 namespace farcull {
 
@@ -29,6 +30,8 @@ namespace farcull {
 /// Throws Error for what cannot be read or is not of this form, naming the file and, in a scene
 /// file, the line (syntax) or the place as in objects[1].rotate.axis (contents).
 Scene load_scene(const std::vector<std::string>& arguments);
+/// The same with the meshes that `meshes` gives, and keeps.
+Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes);
 
 /// The same for the text of a scene file; `path` stands in errors and is what mesh paths are
 /// relative to.

@@ -24,7 +24,10 @@ std::string scene_line(const Scene& scene, const RunRecord& record) {
 }
 
 std::string device_text(const RunRecord& record) {
+  if (record.on_cpu) return "cpu: " + record.device_note;
   if (!record.device) return "none: " + record.device_note;
+  if (record.options.method == Method::far_pairs)
+    return record.device->renderer + ": " + record.device_note;
   return fmt::format("{}, {} depth bits, {} subpixel bits", record.device->renderer,
                      record.depth_bits, record.device->subpixel_bits);
 }
@@ -33,11 +36,12 @@ std::string method_text(const RunRecord& record) {
   const RunOptions& o = record.options;
   std::string text = describe(o);
   if (o.method == Method::far) text += fmt::format(", {} offsets", o.offset);
-  if (o.method != Method::exact) {
+  if (o.method == Method::far || o.method == Method::cullide) {
     text += fmt::format(", {} depth, {}",
                         depth_of(o) == DepthMode::fragment ? "fragment" : "fixed-function",
                         query_of(o) == QueryMode::flags ? "flags" : "occlusion queries");
   }
+  if (o.clearance > 0) text += fmt::format(", clearance {}", o.clearance);
   return text + (record.promises ? "; promises to miss nothing" : "");
 }
 
@@ -46,6 +50,15 @@ std::string views_text(const std::vector<ViewReport>& views) {
   for (const ViewReport& view : views) {
     text += (text.empty() ? "" : ", ") + view.name + " ";
     text += view.drawn ? fmt::format("{} x {}", view.width, view.height) : "not drawn";
+  }
+  return text + " px";
+}
+
+std::string views_text(const std::vector<PairView>& views) {
+  std::string text;
+  for (const PairView& view : views) {
+    text += (text.empty() ? "" : ", ") + view.name + " ";
+    text += view.looked ? fmt::format("{} x {}", view.width, view.height) : "left out";
   }
   return text + " px";
 }
@@ -170,6 +183,16 @@ std::string accounting_lines(const Scene& scene, const RunRecord& record) {
   return out;
 }
 
+// The window that was looked at where the scene chose.
+std::string resolution_text(const RunRecord& r) {
+  if (r.options.method == Method::exact) return "-";
+  if (resolution_of(r.options) > 0) return std::to_string(resolution_of(r.options));
+  for (const PairView& view : r.pair_views) {
+    if (view.looked) return fmt::format("auto {}", std::max(view.width, view.height));
+  }
+  return "auto";
+}
+
 std::string missed_text(const RunRecord& record) {
   return record.verification ? grouped(record.verification->false_negatives) : "not verified";
 }
@@ -215,17 +238,26 @@ const ViewReport* widest_budget(const std::vector<ViewReport>& views) {
   return widest;
 }
 
+std::string run_heading(const Scene& scene, const RunRecord& record) {
+  return scene_line(scene, record) + "device     " + device_text(record) + "\n" + "method     " +
+         method_text(record) + "\n";
+}
+
 std::string run_table(const Scene& scene, const RunRecord& record) {
-  std::string out = scene_line(scene, record);
-  out += "device     " + device_text(record) + "\n";
-  out += "method     " + method_text(record) + "\n";
+  std::string out = run_heading(scene, record);
   if (!record.views.empty()) out += "views      " + views_text(record.views) + "\n";
+  if (!record.pair_views.empty()) out += "views      " + views_text(record.pair_views) + "\n";
   out += radius_line(record);
   out += "\n" + stage_table(record.stages) + "\n";
   out += fmt::format("kept       {}, {}, {}\n", counted(record.pcs_objects, "object", "objects"),
                      counted(record.pcs_triangles, "triangle", "triangles"),
                      counted(record.candidate_pairs, "candidate pair", "candidate pairs"));
-  out += fmt::format("colliding  {}\n", counted(record.pairs.size(), "pair", "pairs"));
+  out += fmt::format("colliding  {}{}\n", counted(record.pairs.size(), "pair", "pairs"),
+                     has_self(scene) ? fmt::format(" and {} of {}",
+                                                   counted(record.neighbour_pairs.size(),
+                                                           "neighbour pair", "neighbour pairs"),
+                                                   grouped(record.neighbours))
+                                     : "");
   out += accounting_lines(scene, record);
   out += fmt::format(
       "time       {:.1f} ms = setup {:.1f} + cull {:.1f} + exact {:.1f}{}\n", record.ms.total,
@@ -236,26 +268,38 @@ std::string run_table(const Scene& scene, const RunRecord& record) {
 
 std::string comparison_table(const Scene& scene, const std::vector<RunRecord>& records) {
   if (records.empty()) return "";
-  const auto drawn = std::find_if(records.begin(), records.end(),
-                                  [](const RunRecord& r) { return r.device.has_value(); });
+  const auto drawn = std::find_if(records.begin(), records.end(), [](const RunRecord& r) {
+    return r.device && r.options.method != Method::far_pairs;
+  });
+  const auto pairs = std::find_if(records.begin(), records.end(), [](const RunRecord& r) {
+    return r.options.method == Method::far_pairs;
+  });
   const RunRecord* reference = nullptr;
   for (const RunRecord& record : records) {
     if (record.options.method == Method::exact) reference = &record;
   }
+  const bool self = has_self(scene);
   std::string out = scene_line(scene, records[0]);
-  out += "device     " + device_text(drawn == records.end() ? records[0] : *drawn) + "\n\n";
-  Table table("llrrrrrrrrr");
+  if (drawn != records.end()) {
+    out += "device     " + device_text(*drawn) + "\n";
+  } else if (records[0].options.method != Method::far_pairs) {
+    out += "device     " + device_text(records[0]) + "\n";
+  }
+  if (pairs != records.end()) out += "far-pairs  " + device_text(*pairs) + "\n";
+  out += "\n";
+  Table table("llrrrrrrrrrr");
   table.add({"method", "offset", "resolution", "objects", "triangles", "candidates", "colliding",
-             "missed", "cull ms", "exact ms", reference ? "x exact" : ""});
+             self ? "neighbours" : "", "missed", "cull ms", "exact ms",
+             reference ? "x exact" : ""});
   for (const RunRecord& r : records) {
     const double ratio =
         reference ? (r.ms.cull + r.ms.exact) / (reference->ms.cull + reference->ms.exact) : 0;
     table.add({to_string(r.options.method),
-               r.options.method == Method::far ? r.options.offset : "-",
-               r.options.method == Method::exact ? "-" : std::to_string(r.options.resolution),
+               r.options.method == Method::far ? r.options.offset : "-", resolution_text(r),
                grouped(r.pcs_objects), grouped(r.pcs_triangles), grouped(r.candidate_pairs),
-               grouped(r.pairs.size()), missed_text(r), fmt::format("{:.1f}", r.ms.cull),
-               fmt::format("{:.1f}", r.ms.exact), reference ? fmt::format("{:.2f}", ratio) : ""});
+               grouped(r.pairs.size()), self ? grouped(r.neighbour_pairs.size()) : "",
+               missed_text(r), fmt::format("{:.1f}", r.ms.cull), fmt::format("{:.1f}", r.ms.exact),
+               reference ? fmt::format("{:.2f}", ratio) : ""});
   }
   out += table.text();
   out +=

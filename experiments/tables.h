@@ -33,6 +33,9 @@ std::string radius_text(const RadiusRule& radius);
 /// The view with the largest budget: the one that a reader should quote. Null where none was drawn.
 const ViewReport* widest_budget(const std::vector<ViewReport>& views);
 
+/// The lines that say what was run, and on what.
+std::string run_heading(const Scene& scene, const RunRecord& record);
+
 /// One run. The stages of a view are folded into one row, and so are all rounds after the first.
 std::string run_table(const Scene& scene, const RunRecord& record);
 

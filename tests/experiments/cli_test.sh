@@ -258,7 +258,6 @@ bad 'frames of files without a number' '--frames: nothing .*%d' run good.obj --m
 bad 'certificate of frames' '--certificate: ' run "${pairs[@]}" --frames 3 --certificate c.json
 bad 'certificate of a clearance' '--certificate: ' run "${pairs[@]}" --clearance 1 \
   --certificate c.json
-bad 'certificate of self-collision' '--certificate: ' run "${pairs[@]}" --self --certificate c.json
 for i in 3 4 5; do obj 'f 1 2 3' 'f 1 2 4' >"cloth_0$i.obj"; done
 bad 'a frame that is missing' 'cloth_06\.obj: the file does not exist' run cloth_%02d.obj \
   --method far-pairs --frames 3:6 --json old.json
@@ -427,15 +426,9 @@ done
 for signal in INT TERM HUP; do
   ((cases += 1))
   before=$(snapshot)
-  "$program" run two-spheres --method far-pairs --frames 1000000 --json new.json --pairs new.csv \
-    >"$out" 2>"$err" &
-  run=$!
-  sleep 0.3
-  kill -"$signal" "$run" 2>/dev/null
-  wait "$run" 2>/dev/null
+  timeout -s "$signal" 0.4 "$program" run two-spheres --method far-pairs --frames 1000000 \
+    --json new.json --pairs new.csv >"$out" 2>"$err"
   status=$?
-  # What bash starts in the background ignores SIGINT, and so does the program then.
-  if [[ $signal == INT ]] && kill -0 "$run" 2>/dev/null; then kill -9 "$run"; fi
   grep -qE '^farcull: interrupted: after [0-9]+ of 1000000 frames; nothing was written$' "$err" ||
     fail "$signal among frames" "it does not say how far it came (status $status)"
   [[ $before == "$(snapshot)" ]] || fail "$signal among frames" 'something is left'
@@ -525,7 +518,15 @@ good 'self-collision' 0 verify folded.obj --method far-pairs --self --pairs -
 expect 'self-collision' "$out" '^object_a,triangle_a,object_b,triangle_b,neighbours$'
 expect 'self-collision' "$out" '^0,0,0,2,0$'
 good 'self-collision by exact' 0 verify folded.obj --method exact --self
-expect 'self-collision by exact' "$out" '^colliding  2 pairs and 0 neighbour pairs of 1$'
+expect 'self-collision by exact' "$out" '^colliding  1 pair and 0 neighbour pairs of 1$'
+good 'certificate of self-collision' 0 run folded.obj --method far-pairs --self --certificate c.json
+good 'check of it' 0 check c.json folded.obj --self
+expect 'check of it' "$out" '^proved$'
+((cases += 1))
+launch check c.json folded.obj
+((status == 1)) || fail 'check of it without --self' "status $status instead of 1"
+expect 'check of it without --self' "$out" '^not proved: the certificate is of another scene'
+rm c.json
 good 'no self-collision' 0 verify folded.obj --method far-pairs
 expect 'no self-collision' "$out" '^colliding  0 pairs$'
 good 'scene that collides with itself' 0 verify self.json --method far-pairs
@@ -543,7 +544,7 @@ for line in '"frame": 3' '"read": ' '"median": ' '"p95": ' '"max": ' '"frames": 
   expect 'frames' "$out" "^ *$line"
 done
 expect 'frames' falls.csv '^frame,object_a,triangle_a,object_b,triangle_b$'
-expect 'frames' falls.csv '^1,0,0,1,'
+expect 'frames' falls.csv '^2,0,0,1,3$'
 rm falls.csv
 printf '{"objects": [{"mesh": "fall_%%d.obj", "self": true}, {"mesh": "good.obj"}]}' >fall.json
 good 'frames of a scene file' 0 run fall.json --method exact --frames 1:3 --no-verify

@@ -1,0 +1,207 @@
+#include "experiments/cli_run.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "experiments/check.h"
+#include "experiments/output.h"
+#include "experiments/scene_file.h"
+#include "experiments/tables.h"
+
+namespace farcull {
+namespace {
+
+constexpr int kDone = 0, kBroken = 1;
+
+template <class Value>
+Value choose(const std::string& option, const std::string& given,
+             const std::map<std::string, Value>& values) {
+  const auto found = values.find(given);
+  if (found != values.end()) return found->second;
+  std::string known;
+  for (const auto& [name, value] : values) known += (known.empty() ? "" : " or ") + name;
+  throw Error(option, "'" + given + "' is no choice", "give " + known);
+}
+
+}  // namespace
+
+CLI::App* RunCommand::add_to(CLI::App& app) {
+  CLI::App* command =
+      strict_
+          ? app.add_subcommand("verify", "run; status 1 if any culled pair intersects")
+          : app.add_subcommand("run", "cull a scene, test what is left, account for every pair");
+  command->add_option("SCENE", scene_, kSceneHelp)->required()->type_name("");
+  const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
+    command->add_option(name, text, help)->type_name(type);
+  };
+  add("--method", method_, "METHOD", "far, cullide, far-pairs or exact; default far");
+  add("--resolution", resolution_, "N|auto",
+      "pixels along the larger side of each view's window;\ndefault 512; for far-pairs auto: "
+      "chosen by the scene");
+  add("--radius", radius_, "RADIUS",
+      "of the ball that fattens a primitive, for far: budget,\n"
+      "published, or a factor on the budget; default budget");
+  add("--offset", offset_, "OFFSET",
+      "what a primitive is fattened to, for far: obb or\nexact; default obb");
+  add("--depth", depth_, "fragment|fixed",
+      "entry and exit depth by the fragment program\n"
+      "(reliable), or fixed function as published;\n"
+      "default fragment for far, fixed for cullide");
+  add("--depth-format", depth_format_, "32f|24", "of the depth buffer; default 32f");
+  add("--query", query_, "flags|occlusion",
+      "how visibility is asked; default flags, but\n"
+      "occlusion with --depth-format 24");
+  add("--views", views_, "VIEWS", kViewsHelp);
+  add("--device", device_, "DEVICE", kRunDeviceHelp);
+  command->add_flag("--self", self_, kSelfHelp)->disable_flag_override();
+  add("--clearance", clearance_, "D", kClearanceHelp);
+  add("--frames", frames_, "N|A:B",
+      "run N frames (0 to N-1), or those numbered A to B, of\n"
+      "meshes with %d or %04d in their names, or of a\n"
+      "built-in scene that moves (see farcull scenes)");
+  add("--pairs", outputs_.pairs, "FILE",
+      "write the colliding pairs as CSV to this file; - for\n"
+      "standard output, without the table");
+  add("--json", outputs_.json, "FILE", kJsonHelp);
+  add("--certificate", outputs_.certificate, "FILE",
+      "write evidence for every pair to this file, for\n`farcull check`");
+  if (strict_) {
+    command->footer(
+        "Examples:\n"
+        "  farcull verify two-spheres\n"
+        "  farcull verify two-spheres --method cullide --resolution 64\n"
+        "  farcull verify two-spheres --method far-pairs --frames 30\n"
+        "  farcull verify scene.json --json record.json\n\n"
+        "Exit status 1: a culled pair intersects, whatever the method.");
+    return command;
+  }
+  command->add_flag("--no-verify", no_verify_, "leave out the accounting of all pairs")
+      ->disable_flag_override();
+  command->footer(
+      "Examples:\n"
+      "  farcull run two-spheres\n"
+      "  farcull run bunny.off dragon.off --method cullide --resolution 256\n"
+      "  farcull run cloth.obj --method far-pairs --self --pairs pairs.csv\n"
+      "  farcull run a.obj b.obj --method far-pairs --clearance 0.001\n"
+      "  farcull run 'cloth_%04d.obj' body.obj --method far-pairs --frames 1:100 --no-verify\n"
+      "  farcull run scene.json --json - | jq .verification\n"
+      "  farcull run two-spheres --radius published --depth fixed --depth-format 24\n\n"
+      "Exit status 1: a method that promises missed a pair. far-pairs promises, and far at the\n"
+      "budget radius or more with fragment depth; farcull verify asks it of every method.");
+  return command;
+}
+
+RunOptions RunCommand::parse() const {
+  RunOptions out;
+  if (method_) out.method = parse_method(*method_);
+  const bool pairs = out.method == Method::far_pairs;
+  if (resolution_ == "auto") {
+    if (!pairs) {
+      throw Error("--resolution", "auto has no meaning for --method " + to_string(out.method),
+                  "give a number of pixels, or use --method far-pairs");
+    }
+  } else if (resolution_) {
+    out.resolution = parse_resolution(*resolution_);
+  }
+  if (radius_) out.radius = parse_radius(*radius_);
+  if (offset_) out.offset = *offset_;
+  if (depth_) {
+    out.depth = choose<DepthMode>("--depth", *depth_,
+                                  {{"fragment", DepthMode::fragment}, {"fixed", DepthMode::fixed}});
+  }
+  if (depth_format_) {
+    out.depth_format =
+        choose<DepthFormat>("--depth-format", *depth_format_,
+                            {{"32f", DepthFormat::float32}, {"24", DepthFormat::fixed24}});
+  }
+  if (query_) {
+    out.query = choose<QueryMode>(
+        "--query", *query_, {{"flags", QueryMode::flags}, {"occlusion", QueryMode::occlusion}});
+  }
+  if (views_) out.views = parse_views_option(*views_, pairs);
+  if (clearance_) out.clearance = parse_clearance(*clearance_);
+  out.device = device_of(device_);
+  out.verify = !no_verify_;
+  out.seed = seed_of(scene_);
+  validate(out);
+  refuse_idle(out.method);
+  return out;
+}
+
+// An option that the method has no use for was meant for something: no result without it.
+void RunCommand::refuse_idle(Method chosen) const {
+  const auto refuse = [&](const char* option, bool given, const char* method) {
+    if (!given) return;
+    throw Error(option, "has no meaning for --method " + to_string(chosen),
+                std::string("leave ") + option + " out, or use --method " + method);
+  };
+  if (chosen == Method::far || chosen == Method::cullide) {
+    refuse("--self", self_, "far-pairs");
+    refuse("--clearance", clearance_.has_value(), "far-pairs");
+  }
+  if (chosen == Method::far) return;
+  refuse("--radius", radius_.has_value(), "far");
+  refuse("--offset", offset_.has_value(), "far");
+  if (chosen == Method::cullide) return;
+  refuse("--depth", depth_.has_value(), "far");
+  refuse("--depth-format", depth_format_.has_value(), "far");
+  refuse("--query", query_.has_value(), "far");
+}
+
+int RunCommand::run() const {
+  const RunOptions options = parse();
+  check_scene(scene_);
+  if (outputs_.certificate && options.clearance > 0) {
+    throw Error("--certificate", "is about triangles that meet, not about a clearance",
+                "leave --certificate or --clearance out");
+  }
+  if (outputs_.certificate && frames_) {
+    throw Error("--certificate", "is about one scene, not about frames",
+                "leave --certificate or --frames out");
+  }
+  std::optional<FrameRange> range;
+  if (frames_) range = parse_frames(*frames_);
+  const Outputs outputs = checked(outputs_);
+  return range ? run_frames(options, outputs, *range) : run_once(options, outputs);
+}
+
+int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) const {
+  TerminalProgress terminal;
+  const Progress progress = terminal.callback();
+  if (progress) progress("reading the scene");
+  Scene scene = load_scene(scene_);
+  if (self_) make_self(scene);
+  Session session(options.device);
+  const RunRecord record = run_scene(scene, options, session, progress);
+  terminal.clear();
+  if (outputs.pairs) write_output(*outputs.pairs, pairs_csv(scene, record));
+  if (outputs.certificate) {
+    write_output(*outputs.certificate, to_text(certificate_of(scene, record, record.kept)));
+  }
+  if (outputs.json) write_json(to_json(scene, record), *outputs.json);
+  if (!outputs.to_stdout()) write_output("-", run_table(scene, record));
+  if (!broken(record, strict_)) return kDone;
+  complain(missed(record));
+  return kBroken;
+}
+
+int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
+                           FrameRange range) const {
+  TerminalProgress terminal;
+  FramesQuestion question{.options = options,
+                          .range = range,
+                          .self = self_,
+                          .strict = strict_,
+                          .pairs = outputs.pairs.has_value()};
+  const FramesResult result = farcull::run_frames(scene_, question, terminal.callback());
+  terminal.clear();
+  if (outputs.pairs) write_output(*outputs.pairs, result.pairs_csv);
+  if (outputs.json) write_json(result.json, *outputs.json);
+  if (!outputs.to_stdout()) write_output("-", result.table);
+  if (result.broken.empty()) return kDone;
+  complain(result.broken);
+  return kBroken;
+}
+
+}  // namespace farcull

@@ -1,0 +1,103 @@
+#include "experiments/mesh_cache.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <memory>
+#include <utility>
+
+#include "core/error.h"
+#include "experiments/mesh_text.h"
+
+namespace farcull {
+namespace {
+
+struct Place {
+  std::size_t at = std::string::npos;  // of the %
+  std::size_t size = 0;
+  int digits = 1;
+};
+
+// The first place for a number, and whether it is the only one.
+std::pair<Place, bool> place_in(const std::string& name) {
+  Place found;
+  int count = 0;
+  for (std::size_t at = name.find('%'); at != std::string::npos; at = name.find('%', at + 1)) {
+    const std::string rest = name.substr(at + 1, 3);
+    Place place{.at = at};
+    if (rest.starts_with('d')) {
+      place.size = 2;
+    } else if (rest.size() == 3 && rest[0] == '0' && rest[1] >= '1' && rest[1] <= '9' &&
+               rest[2] == 'd') {
+      place.size = 4;
+      place.digits = rest[1] - '0';
+    } else {
+      continue;
+    }
+    if (count++ == 0) found = place;
+  }
+  return {found, count == 1};
+}
+
+void require_same(const Mesh& now, const Mesh& first, const std::string& path,
+                  const std::string& first_path) {
+  const std::string remedy = "give meshes of one topology: the same triangles in every frame";
+  if (now.triangles.size() != first.triangles.size() ||
+      now.vertices.size() != first.vertices.size()) {
+    throw Error(path,
+                fmt::format("has {} triangles and {} vertices, but {} has {} and {}",
+                            now.triangles.size(), now.vertices.size(), clean_name(first_path),
+                            first.triangles.size(), first.vertices.size()),
+                remedy);
+  }
+  for (std::size_t t = 0; t < now.triangles.size(); ++t) {
+    if (now.triangles[t] == first.triangles[t]) continue;
+    throw Error(path,
+                fmt::format("its triangle {} has other vertices than that of {}", t,
+                            clean_name(first_path)),
+                remedy);
+  }
+  if (now.group != first.group) {
+    throw Error(path, "its groups are not those of " + clean_name(first_path), remedy);
+  }
+}
+
+}  // namespace
+
+bool is_numbered(const std::string& name) { return place_in(name).second; }
+
+std::string numbered(const std::string& name, long number) {
+  const Place place = place_in(name).first;
+  return name.substr(0, place.at) + fmt::format("{:0{}}", number, place.digits) +
+         name.substr(place.at + place.size);
+}
+
+const Mesh& MeshCache::get(const std::string& path) {
+  if (frame_ && is_numbered(path)) {
+    const std::string file = numbered(path, *frame_);
+    const auto found = moving_.find(path);
+    if (found == moving_.end())
+      return moving_.emplace(path, Moving{*frame_, file, load_mesh(file)}).first->second.mesh;
+    Moving& moving = found->second;
+    if (moving.frame == *frame_) return moving.mesh;
+    Mesh mesh = load_mesh(file);
+    require_same(mesh, moving.mesh, file, moving.first);
+    moving.mesh = std::move(mesh);
+    moving.frame = *frame_;
+    return moving.mesh;
+  }
+  // realpath: std::filesystem would hold several more paths at once.
+  const std::unique_ptr<char, void (*)(void*)> file(realpath(path.c_str(), nullptr), &std::free);
+  const std::string key = file ? file.get() : path;
+  auto entry = meshes_.find(key);
+  if (entry == meshes_.end()) entry = meshes_.emplace(key, load_mesh(path)).first;
+  return entry->second;
+}
+
+std::vector<std::string> MeshCache::numbered_paths() const {
+  std::vector<std::string> out;
+  for (const auto& [path, moving] : moving_) out.push_back(path);
+  return out;
+}
+
+}  // namespace farcull
