@@ -18,8 +18,9 @@ namespace {
 constexpr double kLength = 4700;  // of a needle
 constexpr double kWidth = 0.002;
 constexpr double kBending = 1e-4;  // radians that a needle may differ from its direction
-constexpr double kSide = 7700;     // of the cube, along a frame of the needles, that holds centres
-constexpr int kLayers = 40;        // of both objects together
+constexpr double kSpan = 24000;    // of a layer, across its needles
+constexpr double kShear = 1;       // needles start the later the farther across they lie
+constexpr double kGap = 1;         // between the two layers
 
 // An orthonormal frame whose first axis is the direction of needles.
 struct Frame {
@@ -43,13 +44,11 @@ Corners hair(const Frame& frame, Random& random) {
   return {start, end, start + random.between(0.2, 0.8) * (end - start) + aside};
 }
 
-// Anywhere in a layer: layers of even number are those of the first object, of odd number those of
-// the second, a quarter of their distance thick.
+// Somewhere in the layer of an object, a quarter of the gap thick.
 Vec3 in_layer(const Frame& frame, int object, Random& random) {
-  const auto layer = 2 * static_cast<int>(random.below(kLayers / 2)) + object;
-  const double height = (layer + random.between(0.375, 0.625)) / kLayers - 0.5;
-  return kSide * (random.between(-0.5, 0.5) * frame.along +
-                  random.between(-0.5, 0.5) * frame.across + height * frame.up);
+  const double across = random.between(-kSpan / 2, kSpan / 2);
+  const double height = kGap * (object + random.between(-0.125, 0.125));
+  return across * (frame.across + kShear * frame.along) + height * frame.up;
 }
 
 // The needles of two objects take the frames in turn. One in eight of the second object is moved so

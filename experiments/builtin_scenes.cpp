@@ -100,13 +100,13 @@ const std::vector<BuiltinScene>& builtin_scenes() {
             make_crowd, 4),
       {"far-apart", "two spheres far from each other", 2, 2560, false, make_far_apart},
       costly(drawn({"needles-layers",
-                    "interleaved layers of oblique needles, 4700 x 0.002: 45,775,846 boxes "
-                    "overlap, 1500 collide",
+                    "two layers of oblique needles, 4700 x 0.002: 44,946,746 boxes "
+                    "overlap, 1501 collide",
                     2, 32000, false},
                    make_needles_layers, 5)),
       costly(
           drawn({"needles-crossed",
-                 "the same in two oblique directions at once: 4,569,304 boxes overlap, 625 collide",
+                 "the same in two oblique directions at once: 2,856,139 boxes overlap, 625 collide",
                  2, 10000, false},
                 make_needles_crossed, 6)),
       drawn({"field", "blobs spread evenly, some colliding with neighbours", 31, 9920, false},
