@@ -204,6 +204,14 @@ void check_clearance(const char* where, double clearance) {
   }
 }
 
+bool is_within(const Corners& a, const Corners& b, double clearance) {
+  Triage triage = filter_planes(a, b, clearance);
+  if (triage == Triage::unknown && clearance > 0) triage = filter_within(a, b, clearance);
+  if (triage != Triage::unknown) return triage == Triage::yes;
+  if (hulls_meet(hull(a), hull(b))) return true;
+  return clearance > 0 && disjoint_within(a, b, clearance);
+}
+
 enum class Answer : std::uint8_t { apart, colliding, neighbours_apart, neighbours_colliding };
 
 /// Which corners of two triangles are at equal positions: bit 3 i + j for corner i of a and j of b.
@@ -239,21 +247,33 @@ Triage filter_neighbours(unsigned equal, const Corners& a, const Corners& b) {
   return filter_beyond_edge(a[i], a[k], a[3 - i - k], b[3 - j - l]);
 }
 
-Answer answer(const Scene& scene, const TrianglePair& pair, bool one_object,
+/// A triangle with its corners at hand.
+struct Gathered {
+  std::uint32_t triangle;
+  Corners corners;
+
+  Gathered(const Scene& scene, std::uint32_t t) { gather(scene, t); }
+  void gather(const Scene& scene, std::uint32_t t) {
+    triangle = t;
+    const auto& [i, j, k] = scene.triangles[t];
+    corners = {scene.vertices[i], scene.vertices[j], scene.vertices[k]};
+  }
+};
+
+Answer answer(const Scene& scene, const Gathered& a, const Gathered& b, bool one_object,
               const ExactQuestion& question) {
-  const Corners a = scene.corners(pair.a);
-  const Corners b = scene.corners(pair.b);
   if (one_object) {
-    const unsigned equal = equal_corners(scene.triangles[pair.a], a, scene.triangles[pair.b], b);
+    const unsigned equal = equal_corners(scene.triangles[a.triangle], a.corners,
+                                         scene.triangles[b.triangle], b.corners);
     if (equal != 0) {
       if (!question.neighbours) return Answer::neighbours_apart;
-      const Triage triage = filter_neighbours(equal, a, b);
-      const bool beyond =
-          triage == Triage::unknown ? intersects_beyond_shared(a, b) : triage == Triage::yes;
+      const Triage triage = filter_neighbours(equal, a.corners, b.corners);
+      const bool beyond = triage == Triage::unknown ? intersects_beyond_shared(a.corners, b.corners)
+                                                    : triage == Triage::yes;
       return beyond ? Answer::neighbours_colliding : Answer::neighbours_apart;
     }
   }
-  return within(a, b, question.clearance) ? Answer::colliding : Answer::apart;
+  return is_within(a.corners, b.corners, question.clearance) ? Answer::colliding : Answer::apart;
 }
 
 /// Which object triangles are of, for pairs whose first members mostly ascend.
@@ -288,17 +308,12 @@ Shape shape(const std::array<Vec3, 3>& corners) {
 }
 
 bool intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  const Triage triage = filter_planes(a, b);
-  return triage == Triage::unknown ? hulls_meet(hull(a), hull(b)) : triage == Triage::yes;
+  return is_within(a, b, 0);
 }
 
 bool within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
   check_clearance("within", clearance);
-  Triage triage = filter_planes(a, b, clearance);
-  if (triage == Triage::unknown && clearance > 0) triage = filter_within(a, b, clearance);
-  if (triage != Triage::unknown) return triage == Triage::yes;
-  if (clearance == 0) return hulls_meet(hull(a), hull(b));
-  return intersects(a, b) || disjoint_within(a, b, clearance);
+  return is_within(a, b, clearance);
 }
 
 bool share_position(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
@@ -362,8 +377,13 @@ Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
       const std::size_t begin = next.fetch_add(kBlock);
       if (begin >= candidates.size()) return;
       const std::size_t end = std::min(begin + kBlock, candidates.size());
+      Gathered a(scene, candidates[begin].a);
+      Gathered b(scene, candidates[begin].b);
       for (std::size_t i = begin; i < end; ++i) {
-        answers[i] = answer(scene, candidates[i], same_object(candidates[i]), question);
+        const TrianglePair& pair = candidates[i];
+        if (pair.a != a.triangle) a.gather(scene, pair.a);  // mostly as before, in sorted lists
+        b.gather(scene, pair.b);
+        answers[i] = answer(scene, a, b, same_object(pair), question);
       }
     }
   };

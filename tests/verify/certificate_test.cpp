@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "experiments/builtin_scenes.h"
 #include "tests/experiments/error_of.h"
+#include "tests/verify/certificate_case.h"
 #include "tests/verify/reference.h"
 #include "verify/box_pairs.h"
 #include "verify/exact.h"
@@ -21,72 +22,9 @@
 namespace farcull {
 namespace {
 
-std::vector<TrianglePair> box_pairs(const Scene& scene) {
-  BoxPairs enumeration(scene);
-  std::vector<TrianglePair> pairs;
-  enumeration.next(pairs, std::numeric_limits<std::size_t>::max());
-  return pairs;
-}
-
-Certificate::Run some_run() {
-  return {.method = "far",
-          .resolution = 512,
-          .radius_px = 0.71691,
-          .offset = "obb",
-          .views = {{"x", 512, 300, 0.71691}, {"-y \"quoted\"", 1, 2, 1e-3}},
-          .device = {{"vendor", "renderer, \xc3\xa9", "4.5", "4.50"}},
-          .assumptions = {"A1: something", "A2: \\ another"}};
-}
-
-/// A run that kept what meets and every third pair that does not.
-struct Case {
-  Scene scene;
-  std::vector<TrianglePair> pairs;  // with overlapping boxes
-  std::vector<TrianglePair> meeting;
-  std::vector<TrianglePair> kept;
-  std::uint64_t neighbours = 0;  // that do not meet
-  Certificate certificate;
-
-  explicit Case(Scene from) : scene(std::move(from)), pairs(box_pairs(scene)) {
-    const Collisions found = decide(scene, pairs);
-    meeting = found.pairs;
-    meeting.insert(meeting.end(), found.neighbour_pairs.begin(), found.neighbour_pairs.end());
-    std::sort(meeting.begin(), meeting.end());
-    neighbours = found.neighbours - found.neighbour_pairs.size();
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      if (i % 3 == 0 || meets(i)) kept.push_back(pairs[i]);
-    }
-    certificate = make_certificate(scene, kept, meeting, some_run());
-  }
-  bool meets(std::size_t i) const {
-    return std::binary_search(meeting.begin(), meeting.end(), pairs[i]);
-  }
-  bool is_kept(std::size_t i) const { return (certificate.evidence[i] & kKept) != 0; }
-  IntegerPair integers(std::size_t i) const {
-    return IntegerPair(scene.corners(pairs[i].a), scene.corners(pairs[i].b));
-  }
-  /// The check of a changed certificate, by way of its text.
-  CheckResult check(const Certificate& changed) const {
-    return check_certificate(parse_certificate(to_text(changed), "changed.json"), scene);
-  }
-};
-
 const Case& spheres() {
   static const Case spheres(make_builtin_scene("two-spheres"));
   return spheres;
-}
-
-/// Claims as the evidence has them, so that no count gives a change away.
-void recount(Certificate& certificate) {
-  Certificate::Claims& claims = certificate.claims = {};
-  for (const std::uint8_t byte : certificate.evidence) {
-    ++claims.box_pairs;
-    ++((byte & kKept) != 0 ? claims.kept : claims.culled);
-    const int claim = byte & 63;
-    ++(claim == kMeets        ? claims.meeting
-       : claim == kNeighbours ? claims.neighbours
-                              : claims.separated);
-  }
 }
 
 TEST(Certificate, IsProvedOnBuiltinScenes) {
@@ -107,99 +45,6 @@ TEST(Certificate, IsProvedOnBuiltinScenes) {
     EXPECT_EQ(result.found, c.certificate.claims);
     EXPECT_EQ(result.culled_meeting, 0u);
   }
-}
-
-/// Every object against itself; with neighbours that meet and others.
-const Case& folded() {
-  static const Case folded = [] {
-    std::mt19937 random(4);
-    std::vector<std::vector<reference::Triangle>> objects(3);
-    for (auto& triangles : objects) {
-      triangles.resize(60);
-      for (reference::Triangle& t : triangles) {
-        const Vec3 corner(random() % 4, random() % 4, random() % 4);
-        for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
-      }
-    }
-    Scene scene = reference::welded(reference::scene_of(objects), true);
-    for (Object& object : scene.objects) object.self = true;
-    return Case(std::move(scene));
-  }();
-  return folded;
-}
-
-TEST(CertificateSelf, CountsNeighboursApart) {
-  const Case& c = folded();
-  const CheckResult result = c.check(c.certificate);
-  EXPECT_EQ(result.verdict, Verdict::proved) << result.reason;
-  EXPECT_EQ(result.found, c.certificate.claims);
-  EXPECT_EQ(result.found.neighbours, c.neighbours);
-  EXPECT_EQ(result.found.meeting, c.meeting.size());
-  EXPECT_EQ(result.found.separated, c.pairs.size() - c.meeting.size() - c.neighbours);
-  EXPECT_GT(c.neighbours, 100u);
-}
-
-TEST(CertificateSelf, EveryFalseByteOfNeighboursIsCaught) {
-  const Case& c = folded();
-  int meeting = 0;
-  int apart = 0;
-  for (std::size_t i = 0; i < c.pairs.size() && meeting + apart < 40; ++i) {
-    if (!reference::neighbours(c.scene, c.pairs[i])) continue;
-    const bool meets = c.meets(i);
-    ++(meets ? meeting : apart);
-    for (const int claim : {0, 37, static_cast<int>(kMeets), static_cast<int>(kNeighbours), 40}) {
-      if (claim == (meets ? kMeets : kNeighbours)) continue;
-      Certificate changed = c.certificate;
-      changed.evidence[i] = static_cast<std::uint8_t>(kKept | claim);
-      recount(changed);
-      const CheckResult result = c.check(changed);
-      const bool refuted = meets ? claim != 40 : claim == kMeets;
-      EXPECT_EQ(result.verdict, refuted ? Verdict::refuted : Verdict::not_proved) << claim;
-      EXPECT_EQ(result.pair, c.pairs[i]);
-    }
-    if (!meets) continue;
-    Certificate culled = c.certificate;  // a culled pair of neighbours that meets
-    culled.evidence[i] = kNeighbours;
-    recount(culled);
-    EXPECT_EQ(c.check(culled).verdict, Verdict::refuted);
-    EXPECT_EQ(c.check(culled).culled_meeting, 1u);
-  }
-  EXPECT_GT(meeting, 2);
-  EXPECT_GT(apart, 10);
-}
-
-// For all others the byte means nothing, and a run that lost a pair of neighbours says so itself.
-TEST(CertificateSelf, NeighboursAreOfOneObjectAndALostPairRefutes) {
-  Scene scene = folded().scene;
-  for (Object& object : scene.objects) object.self = false;
-  const Case other(scene);
-  EXPECT_EQ(other.certificate.claims.neighbours, 0u);
-  EXPECT_EQ(other.check(folded().certificate).verdict, Verdict::not_proved);  // another scene
-  const auto apart = std::find_if(other.pairs.begin(), other.pairs.end(), [&](const auto& pair) {
-    return !std::binary_search(other.meeting.begin(), other.meeting.end(), pair);
-  });
-  ASSERT_NE(apart, other.pairs.end());
-  Certificate changed = other.certificate;
-  changed.evidence[static_cast<std::size_t>(apart - other.pairs.begin())] = kNeighbours;
-  recount(changed);
-  EXPECT_EQ(other.check(changed).verdict, Verdict::not_proved);
-
-  const Case& c = folded();
-  std::vector<TrianglePair> kept, colliding;
-  std::optional<TrianglePair> lost;
-  for (const TrianglePair& pair : c.meeting) {
-    if (!lost && reference::neighbours(c.scene, pair)) {
-      lost = pair;
-    } else {
-      kept.push_back(pair);
-    }
-  }
-  const CheckResult culled = c.check(make_certificate(c.scene, kept, kept, {}));
-  EXPECT_EQ(culled.verdict, Verdict::refuted);
-  EXPECT_EQ(culled.pair, lost);
-  const CheckResult wrong = c.check(make_certificate(c.scene, c.meeting, kept, {}));
-  EXPECT_EQ(wrong.verdict, Verdict::refuted);
-  EXPECT_EQ(wrong.pair, lost);
 }
 
 TEST(Certificate, OfASceneWithoutPairsIsProved) {
