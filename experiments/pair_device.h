@@ -17,6 +17,10 @@ struct PairDevice {
   std::string reason;                    // why this one
 };
 
+PairDevice cpu_pair_device(unsigned threads, const std::string& reason);
+/// The context must outlive the result.
+PairDevice gl_pair_device(const GlContext& context, const std::string& reason);
+
 /// device: "cpu"; "hardware", "software" or a number as for GlContext; or "", which decides by a
 /// fixed rule: GL where a hardware device answers, else the CPU (a software renderer is the same
 /// CPU by a longer way). threads: of the CPU; 0 for as many as there are cores.
