@@ -16,7 +16,6 @@ struct GlPairOptions {
   std::size_t memory = std::size_t{256} << 20;
   long storage_limit =
       0;  // bytes; as if a storage block held no more than this. 0: the device's own limit
-  bool rounding = true;  // false: kernels without their error bounds, for the twins of the tests
 };
 
 /// Faults for tests, each applied to the next raw_pairs; it must notice every one (assumption A7).

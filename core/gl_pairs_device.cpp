@@ -81,7 +81,7 @@ const std::array<Source, kPairPrograms>& sources() {
   return all;
 }
 
-std::vector<std::string> defines_of(const Source& source, bool rounding) {
+std::vector<std::string> defines_of(const Source& source) {
   const auto number = [](const char* name, std::uint32_t value) {
     return std::string(name) + " " + std::to_string(value) + "u";
   };
@@ -110,7 +110,6 @@ std::vector<std::string> defines_of(const Source& source, bool rounding) {
            "FAR_WHOLE_PIXELS " + std::to_string(kWholePixels),
        })
     out.push_back(define);
-  if (!rounding) out.push_back("FAR_PAIR_ROUNDING 0.0f");
   return out;
 }
 
@@ -164,9 +163,7 @@ std::size_t PairMirror::update(std::span<const std::byte> data) {
 }
 
 PairDevice::PairDevice(const GlContext& context, const GlPairOptions& options)
-    : context_(context),
-      block_(static_cast<std::size_t>(context.info().max_storage_block)),
-      rounding_(options.rounding) {
+    : context_(context), block_(static_cast<std::size_t>(context.info().max_storage_block)) {
   if (options.storage_limit > 0) {
     block_ = std::min(block_, static_cast<std::size_t>(options.storage_limit));
   }
@@ -191,7 +188,7 @@ GLuint PairDevice::program(std::size_t which) {
   if (out == 0) {
     const Source& source = sources()[which];
     out = gl_program(
-        source.name, defines_of(source, rounding_),
+        source.name, defines_of(source),
         {{GL_COMPUTE_SHADER,
           {embedded::interval_glsl, embedded::pair_common_glsl, source.before, source.text}}});
   }

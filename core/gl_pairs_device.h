@@ -139,7 +139,6 @@ class PairDevice {
 
   const GlContext& context_;
   std::size_t block_;
-  bool rounding_;
   std::array<GlProgram, kPairPrograms> programs_;  // compiled when first used
   GlBuffer counters_;
   PairStore sums_;

@@ -44,15 +44,23 @@ void work(uint w) {
       far_pixel(t.hi.y, u_window.y) < u_tile.z || far_pixel(t.lo.y, u_window.y) > u_tile.w)
     return;
   uint end = min(u_extra.z + FAR_LARGE_BATCH, u_extra.w);
+  // First to the next one whose box meets the triangle's, so that few steps compute a strip.
   for (uint k = u_extra.z; k < end; ++k) {
-    uint l = large[k];
-    uvec4 other = record_heads[l];
-    if (other.x == t.triangle || !((t.code & kSelf) != 0u || ((t.code ^ other.y) >> 3) != 0u)) continue;
-    vec4 lo = max(t.lo, records[kRecordSize * l + 3u]);
-    vec4 hi = min(t.hi, records[kRecordSize * l + 4u]);
-    if (!(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z) || !far_meets_over(l, t.lo, t.hi)) continue;
+    uint l = 0u;
+    uint other = 0u;
+    for (; k < end; ++k) {
+      l = large[k];
+      uvec4 head = record_heads[l];
+      other = head.x;
+      if (other == t.triangle || !((t.code & kSelf) != 0u || ((t.code ^ head.y) >> 3) != 0u)) continue;
+      vec4 lo = max(t.lo, records[kRecordSize * l + 3u]);
+      vec4 hi = min(t.hi, records[kRecordSize * l + 4u]);
+      if (lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z) break;
+    }
+    if (k >= end) break;
+    if (!far_meets_over(l, t.lo, t.hi)) continue;
     uint at = atomicAdd(counters[FAR_PAIRS], 1u);
-    if (at < u_capacity) pairs[at] = uvec2(min(t.triangle, other.x), max(t.triangle, other.x));
+    if (at < u_capacity) pairs[at] = uvec2(min(t.triangle, other), max(t.triangle, other));
   }
 }
 #endif
