@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -10,8 +12,13 @@
 #include <vector>
 
 #include "commit.h"
+#include "core/error.h"
 #include "core/gl_canvas.h"
+#include "core/gl_pairs.h"
 #include "core/gl_probe.h"
+#include "core/pairs.h"
+#include "core/pairs_cpu.h"
+#include "experiments/builtin_scenes.h"
 #include "experiments/output.h"
 
 namespace farcull {
@@ -111,6 +118,68 @@ Json probes_json(const std::vector<ProbeResult>& probes) {
   return out;
 }
 
+// FAR pairs by both back ends on one scene: which is faster on this machine.
+struct PairAdvice {
+  double cpu_ms = 0;  // median of several runs after a first one
+  double gl_ms = 0;
+  bool equal = false;   // the same candidates
+  std::string problem;  // why the device cannot run it
+  bool gl_is_faster() const { return problem.empty() && gl_ms < cpu_ms; }
+};
+constexpr const char* kPairScene = "field:100000";
+
+PairAdvice advise(const GlContext& context) {
+  const Scene scene = make_builtin_scene(kPairScene);
+  std::vector<TrianglePair> candidates;
+  const auto measure = [&](PairBackend& backend) {
+    constexpr int kRuns = 5;
+    std::vector<double> ms;
+    for (int run = 0; run <= kRuns; ++run) {
+      const auto start = std::chrono::steady_clock::now();
+      candidates = find_pairs(scene, {}, backend).candidates;
+      ms.push_back(
+          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+              .count());
+    }
+    // The first run compiles and allocates.
+    std::nth_element(ms.begin() + 1, ms.begin() + 1 + kRuns / 2, ms.end());
+    return ms[1 + kRuns / 2];
+  };
+  PairAdvice out;
+  out.cpu_ms = measure(*cpu_pair_backend());
+  const std::vector<TrianglePair> by_cpu = candidates;
+  try {
+    out.gl_ms = measure(*gl_pair_backend(context));
+    out.equal = candidates == by_cpu;
+  } catch (const Error& error) {
+    out.problem = error.what();
+  }
+  return out;
+}
+
+std::string advice_text(const PairAdvice& advice, const std::string& renderer) {
+  std::string out = fmt::format("\nFAR pairs on {}: cpu {:.1f} ms, ", kPairScene, advice.cpu_ms);
+  if (!advice.problem.empty()) {
+    out += fmt::format("not on this device ({})", advice.problem);
+  } else {
+    out += fmt::format("{} {:.1f} ms{}", renderer, advice.gl_ms,
+                       advice.equal ? ""
+                                    : "; other candidates, since its arithmetic differs, which the "
+                                      "proofs allow");
+  }
+  return out +
+         fmt::format("\nrecommended: {}\n", advice.gl_is_faster() ? "this device" : "--device cpu");
+}
+
+Json advice_json(const PairAdvice& advice) {
+  return {{"scene", kPairScene},
+          {"cpu_ms", advice.cpu_ms},
+          {"gl_ms", advice.problem.empty() ? Json(advice.gl_ms) : Json(nullptr)},
+          {"equal_candidates", advice.problem.empty() ? Json(advice.equal) : Json(nullptr)},
+          {"problem", advice.problem.empty() ? Json(nullptr) : Json(advice.problem)},
+          {"recommended", advice.gl_is_faster() ? "gl" : "cpu"}};
+}
+
 }  // namespace
 
 int doctor_command(const DoctorArguments& arguments) {
@@ -132,6 +201,8 @@ int doctor_command(const DoctorArguments& arguments) {
       });
   if (terminal) std::fprintf(stderr, "\r%20s\r", "");
 
+  const PairAdvice advice = advise(context);
+
   bool pass = true;
   for (const ProbeResult& p : probes) pass = pass && p.pass;
   if (!arguments.json.empty()) {
@@ -151,11 +222,12 @@ int doctor_command(const DoctorArguments& arguments) {
                            {"max_storage_block", gl.max_storage_block},
                            {"reset_detection", gl.reset_detection}}},
                          {"probes", probes_json(probes)},
+                         {"far_pairs", advice_json(advice)},
                          {"pass", pass},
                          {"commit", FARCULL_COMMIT}};
     write_output(arguments.json, report.dump(2) + "\n");
   }
-  if (people) write_output("-", probes_table(probes));
+  if (people) write_output("-", probes_table(probes) + advice_text(advice, gl.renderer));
   return pass ? 0 : 1;
 }
 
