@@ -76,7 +76,8 @@ BenchAnswer decided(const Scene& scene, std::vector<TrianglePair> candidates, do
 BenchRun far_pairs(std::shared_ptr<PairBackend> backend, unsigned threads) {
   return [=](const Scene& scene) {
     const Stopwatch watch;
-    PairResult result = find_pairs(scene, {}, *backend);
+    const PairSettings settings{.views = {}, .neighbours = false};
+    PairResult result = find_pairs(scene, settings, *backend);
     return decided(scene, std::move(result.candidates), watch.ms(), threads);
   };
 }

@@ -125,7 +125,12 @@ BenchAnswer join_object_pairs(const Scene& raw, unsigned threads) {
     const std::vector<PeerBox> first = clipped(scene, raw.objects[o], region);
     Handles of_first = handles(first);
     if (o == p) {
-      CGAL::box_self_intersection_d(of_first.begin(), of_first.end(), add, kTuned);
+      CGAL::box_self_intersection_d(
+          of_first.begin(), of_first.end(),
+          [&](const PeerBox* a, const PeerBox* b) {
+            if (!share_vertex(raw, a->index, b->index)) add(a, b);
+          },
+          kTuned);
       return;
     }
     const std::vector<PeerBox> second = clipped(scene, raw.objects[p], region);

@@ -153,7 +153,13 @@ BenchAnswer collide(const Scene& scene, unsigned threads) {
   }
   for_each_taken(tasks.size(), 1, threads, [&](std::size_t i) {
     Candidates::Part& part = candidates.part();
-    descend(tasks[i], [&part](std::uint32_t a, std::uint32_t b) { part.add(a, b); });
+    if (tasks[i].first == tasks[i].second) {
+      descend(tasks[i], [&](std::uint32_t a, std::uint32_t b) {
+        if (!share_vertex(scene, a, b)) part.add(a, b);
+      });
+    } else {
+      descend(tasks[i], [&part](std::uint32_t a, std::uint32_t b) { part.add(a, b); });
+    }
   });
   BenchAnswer answer = candidates.finish();
   answer.build_ms = build_ms;

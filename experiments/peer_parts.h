@@ -26,6 +26,16 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Neighbours by index. (Those by position alone are left to the exact decision.)
+inline bool share_vertex(const Scene& scene, std::uint32_t a, std::uint32_t b) {
+  for (const std::uint32_t v : scene.triangles[a]) {
+    for (const std::uint32_t w : scene.triangles[b]) {
+      if (v == w) return true;
+    }
+  }
+  return false;
+}
+
 /// A scene as a peer prepares it, in its own time: the boxes of the triangles, and who meets whom.
 struct PeerScene {
   /// Without boxes where the peer has others.
@@ -37,9 +47,9 @@ struct PeerScene {
   bool two_sides = false;            // exactly two objects have triangles, and neither is self
   std::uint32_t second = 0;          // the first triangle of the second of them; else 0
 
-  /// Whether a pair of these triangles counts.
+  /// Whether a pair of these triangles counts; neighbours by index do not.
   bool counts(std::uint32_t a, std::uint32_t b) const {
-    return owner[a] != owner[b] || scene.objects[owner[a]].self;
+    return owner[a] != owner[b] || (scene.objects[owner[a]].self && !share_vertex(scene, a, b));
   }
   /// Whether there can be a pair at all.
   bool has_pairs() const;
