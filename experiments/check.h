@@ -13,8 +13,8 @@ namespace farcull {
 struct CheckArguments {
   std::string certificate;         // a file
   std::vector<std::string> scene;  // as of `farcull run`
-  bool self = false;               // the same: every object is tested against itself
   std::string json;                // "" for none, "-" for standard output instead of the text
+  bool self = false;               // every object is tested against itself, as by run --self
 };
 
 /// Prints the verdict. 0: proved; 1: refuted or not proved. Throws Error where the certificate or

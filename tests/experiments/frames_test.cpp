@@ -1,0 +1,145 @@
+#include "experiments/frames.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "experiments/builtin_motion.h"
+#include "experiments/builtin_scenes.h"
+#include "tests/experiments/error_of.h"
+
+namespace farcull {
+namespace {
+
+constexpr const char* kFloor = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+std::string falling(double z) {
+  const std::string h = std::to_string(z), l = std::to_string(z - 0.25);
+  return "v 0.1 0.1 " + h + "\nv 0.9 0.1 " + h + "\nv 0.1 0.1 " + l + "\nf 1 2 3\n";
+}
+
+FramesQuestion question(Method method, FrameRange range) {
+  FramesQuestion out;
+  out.options.method = method;
+  out.options.device = "cpu";
+  out.range = range;
+  out.pairs = true;
+  return out;
+}
+
+TEST(Frames, RangesAreACountOrFirstAndLast) {
+  EXPECT_EQ(parse_frames("3").first, 0);
+  EXPECT_EQ(parse_frames("3").last, 2);
+  EXPECT_EQ(parse_frames("7:7").count(), 1);
+  EXPECT_EQ(parse_frames("5:14").count(), 10);
+  for (const char* bad : {"", "0", "-3", "x", "1:", ":1", "4:3", "1:2:3", "1000001", "0:1000000"})
+    EXPECT_EQ(error_of([&] { parse_frames(bad); }).where, "--frames") << bad;
+}
+
+TEST(Frames, NumberedNamesHoldOnePlace) {
+  EXPECT_EQ(numbered("a_%d.obj", 7), "a_7.obj");
+  EXPECT_EQ(numbered("a_%04d.obj", 7), "a_0007.obj");
+  EXPECT_EQ(numbered("a_%02d.obj", 1234), "a_1234.obj");
+  EXPECT_EQ(numbered("50%/%03d.obj", 12), "50%/012.obj");
+  for (const char* name :
+       {"a.obj", "a%.obj", "a%s.obj", "a%4d.obj", "a%0d.obj", "a%00d.obj", "%d_%d.obj", "a%04"})
+    EXPECT_FALSE(is_numbered(name)) << name;
+}
+
+TEST(Frames, SummaryIsMedianNearestRankAndMaximum) {
+  std::vector<double> ms;
+  for (int i = 100; i > 0; --i) ms.push_back(i);
+  EXPECT_EQ(summary_of(ms).median, 50.5);
+  EXPECT_EQ(summary_of(ms).p95, 95);
+  EXPECT_EQ(summary_of(ms).max, 100);
+  EXPECT_EQ(summary_of({3}).p95, 3);
+}
+
+TEST(Frames, NumberedMeshesGiveThePairsOfEachFrame) {
+  const ScratchFolder folder;
+  const std::string floor = folder.write("floor.obj", kFloor);
+  for (int frame = 1; frame <= 4; ++frame)
+    folder.write("fall_" + std::to_string(frame) + ".obj", falling(0.9 - 0.3 * frame));
+  const std::vector<std::string> scene = {folder.path("fall_%d.obj"), floor};
+  for (const Method method : {Method::far_pairs, Method::exact}) {
+    const FramesResult result = run_frames(scene, question(method, {1, 4}));
+    ASSERT_EQ(result.json["frames"].size(), 4u);
+    std::vector<int> colliding;
+    for (const auto& frame : result.json["frames"]) colliding.push_back(frame["colliding_pairs"]);
+    EXPECT_EQ(colliding, (std::vector<int>{0, 0, 1, 0}));  // at z 0.6, 0.3, 0 and -0.3
+    EXPECT_EQ(result.json["frames"][2]["frame"], 3);
+    EXPECT_EQ(result.json["summary"]["missed"], 0);
+    EXPECT_EQ(result.json["summary"]["frames"], 4);
+    EXPECT_EQ(result.pairs_csv, "frame,object_a,triangle_a,object_b,triangle_b\n3,0,0,1,0\n");
+    EXPECT_EQ(result.broken, "");
+  }
+}
+
+TEST(Frames, OnlyVerticesChange) {
+  FrameSource source({"two-spheres"}, {0, 8}, true);
+  const Scene& first = source.at(0);
+  const auto* const triangles = first.triangles.data();
+  const std::vector<Vec3> before = first.vertices;
+  const Scene& later = source.at(3);
+  EXPECT_EQ(&first, &later);
+  EXPECT_EQ(later.triangles.data(), triangles);
+  EXPECT_NE(later.vertices, before);
+  EXPECT_TRUE(later.objects[0].self);
+  EXPECT_EQ(source.at(0).vertices, before);  // and nothing is remembered
+}
+
+TEST(Frames, AFrameOfAnotherTopologyIsNamed) {
+  const ScratchFolder folder;
+  folder.write("m_0.obj", kFloor);
+  const std::string path = folder.path("m_%d.obj");
+  const auto failing = [&](const std::string& bytes) {
+    folder.write("m_1.obj", bytes);
+    FrameSource source({path}, {0, 1}, false);
+    return error_of([&] { source.at(1); });
+  };
+  const std::string floor = kFloor;
+  for (const std::string& bytes : {floor + "f 1 2 3\n", "v 2 2 2\n" + floor,
+                                   std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 3 2\n")}) {
+    const Error error = failing(bytes);
+    EXPECT_EQ(error.where, folder.path("m_1.obj"));
+    EXPECT_NE(error.reason.find("m_0.obj"), std::string::npos);
+  }
+  EXPECT_EQ(error_of([&] { FrameSource({path}, {0, 2}, false); }).where, folder.path("m_2.obj"));
+  EXPECT_EQ(error_of([&] {
+              FrameSource({folder.path("m_0.obj")}, {0, 2}, false);
+            }).where,
+            "--frames");
+  EXPECT_EQ(error_of([&] { FrameSource({"two-tori"}, {0, 2}, false); }).where, "--frames");
+}
+
+TEST(Frames, BuiltinMotionsMoveEveryObjectButTheGround) {
+  for (const BuiltinMotion& motion : builtin_motions()) {
+    if (motion.scene == "two-bunnies") continue;  // made of the packaged meshes
+    const std::string name = motion.scene + "@ground@far";
+    ASSERT_TRUE(has_motion(name));
+    const Scene rest = make_builtin_scene(name);
+    const std::vector<Vec3> now = moved(name, rest, 0.3);
+    EXPECT_EQ(now, moved(name, rest, 0.3));
+    for (const Object& object : rest.objects) {
+      const std::uint32_t v = rest.triangles[object.first_triangle][0];
+      EXPECT_EQ(now[v] == rest.vertices[v], object.name == "ground") << name << ' ' << object.name;
+    }
+  }
+  EXPECT_FALSE(has_motion("two-tori"));
+}
+
+TEST(Frames, EveryFrameOfAMotionIsAccountedFor) {
+  for (const char* name : {"two-spheres", "crowd"}) {
+    const FramesResult result = run_frames({name}, question(Method::far_pairs, {0, 4}));
+    EXPECT_EQ(result.json["summary"]["missed"], 0);
+    std::set<int> candidates;
+    for (const auto& frame : result.json["frames"]) {
+      candidates.insert(frame["candidate_pairs"].get<int>());
+      EXPECT_EQ(frame["verification"]["false_negatives"], 0);
+    }
+    EXPECT_GT(candidates.size(), 2u) << name << " does not move";
+  }
+}
+
+}  // namespace
+}  // namespace farcull
