@@ -1,8 +1,9 @@
+#include <algorithm>
 #include <cfenv>
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <thread>
 #include <utility>
 
 #include "core/error.h"

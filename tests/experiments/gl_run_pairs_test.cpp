@@ -1,0 +1,98 @@
+// FAR pairs as a method of farcull run, and the library, on a GL device.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/builtin_scenes.h"
+#include "experiments/farcull.h"
+#include "experiments/frames.h"
+#include "experiments/output.h"
+#include "experiments/run.h"
+
+namespace farcull {
+namespace {
+
+RunOptions on(const std::string& device) {
+  RunOptions options;
+  options.method = Method::far_pairs;
+  options.device = device;
+  return options;
+}
+
+TEST(GlRunPairs, GivesTheCandidatesOfTheCpuAndSaysWhatAnswered) {
+  Session gl("software"), cpu("cpu");
+  for (const char* name : {"two-spheres", "degenerate", "needles", "far-apart"}) {
+    Scene scene = make_builtin_scene(name);
+    for (const bool self : {false, true}) {
+      for (Object& object : scene.objects) object.self = self;
+      const RunRecord there = run_scene(scene, on("software"), gl);
+      const RunRecord here = run_scene(scene, on("cpu"), cpu);
+      EXPECT_EQ(there.kept, here.kept) << name;
+      EXPECT_EQ(there.pairs, here.pairs) << name;
+      EXPECT_EQ(there.neighbour_pairs, here.neighbour_pairs) << name;
+      EXPECT_EQ(there.verification->false_negatives, 0u) << name;
+      EXPECT_FALSE(there.on_cpu);
+      ASSERT_TRUE(there.device);
+      EXPECT_EQ(there.device->kind, "software");
+      const nlohmann::ordered_json json = to_json(scene, there);
+      EXPECT_EQ(json["device"]["renderer"], there.device->renderer);
+      EXPECT_EQ(json["device"]["reason"], "--device software");
+    }
+  }
+}
+
+TEST(GlRunPairs, WithoutADeviceTheRuleDecidesAndIsSaid) {
+  Session session("");
+  const RunRecord record = run_scene(make_builtin_scene("two-spheres"), on(""), session);
+  EXPECT_TRUE(
+      record.device_note.starts_with("no --device: GL where hardware answers, else the CPU"));
+  EXPECT_EQ(record.on_cpu, !GlContext::hardware_listed() || !record.device);
+  if (record.device) {
+    EXPECT_EQ(record.device->kind, "hardware");
+  }
+}
+
+TEST(GlRunPairs, FarAndFarPairsShareAContext) {
+  Session session("software");
+  const Scene scene = make_builtin_scene("two-spheres");
+  RunOptions far = on("software");
+  far.method = Method::far;
+  far.resolution = 64;
+  const std::vector<TrianglePair> pairs = run_scene(scene, far, session).pairs;
+  EXPECT_EQ(run_scene(scene, on("software"), session).pairs, pairs);
+  EXPECT_EQ(run_scene(scene, far, session).pairs, pairs);
+  EXPECT_EQ(run_scene(scene, on("software"), session).pairs, pairs);
+}
+
+TEST(GlRunPairs, FramesKeepOneBackend) {
+  const FramesResult gl = run_frames({"two-spheres"}, {.options = on("software"), .range = {0, 4}});
+  const FramesResult cpu = run_frames({"two-spheres"}, {.options = on("cpu"), .range = {0, 4}});
+  for (std::size_t k = 0; k < 5; ++k) {
+    for (const char* key : {"hash", "candidate_pairs", "colliding_pairs"})
+      EXPECT_EQ(gl.json["frames"][k][key], cpu.json["frames"][k][key]);
+    EXPECT_EQ(gl.json["frames"][k]["verification"]["false_negatives"], 0);
+    if (k > 0) {
+      EXPECT_LT(gl.json["frames"][k]["time_ms"]["setup"], 1.0);
+    }
+  }
+}
+
+TEST(GlRunPairs, TheLibraryOnGl) {
+  const Scene scene = make_builtin_scene("two-spheres");
+  std::vector<double> vertices;
+  std::vector<std::uint32_t> triangles, starts;
+  for (const Vec3& p : scene.vertices) vertices.insert(vertices.end(), p.data(), p.data() + 3);
+  for (const auto& t : scene.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+  for (const Object& object : scene.objects) starts.push_back(object.first_triangle);
+  const std::vector<ColliderPair> pairs = Collider().find({vertices, triangles, starts}).pairs;
+  EXPECT_FALSE(pairs.empty());
+  Collider gl({.device = ColliderDevice::gl});
+  for (int repeat = 0; repeat < 2; ++repeat) {
+    const ColliderResult found = gl.find({vertices, triangles, starts});
+    EXPECT_EQ(found.pairs, pairs);
+    EXPECT_NE(found.report.device, "cpu");
+  }
+}
+
+}  // namespace
+}  // namespace farcull
