@@ -105,7 +105,7 @@ Scene crowded_scene(std::uint64_t seed, int count) {
 
 // A bit of everything that takes programs of its own: rows, crowds, large triangles, self.
 Scene mixed_scene() {
-  Scene scene = crowded_scene(5, 200);
+  Scene scene = crowded_scene(5, 600);
   const auto v = static_cast<std::uint32_t>(scene.vertices.size());
   scene.vertices.insert(scene.vertices.end(),
                         {Vec3(-1, -1, 0.2), Vec3(1, -1, 0.1), Vec3(0, 1, 0.3), Vec3(-1, 0.9, 0),
@@ -146,7 +146,9 @@ TEST(GlPairs, EqualTheCpusOnBuiltInScenes) {
       if (resolution <= 32) {
         find_pairs(with_self(scene), {.views = parse_views("x,y,z"), .resolution = resolution},
                    both);
-        find_pairs(scene, {.resolution = resolution, .clearance = 0.01}, both);
+        const Box box = object_boxes(scene, triangle_boxes(scene))[0];
+        const double clearance = 0.01 * (box.hi - box.lo).maxCoeff();
+        find_pairs(scene, {.resolution = resolution, .clearance = clearance}, both);
       }
       ASSERT_EQ(both.wrong, 0u);
     }
@@ -159,7 +161,7 @@ TEST(GlPairs, EqualTheCpusOnBuiltInScenes) {
 TEST(GlPairs, EqualTheCpusInCrowdedPixels) {
   Both both(shared());
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    const Scene scene = crowded_scene(seed, 150 * static_cast<int>(seed));
+    const Scene scene = crowded_scene(seed, 600 * static_cast<int>(seed));
     for (const int resolution : {1, 4, 33}) {
       find_pairs(seed % 2 == 0 ? scene : with_self(scene),
                  {.views = parse_views("z,x"), .resolution = resolution}, both);
