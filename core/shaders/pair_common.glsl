@@ -66,6 +66,9 @@ void far_add(uint counter, uint n) {
     return low;                                                                \
   }
 
+// if, for what few invocations need: llvmpipe runs both sides of an if, but leaves a loop that no invocation is in.
+#define FAR_RARELY(condition) for (uint far_rare = (condition) ? 1u : 0u; far_rare != 0u; --far_rare)
+
 void work(uint w);
 
 #ifdef FAR_SUM

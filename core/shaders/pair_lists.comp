@@ -44,21 +44,18 @@ uint far_slice_bits(int first_slice, int last_slice, int word) {
 bool far_visit(uint cell, uint word, uint near_bits, uint far_bits, uint bin, uint record, uvec4 lo, uvec4 hi) {
 #if FAR_STEP == FAR_MARK
   uint at = 2u * cell + word;
-  if ((hi.w & kSelf) != 0u) {
-    atomicOr(masks[at], near_bits);
-    if (far_bits != 0u) atomicOr(masks[at + 1u], far_bits);
-  } else {
-    for (uint k = 0u; k < u_extra.x; ++k) {
-      uint region = 2u * u_cells * (1u + 2u * k + ((hi.w >> (3u + k)) & 1u));
-      atomicOr(masks[region + at], near_bits);
-      if (far_bits != 0u) atomicOr(masks[region + at + 1u], far_bits);
-    }
+  bool self = (hi.w & kSelf) != 0u;
+  uint regions = self ? 1u : u_extra.x;
+  for (uint k = 0u; k < regions; ++k) {
+    uint region = self ? 0u : 2u * u_cells * (1u + 2u * k + ((hi.w >> (3u + k)) & 1u));
+    atomicOr(masks[region + at], near_bits);
+    FAR_RARELY(far_bits != 0u) atomicOr(masks[region + at + 1u], far_bits);
   }
   return false;
 #else
   if (u_masked != 0u) {
     uint conflict = masks[2u * cell + word] & near_bits;
-    if (far_bits != 0u) conflict |= masks[2u * cell + word + 1u] & far_bits;
+    FAR_RARELY(far_bits != 0u) conflict |= masks[2u * cell + word + 1u] & far_bits;
     if (conflict == 0u) return false;
   }
 #if FAR_STEP == FAR_COUNT

@@ -179,6 +179,8 @@ TEST(GlPairs, LeaveOutNeighboursLikeTheCpu) {
     const auto expected = find_pairs(scene, settings, *cpu).candidates;
     EXPECT_EQ(find_pairs(scene, settings, shared()).candidates, expected);
     EXPECT_GT(expected.size(), 100u);
+    GlPairs gathering(lab::context(), {.storage_limit = 100'000});
+    EXPECT_EQ(find_pairs(scene, settings, gathering).candidates, expected);
   }
 }
 
