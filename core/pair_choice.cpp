@@ -11,8 +11,8 @@
 namespace farcull {
 namespace {
 
-constexpr std::size_t kSample = 2048;
-constexpr int kLeastResolution = 16, kMostResolution = 4096;  // px
+constexpr std::size_t kSample = 1024;
+constexpr int kLeastResolution = 32, kMostResolution = 4096;  // px
 
 // Work in units of one pixel that a triangle meets: measured ratios, rounded.
 constexpr double kPixelWork = 0.3;  // a pixel of the window, whether or not anything is there
@@ -106,7 +106,7 @@ double work(const Sample& sample, const Image& image, int resolution) {
 int best_resolution(const Sample& sample, const Image& image, double& least) {
   int best = kLeastResolution;
   least = HUGE_VAL;
-  for (int step = 0; step <= 16; ++step) {  // half octaves, even
+  for (int step = 0; step <= 14; ++step) {  // half octaves, even
     const int resolution = 2 * static_cast<int>(0.5 * kLeastResolution * std::pow(2.0, 0.5 * step));
     const double w = work(sample, image, resolution);
     if (w < least) {

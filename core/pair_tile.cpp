@@ -12,6 +12,8 @@ using Clock = std::chrono::steady_clock;
 
 // Longer lists are sorted by near depth and swept.
 constexpr std::size_t kSweepFrom = 64;
+// Triangles are fetched this far ahead, since their corners may lie anywhere.
+constexpr std::size_t kAhead = 8;
 
 double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -94,8 +96,9 @@ void PairTileWorker::for_each_pixel(const PairItem& item, const Visit& visit) co
   }
 }
 
-// Owner by owner: first what meets the slices of earlier owners, then the owner's own slices.
-void PairTileWorker::mark(std::span<const PairItem> items) {
+// Owner by owner: first what meets the slices of earlier owners, then the owner's own slices. What
+// the last owner meets is left to list(): returns where that owner's items begin.
+std::size_t PairTileWorker::mark(std::span<const PairItem> items) {
   const std::size_t cells = static_cast<std::size_t>(tile_.width()) * tile_.height();
   any_.assign(cells, 0);
   conflict_.assign(cells, 0);
@@ -104,6 +107,7 @@ void PairTileWorker::mark(std::span<const PairItem> items) {
   for (; begin < items.size(); begin = end) {
     const std::uint32_t owner = task.owners[items[begin].triangle];
     while (end < items.size() && task.owners[items[end].triangle] == owner) ++end;
+    if (end == items.size()) break;
     const bool self = task.self[owner] != 0;
     if (self || begin > 0) {
       for (std::size_t k = begin; k < end; ++k) {
@@ -112,57 +116,79 @@ void PairTileWorker::mark(std::span<const PairItem> items) {
         });
       }
     }
-    if (end == items.size()) break;
     for (std::size_t k = begin; k < end; ++k) {
       for_each_pixel(items[k], [&](std::uint32_t cell, std::uint64_t bits, float, float) {
         any_[cell] |= bits;
       });
     }
   }
+  return begin;
 }
 
-// The lists of the tile's pixels; false: more than `limit` entries.
-bool PairTileWorker::list(std::span<const PairItem> items, bool masked, std::size_t limit) {
+// The lists of the tile's pixels, the last owner's items (from `last` on) before the others, since
+// they complete the conflicts; false: more than `limit` entries.
+bool PairTileWorker::list(std::span<const PairItem> items, std::size_t last, bool masked,
+                          std::size_t limit) {
   const PairTask& task = grid_->task();
   const std::size_t cells = static_cast<std::size_t>(tile_.width()) * tile_.height();
   first_.assign(cells + 2, 0);
   raw_.clear();
   shown_.clear();
-  for (const PairItem& item : items) {
+  // Lists one item; meets(cell, slices) says whether it has an entry there.
+  const auto add = [&](const PairItem& item, const auto& meets) {
     const std::uint32_t next = static_cast<std::uint32_t>(shown_.size());
     const std::size_t before = raw_.size();
     for_each_pixel(item, [&](std::uint32_t cell, std::uint64_t bits, float near, float far) {
-      if (masked && (conflict_[cell] & bits) == 0) return;
+      if (!meets(cell, bits)) return;
       raw_.push_back({cell, next, near, far});
       ++first_[cell + 1];
     });
-    if (raw_.size() == before) continue;
-    const PairBounds bounds = grid_->bounds(item.triangle);
-    shown_.push_back({item.triangle, task.owners[item.triangle], task.triangles[item.triangle],
-                      bounds, item.whole});
-    if (item.whole) {
-      for (std::size_t k = before; k < raw_.size(); ++k) {
-        raw_[k].near = bounds.lo.z;
-        raw_[k].far = bounds.hi.z;
-      }
+    if (raw_.size() == before) return;
+    shown_.push_back(
+        {item.triangle, task.owners[item.triangle], task.triangles[item.triangle], {}, item.whole});
+  };
+  if (masked && last < items.size()) {
+    const bool self = task.self[task.owners[items[last].triangle]] != 0;
+    for (std::size_t k = last; k < items.size() && raw_.size() <= limit; ++k) {
+      add(items[k], [&](std::uint32_t cell, std::uint64_t bits) {
+        const std::uint64_t common = self ? bits : bits & any_[cell];
+        conflict_[cell] |= common;
+        return common != 0;
+      });
     }
-    if (raw_.size() > limit) return false;
+    items = items.first(last);
+  }
+  for (std::size_t k = 0; k < items.size() && raw_.size() <= limit; ++k) {
+    if (masked) {
+      add(items[k],
+          [&](std::uint32_t cell, std::uint64_t bits) { return (conflict_[cell] & bits) != 0; });
+    } else {
+      add(items[k], [](std::uint32_t, std::uint64_t) { return true; });
+    }
+  }
+  if (raw_.size() > limit) return false;
+  for (std::size_t k = 0; k < shown_.size(); ++k) {
+    grid_->prefetch(shown_[std::min(k + kAhead, shown_.size() - 1)].triangle);
+    shown_[k].bounds = grid_->bounds(shown_[k].triangle);
   }
   for (std::size_t c = 0; c < cells; ++c) first_[c + 1] += first_[c];
   first_[cells + 1] = static_cast<std::uint32_t>(raw_.size());
   entries_.resize(raw_.size());
   // From the back, so that first_[c + 1], the end of list c, ends as its start.
   for (std::size_t k = raw_.size(); k-- > 0;) {
-    entries_[--first_[raw_[k].cell + 1]] = entry(raw_[k]);
+    const RawEntry& raw = raw_[k];
+    const Shown& shown = shown_[raw.shown];
+    entries_[--first_[raw.cell + 1]] = entry(raw.shown, shown.whole ? shown.bounds.lo.z : raw.near,
+                                             shown.whole ? shown.bounds.hi.z : raw.far);
   }
   return true;
 }
 
-PairTileWorker::Entry PairTileWorker::entry(const RawEntry& raw) const {
-  const Shown& shown = shown_[raw.shown];
+PairTileWorker::Entry PairTileWorker::entry(std::uint32_t index, float near, float far) const {
+  const Shown& shown = shown_[index];
   const PairBounds& b = shown.bounds;
-  return {b.lo.x, b.lo.y, raw.near, raw.shown | (shown.whole ? kWholeBit : 0),
-          b.hi.x, b.hi.y, raw.far,  shown.owner};
+  return {b.lo.x, b.lo.y, near, index | (shown.whole ? kWholeBit : 0),
+          b.hi.x, b.hi.y, far,  shown.owner};
 }
 
 // Whether the bounds in the image and the intervals overlap.
@@ -187,8 +213,8 @@ bool PairTileWorker::left_out(const Shown& a, const Shown& b) const {
   return shared;
 }
 
-// Calls emit for each two entries that meet and whose triangles may collide. Entries are in the
-// order of triangles, hence of owners; long lists are put into another.
+// Calls emit for each two entries that meet and whose triangles may collide. Entries of an
+// owner stand together; long lists are put into another order.
 template <class Emit>
 void PairTileWorker::sweep(std::span<Entry> entries, const Emit& emit) {
   const std::size_t n = entries.size();
@@ -307,7 +333,9 @@ bool PairTileWorker::subdivide(std::span<Entry> entries, float x, float y, float
   for (int c = 0; c < kCells; ++c) first[c + 1] += first[c];
   std::vector<Entry> sorted(raw.size());
   std::array<std::uint32_t, kCells + 1> next = first;
-  for (const RawEntry& part_of : raw) sorted[next[part_of.cell]++] = entry(part_of);
+  for (const RawEntry& part_of : raw) {
+    sorted[next[part_of.cell]++] = entry(part_of.shown, part_of.near, part_of.far);
+  }
   for (int c = 0; c < kCells; ++c) {
     const std::size_t n = first[c + 1] - first[c];
     if (n < 2) continue;
@@ -335,10 +363,10 @@ void PairTileWorker::run(const PairGrid& grid, const PairTile& tile,
   const auto start = Clock::now();
   bool fits = limit > 0;
   if (fits) {
-    if (masked) mark(items);
+    const std::size_t last = masked ? mark(items) : 0;
     counts.mark_ms += ms_since(start);
     const auto listing = Clock::now();
-    fits = list(items, masked, std::min<std::size_t>(limit, UINT32_MAX));
+    fits = list(items, last, masked, std::min<std::size_t>(limit, UINT32_MAX));
     counts.list_ms += ms_since(listing);
   }
   if (!fits) {

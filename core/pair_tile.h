@@ -36,6 +36,12 @@ class PairGrid {
   const interval::vec4& corner(std::uint32_t triangle, int k) const {
     return task_.vertices[task_.triangles[triangle][k]];
   }
+  /// Fetches the corners, for a call that follows soon.
+  void prefetch([[maybe_unused]] std::uint32_t triangle) const {
+#ifdef __GNUC__
+    for (const std::uint32_t v : task_.triangles[triangle]) __builtin_prefetch(&task_.vertices[v]);
+#endif
+  }
   /// Real bounds, and within the owner's limits.
   PairBounds real_bounds(std::uint32_t triangle) const {
     const std::array<std::uint32_t, 3>& t = task_.triangles[triangle];
@@ -93,18 +99,18 @@ class PairTileWorker {
   struct RawEntry {
     std::uint32_t cell;
     std::uint32_t shown;
-    float near, far;
+    float near, far;  // px; not set for whole triangles
   };
   static bool meet(const Entry& a, const Entry& b);
   const Shown& shown(const Entry& e) const { return shown_[e.shown & ~kWholeBit]; }
   bool left_out(const Shown& a, const Shown& b) const;
   void keep(const Entry& a, const Entry& b);
-  Entry entry(const RawEntry& raw) const;
+  Entry entry(std::uint32_t index, float near, float far) const;
 
   template <class Visit>
   void for_each_pixel(const PairItem& item, const Visit& visit) const;
-  void mark(std::span<const PairItem> items);
-  bool list(std::span<const PairItem> items, bool masked, std::size_t limit);
+  std::size_t mark(std::span<const PairItem> items);
+  bool list(std::span<const PairItem> items, std::size_t last, bool masked, std::size_t limit);
   void pair_pixel(std::span<Entry> entries, int i, int j);
   void pair_cell(std::span<Entry> entries, float x, float y, float size, int level);
   bool subdivide(std::span<Entry> entries, float x, float y, float size, int level);

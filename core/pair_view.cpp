@@ -1,5 +1,9 @@
 #include "core/pair_view.h"
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -26,6 +30,48 @@ Box grow(Box box, double half) {
   return box;
 }
 
+// The box of the triangles from .. to - 1. Each of the three corners has minima and maxima of its
+// own, so that none waits for another.
+Box box_of(const Scene& scene, std::size_t from, std::size_t to) {
+  Box box = Box::empty();
+#ifdef __SSE2__
+  struct Corner {
+    __m128d lo_xy, hi_xy, lo_z, hi_z;
+    void add(const double* p) {
+      const __m128d xy = _mm_loadu_pd(p), z = _mm_load_sd(p + 2);
+      lo_xy = _mm_min_pd(lo_xy, xy);
+      hi_xy = _mm_max_pd(hi_xy, xy);
+      lo_z = _mm_min_sd(lo_z, z);
+      hi_z = _mm_max_sd(hi_z, z);
+    }
+  };
+  const __m128d inf = _mm_set1_pd(HUGE_VAL), minus = _mm_set1_pd(-HUGE_VAL);
+  Corner a{inf, minus, inf, minus}, b = a, c = a;
+  for (std::size_t t = from; t < to; ++t) {
+    // Their corners may lie anywhere, so they are fetched ahead.
+    for (const std::uint32_t v : scene.triangles[std::min(t + 16, to - 1)]) {
+      _mm_prefetch(reinterpret_cast<const char*>(scene.vertices[v].data()), _MM_HINT_T0);
+    }
+    const std::array<std::uint32_t, 3>& v = scene.triangles[t];
+    a.add(scene.vertices[v[0]].data());
+    b.add(scene.vertices[v[1]].data());
+    c.add(scene.vertices[v[2]].data());
+  }
+  for (const Corner& corner : {a, b, c}) {
+    double lo[2], hi[2];
+    _mm_storeu_pd(lo, corner.lo_xy);
+    _mm_storeu_pd(hi, corner.hi_xy);
+    box.add(Box{{lo[0], lo[1], _mm_cvtsd_f64(corner.lo_z)},
+                {hi[0], hi[1], _mm_cvtsd_f64(corner.hi_z)}});
+  }
+#else
+  for (std::size_t t = from; t < to; ++t) {
+    for (const std::uint32_t v : scene.triangles[t]) box.add(scene.vertices[v]);
+  }
+#endif
+  return box;
+}
+
 std::vector<Box> boxes_of_objects(const Scene& scene, unsigned threads) {
   std::vector<Box> boxes(scene.objects.size(), Box::empty());
   const std::vector<Object>& objects = scene.objects;
@@ -48,21 +94,8 @@ std::vector<Box> boxes_of_objects(const Scene& scene, unsigned threads) {
         for (std::size_t t = begin; t < end; ++o) {
           const std::size_t stop = std::min<std::size_t>(
               end, std::size_t{objects[o].first_triangle} + objects[o].triangle_count);
-          // In locals, which stay in registers.
-          const double inf = HUGE_VAL;
-          double x0 = inf, y0 = inf, z0 = inf, x1 = -inf, y1 = -inf, z1 = -inf;
-          for (; t < stop; ++t) {
-            for (const std::uint32_t v : scene.triangles[t]) {
-              const double* const p = scene.vertices[v].data();
-              x0 = p[0] < x0 ? p[0] : x0;
-              y0 = p[1] < y0 ? p[1] : y0;
-              z0 = p[2] < z0 ? p[2] : z0;
-              x1 = p[0] > x1 ? p[0] : x1;
-              y1 = p[1] > y1 ? p[1] : y1;
-              z1 = p[2] > z1 ? p[2] : z1;
-            }
-          }
-          part.boxes.push_back({{x0, y0, z0}, {x1, y1, z1}});
+          part.boxes.push_back(box_of(scene, t, stop));
+          t = stop;
         }
       });
   for (const Part& part : parts) {
@@ -118,13 +151,13 @@ PairRegions pair_regions(const Scene& scene, double clearance, unsigned threads)
     out.reach.add(boxes[o]);
     count += scene.objects[o].triangle_count;
   }
-  out.triangles.reserve(count);
+  out.triangles.resize(count);
+  std::uint32_t* next = out.triangles.data();
   for (std::size_t o = 0; o < boxes.size(); ++o) {
     if (out.objects[o].is_empty()) continue;
     const Object& object = scene.objects[o];
-    for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
-      out.triangles.push_back(object.first_triangle + k);
-    }
+    std::iota(next, next + object.triangle_count, object.first_triangle);
+    next += object.triangle_count;
   }
   return out;
 }

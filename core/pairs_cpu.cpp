@@ -11,6 +11,9 @@
 namespace farcull {
 namespace {
 
+// Triangles are fetched this far ahead, since their corners may lie anywhere.
+constexpr std::size_t kAhead = 16;
+
 // Bands of rows: several for each thread, so that one dense band does not hold up the others.
 constexpr int kBandsPerThread = 4;
 constexpr int kLeastShift = 2;
@@ -120,6 +123,7 @@ class CpuPairs : public PairBackend {
           for (auto& band : mine) band.clear();
           for (std::size_t k = begin; k < end; ++k) {
             const std::uint32_t t = task.active[k];
+            grid.prefetch(task.active[std::min(k + kAhead, end - 1)]);
             const PairBounds bounds = grid.bounds(t);
             if (bounds.empty()) continue;
             const PairItem item = grid.item(t, bounds);

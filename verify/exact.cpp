@@ -247,6 +247,16 @@ Triage filter_neighbours(unsigned equal, const Corners& a, const Corners& b) {
   return filter_beyond_edge(a[i], a[k], a[3 - i - k], b[3 - j - l]);
 }
 
+// Fetches the corners of a triangle for a use that follows soon: they may lie anywhere.
+constexpr std::size_t kAhead = 8;
+void fetch([[maybe_unused]] const Scene& scene, [[maybe_unused]] std::uint32_t triangle) {
+#ifdef __GNUC__
+  for (const std::uint32_t v : scene.triangles[triangle]) {
+    __builtin_prefetch(scene.vertices[v].data());
+  }
+#endif
+}
+
 /// A triangle with its corners at hand.
 struct Gathered {
   std::uint32_t triangle;
@@ -381,6 +391,7 @@ Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
       Gathered b(scene, candidates[begin].b);
       for (std::size_t i = begin; i < end; ++i) {
         const TrianglePair& pair = candidates[i];
+        fetch(scene, candidates[std::min(i + kAhead, end - 1)].b);
         if (pair.a != a.triangle) a.gather(scene, pair.a);  // mostly as before, in sorted lists
         b.gather(scene, pair.b);
         answers[i] = answer(scene, a, b, same_object(pair), question);
