@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/pair_view.h"
+#include "core/pairs_cpu.h"
 
 namespace farcull {
 namespace {
@@ -22,6 +23,14 @@ constexpr double kTestWork = 2.5, kTestWorkSelf = 0.25;
 // Of the pixels that triangles meet, those that the slices leave between different objects: at
 // least this part, and more where triangles are deep.
 constexpr double kLeftBySlices = 0.15;
+// Where triangles are deeper than this part of the scene in some view, their images lie too
+// unevenly for estimates: the sample itself is looked at, with this work for a test and for a pair.
+constexpr double kDeep = 0.075;
+constexpr std::size_t kTrial = 192;  // triangles of the sample
+constexpr double kTrialFrom = 4096;  // triangles; fewer are looked at in no time
+constexpr double kTrialTest = 0.25, kTrialPair = 8;
+// Rows of pixels are cut one by one for triangles that meet more than a few: work of each pixel.
+constexpr double kTightPixelWork = 4;
 // A direction that is no axis loses the exact boxes of the axes, so it has to win clearly.
 constexpr double kOblique = 1.25;
 
@@ -36,6 +45,7 @@ struct Image {
 };
 
 struct Sample {
+  std::vector<std::uint32_t> owners;           // of the triangles
   std::vector<std::array<Vec3, 3>> triangles;  // relative to the regions' centre, scaled to size 1
   Vec3 size;                                   // of the regions, scaled
   double count = 0;                            // triangles that the sample stands for
@@ -64,6 +74,7 @@ Sample draw(const Scene& scene, const PairRegions& regions) {
     for (Vec3& corner : corners) corner = (corner - centre) / extent;
     if (corners[0].allFinite() && corners[1].allFinite() && corners[2].allFinite()) {
       sample.triangles.push_back(corners);
+      sample.owners.push_back(static_cast<std::uint32_t>(o));
     }
   }
   sample.count = static_cast<double>(n) * static_cast<double>(inside) / static_cast<double>(count);
@@ -117,9 +128,51 @@ int best_resolution(const Sample& sample, const Image& image, double& least) {
   return std::min(best, kMostResolution);
 }
 
+/// A part of the sample as a scene of its own, with the objects that have a triangle in it.
+Scene scene_of(const Sample& sample, const Scene& scene) {
+  Scene out;
+  const std::size_t count = std::min(sample.triangles.size(), kTrial);
+  std::uint32_t last = 0;
+  for (std::uint32_t t = 0; t < count; ++t) {
+    const std::size_t from = sample.triangles.size() * t / count;
+    const std::uint32_t owner = sample.owners[from];
+    if (t == 0 || owner != last) out.objects.push_back({"", t, 0, scene.objects[owner].self});
+    last = owner;
+    ++out.objects.back().triangle_count;
+    out.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+    out.vertices.insert(out.vertices.end(), sample.triangles[from].begin(),
+                        sample.triangles[from].end());
+  }
+  return out;
+}
+
+/// The work of what triangles meet, without their pairs.
+double met_work(const Sample& sample, const Image& image, int resolution) {
+  const double pixel = image.side() / resolution;
+  const double each = image.area / (pixel * pixel) + image.girth / pixel + 1;
+  return sample.count * each * (each > kWholePixels ? kTightPixelWork : 1);
+}
+
+/// The work of the pairs, by looking at a part of the sample: it grows with the square of the
+/// number of triangles.
+double pair_work(const Sample& sample, const Scene& part, const PairRegions& regions,
+                 PairBackend& backend, const View& view, int resolution) {
+  PairScene seen;
+  if (regions.triangles.empty() ||
+      !look(part, regions, regions.triangles, view, resolution, 0, 1, seen)) {
+    return HUGE_VAL;
+  }
+  seen.task.neighbours = false;
+  PairCounts counts;
+  const std::size_t pairs = backend.raw_pairs(seen.task, counts).size();
+  const double times = sample.count / static_cast<double>(part.triangles.size());
+  return times * times *
+         (kTrialTest * static_cast<double>(counts.tests) + kTrialPair * static_cast<double>(pairs));
+}
+
 View view_along(const Vec3& direction) {
   std::ostringstream text;
-  text.precision(3);
+  text.precision(6);
   text << direction.x() << ':' << direction.y() << ':' << direction.z();
   return parse_view(text.str());
 }
@@ -161,13 +214,44 @@ std::vector<PairChoice> choose_pair_views(const Scene& scene, const PairRegions&
     const int used = resolution > 0 ? resolution : best;
     ranked.push_back({{view, used, what}, penalty * work(sample, image, used)});
   };
-  for (const char* axis : {"x", "y", "z"})
+  for (const char* axis : {"x", "y", "z"}) {
     rank(parse_view(axis), 1, "axis of least estimated work");
+  }
   for (const View& view : principal_views(sample)) {
     rank(view, kOblique, "principal direction of the edges, of least estimated work");
   }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Ranked& a, const Ranked& b) { return a.work < b.work; });
+  const bool deep = std::any_of(ranked.begin(), ranked.end(), [&](const Ranked& r) {
+    return image_of(sample, r.choice.view).depth > kDeep;
+  });
+  const auto by_work = [](const Ranked& a, const Ranked& b) { return a.work < b.work; };
+  if (deep && sample.count >= kTrialFrom) {
+    const Scene part = scene_of(sample, scene);
+    const PairRegions places = pair_regions(part, 0, 1);
+    const auto backend = cpu_pair_backend(1);
+    // Those that meet few pixels first; who meets more than the best of them costs is not tried.
+    for (Ranked& r : ranked) {
+      r.work = met_work(sample, image_of(sample, r.choice.view), r.choice.resolution);
+    }
+    std::stable_sort(ranked.begin(), ranked.end(), by_work);
+    double best = HUGE_VAL;
+    for (Ranked& r : ranked) {
+      if (r.work > best) continue;
+      r.choice.reason += ", tried on a sample";
+      const Image image = image_of(sample, r.choice.view);
+      const int first = r.choice.resolution;
+      r.work = HUGE_VAL;
+      for (const int used : {first, 2 * first, 4 * first}) {
+        const double met = met_work(sample, image, used);
+        if (used > kMostResolution || met > best || (resolution > 0 && used != first)) break;
+        const double w = met + pair_work(sample, part, places, *backend, r.choice.view, used);
+        if (w >= r.work) break;
+        r.work = w;
+        r.choice.resolution = used;
+      }
+      best = std::min(best, r.work);
+    }
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), by_work);
   std::vector<PairChoice> out;
   for (Ranked& r : ranked) {
     r.choice.reason += resolution > 0 ? "; resolution given" : "; pixels by the triangles' sizes";
