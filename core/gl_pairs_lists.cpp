@@ -110,7 +110,7 @@ bool GlPairs::State::lists(const PairPart& tile, PairRoom& room) {
   const std::size_t mask_bytes = common.masked ? tile.cells() * 8 * (1 + 2 * owner_bits) : kVec4;
   if (!room.take(mask_bytes)) return false;
   masks.reserve(mask_bytes, room.block);
-  if (!pixels.shape(tile.cells(), groups, wholes + 4 * row_items, room)) return false;
+  if (!pixels.shape(tile.cells(), groups, 2 * wholes + 8 * row_items, room)) return false;
   if (common.masked) {
     const auto start = Clock::now();
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, masks.name);

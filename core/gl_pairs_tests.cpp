@@ -57,16 +57,13 @@ bool GlPairs::State::test(std::size_t l, bool some_cut, PairRoom& room) {
   units.reserve(level.listed * kWord, room.block);
   PairUniforms u = common;
   u.bins = level.bins;
-  // Triangles that are sent one by one have no vertices in common.
-  u.masked = !task->neighbours && !gathered;
   u.extra = {l == 0, same_group, static_cast<std::uint32_t>(level.listed), 0};
   const auto launch = [&](PairProgram program, GLuint unit_buffer) {
     return [&, program, unit_buffer](std::uint64_t first, std::uint64_t n, std::uint32_t capacity) {
       u.capacity = capacity;
       u.extra[3] = static_cast<std::uint32_t>(first);
       device.run(program, n, u,
-                 {{0, triangles.name()},
-                  {2, pairs.name},
+                 {{2, pairs.name},
                   {3, unit_buffer},
                   {4, level.first.name},
                   {8, some_cut ? level.state.name : level.first.name},

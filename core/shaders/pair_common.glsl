@@ -1,7 +1,7 @@
 // What the programs of FAR pairs share, after core/interval.glsl: uniforms, records, and the loop over work items. A program
 // defines work(w) for each w < u_count; FAR_BATCH of them are one invocation's, so that no invocation comes near 65,535
 // iterations (llvmpipe then stops without a word) and the finished ones are counted together. Where a text has several steps,
-// each is a program of its own with another FAR_STEP: a device may run both sides of every branch.
+// each is a program of its own with another FAR_STEP, so that none carries the code of the others.
 layout(local_size_x = 64) in;
 
 // Triangles that meet the part of the window are items. Whole ones (one interval in all their pixels) are heads alone until they
@@ -65,9 +65,6 @@ void far_add(uint counter, uint n) {
     }                                                                          \
     return low;                                                                \
   }
-
-// if, for what few invocations need: llvmpipe runs both sides of an if, but leaves a loop that no invocation is in.
-#define FAR_RARELY(condition) for (uint far_rare = (condition) ? 1u : 0u; far_rare != 0u; --far_rare)
 
 void work(uint w);
 

@@ -31,30 +31,28 @@ void work(uint w) {
   int j1 = far_pixel(t.hi.y, u_window.y);
   if (i1 < u_tile.x || i0 > u_tile.y || j1 < u_tile.z || j0 > u_tile.w) return;
   uint from = uint(i0) | uint(j0) << 16;
-  bool whole = (i1 - i0 + 1) * (j1 - j0 + 1) <= FAR_WHOLE_PIXELS;
-  FAR_RARELY(!whole) {
-    uint code = t.code;
-    precise float width = t.hi.x - t.lo.x;
-    precise float height = t.hi.y - t.lo.y;
-    if (far_footprint(t.a, t.b, t.c, width, height) > u_numbers.x) {
-      code |= kLarge;
-      atomicAdd(counters[FAR_LARGE], 1u);
-    } else {
-      uint rows = uint(min(j1, u_tile.w) - max(j0, u_tile.z) + 1);
-      uint spans = uint(min(i1, u_tile.y) - max(i0, u_tile.x)) / FAR_SPAN + 1u;
-      far_add(FAR_ROWS_TOTAL, rows * spans);
-    }
-    uint at = atomicAdd(counters[FAR_ITEMS], 1u);
-    if (at < u_capacity) {
-      far_record(at, t, code, from, uint(i1) | uint(j1) << 16);
-      listed[at] = 0u;
-    }
+  if ((i1 - i0 + 1) * (j1 - j0 + 1) <= FAR_WHOLE_PIXELS) {
+    uint at = atomicAdd(counters[FAR_WHOLES], 1u);
+    if (at >= u_extra.z) return;
+    uint extent = far_pack(i1 - i0 + 1, j1 - j0 + 1, far_depth_slice(t.lo.z), far_depth_slice(t.hi.z));
+    heads[at] = uvec4(u_extra.x + w, t.code | kWhole, from, extent);
+    return;
   }
-  if (!whole) return;
-  uint at = atomicAdd(counters[FAR_WHOLES], 1u);
-  if (at >= u_extra.z) return;
-  uint extent = far_pack(i1 - i0 + 1, j1 - j0 + 1, far_depth_slice(t.lo.z), far_depth_slice(t.hi.z));
-  heads[at] = uvec4(u_extra.x + w, t.code | kWhole, from, extent);
+  uint code = t.code;
+  precise float width = t.hi.x - t.lo.x;
+  precise float height = t.hi.y - t.lo.y;
+  if (far_footprint(t.a, t.b, t.c, width, height) > u_numbers.x) {
+    code |= kLarge;
+    atomicAdd(counters[FAR_LARGE], 1u);
+  } else {
+    uint rows = uint(min(j1, u_tile.w) - max(j0, u_tile.z) + 1);
+    uint spans = uint(min(i1, u_tile.y) - max(i0, u_tile.x)) / FAR_SPAN + 1u;
+    far_add(FAR_ROWS_TOTAL, rows * spans);
+  }
+  uint at = atomicAdd(counters[FAR_ITEMS], 1u);
+  if (at >= u_capacity) return;
+  far_record(at, t, code, from, uint(i1) | uint(j1) << 16);
+  listed[at] = 0u;
 }
 #else
 void work(uint w) {

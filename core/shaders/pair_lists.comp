@@ -49,13 +49,13 @@ bool far_visit(uint cell, uint word, uint near_bits, uint far_bits, uint bin, ui
   for (uint k = 0u; k < regions; ++k) {
     uint region = self ? 0u : 2u * u_cells * (1u + 2u * k + ((hi.w >> (3u + k)) & 1u));
     atomicOr(masks[region + at], near_bits);
-    FAR_RARELY(far_bits != 0u) atomicOr(masks[region + at + 1u], far_bits);
+    if (far_bits != 0u) atomicOr(masks[region + at + 1u], far_bits);
   }
   return false;
 #else
   if (u_masked != 0u) {
     uint conflict = masks[2u * cell + word] & near_bits;
-    FAR_RARELY(far_bits != 0u) conflict |= masks[2u * cell + word + 1u] & far_bits;
+    if (far_bits != 0u) conflict |= masks[2u * cell + word + 1u] & far_bits;
     if (conflict == 0u) return false;
   }
 #if FAR_STEP == FAR_COUNT

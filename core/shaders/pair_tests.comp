@@ -2,7 +2,6 @@
 // there by the slice of their near depth, so the partners of an entry are two ranges: of the other group those with a near slice
 // within the entry's slices (for the second group: after its first), and of its own group those after it up to its far slice.
 // Step 0: each entry with up to FAR_UNIT partners. Step 1: with the partners left, FAR_UNIT a work item.
-layout(std430, binding = 0) readonly buffer Triangles { uint triangles[]; };  // three vertices each
 layout(std430, binding = 2) writeonly buffer Pairs { uvec2 pairs[]; };
 #if FAR_STEP == 0
 layout(std430, binding = 3) writeonly buffer Units { uint units[]; };  // work items of step 1 of each entry
@@ -18,16 +17,7 @@ layout(std430, binding = 8) readonly buffer State { uint state[]; };  // not 0: 
 #endif
 
 // u_extra: x not 0 where the level is that of pixels, y not 0 where entries of one group may collide, z entries, w the first work
-// item. u_masked: not 0 where pairs of one object that share a vertex are left out.
-
-bool far_share_vertex(uint s, uint t) {
-  bool found = false;
-  for (uint k = 0u; k < 3u; ++k) {
-    uint v = triangles[3u * s + k];
-    if (v == triangles[3u * t] || v == triangles[3u * t + 1u] || v == triangles[3u * t + 2u]) found = true;
-  }
-  return found;
-}
+// item.
 
 void work(uint index) {
   uint w = u_extra.w + index;
@@ -89,11 +79,10 @@ void work(uint index) {
     uint at = uint(j * stride + i);
     bool elsewhere = hit && dedupe && (hi2_bits.w & kWhole) != 0u && i >= 0 && j >= 0 && at != cell;
 #ifdef FAR_SOME_CROWDED
-    FAR_RARELY(elsewhere) elsewhere = first[(at + 1u) * u_bins.x] - first[at * u_bins.x] <= FAR_CROWDED;
+    if (elsewhere) elsewhere = first[(at + 1u) * u_bins.x] - first[at * u_bins.x] <= FAR_CROWDED;
 #endif
     bool emit = hit && !elsewhere;
-    FAR_RARELY(emit && u_masked != 0u && owner == hi2_bits.w >> 3) emit = !far_share_vertex(lo_bits.w, lo2_bits.w);
-    FAR_RARELY(emit) {
+    if (emit) {
       uint to = atomicAdd(counters[FAR_PAIRS], 1u);
       if (to < u_capacity) pairs[to] = uvec2(min(lo_bits.w, lo2_bits.w), max(lo_bits.w, lo2_bits.w));
     }
