@@ -16,7 +16,7 @@
 namespace farcull {
 
 struct PairSettings {
-  std::vector<View> views;  // empty: chosen by the scene, by fixed rules
+  std::vector<View> views = {};  // empty: chosen by the scene, by fixed rules
   int resolution = 0;      // px along the larger side of each view's window; 0: chosen by the scene
   double clearance = 0;    // world units, finite, >= 0: pairs at this distance or less count too
   bool neighbours = true;  // false: pairs of one object that share a vertex index are left out
@@ -25,13 +25,13 @@ struct PairSettings {
 /// What was looked at in one view.
 struct PairView {
   std::string name;
-  bool looked = false;     // false: left out or unresolvable, see the stages
-  std::string reason;      // why this direction and this resolution
-  int width = 0;           // px
-  int height = 0;          // px
-  double pixel_size = 0;   // world units
-  double widening_px = 0;  // of footprints and intervals beyond their own float error
-  PairCounts counts;
+  bool looked = false;      // false: left out or unresolvable, see the stages
+  std::string reason = {};  // why this direction and this resolution
+  int width = 0;            // px
+  int height = 0;           // px
+  double pixel_size = 0;    // world units
+  double widening_px = 0;   // of footprints and intervals beyond their own float error
+  PairCounts counts = {};
 };
 
 struct PairResult {

@@ -15,11 +15,11 @@ namespace farcull {
 struct Stage {
   std::string name;
   bool ran = false;
-  std::string reason;  // why it ran or was left out
+  std::string reason = {};  // why it ran or was left out
   double ms = 0;
   std::uint64_t in = 0;
   std::uint64_t out = 0;
-  std::string unit;
+  std::string unit = {};
   std::uint64_t draws = 0;    // elements drawn
   std::uint64_t queries = 0;  // slots asked
 };
