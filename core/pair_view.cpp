@@ -176,7 +176,8 @@ bool look(const Scene& scene, const PairRegions& regions, std::span<const std::u
   // The clearance, and the double arithmetic of the map for a vertex at the limit of drawability.
   std::array<float, 3> widening;
   for (int axis = 0; axis < 3; ++axis) {
-    const double ball = half_of(clearance) * window->map.row(axis).norm();
+    // Scaled before it is squared: rows of huge scenes are below what a square can hold.
+    const double ball = half_of(clearance) * window->map.row(axis).stableNorm();
     const double sum = (ball + kMaxDoubleError + kLeastWidening) * (1 + 0x1p-20);
     if (!(sum <= kLargest)) return false;
     widening[axis] = float_above(sum);

@@ -122,6 +122,26 @@ TEST(Pairs, MissNothingWithinAClearance) {
   }
 }
 
+// The clearance in pixels is that of the scene in a unit of its own, whatever the world's unit is.
+TEST(Pairs, MissNothingWithinAClearanceAtAnyScale) {
+  const auto backend = cpu_pair_backend(1);
+  for (const double scale : {1e-300, 1e-160, 1e-20, 1.0, 1e100, 1e158, 1e200, 1e290}) {
+    std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+    objects[0].push_back({Vec3(0, 0, 0), Vec3(40, 0, 0), Vec3(0, 40, 0)});
+    objects[1].push_back({Vec3(100, 100, 0), Vec3(60, 100, 0), Vec3(100, 60, 0)});
+    for (auto& object : objects) {
+      for (Vec3& corner : object[0]) corner *= scale;
+    }
+    const Scene scene = lab::scene_of(objects);
+    for (const int resolution : {0, 64, 4096}) {
+      const PairSettings settings{
+          .views = parse_views("z,x"), .resolution = resolution, .clearance = 86 * scale};
+      ASSERT_EQ(truth_of(scene, settings.clearance).size(), 1u);
+      EXPECT_EQ(missed(scene, settings, *backend), 0u) << scale << " at " << resolution;
+    }
+  }
+}
+
 TEST(Pairs, MissNothingOnBuiltInScenes) {
   const auto backend = cpu_pair_backend(2);
   for (const char* name :
