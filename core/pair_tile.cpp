@@ -355,7 +355,8 @@ void PairTileWorker::run(const PairGrid& grid, const PairTile& tile,
   counts_ = &counts;
   const std::size_t cells = static_cast<std::size_t>(tile.width()) * tile.height();
   const std::size_t fixed = cells * (2 * sizeof(std::uint64_t) + sizeof(std::uint32_t));
-  const std::size_t entry_bytes = sizeof(RawEntry) + sizeof(Entry);
+  // Lists grow by doubling; a triangle has at least one entry.
+  const std::size_t entry_bytes = 2 * (sizeof(RawEntry) + sizeof(Shown)) + sizeof(Entry);
   // A single pixel is done whatever it takes.
   const std::size_t limit = cells == 1       ? SIZE_MAX
                             : memory > fixed ? (memory - fixed) / entry_bytes

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <stdexcept>
 #include <thread>
 
 #include "core/pair_sort.h"
@@ -13,6 +14,9 @@ namespace {
 
 // Triangles are fetched this far ahead, since their corners may lie anywhere.
 constexpr std::size_t kAhead = 16;
+
+// Pixels on a side of the window, so that their products and PairItem hold them.
+constexpr int kMostPixels = 32767;
 
 // Bands of rows: several for each thread, so that one dense band does not hold up the others.
 constexpr int kBandsPerThread = 4;
@@ -67,6 +71,9 @@ class CpuPairs : public PairBackend {
   unsigned threads() const override { return threads_; }
 
   std::vector<TrianglePair> raw_pairs(const PairTask& task, PairCounts& counts) override {
+    if (task.width < 1 || task.height < 1 || std::max(task.width, task.height) > kMostPixels) {
+      throw std::logic_error("CpuPairs: a window without pixels, or with more than 32,767 a side");
+    }
     const PairGrid grid(task);
     const Bands bands = bands_for(task.height, threads_);
     const std::size_t chunks = std::clamp<std::size_t>(task.active.size() / 1024, 1, threads_);

@@ -38,7 +38,7 @@ enum class ColliderDevice {
 
 struct ColliderOptions {
   ColliderDevice device = ColliderDevice::cpu;
-  unsigned threads = 0;  // of the CPU, for the exact tests as well; 0: as many as there are cores
+  unsigned threads = 0;  // up to 1024, for the exact tests as well; 0: as many as there are cores
   bool self = false;     // every object is tested against itself as well
   std::vector<bool> self_objects = {};  // the same per object; empty, or one for each
   double clearance = 0;    // pairs at this distance or less collide too; world units, finite, >= 0

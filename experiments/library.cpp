@@ -34,7 +34,11 @@ auto translated(const Call& call) {
   }
 }
 
+constexpr unsigned kMostThreads = 1024;
+
 void check(const ColliderOptions& options) {
+  if (options.threads > kMostThreads)
+    throw Error("threads", "are more than 1024", "give a number up to 1024, or 0");
   if (!(options.clearance >= 0) || !std::isfinite(options.clearance))
     throw Error("clearance", "is no distance", "give a finite number, 0 or more");
   if (options.resolution < 0 || options.resolution > kMostResolution)

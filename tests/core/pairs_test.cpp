@@ -13,44 +13,16 @@
 #include "core/pair_view.h"
 #include "core/pairs_cpu.h"
 #include "experiments/builtin_scenes.h"
-#include "tests/core/scenes.h"
-#include "verify/exact.h"
+#include "tests/core/pairs_lab.h"
 
 namespace farcull {
 namespace {
 
+using lab::Changed;
+using lab::missed;
 using lab::random_scene;
-
-Scene with_self(Scene scene) {
-  for (Object& object : scene.objects) object.self = true;
-  return scene;
-}
-
-// Every pair that counts and collides, neighbours included, by the definition: all pairs of
-// triangles, exact tests.
-std::vector<TrianglePair> truth_of(const Scene& scene, double clearance = 0) {
-  const ExactResult exact = all_colliding_pairs(scene, {.clearance = clearance});
-  std::vector<TrianglePair> pairs = exact.pairs;
-  pairs.insert(pairs.end(), exact.neighbour_pairs.begin(), exact.neighbour_pairs.end());
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
-}
-
-std::size_t missed(const std::vector<TrianglePair>& truth,
-                   const std::vector<TrianglePair>& candidates) {
-  return static_cast<std::size_t>(
-      std::count_if(truth.begin(), truth.end(), [&](const TrianglePair& pair) {
-        return !std::binary_search(candidates.begin(), candidates.end(), pair);
-      }));
-}
-
-std::size_t missed(const Scene& scene, const PairSettings& settings, PairBackend& backend) {
-  const PairResult result = find_pairs(scene, settings, backend);
-  EXPECT_TRUE(std::is_sorted(result.candidates.begin(), result.candidates.end()));
-  EXPECT_EQ(std::adjacent_find(result.candidates.begin(), result.candidates.end()),
-            result.candidates.end());
-  return missed(truth_of(scene, settings.clearance), result.candidates);
-}
+using lab::truth_of;
+using lab::with_self;
 
 std::vector<PairSettings> all_settings() {
   std::vector<PairSettings> out(1);  // all chosen by the scene
@@ -62,23 +34,6 @@ std::vector<PairSettings> all_settings() {
   out.push_back({.resolution = 4096});
   return out;
 }
-
-// A backend whose task is changed on the way in.
-class Changed : public PairBackend {
- public:
-  using Change = void (*)(PairTask&);
-  explicit Changed(Change change) : change_(change), inner_(cpu_pair_backend(2)) {}
-  std::string name() const override { return "changed"; }
-  std::vector<TrianglePair> raw_pairs(const PairTask& task, PairCounts& counts) override {
-    PairTask other = task;
-    change_(other);
-    return inner_->raw_pairs(other, counts);
-  }
-
- private:
-  Change change_;
-  std::unique_ptr<PairBackend> inner_;
-};
 
 TEST(Pairs, MissNothingOnRandomScenes) {
   const auto backend = cpu_pair_backend(2);
@@ -168,18 +123,6 @@ TEST(Pairs, MissNothingOfWhatAViewCannotShow) {
   const PairResult result =
       find_pairs(scene, {.views = parse_views("z"), .resolution = 64}, *backend);
   EXPECT_GT(result.views[0].counts.undrawable, 0u);
-}
-
-TEST(Pairs, AreJoinedByBoxesWhereNoViewResolvesTheScene) {
-  // Objects 1e300 wide that meet in one corner.
-  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
-  objects[0].push_back({Vec3(0, 0, 0), Vec3(1e300, 0, 0), Vec3(0, 1e300, 1e300)});
-  objects[1].push_back({Vec3(-1e300, 0, 0), Vec3(1, 0, 0), Vec3(0, 1e-300, 0)});
-  const Scene scene = lab::scene_of(objects);
-  const auto backend = cpu_pair_backend(1);
-  for (const double clearance : {0.0, 1e300}) {
-    EXPECT_EQ(missed(scene, {.clearance = clearance}, *backend), 0u);
-  }
 }
 
 TEST(Pairs, DependOnNeitherThreadsNorMemoryNorEarlierCalls) {

@@ -1,5 +1,8 @@
 // The library as its users see it, held against the method `exact`.
 #include <gtest/gtest.h>
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
 
 #include <cfenv>
 #include <limits>
@@ -100,6 +103,16 @@ TEST(Library, TheAnswerIsOnlyThatOfTheInput) {
   }
 }
 
+TEST(Library, NeighboursAreOnlyCountedWhereNobodyAsksForThem) {
+  const Flat flat(make_builtin_scene("two-spheres"));
+  const ColliderResult all = Collider({.self = true}).find(flat.input());
+  const ColliderResult fewer = Collider({.self = true, .neighbours = false}).find(flat.input());
+  EXPECT_EQ(fewer.pairs, all.pairs);
+  EXPECT_TRUE(fewer.neighbour_pairs.empty());
+  EXPECT_EQ(fewer.report.neighbours, all.report.neighbours);
+  EXPECT_GT(all.report.neighbours, 0u);
+}
+
 TEST(Library, NothingIsNothing) {
   Collider collider;
   EXPECT_TRUE(collider.find({}).pairs.empty());
@@ -166,6 +179,16 @@ TEST(Library, RefusesArithmeticThatTheProofsAreNotAbout) {
   const std::string where = refused([&] { collider.find(flat.input()); });
   std::fesetround(FE_TONEAREST);
   EXPECT_EQ(where, "arithmetic");
+#ifdef __SSE2__
+  for (const unsigned flag : {0x8000u, 0x0040u}) {  // flush to zero, denormals are zero
+    const unsigned before = _mm_getcsr();
+    _mm_setcsr(before | flag);
+    const std::string flushed = refused([&] { collider.find(flat.input()); });
+    _mm_setcsr(before);
+    EXPECT_EQ(flushed, "arithmetic");
+  }
+#endif
+  EXPECT_EQ(refused([] { Collider({.threads = 1025}); }), "threads");
   expect_exact(collider, make_builtin_scene("two-spheres"));
 }
 
