@@ -19,7 +19,7 @@ constexpr std::size_t kAhead = 16;
 constexpr int kMostPixels = 32767;
 
 // Bands of rows: several for each thread, so that one dense band does not hold up the others.
-constexpr int kBandsPerThread = 4;
+constexpr int kBandsPerThread = 8;
 constexpr int kLeastShift = 2;
 
 struct Bands {
