@@ -1,7 +1,8 @@
 // Lets a kernel file (*.glsl) compile as C++: the few vector types and functions that kernels use.
 // A kernel says FAR_OUT(t) and FAR_INOUT(t) for its parameters and FAR_PRECISE before a float that
-// no compiler may reassociate, FAR_KERNEL before a function that several files may compile; contraction is off for all of farcull (CMakeLists.txt), so both
-// compilations round every operation once.
+// no compiler may reassociate, FAR_KERNEL before a function that several files may compile;
+// contraction is off for all of farcull (CMakeLists.txt), so both compilations round every
+// operation once.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// `farcull doctor`: the devices of this machine, a probe for each assumption that the proofs make of
-// one, and whether FAR pairs is faster on it or on the CPU.
+// `farcull doctor`: the devices of this machine, a probe for each assumption that the proofs make
+// of one, and whether FAR pairs is faster on it or on the CPU.
 #pragma once
 
 #include <string>
