@@ -153,15 +153,15 @@ PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBack
   const auto planning = Clock::now();
   if (progress) progress("planning");
   const PairRegions regions = pair_regions(scene, settings.clearance, backend.threads());
-  out.stages.push_back({.name = "boxes",
-                        .ran = true,
-                        .reason = std::to_string(regions.pairs) +
-                                  " pairs of objects' boxes overlap, " +
-                                  std::to_string(regions.self) + " objects collide with themselves",
-                        .ms = ms_since(planning),
-                        .in = scene.triangles.size(),
-                        .out = regions.triangles.size(),
-                        .unit = "triangles"});
+  out.stages.push_back(
+      {.name = "boxes",
+       .ran = true,
+       .reason = "pairs of objects whose boxes overlap: " + std::to_string(regions.pairs) +
+                 "; objects tested against themselves: " + std::to_string(regions.self),
+       .ms = ms_since(planning),
+       .in = scene.triangles.size(),
+       .out = regions.triangles.size(),
+       .unit = "triangles"});
   if (regions.triangles.empty()) {
     out.stages.push_back({.name = "views",
                           .reason = "no two objects' boxes overlap, none collides with itself",
