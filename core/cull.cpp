@@ -1,21 +1,16 @@
 #include "core/cull.h"
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 
 #include "core/error.h"
+#include "core/stopwatch.h"
 
 namespace farcull {
 namespace {
 
 enum Bit : std::uint8_t { kF = 1, kL = 2, kCulled = kF | kL };
 enum class Level { object, triangle };
-
-double ms_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-      .count();
-}
 
 // The state of a run: who is live, who owns whom, and how often each kind of bit was set (a pass
 // whose stored set has not changed since it last ran would give the same answers).
@@ -249,7 +244,7 @@ CullResult cull(const Scene& scene, const Plan& plan, const CullSettings& settin
       const std::string at = settings.views[v].name + ", round " + std::to_string(round);
       if (progress) progress("culling along " + at);
 
-      auto start = std::chrono::steady_clock::now();
+      Stopwatch start;
       Stage prepare{.name = "fatten " + at,
                     .ran = true,
                     .reason = settings.fattener.name,
@@ -265,11 +260,11 @@ CullResult cull(const Scene& scene, const Plan& plan, const CullSettings& settin
         prepare.reason +=
             "; " + std::to_string(counts.undrawable) + " triangles beyond the budget, kept";
       }
-      prepare.ms = ms_since(start);
+      prepare.ms = start.ms();
       result.stages.push_back(prepare);
 
       const auto level_stage = [&](Level level) {
-        start = std::chrono::steady_clock::now();
+        start = Stopwatch();
         Stage stage{.name = (level == Level::object ? "cull objects " : "cull triangles ") + at,
                     .ran = true,
                     .reason = "",
@@ -295,7 +290,7 @@ CullResult cull(const Scene& scene, const Plan& plan, const CullSettings& settin
         bury(state);
         stage.out = state.live.size();
         stage.reason = std::to_string(passes) + " passes";
-        stage.ms = ms_since(start);
+        stage.ms = start.ms();
         result.stages.push_back(stage);
       };
       if (round == 1) level_stage(Level::object);

@@ -151,16 +151,7 @@ bool GlPairs::State::make_items(PairRoom& room) {
     device.reset(kTotalWholes, kTotalOverflow);
     send([&](std::size_t first, std::size_t count) {
       u.extra[0] = static_cast<std::uint32_t>(first);
-      device.run(PairProgram::items, count, u,
-                 {{0, vertices.name()},
-                  {1, triangles.name()},
-                  {2, owners.name()},
-                  {3, active.name()},
-                  {4, objects.name()},
-                  {5, records.name},
-                  {6, record_heads.name},
-                  {8, heads.name},
-                  {9, listed.name}});
+      device.run(PairProgram::items, count, u, with_scene({{8, heads.name}, {9, listed.name}}));
     });
     const auto totals = device.read("pair items");
     wholes = totals[kTotalWholes];

@@ -210,7 +210,7 @@ void PairDevice::reset(PairTotal first, std::uint32_t words) {
 }
 
 void PairDevice::run(PairProgram which, std::uint64_t count, const PairUniforms& u,
-                     std::initializer_list<PairBinding> bindings) {
+                     const std::vector<PairBinding>& bindings) {
   if (count == 0) return;
   if (count >> 31 != 0) throw std::logic_error("PairDevice::run: too much work for one dispatch");
   if (expected_.size() == kDispatches) check_finished("pairs");

@@ -122,7 +122,7 @@ class PairDevice {
   void reset(PairTotal first, std::uint32_t words);
   /// Runs work(w) for 0 <= w < count < 2^31; every binding that the program reads must be given.
   void run(PairProgram program, std::uint64_t count, const PairUniforms& uniforms,
-           std::initializer_list<PairBinding> bindings);
+           const std::vector<PairBinding>& bindings);
   /// The sums before each of `count` numbers; their total becomes kTotalScanned.
   void scan(GLuint numbers, GLuint before, std::size_t count);
   /// Waits, reads the totals and throws Error naming `stage` unless every work item of every

@@ -83,16 +83,7 @@ bool GlPairs::State::make_records(PairRoom& room) {
   send([&](std::size_t first, std::size_t count) {
     u.extra[0] = static_cast<std::uint32_t>(first);
     u.extra[2] = static_cast<std::uint32_t>(count);
-    device.run(PairProgram::records, shown_ones, u,
-               {{0, vertices.name()},
-                {1, triangles.name()},
-                {2, owners.name()},
-                {3, active.name()},
-                {4, objects.name()},
-                {5, records.name},
-                {6, record_heads.name},
-                {8, heads.name},
-                {9, shown.name}});
+    device.run(PairProgram::records, shown_ones, u, with_scene({{8, heads.name}, {9, shown.name}}));
   });
   return true;
 }

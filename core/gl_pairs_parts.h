@@ -87,6 +87,15 @@ struct GlPairs::State {
 
   State(const GlContext& c, const GlPairOptions& o) : context(c), options(o), device(c, o) {}
 
+  /// The buffers that every program about triangles reads, and `more`.
+  std::vector<PairBinding> with_scene(std::initializer_list<PairBinding> more) const {
+    std::vector<PairBinding> all = {
+        {0, vertices.name()}, {1, triangles.name()}, {2, owners.name()},    {3, active.name()},
+        {4, objects.name()},  {5, records.name},     {6, record_heads.name}};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
   void begin(const PairTask& t);
   void split(const PairPart& tile);
   bool run(const PairPart& tile);

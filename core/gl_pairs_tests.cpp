@@ -100,16 +100,7 @@ void GlPairs::State::compare_large(const PairRoom& room) {
       emit(sent_ones, room, [&](std::uint64_t begin, std::uint64_t count, std::uint32_t capacity) {
         u.items = static_cast<std::uint32_t>(begin);
         u.capacity = capacity;
-        device.run(PairProgram::large, count, u,
-                   {{0, vertices.name()},
-                    {1, triangles.name()},
-                    {2, owners.name()},
-                    {3, active.name()},
-                    {4, objects.name()},
-                    {5, records.name},
-                    {6, record_heads.name},
-                    {8, large.name},
-                    {9, pairs.name}});
+        device.run(PairProgram::large, count, u, with_scene({{8, large.name}, {9, pairs.name}}));
       });
     }
   });

@@ -1,23 +1,18 @@
 #include "core/pair_tile.h"
+#include "core/stopwatch.h"
 
 #include <array>
-#include <chrono>
 #include <cmath>
 
 namespace farcull {
 namespace {
 
 using interval::FarStrip;
-using Clock = std::chrono::steady_clock;
 
 // Longer lists are sorted by near depth and swept.
 constexpr std::size_t kSweepFrom = 64;
 // Triangles are fetched this far ahead, since their corners may lie anywhere.
 constexpr std::size_t kAhead = 8;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 // The slices first .. last as bits.
 std::uint64_t slice_bits(int first, int last) {
@@ -361,14 +356,14 @@ void PairTileWorker::run(const PairGrid& grid, const PairTile& tile,
   const std::size_t limit = cells == 1       ? SIZE_MAX
                             : memory > fixed ? (memory - fixed) / entry_bytes
                                              : 0;
-  const auto start = Clock::now();
+  const Stopwatch start;
   bool fits = limit > 0;
   if (fits) {
     const std::size_t last = masked ? mark(items) : 0;
-    counts.mark_ms += ms_since(start);
-    const auto listing = Clock::now();
+    counts.mark_ms += start.ms();
+    const Stopwatch listing;
     fits = list(items, last, masked, std::min<std::size_t>(limit, UINT32_MAX));
-    counts.list_ms += ms_since(listing);
+    counts.list_ms += listing.ms();
   }
   if (!fits) {
     PairTile low = tile, high = tile;
@@ -386,7 +381,7 @@ void PairTileWorker::run(const PairGrid& grid, const PairTile& tile,
   }
   counts.listed += shown_.size();
   counts.entries += entries_.size();
-  const auto pairing = Clock::now();
+  const Stopwatch pairing;
   for (std::size_t c = 0; c < cells; ++c) {
     const std::size_t n = first_[c + 2] - first_[c + 1];
     if (n < 2) continue;
@@ -394,7 +389,7 @@ void PairTileWorker::run(const PairGrid& grid, const PairTile& tile,
                tile.i0 + static_cast<int>(c % tile.width()),
                tile.j0 + static_cast<int>(c / tile.width()));
   }
-  counts.pair_ms += ms_since(pairing);
+  counts.pair_ms += pairing.ms();
 }
 
 }  // namespace farcull

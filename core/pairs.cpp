@@ -1,22 +1,17 @@
 #include "core/pairs.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
 #include "core/box_join.h"
+#include "core/error.h"
 #include "core/pair_view.h"
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 
 namespace farcull {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 // A further view is looked at where there are more candidates than this for each triangle that
 // takes part: fewer are mostly neighbours and contacts, which no view takes away.
@@ -79,16 +74,8 @@ bool share_index(const Scene& scene, const TrianglePair& pair) {
   return shared;
 }
 
-// Fetches the corners of a triangle, for a use that follows soon: they may lie anywhere. The first
-// of each pair is mostly that of the pair before.
+// Pairs whose second corners are fetched ahead; the first ones are mostly those of the pair before.
 constexpr std::size_t kAhead = 8;
-void fetch([[maybe_unused]] const Scene& scene, [[maybe_unused]] std::uint32_t triangle) {
-#ifdef __GNUC__
-  for (const std::uint32_t v : scene.triangles[triangle]) {
-    __builtin_prefetch(scene.vertices[v].data());
-  }
-#endif
-}
 
 // Those whose boxes overlap, in order; without neighbours where they are not asked for.
 void keep_overlapping(const Scene& scene, const PairScene& seen, double clearance, unsigned threads,
@@ -99,7 +86,7 @@ void keep_overlapping(const Scene& scene, const PairScene& seen, double clearanc
   for_chunks(pairs.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     std::size_t to = begin;
     for (std::size_t k = begin; k < end; ++k) {
-      fetch(scene, pairs[std::min(k + kAhead, end - 1)].b);
+      prefetch(scene, pairs[std::min(k + kAhead, end - 1)].b);
       pairs[to] = pairs[k];
       to += boxes_meet(scene, pairs[k], half) &&
             (seen.task.neighbours || seen.owners[pairs[k].a] != seen.owners[pairs[k].b] ||
@@ -149,8 +136,11 @@ PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBack
   if (!(settings.clearance >= 0) || !std::isfinite(settings.clearance)) {
     throw std::logic_error("find_pairs: the clearance is negative or not finite");
   }
+  if (scene.triangles.size() + scene.objects.size() >= std::size_t{1} << 31) {
+    throw Error(scene.name, "has 2^31 triangles and objects, or more", "split it into scenes");
+  }
   PairResult out;
-  const auto planning = Clock::now();
+  const Stopwatch planning;
   if (progress) progress("planning");
   const PairRegions regions = pair_regions(scene, settings.clearance, backend.threads());
   out.stages.push_back(
@@ -158,7 +148,7 @@ PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBack
        .ran = true,
        .reason = "pairs of objects whose boxes overlap: " + std::to_string(regions.pairs) +
                  "; objects tested against themselves: " + std::to_string(regions.self),
-       .ms = ms_since(planning),
+       .ms = planning.ms(),
        .in = scene.triangles.size(),
        .out = regions.triangles.size(),
        .unit = "triangles"});
@@ -169,7 +159,7 @@ PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBack
     return out;
   }
 
-  const auto choosing = Clock::now();
+  const Stopwatch choosing;
   std::vector<PairChoice> choices;
   if (settings.views.empty()) {
     choices = choose_pair_views(scene, regions, settings.resolution);
@@ -187,7 +177,7 @@ PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBack
       {.name = "choose",
        .ran = true,
        .reason = settings.views.empty() ? "views chosen by the scene" : "views given",
-       .ms = ms_since(choosing),
+       .ms = choosing.ms(),
        .in = choices.size(),
        .out = settings.views.empty() ? 1 : choices.size(),
        .unit = "views"});
@@ -209,7 +199,7 @@ PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBack
         break;
       }
     }
-    const auto start = Clock::now();
+    const Stopwatch start;
     if (progress) progress("view " + choice.view.name);
     const std::vector<std::uint32_t> left =
         first ? std::vector<std::uint32_t>() : members(out.candidates);
@@ -231,7 +221,7 @@ PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBack
     view.pixel_size = seen.window.pixel_size;
     view.widening_px = std::max({seen.task.widening.x, seen.task.widening.y, seen.task.widening.z});
     seen.task.neighbours = settings.neighbours;
-    const double prepare_ms = ms_since(start);
+    const double prepare_ms = start.ms();
     std::vector<TrianglePair> pairs = backend.raw_pairs(seen.task, view.counts);
     view.counts.undrawable = seen.undrawable.size();
     view.counts.prepare_ms = prepare_ms;
@@ -256,19 +246,19 @@ PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBack
     stage.ran = true;
     stage.reason = choice.reason + ": " + std::to_string(view.width) + " x " +
                    std::to_string(view.height) + " px";
-    stage.ms = ms_since(start);
+    stage.ms = start.ms();
     stage.out = out.candidates.size();
     out.views.push_back(view);
     out.stages.push_back(stage);
   }
   if (first) {
-    const auto start = Clock::now();
+    const Stopwatch start;
     if (progress) progress("joining boxes");
     out.candidates = pairs_by_boxes(scene, regions, regions.triangles, settings.clearance);
     out.stages.push_back({.name = "join",
                           .ran = true,
                           .reason = "no view can resolve the scene: pairs by their boxes alone",
-                          .ms = ms_since(start),
+                          .ms = start.ms(),
                           .in = regions.triangles.size(),
                           .out = out.candidates.size(),
                           .unit = "pairs"});

@@ -19,7 +19,8 @@ struct PairSettings {
   std::vector<View> views = {};  // empty: chosen by the scene, by fixed rules
   int resolution = 0;      // px along the larger side of each view's window; 0: chosen by the scene
   double clearance = 0;    // world units, finite, >= 0: pairs at this distance or less count too
-  bool neighbours = true;  // false: pairs of one object that share a vertex index are left out
+  bool neighbours = true;  // false: nobody asks for pairs of one object that share a vertex
+                           // index; views leave them out
 };
 
 /// What was looked at in one view.

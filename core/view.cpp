@@ -12,18 +12,6 @@ namespace {
 
 constexpr double kUnit = 0x1p-53;
 
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == separator) {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
-  return parts;
-}
-
 // Image axes for a depth direction: for a coordinate axis the two others, so that its map
 // multiplies exactly. (A direction may round to length 1 along an axis and still not be that axis.)
 Eigen::Matrix3d rows_for(const Vec3& depth) {
@@ -71,6 +59,18 @@ Box image(const Eigen::Matrix3d& map, const Vec3& origin, std::span<const Box> b
 
 }  // namespace
 
+std::vector<std::string> split_list(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
 View parse_view(const std::string& text) {
   const auto bad = [&text](const std::string& reason) {
     return Error("--views", "'" + text + "' " + reason,
@@ -82,7 +82,7 @@ View parse_view(const std::string& text) {
     const Vec3 depth = Vec3::Unit(axis[0] - 'x') * (negative ? -1 : 1);
     return {text, rows_for(depth)};
   }
-  const std::vector<std::string> parts = split(text, ':');
+  const std::vector<std::string> parts = split_list(text, ':');
   if (parts.size() != 3) throw bad("is no view");
   Vec3 depth;
   for (int i = 0; i < 3; ++i) {
@@ -99,7 +99,7 @@ View parse_view(const std::string& text) {
 
 std::vector<View> parse_views(const std::string& text) {
   std::vector<View> views;
-  for (const std::string& part : split(text, ',')) {
+  for (const std::string& part : split_list(text, ',')) {
     views.push_back(parse_view(part));
     const auto same = [&](const View& v) { return v.name == part; };
     if (std::any_of(views.begin(), views.end() - 1, same)) {

@@ -20,6 +20,9 @@ struct View {
   Eigen::Matrix3d rows;
 };
 
+/// The parts of a text between separators, one more than there are of these.
+std::vector<std::string> split_list(const std::string& text, char separator = ',');
+
 /// "x", "-y", ... or a direction "1:1:0.5" (finite, not zero; scaled to unit length). Throws Error
 /// for anything else.
 View parse_view(const std::string& text);

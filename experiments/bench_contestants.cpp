@@ -15,6 +15,7 @@
 #include "core/pairs.h"
 #include "core/pairs_cpu.h"
 #include "core/plan.h"
+#include "core/view.h"
 #include "experiments/bench.h"
 #include "experiments/peer_parts.h"
 #include "offsets/obb.h"
@@ -27,18 +28,6 @@ constexpr int kFarResolution = 512;  // what farcull run takes
 constexpr const char* kFarViews = "x,y,z";
 const std::vector<std::string> kMethods = {"far-pairs", "far", "exact"};
 
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == ',') {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
-  return parts;
-}
-
 std::vector<std::string> names_of(const std::vector<Peer>& peers) {
   std::vector<std::string> names;
   for (const Peer& peer : peers) names.push_back(peer.name);
@@ -50,7 +39,7 @@ std::vector<std::string> chosen(const std::string& option, const std::string& te
                                 const std::vector<std::string>& known) {
   if (text == "all") return known;
   if (text == "none") return {};
-  const std::vector<std::string> asked = split(text);
+  const std::vector<std::string> asked = split_list(text);
   for (const std::string& name : asked) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     throw Error(option, "'" + name + "' is none of them",

@@ -7,22 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/view.h"
 #include "experiments/output.h"
 
 namespace farcull {
 namespace {
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == ',') {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
-  return parts;
-}
 
 int parse_repeat(const std::string& text) {
   int value = 0;
@@ -43,7 +32,7 @@ std::vector<int> resolutions_of(const CompareArguments& arguments, Method method
   if (method == Method::exact) return {0};
   const std::string text = arguments.resolutions.value_or(pairs ? kAuto : kUsualResolutions);
   std::vector<int> out;
-  for (const std::string& resolution : split(text)) {
+  for (const std::string& resolution : split_list(text)) {
     if (resolution != kAuto) {
       out.push_back(parse_resolution(resolution, "--resolutions"));
       if (pairs) require_pair_resolution(out.back(), "--resolutions");
@@ -63,7 +52,7 @@ std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
   std::vector<RunOptions> cells;
   const bool beyond = self || arguments.options.clearance > 0;
   for (const std::string& method :
-       split(arguments.methods.value_or(beyond ? kBeyondCulling : kAllMethods))) {
+       split_list(arguments.methods.value_or(beyond ? kBeyondCulling : kAllMethods))) {
     RunOptions options = arguments.options;
     options.method = parse_method(method, "--methods");
     if (self && (options.method == Method::far || options.method == Method::cullide)) {
@@ -71,7 +60,7 @@ std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
                   method + " tests no object against itself, as one of the scene has to be",
                   "give far-pairs or exact");
     }
-    for (const std::string& offset : split(arguments.offsets)) {
+    for (const std::string& offset : split_list(arguments.offsets)) {
       if (options.method == Method::far) options.offset = offset;
       for (const int resolution : resolutions_of(arguments, options.method)) {
         options.resolution = resolution;

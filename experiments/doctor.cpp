@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -18,6 +17,7 @@
 #include "core/gl_probe.h"
 #include "core/pairs.h"
 #include "core/pairs_cpu.h"
+#include "core/stopwatch.h"
 #include "experiments/builtin_scenes.h"
 #include "experiments/output.h"
 
@@ -135,11 +135,9 @@ PairAdvice advise(const GlContext& context) {
     constexpr int kRuns = 5;
     std::vector<double> ms;
     for (int run = 0; run <= kRuns; ++run) {
-      const auto start = std::chrono::steady_clock::now();
+      const Stopwatch start;
       candidates = find_pairs(scene, {}, backend).candidates;
-      ms.push_back(
-          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-              .count());
+      ms.push_back(start.ms());
     }
     // The first run compiles and allocates.
     std::nth_element(ms.begin() + 1, ms.begin() + 1 + kRuns / 2, ms.end());

@@ -203,7 +203,7 @@ FramesResult run_frames(const std::vector<std::string>& arguments, const FramesQ
       const Progress named =
           progress ? [&](const std::string& stage) { progress(name + ": " + stage); } : Progress{};
       if (named) named("reading");
-      const Clock reading;
+      const Stopwatch reading;
       scene = &source.at(frame);
       const double read_ms = reading.ms();
       RunRecord record = run_scene(*scene, question.options, session, named);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cfenv>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <thread>
@@ -8,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/pairs.h"
+#include "core/stopwatch.h"
 #include "core/view.h"
 #include "experiments/farcull.h"
 #include "experiments/pair_device.h"
@@ -17,12 +17,6 @@ namespace farcull {
 namespace {
 
 constexpr int kMostResolution = 16384;
-
-using Time = std::chrono::steady_clock;
-
-double ms_since(Time::time_point start) {
-  return std::chrono::duration<double, std::milli>(Time::now() - start).count();
-}
 
 // Every Error that `call` throws, as the one of the library.
 template <class Call>
@@ -172,7 +166,7 @@ Collider& Collider::operator=(Collider&&) noexcept = default;
 ColliderResult Collider::find(const ColliderInput& input) {
   return translated([&] {
     State& state = *state_;
-    const auto start = Time::now();
+    const Stopwatch start;
     require_arithmetic();
     take(input, state.options, state.scene);
     PairResult found = find_pairs(state.scene,
@@ -182,10 +176,10 @@ ColliderResult Collider::find(const ColliderInput& input) {
                                   *state.device.backend);
     ColliderResult out;
     ColliderReport& report = out.report;
-    report.candidates_ms = ms_since(start);
+    report.candidates_ms = start.ms();
     report.candidates = found.candidates.size();
 
-    const auto deciding = Time::now();
+    const Stopwatch deciding;
     const unsigned threads =
         state.options.threads > 0 ? state.options.threads : std::thread::hardware_concurrency();
     const Collisions decided = decide(state.scene, found.candidates,
@@ -195,7 +189,7 @@ ColliderResult Collider::find(const ColliderInput& input) {
     out.pairs = given_out(decided.pairs);
     out.neighbour_pairs = given_out(decided.neighbour_pairs);
     report.neighbours = decided.neighbours;
-    report.exact_ms = ms_since(deciding);
+    report.exact_ms = deciding.ms();
 
     report.device = state.device.backend->name();
     report.device_reason = state.device.reason;

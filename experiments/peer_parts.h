@@ -2,7 +2,6 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -11,20 +10,10 @@
 
 #include "core/parallel.h"
 #include "core/scene.h"
+#include "core/stopwatch.h"
 #include "experiments/peer.h"
 
 namespace farcull {
-
-class Stopwatch {
- public:
-  double ms() const {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_)
-        .count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Neighbours by index. (Those by position alone are left to the exact decision.)
 inline bool share_vertex(const Scene& scene, std::uint32_t a, std::uint32_t b) {

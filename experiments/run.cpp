@@ -38,7 +38,7 @@ std::vector<std::uint32_t> cull_stage(const Scene& scene, const Plan& plan, Sess
     return {};
   }
   if (progress) progress("opening the device");
-  const Clock setup;
+  const Stopwatch setup;
   const GlContext& context = session.context();
   const Fattener fattener = fattener_of(options);
   GlCanvas canvas(context, fattener.mode, fattener.solid,
@@ -65,7 +65,7 @@ std::vector<std::uint32_t> cull_stage(const Scene& scene, const Plan& plan, Sess
 
 void run_culled(const Scene& scene, Session& session, const Progress& progress, RunRecord& record) {
   std::vector<TrianglePair>& candidates = record.kept;
-  const Clock planning;
+  const Stopwatch planning;
   if (progress) progress("planning");
   const Plan plan = make_plan(scene);
   record.stages.push_back(
@@ -82,7 +82,7 @@ void run_culled(const Scene& scene, Session& session, const Progress& progress, 
   record.pcs_triangles = live.size();
   record.pcs_objects = count_objects(scene, live);
 
-  const Clock join;
+  const Stopwatch join;
   if (progress) progress("joining boxes");
   candidates = box_join(plan.triangle_boxes, owners(scene), live);
   record.candidate_pairs = candidates.size();
@@ -95,7 +95,7 @@ void run_culled(const Scene& scene, Session& session, const Progress& progress, 
                            .unit = "pairs"});
   record.ms.cull = planning.ms() - record.ms.setup;
 
-  const Clock exact;
+  const Stopwatch exact;
   if (progress) progress("exact tests");
   record.pairs = decide(scene, candidates).pairs;
   record.ms.exact = exact.ms();

@@ -36,7 +36,7 @@ void run_far_pairs(const Scene& scene, Session& session, const Progress& progres
                    RunRecord& record) {
   const RunOptions& options = record.options;
   if (progress) progress("opening the device");
-  const Clock setup;
+  const Stopwatch setup;
   PairDevice& device = session.pairs();
   record.device = device.gl;
   record.on_cpu = !device.gl;
@@ -48,7 +48,7 @@ void run_far_pairs(const Scene& scene, Session& session, const Progress& progres
                            .ms = record.ms.setup,
                            .unit = ""});
 
-  const Clock cull;
+  const Stopwatch cull;
   PairSettings settings{
       .views = {}, .resolution = resolution_of(options), .clearance = options.clearance};
   if (!views_of(options).empty()) settings.views = parse_views(views_of(options));
@@ -59,7 +59,7 @@ void run_far_pairs(const Scene& scene, Session& session, const Progress& progres
   record.pair_views = std::move(result.views);
   record.stages.insert(record.stages.end(), result.stages.begin(), result.stages.end());
 
-  const Clock exact;
+  const Stopwatch exact;
   if (progress) progress("exact tests");
   Collisions collisions = decide(scene, record.kept, {.clearance = options.clearance});
   record.ms.exact = exact.ms();

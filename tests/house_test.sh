@@ -21,7 +21,7 @@ room_of() {
     core/scene[._]* | core/view[._]*) echo ground ;; # level 0
     # Level 0 as well: geometry and plain tools that know of scenes and views alone.
     core/box_join[._]*) echo join ;;
-    core/clip[._]* | core/parallel[._]* | core/raster[._]*) echo ground ;;
+    core/clip[._]* | core/parallel[._]* | core/raster[._]* | core/stopwatch[._]*) echo ground ;;
     core/cull[._]* | core/fatten[._]*) echo culling ;;
     core/budget[._]*) echo budget ;; # level 1, as the next two
     core/plan[._]*) echo plan ;;

@@ -15,12 +15,12 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
+#include "core/stopwatch.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -296,7 +296,7 @@ bool Accounting::adds_up() const {
 
 Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
                    const AccountOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch start;
   const double clearance = options.clearance;
   if (!(clearance >= 0 && std::isfinite(clearance))) {
     throw std::logic_error("account: a clearance must be finite and not negative");
@@ -344,8 +344,7 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
     throw std::logic_error("account: the tree passed over a kept pair whose boxes overlap");
   }
   result.certified_by_boxes = disjoint - kept_disjoint;
-  result.ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  result.ms = start.ms();
   return result;
 }
 

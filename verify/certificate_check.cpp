@@ -1,10 +1,10 @@
 // The checker: box_pairs, integer_pair and this file are all that has to be right.
 #include <algorithm>
-#include <chrono>
 #include <stdexcept>
 #include <utility>
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "verify/box_pairs.h"
 #include "verify/certificate.h"
 #include "verify/integer_pair.h"
@@ -33,11 +33,6 @@ struct Decision {
   Kind kind = Kind::separated;
   Finding finding = Finding::as_claimed;
 };
-
-using Clock = std::chrono::steady_clock;
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 [[noreturn]] void contradiction() {
   throw std::logic_error(
@@ -200,7 +195,7 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene) {
           "the evidence is too short: " + std::to_string(certificate.evidence.size()) +
           " bytes, and the scene has more pairs with overlapping boxes");
     }
-    const auto start = Clock::now();
+    const Stopwatch start;
     decisions.assign(pairs.size(), {});
     for_chunks(pairs.size(), chunks_for(pairs.size(), kPerThread),
                [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -208,7 +203,7 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene) {
                    decisions[i] = decide(scene, pairs[i], owner[pairs[i].a] == owner[pairs[i].b],
                                          certificate.evidence[done + i]);
                });
-    decide_ms += ms_since(start);
+    decide_ms += start.ms();
     for (std::size_t i = 0; i < pairs.size(); ++i)
       tally.add(pairs[i], certificate.evidence[done + i], decisions[i]);
     done += pairs.size();
@@ -235,12 +230,12 @@ std::string to_string(Verdict verdict) {
 }
 
 CheckResult check_certificate(const Certificate& certificate, const Scene& scene) {
-  const auto start = Clock::now();
+  const Stopwatch start;
   std::string other = other_scene(certificate.scene, scene);
   CheckResult result =
       other.empty() ? decide_all(certificate, scene) : not_proved(std::move(other));
   result.unattested = unattested_of(certificate.run);
-  result.ms = ms_since(start);
+  result.ms = start.ms();
   return result;
 }
 

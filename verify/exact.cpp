@@ -21,7 +21,6 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <future>
 #include <limits>
@@ -29,6 +28,7 @@
 #include <tuple>
 #include <variant>
 
+#include "core/stopwatch.h"
 #include "verify/distance.h"
 #include "verify/filter.h"
 
@@ -38,11 +38,6 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using Hull = std::variant<Point, Kernel::Segment_3, Kernel::Triangle_3>;  // in the order of Shape
-
-using Clock = std::chrono::steady_clock;
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 Point point(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
@@ -247,15 +242,8 @@ Triage filter_neighbours(unsigned equal, const Corners& a, const Corners& b) {
   return filter_beyond_edge(a[i], a[k], a[3 - i - k], b[3 - j - l]);
 }
 
-// Fetches the corners of a triangle for a use that follows soon: they may lie anywhere.
+// Pairs whose second corners are fetched ahead; the first ones are mostly those of the pair before.
 constexpr std::size_t kAhead = 8;
-void fetch([[maybe_unused]] const Scene& scene, [[maybe_unused]] std::uint32_t triangle) {
-#ifdef __GNUC__
-  for (const std::uint32_t v : scene.triangles[triangle]) {
-    __builtin_prefetch(scene.vertices[v].data());
-  }
-#endif
-}
 
 /// A triangle with its corners at hand.
 struct Gathered {
@@ -391,7 +379,7 @@ Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
       Gathered b(scene, candidates[begin].b);
       for (std::size_t i = begin; i < end; ++i) {
         const TrianglePair& pair = candidates[i];
-        fetch(scene, candidates[std::min(i + kAhead, end - 1)].b);
+        prefetch(scene, candidates[std::min(i + kAhead, end - 1)].b);
         if (pair.a != a.triangle) a.gather(scene, pair.a);  // mostly as before, in sorted lists
         b.gather(scene, pair.b);
         answers[i] = answer(scene, a, b, same_object(pair), question);
@@ -423,7 +411,7 @@ ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& questio
   ExactResult result;
   std::vector<TrianglePair> chunk;
   const auto decide_chunk = [&] {
-    const auto start = Clock::now();
+    const Stopwatch start;
     const Collisions found = decide(scene, chunk, question);
     const auto append = [](std::vector<TrianglePair>& to, const std::vector<TrianglePair>& from) {
       to.insert(to.end(), from.begin(), from.end());
@@ -433,9 +421,9 @@ ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& questio
     result.neighbours += found.neighbours;
     result.box_pairs += chunk.size();
     chunk.clear();
-    result.predicates_ms += ms_since(start);
+    result.predicates_ms += start.ms();
   };
-  const auto start = Clock::now();
+  const Stopwatch start;
   const std::vector<Box> boxes = triangle_boxes(scene);
   const std::vector<std::uint32_t> owner = owners(scene);
   const double half = std::nextafter(question.clearance / 2, std::numeric_limits<double>::max());
@@ -452,7 +440,7 @@ ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& questio
     if (chunk.size() == kChunk) decide_chunk();
   });
   decide_chunk();
-  result.join_ms = ms_since(start) - result.predicates_ms;
+  result.join_ms = start.ms() - result.predicates_ms;
   std::sort(result.pairs.begin(), result.pairs.end());
   std::sort(result.neighbour_pairs.begin(), result.neighbour_pairs.end());
   return result;

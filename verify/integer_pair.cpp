@@ -195,6 +195,15 @@ int bit_length(Wide magnitude) {
                    : 64 - std::countl_zero(static_cast<std::uint64_t>(magnitude));
 }
 
+/// The triangle whose corners are three of `points`, from `first` on.
+Corners<Wide> wide(const std::array<std::array<std::int64_t, 3>, 6>& points, int first) {
+  Corners<Wide> out;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) out[i][k] = points[first + i][k];
+  }
+  return out;
+}
+
 }  // namespace
 
 struct IntegerPair::Big {
@@ -287,14 +296,7 @@ IntegerPair::Big& IntegerPair::big() {
 
 bool IntegerPair::separated_by(int direction) {
   if (bits_ <= most_bits(direction)) {
-    Corners<Wide> a;
-    Corners<Wide> b;
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        a[i][k] = small_[i][k];
-        b[i][k] = small_[i + 3][k];
-      }
-    }
+    const Corners<Wide> a = wide(small_, 0), b = wide(small_, 3);
     Scratch<Wide> s;
     make_direction(s, a, b, direction);
     return has_gap(s, a, b);
@@ -316,14 +318,7 @@ std::optional<int> IntegerPair::separating_direction() {
 
 bool IntegerPair::only_shared_by(int direction) {
   if (bits_ <= most_bits(direction)) {
-    Corners<Wide> a;
-    Corners<Wide> b;
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        a[i][k] = small_[i][k];
-        b[i][k] = small_[i + 3][k];
-      }
-    }
+    const Corners<Wide> a = wide(small_, 0), b = wide(small_, 3);
     Scratch<Wide> s;
     make_direction(s, a, b, direction);
     return parts_at_shared(s, a, b, direction, shared_[0], shared_[1]);

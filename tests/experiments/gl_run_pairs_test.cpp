@@ -94,5 +94,20 @@ TEST(GlRunPairs, TheLibraryOnGl) {
   }
 }
 
+// The twin of frames that miss nothing: plain CULLIDE at few pixels does, and is called to account
+// where every method is held to the promise.
+TEST(GlRunPairs, FramesOfAMethodThatMissesAreBroken) {
+  FramesQuestion question;
+  question.options.method = Method::cullide;
+  question.options.resolution = 64;
+  question.options.device = "software";
+  question.range = {0, 3};
+  EXPECT_EQ(run_frames({"two-spheres"}, question).broken, "");
+  question.strict = true;
+  const FramesResult strict = run_frames({"two-spheres"}, question);
+  EXPECT_NE(strict.broken, "");
+  EXPECT_GT(strict.json["summary"]["missed"].get<std::uint64_t>(), 0u);
+}
+
 }  // namespace
 }  // namespace farcull
