@@ -40,8 +40,8 @@ export PKG_CONFIG_PATH
 "$work/example" >"$work/pkg_config.txt"
 
 cmp "$work/cmake.txt" "$work/pkg_config.txt" || fail 'the two examples differ'
-expected=$'frame 0: 1 of 1 candidates collide, on cpu\n  0 and 1
-frame 1: 1 of 1 candidates collide, on cpu\n  0 and 1
-frame 2: 0 of 0 candidates collide, on cpu'
+expected=$'frame 0, on cpu: 1\n  0 and 1
+frame 1, on cpu: 1\n  0 and 1
+frame 2, on cpu: 0'
 [[ $(<"$work/cmake.txt") == "$expected" ]] || fail "the example says: $(<"$work/cmake.txt")"
 echo "install_test: the example was built by CMake and by pkg-config"
