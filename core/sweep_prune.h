@@ -1,0 +1,126 @@
+// I-COLLIDE: sweep and prune on axis-aligned boxes with temporal coherence, the object-space method
+// that culling by pixels is compared with.
+//
+// Source: Cohen, Lin, Manocha, Ponamgi, I-COLLIDE: An Interactive and Exact Collision Detection
+// System for Large-Scale Environments (I3D 1995), section 4: the ends of all boxes along each axis
+// stay in a sorted list between frames; where little moved, insertion sort takes linear time, and
+// where two ends of different boxes change places, the state of that pair changes. Below the
+// objects, where I-COLLIDE follows features of convex bodies, farcull takes triangles of any kind:
+// those of the objects that are left are swept along one axis, whose order is kept as well.
+//
+// Reliable: doubles are compared and nothing else, so no pair of closed boxes that overlap is lost.
+// What is kept between calls is a guess at the next order. No answer depends on it, only the time
+// taken (and Counts::swaps and Counts::sorts, which say what was done); any two calls may be of any
+// two scenes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/scene.h"
+
+namespace farcull {
+
+/// Faults for tests, each applied to the next call: that call, or a later one, answers wrongly.
+enum class SweepFault {
+  none,
+  dropped_swap,  // of the boxes' ends: the first exchange that makes a pair is forgotten
+  open_boxes,    // at equal coordinates an upper end comes before a lower one
+  stale_order,   // of the triangles: the order of the last call is taken as it is
+};
+
+/// The pairs of overlapping boxes among those of a moving set.
+class BoxSweep {
+ public:
+  /// All pairs a < b (indices into `boxes`) whose closed boxes overlap (touching counts), sorted,
+  /// each once; valid until the next call. Empty boxes overlap nothing. Takes O(n + exchanges of
+  /// ends + pairs), or where there are too many exchanges, or other boxes are empty than in the
+  /// last call, the time of box_join(). Preconditions: no NaN; fewer than 2^31 boxes.
+  const std::vector<TrianglePair>& update(std::span<const Box> boxes);
+
+  /// Of the last call: how often two neighbours in a list changed places.
+  std::uint64_t swaps() const { return swaps_; }
+  /// Of the last call: whether the lists were sorted from scratch.
+  bool sorted_from_scratch() const { return from_scratch_; }
+  /// The next call starts as the first one did.
+  void forget();
+
+  void inject(SweepFault fault) { fault_ = fault; }
+
+ private:
+  struct End {
+    double value;
+    std::uint32_t box_and_side;  // 2 box + 1 for the upper end
+  };
+
+  void start(std::span<const Box> boxes);
+  bool sort_axis(int axis, std::span<const Box> boxes);
+
+  std::vector<std::uint32_t> present_;  // indices of the boxes that are not empty, ascending
+  std::vector<End> ends_[3];            // of those, sorted by (value, side)
+  std::vector<Box> boxes_;              // of the last call
+  std::vector<TrianglePair> pairs_;     // of the last call
+  std::vector<TrianglePair> appeared_;  // during a call: of the pairs, those that are new, and
+  std::vector<TrianglePair> vanished_;  // those that are gone; possibly several times
+  std::uint64_t swaps_ = 0;
+  bool from_scratch_ = false;
+  SweepFault fault_ = SweepFault::none;
+};
+
+/// What survives, in the units in which all methods are compared, and what it took.
+struct SweepPruneCounts {
+  std::uint64_t objects = 0;         // of object_pairs, and `self` ones with two triangles or more
+  std::uint64_t object_pairs = 0;    // whose boxes overlap
+  std::uint64_t triangles = 0;       // live
+  std::uint64_t triangle_pairs = 0;  // candidates
+  std::uint64_t swaps = 0;  // neighbours that changed places, in the lists of ends and of triangles
+  std::uint32_t sorts = 0;  // lists sorted from scratch: 3 of objects, 1 of triangles
+};
+
+struct SweepPruneResult {
+  std::vector<TrianglePair> object_pairs;  // a < b, indices of objects; sorted, each once
+  std::vector<std::uint32_t> triangles;    // live: in a candidate pair; ascending
+  std::vector<TrianglePair> candidates;    // sorted, each once
+  SweepPruneCounts counts;
+};
+
+/// Sweep and prune from frame to frame, in the calling thread. Keeps about 250 bytes for each
+/// triangle of objects whose boxes overlap.
+class SweepPrune {
+ public:
+  /// The candidates are all pairs of triangles of different objects, and of one object where it is
+  /// `self`, whose closed boxes overlap: what box_join() finds, and inside `self` objects all such
+  /// pairs, neighbours included. Precondition: validate(scene); fewer than 2^31 triangles and
+  /// objects.
+  SweepPruneResult find(const Scene& scene);
+  /// The same where the boxes are at hand (triangle_boxes(), or those grown by a margin: candidates
+  /// are the pairs of the boxes that are given). Throws std::logic_error if there are not as many
+  /// boxes as triangles.
+  SweepPruneResult find(const Scene& scene, std::span<const Box> boxes);
+  /// The next call starts as the first one did.
+  void forget();
+
+  void inject(SweepFault fault);
+
+ private:
+  struct Key {
+    double lo;
+    std::uint32_t triangle;
+  };
+  struct Entry;
+
+  void survivors(const Scene& scene, std::span<const Box> boxes, std::span<const Box> object_boxes,
+                 std::span<const TrianglePair> object_pairs);
+  void sort_order(std::span<const Box> boxes, SweepPruneCounts& counts);
+
+  BoxSweep objects_;
+  int axis_ = 0;                          // of the sweep of triangles
+  std::vector<Key> order_;                // triangles that may have candidates, along that axis
+  std::vector<std::uint32_t> surviving_;  // the same, ascending
+  std::vector<std::uint8_t> marks_;       // per triangle
+  std::vector<Key> arrivals_;
+  SweepFault fault_ = SweepFault::none;
+};
+
+}  // namespace farcull
