@@ -2,9 +2,10 @@
 //
 // The lectures on CULLIDE and S-CULLIDE tell *penetrating* contacts, where the surfaces pass
 // through each other, from *touching* ones, which S-CULLIDE ignores. Here as an exact definition:
-// two triangles penetrate iff their relative interiors meet and they do not lie in one plane. A
-// pair that penetrates still does so after every motion that is small enough; a pair that touches
-// can be separated by an arbitrarily small one, or lies in one plane and slides.
+// two triangles penetrate iff their relative interiors meet and they do not lie in one plane. Two
+// others that intersect touch. What this means: A and B penetrate iff 0 is an interior point of A -
+// B, so a pair penetrates iff no translation below some length separates it, and touches iff
+// arbitrarily short ones do (away from a plane between the two, or off their common plane).
 //
 // Semantics and preconditions as in verify/exact.h: the doubles as given, any finite ones; a
 // degenerate triangle is the segment or the point that it is. The relative interior of a triangle

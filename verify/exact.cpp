@@ -1,4 +1,4 @@
-// The only translation unit that includes CGAL, which compiles slowly.
+// Only this and contact.cpp include CGAL, which compiles slowly.
 //
 // Why Epick decides exactly here, read from the headers of CGAL 5.5.1 (the tests hold it against
 // integer arithmetic):
