@@ -14,6 +14,7 @@
 // two scenes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -75,7 +76,7 @@ struct SweepPruneCounts {
   std::uint64_t triangles = 0;       // live
   std::uint64_t triangle_pairs = 0;  // candidates
   std::uint64_t swaps = 0;  // neighbours that changed places, in the lists of ends and of triangles
-  std::uint32_t sorts = 0;  // lists sorted from scratch: 3 of objects, 1 of triangles
+  std::uint64_t sorts = 0;  // lists sorted from scratch: 3 of objects, columns, all triangles
 };
 
 struct SweepPruneResult {
@@ -104,23 +105,47 @@ class SweepPrune {
   void inject(SweepFault fault);
 
  private:
-  struct Key {
-    double lo;
-    std::uint32_t triangle;
+  /// The columns that the box of a triangle meets, first to last along two axes.
+  struct Range {
+    std::uint16_t u0, u1, v0, v1;
+    std::uint64_t columns() const {
+      return std::uint64_t(u1 - u0 + 1) * std::uint64_t(v1 - v0 + 1);
+    }
   };
-  struct Entry;
+  /// What the sweep asks of a triangle, in one cache line.
+  struct Item {
+    double lo[3];  // of its box, the axis of the sweep first
+    double hi[3];
+    std::uint32_t triangle;
+    std::uint32_t group;  // two of one group make no candidate
+    Range range;
+  };
 
-  void survivors(const Scene& scene, std::span<const Box> boxes, std::span<const Box> object_boxes,
-                 std::span<const TrianglePair> object_pairs);
-  void sort_order(std::span<const Box> boxes, SweepPruneCounts& counts);
+  std::uint64_t find_survivors(const Scene& scene, std::span<const Box> boxes,
+                               std::span<const Box> object_boxes,
+                               std::span<const TrianglePair> object_pairs);
+  void renew_order(std::size_t triangles);
+  void choose_columns(std::span<const Box> boxes);
+  void fill_columns(std::span<const Box> boxes);
+  std::vector<TrianglePair> sweep_columns(SweepPruneCounts& counts);
+  void sort_order();
 
   BoxSweep objects_;
-  int axis_ = 0;                          // of the sweep of triangles
-  std::vector<Key> order_;                // triangles that may have candidates, along that axis
-  std::vector<std::uint32_t> surviving_;  // the same, ascending
-  std::vector<std::uint8_t> marks_;       // per triangle
-  std::vector<Key> arrivals_;
+  std::array<int, 3> axes_ = {0, 1, 2};  // that of the sweep of triangles, those across
+  std::vector<std::uint32_t>
+      order_;  // the survivors, sorted along the first when last that was due
   SweepFault fault_ = SweepFault::none;
+
+  // Of the running call. Members so that no frame asks for the memory again.
+  std::vector<std::uint32_t> survivors_;  // triangles that may have candidates; ascending
+  std::vector<std::uint32_t> groups_;     // of each triangle
+  std::vector<std::uint8_t> marks_;       // of each triangle: what is known of it
+  std::array<double, 2> from_ = {0, 0};   // of the columns along their axes
+  std::array<double, 2> scale_ = {0, 0};  // 2^10 to the extent
+  std::array<int, 2> bits_ = {0, 0};      // 2^bits_ columns along each of their axes
+  std::vector<Item> items_;               // of each in order_
+  std::vector<std::size_t> starts_;       // of each column in entries_
+  std::vector<Item> entries_;             // of the columns, one after the other
 };
 
 }  // namespace farcull

@@ -22,7 +22,7 @@ room_of() {
     # Level 0 as well: geometry and plain tools that know of scenes and views alone.
     core/box_join[._]*) echo join ;;
     core/clip[._]* | core/parallel[._]* | core/raster[._]* | core/stopwatch[._]*) echo ground ;;
-    core/cull[._]* | core/fatten[._]*) echo culling ;;
+    core/cull[._]* | core/fatten[._]* | core/sweep_prune[._]*) echo culling ;;
     core/budget[._]*) echo budget ;; # level 1, as the next two
     core/plan[._]*) echo plan ;;
     core/canvas[._]*) echo canvas ;;
@@ -236,6 +236,7 @@ self_test() {
   breaks verify/canvas.cpp '"core/budget.h"' 'verify does not know'
   breaks verify/accounting.cpp '"core/box_join.h"' 'verify never uses the code that culled'
   breaks verify/accounting.cpp '"core/cull.h"' 'verify never uses the code that culled'
+  breaks verify/accounting.cpp '"core/sweep_prune.h"' 'verify never uses the code that culled'
   breaks verify/accounting.cpp '"core/plan.h"' 'verify never uses the code that culled'
   breaks core/box_join.cpp '"core/plan.h"' "$ground"
   breaks core/clip.cpp '"core/canvas.h"' "$ground"
