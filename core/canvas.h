@@ -77,8 +77,11 @@ struct Step {
 /// Steps in order, on a depth buffer that starts empty. Draws of one slot inside a step stand
 /// together. store: keeps the nearest depth per pixel (entry depth of a proxy). ask: a slot is seen
 /// where one of its fragments (exit depth of a proxy) is at or behind the stored depth (GEQUAL);
-/// where nothing is stored nothing is seen.
+/// where nothing is stored nothing is seen. touching = false: only fragments behind it (GREATER),
+/// as in S-CULLIDE, whose visibility test passes a fragment at or in front of the stored depth;
+/// contacts at equal depth are then not seen, so nothing is promised.
 struct Pass {
+  bool touching = true;
   std::uint32_t slots = 0;
   std::vector<Draw> draws;
   std::vector<Step> steps;

@@ -1,11 +1,33 @@
-// CULLIDE's two passes on a canvas, at object and at triangle level (Govindaraju, Redon, Lin,
-// Manocha 2003); with fattened primitives it is FAR (Govindaraju, Lin, Manocha 2004), with
-// `economy` it stores only what is not yet cleared (Quick-CULLIDE, 2005). docs/reliability.md holds
-// the argument.
+// The CULLIDE family on a canvas. One schedule of views, levels and passes serves
+//   CULLIDE        Govindaraju, Redon, Lin, Manocha, Graphics Hardware 2003: quick = false
+//   Quick-CULLIDE  Govindaraju, Lin, Manocha, IEEE VR 2005: quick = true
+//   S-CULLIDE      the same paper, inside objects: self = true, touching = false, with either
+//   FAR            Govindaraju, Lin, Manocha, VRST 2004: Quick-CULLIDE with a fattener
+// docs/reliability.md holds the argument ("Passes, views, rounds" and "Quick-CULLIDE").
 //
-// Every triangle has two bits. F: cleared against all earlier objects, in the order of the scene;
-// L: against all later ones. A triangle with both is culled. Bits survive views and rounds: the two
-// sides may be cleared by different views.
+// Owners (objects; with `self`, single triangles) have a fixed order, that of the scene. Every
+// triangle has two bits. F: cleared against all earlier owners; L: against all later ones. A
+// triangle with both is culled. The four values of the bits are the four visibility sets:
+//   NFV neither; FFV F only (fully visible in the first pass); SFV L only (in the second); BFV
+//   both.
+//
+// Plain CULLIDE begins every level of a visit without bits: a triangle is culled where one view
+// finds it fully visible in both its passes. It asks every live triangle and stores every live
+// triangle, in both passes. Quick-CULLIDE keeps the bits across levels, views and rounds; FFV is
+// asked only in the second pass and stored only in the first, SFV the other way round; and it
+// leaves out a pass whose stored set is what it was when the pass last ran in that view.
+//
+// What is proved of the two (docs/reliability.md) and tested: after every step of their common
+// schedule, Quick-CULLIDE's bits contain plain CULLIDE's, and it has drawn and asked no more. So
+// where plain CULLIDE has reached its fixed point, Quick-CULLIDE keeps no more triangles and has
+// used no more queries and draws. It may go on from there, as bits of different views join: then it
+// culls more, and its total may exceed plain CULLIDE's (tests/core/cull_quick_test.cpp has such a
+// scene).
+//
+// Bits are facts about the triangles: with a fattener that promises, F(t) means that t meets no
+// triangle of an earlier owner, L(t) none of a later one (theorem 2), whatever view, resolution or
+// fattener found it. So a run may start from the bits of another, as long as scene, plan and `self`
+// are the same. With raw triangles bits are as good as the run that set them.
 #pragma once
 
 #include <cstdint>
@@ -29,12 +51,44 @@ struct RadiusRule {
   double factor = 1;
 };
 
+/// The level between objects and triangles: clusters of that many triangles of one owner, in the
+/// order of a space-filling curve, one question for the open triangles of a cluster. Each size is a
+/// level of its own, from the first to the last; empty: no such level. It is run on the first visit
+/// of a view, and changes no fixed point.
+struct Clusters {
+  std::vector<std::uint32_t> sizes;  // triangles, each 2 or more
+  std::string reason;                // for the record; empty: the record says nothing
+};
+
+/// The fixed rule: clusters of 128 triangles where a question costs (occlusion queries) and more
+/// than 4096 triangles may take part; none otherwise.
+Clusters usual_clusters(bool occlusion_queries, std::size_t triangles);
+
+/// What a watcher sees after each pass of the schedule that has at least one triangle to decide.
+struct CullStep {
+  std::string name;                       // "objects z, round 1, first pass"
+  const std::vector<std::uint8_t>& bits;  // per triangle of the scene
+  std::uint64_t draws = 0, queries = 0;   // since the run began
+  std::uint64_t draws_saved = 0, queries_saved = 0;
+};
+
 struct CullSettings {
   std::vector<View> views;
   int resolution = 0;  // px along the larger side of each view's window
   Fattener fattener;
   RadiusRule radius;
-  bool economy = true;  // store only items whose own bit is open; false: store every live item
+  bool quick = true;  // Quick-CULLIDE; false: plain CULLIDE
+  /// Every triangle of an object with Object::self is an owner; make_plan(scene, true) goes with
+  /// it.
+  bool self = false;
+  bool touching = true;  // false: what only touches is not seen, see Pass::touching
+  Clusters clusters = {};
+  bool full = false;         // nothing is left out
+  std::uint32_t enough = 0;  // live triangles at which no further view is drawn; 0: never enough
+  /// To start from, per triangle of the scene as CullResult::bits; empty: none. Plain CULLIDE takes
+  /// from them only what is culled.
+  std::vector<std::uint8_t> bits = {};
+  std::function<void(const CullStep&)> watch = {};
 };
 
 /// What was drawn in one view.
@@ -51,6 +105,8 @@ struct ViewReport {
 
 struct CullResult {
   std::vector<std::uint32_t> live;  // ascending; the potentially colliding set at triangle level
+  /// Per triangle of the scene: 1 has F, 2 has L, 3 is culled or not in the plan.
+  std::vector<std::uint8_t> bits;
   std::vector<ViewReport> views;
   std::vector<Stage> stages;
 };
@@ -58,9 +114,14 @@ struct CullResult {
 /// Called before each stage with its name; may be empty.
 using Progress = std::function<void(const std::string&)>;
 
-/// Culls the triangles of plan.triangles in every view, round after round, until a round clears
-/// nothing. Throws Error where the resolution is beyond the canvas's limit or the canvas cannot
-/// vouch for a pass.
+/// Culls the triangles of plan.triangles. A round visits every view; a visit runs, at object level
+/// (in round 1, unless a triangle is an owner), at the level of clusters (in round 1) and at
+/// triangle level, the first pass, then the second. Rounds follow until one changes nothing: sets
+/// no bit (quick), or culls nothing (plain). Left out, unless `full`, each as a stage with its
+/// reason: passes and visits that are not due (quick), levels and visits where no triangle is left,
+/// and everything after a view that leaves at most `enough` triangles.
+/// Throws Error where the resolution is beyond the canvas's limit or the canvas cannot vouch for a
+/// pass; std::logic_error where settings.bits has another length than the scene.
 CullResult cull(const Scene& scene, const Plan& plan, const CullSettings& settings, Canvas& canvas,
                 const Progress& progress = {});
 

@@ -354,6 +354,8 @@ std::vector<std::uint8_t> GlCanvas::run(const Pass& pass) {
   check_gl("pass upload");
 
   s.start(1);
+  glUseProgram(s.ask_program);
+  glUniform1i(glGetUniformLocation(s.ask_program, "u_touching"), pass.touching);
   const GlQuery generated = gl_make<GlQuery>(glGenQueries);
   glBeginQuery(GL_PRIMITIVES_GENERATED, generated);
   GLuint64 expected = 0;
@@ -386,7 +388,7 @@ std::vector<std::uint8_t> GlCanvas::run(const Pass& pass) {
     }
     glBindFramebuffer(GL_FRAMEBUFFER, s.depth_target);
     glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GEQUAL);
+    glDepthFunc(pass.touching ? GL_GEQUAL : GL_GREATER);
     glDepthMask(GL_FALSE);
     for (std::size_t from = 0; from < run.count;) {
       const std::uint32_t slot = list[run.offset + from].slot;

@@ -7,7 +7,7 @@
 
 namespace farcull {
 
-Plan make_plan(const Scene& scene) {
+Plan make_plan(const Scene& scene, bool self) {
   Plan plan;
   plan.triangle_boxes = triangle_boxes(scene);
   plan.object_boxes = object_boxes(scene, plan.triangle_boxes);
@@ -23,8 +23,14 @@ Plan make_plan(const Scene& scene) {
   }
   for (const std::uint32_t o : objects) {
     const Object& object = scene.objects[o];
+    const bool alone = self && object.self && object.triangle_count > 1;
+    if (alone) plan.regions.push_back(plan.object_boxes[o]);
     for (std::uint32_t t = object.first_triangle; t < object.first_triangle + object.triangle_count;
          ++t) {
+      if (alone) {
+        plan.triangles.push_back(t);
+        continue;
+      }
       for (const std::uint32_t partner : partners[o]) {
         if (overlap(plan.triangle_boxes[t], plan.object_boxes[partner])) {
           plan.triangles.push_back(t);

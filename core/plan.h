@@ -22,16 +22,20 @@ struct Stage {
   std::string unit = {};
   std::uint64_t draws = 0;    // elements drawn
   std::uint64_t queries = 0;  // slots asked
+  // Against plain CULLIDE's passes on the same live triangles; Quick-CULLIDE and FAR fill them.
+  std::uint64_t draws_saved = 0;
+  std::uint64_t queries_saved = 0;
 };
 
 struct Plan {
   std::vector<Box> triangle_boxes;
   std::vector<Box> object_boxes;
-  std::vector<Box> regions;  // the places where two objects' boxes overlap, one per pair
+  std::vector<Box> regions;  // where two objects' boxes overlap, one per pair; see make_plan
   std::vector<std::uint32_t>
-      triangles;  // ascending; those whose box meets the box of another object
+      triangles;  // ascending; those whose box meets the box of another object, or in a self region
 };
 
-Plan make_plan(const Scene& scene);
+/// self: objects with Object::self take part by themselves as well, their whole box a region.
+Plan make_plan(const Scene& scene, bool self = false);
 
 }  // namespace farcull

@@ -56,7 +56,7 @@ std::vector<std::uint32_t> cull_stage(const Scene& scene, const Plan& plan, Sess
                         .resolution = resolution_of(options),
                         .fattener = fattener,
                         .radius = options.radius,
-                        .economy = options.method == Method::far};
+                        .quick = options.method == Method::far};
   CullResult result = cull(scene, plan, settings, canvas, progress);
   record.views = std::move(result.views);
   record.stages.insert(record.stages.end(), result.stages.begin(), result.stages.end());

@@ -149,7 +149,7 @@ std::vector<std::uint8_t> WorstCanvas::run(const Pass& pass) {
         const float d = stored_depth(mapped);
         if (step.verb == Verb::store) {
           depth[pixel] = std::min(depth[pixel], d);
-        } else if (d >= depth[pixel]) {
+        } else if (d > depth[pixel] || (pass.touching && d == depth[pixel])) {
           seen[draw.slot] = 1;
         }
       });

@@ -17,6 +17,7 @@ out float o_value;
 #ifdef FAR_FLAGS
 layout(std430, binding = 2) buffer Flags { uint flags[]; };
 uniform sampler2D u_depth;
+uniform bool u_touching;  // Pass::touching
 #endif
 
 void main() {
@@ -54,7 +55,8 @@ void main() {
   float depth = gl_FragCoord.z;
 #endif
 #ifdef FAR_FLAGS
-  if (depth >= texelFetch(u_depth, pixel, 0).r) flags[v_slot] = 1u;
+  float stored = texelFetch(u_depth, pixel, 0).r;
+  if (depth > stored || (u_touching && depth == stored)) flags[v_slot] = 1u;
 #elif defined(FAR_PROXY)
   gl_FragDepth = depth;
 #endif

@@ -33,7 +33,7 @@ CullSettings settings_for(const std::string& views, int resolution, bool economy
   settings.views = parse_views(views);
   settings.resolution = resolution;
   settings.fattener = obb_fattener();
-  settings.economy = economy;
+  settings.quick = economy;
   return settings;
 }
 

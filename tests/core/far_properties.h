@@ -43,13 +43,13 @@ inline Outcome far_on(Canvas& canvas, const Scene& scene, const Fattener& fatten
                               .resolution = resolution,
                               .fattener = fattener,
                               .radius = {.published = false, .factor = factor},
-                              .economy = true};
+                              .quick = true};
   const CullResult result = cull(scene, plan, settings, canvas);
   Outcome out{account(scene, box_join(plan.triangle_boxes, owners(scene), result.live)),
               result.live.size()};
   for (const Stage& stage : result.stages) {
-    out.undrawable_stages +=
-        stage.reason.find("beyond the budget") != std::string::npos || !stage.ran;
+    out.undrawable_stages += stage.reason.find("beyond the budget") != std::string::npos ||
+                             stage.reason.find("cannot resolve") != std::string::npos;
   }
   return out;
 }

@@ -282,9 +282,9 @@ TEST(GlFar, EconomyNeverKeepsMore) {
                           .resolution = 96,
                           .fattener = fattener,
                           .radius = {},
-                          .economy = true};
+                          .quick = true};
     const std::vector<std::uint32_t> economical = cull(scene, plan, settings, canvas).live;
-    settings.economy = false;
+    settings.quick = false;
     const std::vector<std::uint32_t> plain = cull(scene, plan, settings, canvas).live;
     EXPECT_TRUE(std::includes(plain.begin(), plain.end(), economical.begin(), economical.end()));
   }

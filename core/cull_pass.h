@@ -1,0 +1,75 @@
+// The state of a culling run and one pass over it. core/cull.h says what they are for; here they
+// stand apart so that tests can run passes by other rules.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/canvas.h"
+#include "core/cull.h"
+
+namespace farcull {
+
+enum Bit : std::uint8_t { kF = 1, kL = 2, kCulled = kF | kL };
+
+/// Which live triangles a pass asks and stores, by [has the bit that is asked][has the other bit].
+struct PassRule {
+  bool asks[2][2];
+  bool stores[2][2];
+  bool forgets;  // every level begins without bits
+};
+constexpr PassRule kPlainRule = {{{true, true}, {true, true}}, {{true, true}, {true, true}}, true};
+constexpr PassRule kQuickRule = {
+    {{true, true}, {false, false}}, {{true, false}, {true, false}}, false};
+
+/// A level asks once for all open triangles of a group; groups stand together inside an owner.
+struct Level {
+  std::string name;
+  const std::vector<std::uint32_t>* group = nullptr;  // per triangle of the scene; null: each alone
+};
+
+struct CullState {
+  std::vector<std::uint8_t> bits;     // per triangle of the scene
+  std::vector<std::uint32_t> live;    // those of an owner stand together, owners ascending
+  std::vector<std::uint32_t> owner;   // per triangle of the scene
+  std::uint64_t changes[2] = {1, 1};  // how often an F, an L bit was set
+  std::uint64_t deaths = 0;
+
+  /// Sets a bit of a live triangle.
+  void set(std::uint32_t triangle, Bit bit);
+  /// Takes the culled out of `live`.
+  void bury();
+  /// Takes the bits of what is live.
+  void forget();
+};
+
+struct PassCost {
+  std::uint64_t draws = 0;    // elements drawn
+  std::uint64_t queries = 0;  // slots asked
+  PassCost& operator+=(const PassCost& other) {
+    draws += other.draws;
+    queries += other.queries;
+    return *this;
+  }
+};
+
+/// Runs one pass on the canvas: owner by owner (ascending where F is asked, descending where L is),
+/// asks by the rule, then stores by the rule. What was not seen gets the bit, after the pass. Two
+/// kinds get it undrawn: triangles without elements in this view, and those asked before anything
+/// is stored. Undrawable ones get no bit and are stored everywhere. Stores that nobody is asked
+/// after are left out. items: those of `drawables`, triangles in the order of CullState::live.
+PassCost run_pass(CullState& state, std::span<const std::uint32_t> items,
+                  const Drawables& drawables, Bit ask, const PassRule& rule, const Level& level,
+                  bool touching, Canvas& canvas);
+
+/// What the pass of plain CULLIDE would draw and ask on the same live triangles.
+PassCost plain_cost(const CullState& state, std::span<const std::uint32_t> items,
+                    const Drawables& drawables, Bit ask, const Level& level);
+
+/// cull() by a rule of the caller's: tests break the rule and must see it.
+CullResult cull_by(const PassRule& rule, const Scene& scene, const Plan& plan,
+                   const CullSettings& settings, Canvas& canvas, const Progress& progress = {});
+
+}  // namespace farcull
