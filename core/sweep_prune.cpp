@@ -201,11 +201,12 @@ void SweepPrune::inject(SweepFault fault) {
   fault_ = fault;
 }
 
-/// Triangles whose box meets the box of another object, whose box meets that of their own; and all
-/// of `self` objects.
+/// Triangles whose box meets the box of another object, whose box meets that of their own, or which
+/// would have to be compared with more than kTries of those; and all of `self` objects.
 std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box> boxes,
                                          std::span<const Box> object_boxes,
                                          std::span<const TrianglePair> object_pairs) {
+  constexpr int kTries = 32;  // cost about what the sweep of one triangle does
   survivors_.clear();
   marks_.assign(boxes.size(), kDropped);
   groups_.resize(boxes.size());
@@ -236,11 +237,11 @@ std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box
       const Box& box = boxes[t];
       if (box.is_empty()) continue;
       bool survives = self || meet(box, *last);
+      int tries = 0;
       for (auto p = begin; !survives && p != end && p->lo[axis] <= box.hi[axis]; ++p) {
-        if (meet(box, *p)) {
-          survives = true;
-          last = p;
-        }
+        const bool met = meet(box, *p);
+        if (met) last = p;
+        survives = met || ++tries == kTries;
       }
       if (!survives) continue;
       groups_[t] = self ? kAlone | t : o;

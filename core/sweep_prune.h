@@ -6,11 +6,12 @@
 // stay in a sorted list between frames; where little moved, insertion sort takes linear time, and
 // where two ends of different boxes change places, the state of that pair changes. Below the
 // objects, where I-COLLIDE follows features of convex bodies, farcull takes triangles of any kind:
-// those of the objects that are left are swept along one axis, whose order is kept as well.
+// those of the objects that are left are swept along one axis, in columns across the other two, and
+// their order along it is kept as well.
 //
 // Reliable: doubles are compared and nothing else, so no pair of closed boxes that overlap is lost.
 // What is kept between calls is a guess at the next order. No answer depends on it, only the time
-// taken (and Counts::swaps and Counts::sorts, which say what was done); any two calls may be of any
+// taken (and the counts of swaps and sorts, which say what was done); any two calls may be of any
 // two scenes.
 #pragma once
 
@@ -86,8 +87,8 @@ struct SweepPruneResult {
   SweepPruneCounts counts;
 };
 
-/// Sweep and prune from frame to frame, in the calling thread. Keeps about 250 bytes for each
-/// triangle of objects whose boxes overlap.
+/// Sweep and prune from frame to frame, in the calling thread. Keeps some 200 bytes, at most 340,
+/// for each triangle that gets to the sweep.
 class SweepPrune {
  public:
   /// The candidates are all pairs of triangles of different objects, and of one object where it is

@@ -408,6 +408,32 @@ TEST(SweepPrune, AsBoxJoinOnManyBoxesOfEveryShape) {
   }
 }
 
+// More partners than a triangle is compared with one by one.
+TEST(SweepPrune, AGroundUnderManyObjects) {
+  Random random(609);
+  Moving moving;
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 at(k % 20, k / 20, 0);
+    moving.boxes.push_back({at, at + Vec3(0.5, 0.5, 0)});
+  }
+  moving.sizes.push_back(200);
+  for (int o = 0; o < 150; ++o) {
+    const Vec3 at(random.uniform(0, 20), random.uniform(0, 10), random.uniform(-1, 0.5));
+    for (int k = 0; k < 2; ++k) moving.boxes.push_back({at, at + random.cube(0.6).cwiseAbs()});
+    moving.sizes.push_back(2);
+  }
+  moving.self.assign(151, false);
+  SweepPrune sweep;
+  for (int frame = 0; frame < 3; ++frame) {
+    const Scene scene = moving.scene();
+    const SweepPruneResult found = sweep.find(scene);
+    ASSERT_NO_FATAL_FAILURE(expect_right(found, scene));
+    EXPECT_GT(found.counts.object_pairs, 64u);
+    EXPECT_LT(found.counts.triangles, 500u);  // what is kept unasked is not live for that
+    move_objects(moving, random, 1);
+  }
+}
+
 TEST(SweepPrune, CountsWhatSurvives) {
   // Two that overlap with one triangle each in the other's way, one apart, one apart and `self`.
   const Boxes boxes = {cube(0, 1),   cube(3, 4),   cube(3.5, 5), cube(9, 9.5),
