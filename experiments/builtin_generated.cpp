@@ -3,6 +3,7 @@
 #include <numbers>
 #include <utility>
 
+#include "experiments/builtin_motion.h"
 #include "experiments/builtin_parts.h"
 #include "experiments/builtin_shapes.h"
 #include "experiments/scene_build.h"
@@ -12,31 +13,6 @@ namespace farcull {
 using namespace shapes;
 
 namespace {
-
-// About the z axis; `around` steps along the ring, `across` around the tube, 2 * around * across
-// triangles.
-Mesh torus(double ring, double tube, std::uint32_t around, std::uint32_t across) {
-  constexpr double kTurn = 2 * std::numbers::pi;
-  std::vector<Vec3> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (std::uint32_t i = 0; i < around; ++i) {
-    for (std::uint32_t j = 0; j < across; ++j) {
-      const double u = kTurn * i / around;
-      const double v = kTurn * j / across;
-      const double r = ring + tube * std::cos(v);
-      vertices.emplace_back(r * std::cos(u), r * std::sin(u), tube * std::sin(v));
-      const std::uint32_t next_i = (i + 1) % around;
-      const std::uint32_t next_j = (j + 1) % across;
-      const std::uint32_t a = i * across + j;
-      const std::uint32_t b = next_i * across + j;
-      const std::uint32_t c = next_i * across + next_j;
-      const std::uint32_t d = i * across + next_j;
-      triangles.push_back({a, b, c});
-      triangles.push_back({a, c, d});
-    }
-  }
-  return finished(std::move(vertices), std::move(triangles));
-}
 
 Mesh tetrahedron() {
   return finished({{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}},
@@ -103,11 +79,47 @@ Scene make_random_soup(std::uint64_t seed) {
   return scene.finish();
 }
 
-Scene make_needles(std::uint64_t seed) {
+namespace {
+
+constexpr std::uint64_t kAxial =
+    0x9e3779b97f4a7c15;  // xor the seed: that of what lies along the axes
+
+Vec3 axis(std::uint32_t k) { return Vec3::Unit(k % 3); }
+
+// A sliver along an axis, its other side along the next one.
+Corners axial_needle(std::uint32_t k, double width, Random& random) {
+  const Vec3 start = -0.5 * axis(k);
+  return {start, start + axis(k), start + random.between(0.2, 0.8) * axis(k) + width * axis(k + 1)};
+}
+
+// The second object turns against the first; the slivers of the fourth slide along themselves.
+Motion turning_and_sliding(const Scene& scene) {
+  return [rest = scene.vertices, objects = scene.objects](const Instant& now, Scene& out,
+                                                          FrameNotes&) {
+    const double swing = std::sin(2 * std::numbers::pi * now.time);
+    const Eigen::AngleAxisd turn(0.2 * swing, Vec3(1, 1, 1).normalized());
+    const Eigen::Matrix3d matrix = turn.toRotationMatrix();
+    const auto corners = [&](const Object& object) {  // in soups, three for each triangle
+      return std::pair(3 * object.first_triangle,
+                       3 * (object.first_triangle + object.triangle_count));
+    };
+    const auto [first, last] = corners(objects[1]);
+    for (std::uint32_t v = first; v < last; ++v) out.vertices[v] = matrix * rest[v];
+    const auto [from, to] = corners(objects[3]);
+    for (std::uint32_t v = from; v < to; ++v) {
+      const std::uint32_t sliver = (v - from) / 3;
+      out.vertices[v] = rest[v] + 0.4 * swing * axis(sliver + sliver / 3);
+    }
+  };
+}
+
+}  // namespace
+
+BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
   Random random(seed);
   std::vector<Corners> first;
   std::vector<Corners> second;
-  for (int i = 0; i < 400; ++i) {
+  for (std::uint64_t i = 0; i < parameters.size; ++i) {
     const double width = random.over_octaves(20);
     first.push_back(shifted(needle(random, width), random.in_cube(1)));
     // One in four stands anywhere. The others cross the needle of the first object or pass it
@@ -123,10 +135,29 @@ Scene make_needles(std::uint64_t seed) {
     if (i % 4 == 2) to += 2 * std::min(width, other_width) * random.direction();
     second.push_back(shifted(other, to - from));
   }
+  // Along the axes: each of one object along x, y or z, and through it one of the other along each
+  // axis in turn, the same one included.
+  Random axial(seed ^ kAxial);
+  std::vector<Corners> third;
+  std::vector<Corners> fourth;
+  for (std::uint32_t i = 0; i < 3 * (parameters.size / 8); ++i) {
+    const double one_width = axial.over_octaves(20);
+    const Corners one = axial_needle(i, one_width, axial);
+    third.push_back(shifted(one, axial.in_cube(1)));
+    const double width = axial.over_octaves(20);
+    const Corners other = axial_needle(i + i / 3, width, axial);
+    const Vec3 from = inner_point(other, axial);
+    const Vec3 to = inner_point(third.back(), axial);
+    fourth.push_back(shifted(other, to - from));
+  }
   SceneBuilder scene("needles", "needles");
   scene.add(soup(first), "first", Split::kNone, {});
   scene.add(soup(second), "second", Split::kNone, {});
-  return scene.finish();
+  scene.add(soup(third), "along axes", Split::kNone, {});
+  scene.add(soup(fourth), "along axes too", Split::kNone, {});
+  BuiltScene built{scene.finish(), {}};
+  built.motion = turning_and_sliding(built.scene);
+  return built;
 }
 
 Scene make_degenerate() {
@@ -197,18 +228,23 @@ Scene make_ground(std::uint64_t seed) {
   return scene.finish();
 }
 
-Scene make_crowd(std::uint64_t seed) {
+BuiltScene make_crowd(const SceneParameters& parameters, std::uint64_t seed) {
+  // Of the usual numbers the factor is exactly 1.
+  const double half = 6 * std::cbrt(static_cast<double>(parameters.size) / 400 *
+                                    (kUsualCrowdDensity / parameters.second));
   Random random(seed);
   SceneBuilder scene("crowd", "crowd");
-  for (int i = 0; i < 400; ++i) {
+  for (std::uint64_t i = 0; i < parameters.size; ++i) {
     const bool is_blob = i % 4 == 3;
     const Mesh mesh = is_blob ? blob(1, random) : tetrahedron();
-    Placement placement = random.anywhere(random.in_cube(6));
+    Placement placement = random.anywhere(random.in_cube(half));
     placement.scale = Vec3::Constant(random.between(0.2, 0.6));
     scene.add(mesh, (is_blob ? "blob" : "tetrahedron") + std::to_string(i), Split::kNone,
               placement);
   }
-  return scene.finish();
+  BuiltScene built{scene.finish(), {}};
+  built.motion = drift(built.scene);
+  return built;
 }
 
 Scene make_far_apart() {

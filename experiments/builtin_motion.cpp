@@ -1,8 +1,12 @@
 #include "experiments/builtin_motion.h"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
+#include "core/error.h"
 #include "experiments/builtin_shapes.h"
 #include "experiments/scene_build.h"
 
@@ -15,16 +19,21 @@ constexpr std::uint64_t kDriftSeed = 8;
 struct Part {
   Box box;
   std::vector<std::uint32_t> vertices;  // each once
-  bool stays = false;                   // the ground of the suffix @ground
 };
 
-std::vector<Part> parts_of(const Scene& scene) {
+// The scene without frames and its objects.
+struct Rest {
+  std::vector<Vec3> vertices;
   std::vector<Part> parts;
+};
+
+std::shared_ptr<const Rest> rest_of(const Scene& scene) {
+  auto rest = std::make_shared<Rest>();
+  rest->vertices = scene.vertices;
   std::vector<std::uint8_t> seen(scene.vertices.size(), 0);
   for (const Object& object : scene.objects) {
-    Part& part = parts.emplace_back();
+    Part& part = rest->parts.emplace_back();
     part.box = Box::empty();
-    part.stays = object.name == "ground";
     for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
       for (const std::uint32_t v : scene.triangles[object.first_triangle + t]) {
         if (seen[v] != 0) continue;
@@ -34,73 +43,103 @@ std::vector<Part> parts_of(const Scene& scene) {
       }
     }
   }
-  return parts;
+  return rest;
 }
-
-// The second bunny comes from beside the first, goes through it and leaves on the other side.
-void pass_through(const std::vector<Part>& parts, double time, std::vector<Vec3>& vertices) {
-  const double width = parts[0].box.hi.x() - parts[0].box.lo.x();
-  const double by = 2.2 * (0.5 - time) * width;
-  for (const std::uint32_t v : parts[1].vertices) vertices[v].x() += by;
-}
-
-// Both breathe, out of step, while waves run along them.
-void pulse(const std::vector<Part>& parts, double time, std::vector<Vec3>& vertices) {
-  for (std::size_t o = 0; o < parts.size(); ++o) {
-    const Part& part = parts[o];
-    if (part.stays) continue;
-    const Vec3 centre = part.box.lo + (part.box.hi - part.box.lo) / 2;
-    const double radius = (part.box.hi.z() - part.box.lo.z()) / 2;
-    const double phase = 0.25 * static_cast<double>(o);
-    for (const std::uint32_t v : part.vertices) {
-      const Vec3 from = vertices[v] - centre;
-      const double breath = 0.15 * std::sin(kTurn * (time + phase));
-      const double wave = 0.05 * std::sin(kTurn * (2 * time + 1.5 * from.z() / radius));
-      vertices[v] = centre + (1 + breath + wave) * from;
-    }
-  }
-}
-
-// Each goes its own way, by up to its diagonal, and comes back.
-void drift(const std::vector<Part>& parts, double time, std::vector<Vec3>& vertices) {
-  shapes::Random random(kDriftSeed);
-  for (const Part& part : parts) {
-    const Vec3 way = random.direction();
-    if (part.stays || part.box.is_empty()) continue;
-    const Vec3 by = std::sin(kTurn * time) * diagonal(part.box) * way;
-    for (const std::uint32_t v : part.vertices) vertices[v] += by;
-  }
-}
-
-std::string base_of(const std::string& name) { return name.substr(0, name.find_first_of(":@")); }
 
 }  // namespace
 
-const std::vector<BuiltinMotion>& builtin_motions() {
-  static const std::vector<BuiltinMotion> motions = {
-      {"two-spheres", "both breathe while waves run along them"},
-      {"crowd", "each object drifts by up to its diagonal and back"},
-      {"field", "the same"},
-      {"two-bunnies", "one passes through the other"},
+// The second one comes from beside the first, goes through it and leaves on the other side.
+Motion pass_through(const Scene& scene) {
+  return [rest = rest_of(scene)](const Instant& now, Scene& out, FrameNotes&) {
+    const double width = rest->parts[0].box.hi.x() - rest->parts[0].box.lo.x();
+    const double by = 2.2 * (0.5 - now.time) * width;
+    for (const std::uint32_t v : rest->parts[1].vertices) {
+      out.vertices[v] = rest->vertices[v];
+      out.vertices[v].x() += by;
+    }
   };
-  return motions;
+}
+
+// All breathe, out of step, while waves run along them.
+Motion pulse(const Scene& scene) {
+  return [rest = rest_of(scene)](const Instant& now, Scene& out, FrameNotes&) {
+    for (std::size_t o = 0; o < rest->parts.size(); ++o) {
+      const Part& part = rest->parts[o];
+      const Vec3 centre = part.box.lo + (part.box.hi - part.box.lo) / 2;
+      const double radius = (part.box.hi.z() - part.box.lo.z()) / 2;
+      const double phase = 0.25 * static_cast<double>(o);
+      for (const std::uint32_t v : part.vertices) {
+        const Vec3 from = rest->vertices[v] - centre;
+        const double breath = 0.15 * std::sin(kTurn * (now.time + phase));
+        const double wave = 0.05 * std::sin(kTurn * (2 * now.time + 1.5 * from.z() / radius));
+        out.vertices[v] = centre + (1 + breath + wave) * from;
+      }
+    }
+  };
+}
+
+// Each goes its own way, by up to its diagonal, and comes back.
+Motion drift(const Scene& scene) {
+  return [rest = rest_of(scene)](const Instant& now, Scene& out, FrameNotes&) {
+    shapes::Random random(kDriftSeed);
+    for (const Part& part : rest->parts) {
+      const Vec3 way = random.direction();
+      if (part.box.is_empty()) continue;
+      const Vec3 by = std::sin(kTurn * now.time) * diagonal(part.box) * way;
+      for (const std::uint32_t v : part.vertices) out.vertices[v] = rest->vertices[v] + by;
+    }
+  };
 }
 
 bool has_motion(const std::string& name) {
-  for (const BuiltinMotion& motion : builtin_motions()) {
-    if (motion.scene == base_of(name)) return true;
-  }
-  return false;
+  const std::string base = name.substr(0, name.find_first_of(":@"));
+  const auto& scenes = builtin_scenes();
+  return std::any_of(scenes.begin(), scenes.end(), [&](const BuiltinScene& scene) {
+    return scene.name == base && !scene.motion.empty();
+  });
 }
 
-std::vector<Vec3> moved(const std::string& name, const Scene& rest, double time) {
-  std::vector<Vec3> vertices = rest.vertices;
-  const std::vector<Part> parts = parts_of(rest);
-  const std::string base = base_of(name);
-  if (base == "two-bunnies") pass_through(parts, time, vertices);
-  if (base == "two-spheres") pulse(parts, time, vertices);
-  if (base == "crowd" || base == "field") drift(parts, time, vertices);
-  return vertices;
+std::string moving_names() {
+  std::string names;
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    if (!scene.motion.empty()) names += (names.empty() ? "" : ", ") + scene.name;
+  }
+  return names;
+}
+
+MovingScene::MovingScene(const std::string& name, long frames, long first, bool self)
+    : frames_(frames), first_(first), self_(self) {
+  assert(frames >= 1 && first >= 0);
+  const SceneRequest request = parse_scene_name(name);
+  if (request.entry->motion.empty())
+    throw Error(name, "nothing in the scene moves", "name one of " + moving_names());
+  BuiltScene built = request.entry->build(request.parameters);
+  plain_ = std::move(built.scene);
+  plain_.name = name;
+  motion_ = std::move(built.motion);
+  if (request.suffixes.empty()) return;
+  changed_ = plain_;
+  for (const SceneSuffix* suffix : request.suffixes) {
+    changes_.push_back(suffix->change(changed_));
+    apply(changes_.back(), changed_);
+  }
+}
+
+const Scene& MovingScene::at(long frame) {
+  assert(first_ <= frame && frame < first_ + frames_);
+  const auto last = static_cast<double>(std::max(1L, frames_ - 1));
+  notes_ = {};
+  motion_({frame, static_cast<double>(frame - first_) / last}, plain_, notes_);
+  Scene* shown = &plain_;
+  if (changes_.empty()) {
+    validate(plain_, plain_.name);
+  } else {
+    shown = &changed_;
+    changed_ = plain_;  // assigned, so that the vectors keep their memory
+    for (const SceneChange& change : changes_) apply(change, changed_);
+  }
+  for (Object& object : shown->objects) object.self = object.self || self_;
+  return *shown;
 }
 
 }  // namespace farcull

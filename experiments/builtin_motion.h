@@ -1,25 +1,55 @@
-// The motion of built-in scenes that move.
+// Built-in scenes in motion, frame after frame.
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/scene.h"
+#include "experiments/builtin_scenes.h"
 
 namespace farcull {
 
-/// What moves, and how.
-struct BuiltinMotion {
-  std::string scene;        // name of the built-in scene
-  std::string description;  // one line
-};
-const std::vector<BuiltinMotion>& builtin_motions();
-
-/// Whether the built-in scene of this name, perhaps with a size and suffixes, moves.
+/// Whether the built-in scene of this name, perhaps with numbers and suffixes, moves.
 bool has_motion(const std::string& name);
 
-/// The vertices at `time` (0 to 1) of the scene that make_builtin_scene(name) gives, which is
-/// `rest`; a ground stays. The same on every run. Precondition: has_motion(name).
-std::vector<Vec3> moved(const std::string& name, const Scene& rest, double time);
+/// The names of those that do, for messages.
+std::string moving_names();
+
+/// A built-in scene that moves, as it is at a frame. Where the motion is a path, the frames go once
+/// through it, from time 0 in the first to time 1 in the last; where it is a simulation, a frame is
+/// a time step and its number counts. The same on every run.
+class MovingScene {
+ public:
+  /// Frames first to first + frames - 1; frames >= 1, first >= 0. self: every object is tested
+  /// against itself, besides those that are anyway. Throws Error as make_builtin_scene(), and where
+  /// nothing moves.
+  explicit MovingScene(const std::string& name, long frames, long first = 0, bool self = false);
+
+  /// The scene at a frame of the range, validated: the same object each time, and the same memory
+  /// of triangles and vertices where the topology is that of the call before. What suffixes do is
+  /// decided once, on the scene without frames; a ground stays. Throws Error as Motion does.
+  const Scene& at(long frame);
+
+  /// What the motion says of the frame that at() gave last, such as energies; mostly nothing.
+  const std::vector<std::pair<std::string, double>>& notes() const { return notes_.values; }
+  const std::string& warning() const { return notes_.warning; }
+
+ private:
+  long frames_;
+  long first_;
+  bool self_;
+  Motion motion_;
+  std::vector<SceneChange> changes_;
+  Scene plain_;    // before the suffixes
+  Scene changed_;  // after them, where there are any
+  FrameNotes notes_;
+};
+
+/// The motions of the older scenes, which move what stands there: `rest` is the scene without
+/// frames.
+Motion pass_through(const Scene& rest);
+Motion pulse(const Scene& rest);
+Motion drift(const Scene& rest);
 
 }  // namespace farcull

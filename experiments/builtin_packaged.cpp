@@ -10,22 +10,9 @@
 namespace farcull {
 namespace {
 
-constexpr const char* kBunny = "bunny00.off";
 constexpr const char* kArmadillo = "armadillo.off";
 constexpr const char* kElephant = "refined_elephant.off";
-constexpr const char* kDragon = "ChineseDragon-10kv.off";
 constexpr const char* kMannequin = "mannequin-devil.off";
-
-Mesh packaged(const char* file) {
-  const std::string path = (std::filesystem::path(mesh_folder()) / file).string();
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) {
-    throw Error(
-        path, "the packaged mesh is not there",
-        "run bash experiments/meshes.sh, or set FARCULL_MESHES to the folder that holds it");
-  }
-  return load_mesh(path);
-}
 
 Vec3 centre(const Box& box) { return box.lo + (box.hi - box.lo) / 2; }
 
@@ -47,6 +34,17 @@ Scene self_colliding(const std::string& name, const char* file) {
 }
 
 }  // namespace
+
+Mesh packaged(const char* file) {
+  const std::string path = (std::filesystem::path(mesh_folder()) / file).string();
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    throw Error(
+        path, "the packaged mesh is not there",
+        "run bash experiments/meshes.sh, or set FARCULL_MESHES to the folder that holds it");
+  }
+  return load_mesh(path);
+}
 
 Scene make_two_bunnies() {
   const Mesh bunny = packaged(kBunny);

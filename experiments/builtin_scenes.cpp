@@ -9,6 +9,8 @@
 #include <cstdlib>
 
 #include "core/error.h"
+#include "core/view.h"
+#include "experiments/builtin_motion.h"
 #include "experiments/builtin_parts.h"
 #include "experiments/mesh_text.h"
 #include "experiments/scene_build.h"
@@ -16,52 +18,90 @@
 namespace farcull {
 namespace {
 
-Scene moved_far(Scene scene) {
+SceneChange moved_far(const Scene& scene) {
   const double step = 1e6 * diagonal(bounds(scene)) / std::sqrt(3.0);
-  return transformed(std::move(scene), 1, Vec3::Constant(step));
+  return {.scale = 1, .translate = Vec3::Constant(step), .ground = {}};
 }
 
-// An entry whose scene is drawn with a seed, which it records.
-BuiltinScene drawn(BuiltinScene entry, Scene (*make)(std::uint64_t), std::uint64_t seed) {
-  entry.make = [make, seed] { return make(seed); };
-  entry.seed = seed;
-  return entry;
-}
-
-// The same for one whose size is given.
-BuiltinScene drawn(BuiltinScene entry, Scene (*make)(std::uint64_t, std::uint64_t), SceneSize size,
-                   std::uint64_t seed) {
-  size.make = [make, seed](std::uint64_t n) { return make(n, seed); };
-  entry.make = [make, seed, n = size.usual] { return make(n, seed); };
-  entry.size = std::move(size);
-  entry.seed = seed;
-  return entry;
-}
-
-BuiltinScene costly(BuiltinScene entry) {
-  entry.costly = true;
-  return entry;
+SceneChange on_ground(const Scene& scene) {
+  const Box box = bounds(scene);
+  assert(!box.is_empty());
+  const Vec3 centre = box.lo + (box.hi - box.lo) / 2;
+  SceneChange change;
+  change.ground = corners({centre, 1000 * diagonal(box)});
+  return change;
 }
 
 std::string base_of(const std::string& name) { return name.substr(0, name.find_first_of(":@")); }
 
-// The size in NAME:SIZE@suffixes, or the usual one. Throws Error naming the scene.
-std::uint64_t size_of(const BuiltinScene& entry, const std::string& name) {
-  const std::string text = name.substr(0, name.find('@'));
-  if (text == entry.name) return entry.size ? entry.size->usual : 0;
-  if (!entry.size) {
-    throw Error(name, entry.name + " comes in one size", "leave out what follows the colon");
-  }
-  const std::string number = text.substr(entry.name.size() + 1);
+// An entry whose scene stands still, or moves as said from what it is without frames.
+BuiltinScene made(BuiltinScene entry, Scene (*make)(), Motion (*moved)(const Scene&) = nullptr) {
+  entry.build = [make, moved](const SceneParameters&) {
+    BuiltScene built{make(), {}};
+    if (moved != nullptr) built.motion = moved(built.scene);
+    return built;
+  };
+  return entry;
+}
+
+// The same for what is drawn with a seed, which the entry records.
+template <class Make>
+BuiltinScene drawn(BuiltinScene entry, std::uint64_t seed, Make make) {
+  entry.build = [make, seed](const SceneParameters& p) { return make(p, seed); };
+  entry.seed = seed;
+  return entry;
+}
+
+BuiltinScene drawn(BuiltinScene entry, std::uint64_t seed, Scene (*make)(std::uint64_t)) {
+  return drawn(std::move(entry), seed, [make](const SceneParameters&, std::uint64_t of) {
+    return BuiltScene{make(of), {}};
+  });
+}
+
+// The first number of a name, or the usual one.
+std::uint64_t size_of(const BuiltinScene& entry, const std::string& name, const std::string& word) {
+  const SceneSize& range = *entry.size;
   std::uint64_t size = 0;
-  const auto [end, code] = std::from_chars(number.data(), number.data() + number.size(), size);
-  if (code != std::errc() || end != number.data() + number.size() || size < entry.size->least ||
-      size > entry.size->most) {
-    throw Error(name, quote_token(number) + " is no number of " + entry.size->what,
-                fmt::format("give {} to {}, as in {}:{}", entry.size->least, entry.size->most,
-                            entry.name, entry.size->usual));
+  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), size);
+  if (code != std::errc() || end != word.data() + word.size() || size < range.least ||
+      size > range.most) {
+    throw Error(name, quote_token(word) + " is no number of " + range.what,
+                fmt::format("give {} to {}, as in {}:{}", range.least, range.most, entry.name,
+                            range.usual));
   }
   return size;
+}
+
+double second_of(const BuiltinScene& entry, const std::string& name, const std::string& word) {
+  const SceneSecond& range = *entry.second;
+  double value = 0;
+  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+  // Written so that NaN is refused.
+  if (code != std::errc() || end != word.data() + word.size() ||
+      !(value >= range.least && value <= range.most)) {
+    throw Error(name, quote_token(word) + " is no " + range.what,
+                fmt::format("give {:g} to {:g}, as in {}:{}:{:g}", range.least, range.most,
+                            entry.name, entry.size->usual, range.usual));
+  }
+  return value;
+}
+
+// The numbers in NAME:SIZE:SECOND. Throws Error naming the scene.
+SceneParameters parameters_of(const BuiltinScene& entry, const std::string& name) {
+  const std::vector<std::string> words = split_list(name.substr(0, name.find('@')), ':');
+  SceneParameters out = entry.usual();
+  if (words.size() > 1 && !entry.size) {
+    throw Error(name, entry.name + " comes in one size", "leave out what follows the colon");
+  }
+  if (words.size() > 2 && !entry.second) {
+    throw Error(name, entry.name + " takes one number", "leave out what follows the second colon");
+  }
+  if (words.size() > 3) {
+    throw Error(name, entry.name + " takes two numbers", "leave out what follows the third colon");
+  }
+  if (words.size() > 1) out.size = size_of(entry, name, words[1]);
+  if (words.size() > 2) out.second = second_of(entry, name, words[2]);
+  return out;
 }
 
 const BuiltinScene* find_scene(const std::string& base) {
@@ -80,52 +120,190 @@ std::string suffix_names() {
 
 }  // namespace
 
+SceneParameters BuiltinScene::usual() const {
+  return {.size = size ? size->usual : 0, .second = second ? second->usual : 0};
+}
+
 const std::vector<BuiltinScene>& builtin_scenes() {
   static const std::vector<BuiltinScene> scenes = {
-      {"two-spheres", "two interpenetrating spheres", 2, 10240, false, make_two_spheres},
-      {"two-tori", "two linked tori whose tubes cross", 2, 20000, false, make_two_tori},
-      drawn({"random-soup", "random triangles with sizes over three decades, many crossing", 8,
-             4000, false},
-            make_random_soup, 1),
-      drawn({"needles", "oblique slivers of aspect up to 2e6 that cross or pass each other closely",
-             2, 800, false},
-            make_needles, 2),
-      {"degenerate",
-       "points, segments, slivers and exact contacts of every kind, also missed by 2^-40", 2, 138,
-       false, make_degenerate},
-      drawn({"ground", "bumpy blobs on a ground of two triangles a thousand times larger", 6, 6402,
-             false},
-            make_ground, 3),
-      drawn({"crowd", "tetrahedra and blobs in a box, some colliding", 400, 9200, false},
-            make_crowd, 4),
-      {"far-apart", "two spheres far from each other", 2, 2560, false, make_far_apart},
-      costly(drawn({"needles-layers",
-                    "two layers of oblique needles, 4700 x 0.002: 44,946,746 boxes "
-                    "overlap, 1501 collide",
-                    2, 32000, false},
-                   make_needles_layers, 5)),
-      costly(
-          drawn({"needles-crossed",
-                 "the same in two oblique directions at once: 2,856,139 boxes overlap, 625 collide",
-                 2, 10000, false},
-                make_needles_crossed, 6)),
-      drawn({"field", "blobs spread evenly, some colliding with neighbours", 31, 9920, false},
-            make_field, {"triangles", 1000, 1'000'000'000, 10'000}, 7),
-      {"two-bunnies", "two interpenetrating Stanford bunnies", 2, 150816, true, make_two_bunnies},
-      {"armadillo-elephant", "armadillo and elephant of one size in one place", 2, 140928, true,
-       make_armadillo_elephant},
-      {"dragon-bunny", "dragon and bunny of one size in one place", 2, 95402, true,
-       make_dragon_bunny},
-      {"near-copy", "armadillo and its copy moved by 1e-9 of its diagonal", 2, 104000, true,
-       make_near_copy},
-      {"bunnies-far-apart", "two bunnies ten diagonals from each other", 2, 150816, true,
-       make_bunnies_far_apart},
-      {"mannequin-devil", "a mannequin with horns: 1581 pairs of its triangles collide", 1, 25888,
-       true, make_mannequin_devil},
-      {"armadillo", "the armadillo against itself, where nothing collides", 1, 52000, true,
-       make_armadillo},
-      {"bunny", "the Stanford bunny against itself, where nothing collides", 1, 75408, true,
-       make_bunny},
+      made({.name = "two-spheres",
+            .description = "two interpenetrating spheres",
+            .objects = 2,
+            .triangles = 10240,
+            .motion = "both breathe while waves run along them"},
+           make_two_spheres, pulse),
+      made({.name = "two-tori",
+            .description = "two linked tori whose tubes cross",
+            .objects = 2,
+            .triangles = 20000},
+           make_two_tori),
+      drawn({.name = "random-soup",
+             .description = "random triangles with sizes over three decades, many crossing",
+             .objects = 8,
+             .triangles = 4000},
+            1, make_random_soup),
+      drawn(
+          {.name = "needles",
+           .description =
+               "slivers of aspect up to 2e6 that cross or pass each other closely, oblique in two "
+               "objects and along the axes in two",
+           .objects = 4,
+           .triangles = 1100,
+           .size = SceneSize{"slivers in each oblique object", 8, 1'000'000, 400},
+           .motion = "one oblique object turns, one along the axes slides along them"},
+          2, make_needles),
+      made({.name = "degenerate",
+            .description =
+                "points, segments, slivers and exact contacts of every kind, also missed by 2^-40",
+            .objects = 2,
+            .triangles = 138},
+           make_degenerate),
+      drawn({.name = "ground",
+             .description = "bumpy blobs on a ground of two triangles a thousand times larger",
+             .objects = 6,
+             .triangles = 6402},
+            3, make_ground),
+      drawn({.name = "crowd",
+             .description = "tetrahedra and blobs in a box, some colliding",
+             .objects = 400,
+             .triangles = 9200,
+             .size = SceneSize{"objects", 2, 1'000'000, 400},
+             .second =
+                 SceneSecond{"density in objects per unit of volume", 1e-3, 10, kUsualCrowdDensity},
+             .motion = "each object drifts by up to its diagonal and back"},
+            4, make_crowd),
+      made({.name = "far-apart",
+            .description = "two spheres far from each other",
+            .objects = 2,
+            .triangles = 2560},
+           make_far_apart),
+      drawn({.name = "needles-layers",
+             .description = "two layers of oblique needles, 4700 x 0.002: 44,946,746 boxes "
+                            "overlap, 1501 collide",
+             .objects = 2,
+             .triangles = 32000,
+             .costly = true},
+            5, make_needles_layers),
+      drawn({.name = "needles-crossed",
+             .description = "the same in two oblique directions at once: 2,856,139 boxes overlap, "
+                            "625 collide",
+             .objects = 2,
+             .triangles = 10000,
+             .costly = true},
+            6, make_needles_crossed),
+      drawn({.name = "field",
+             .description = "blobs spread evenly, some colliding with neighbours",
+             .objects = 31,
+             .triangles = 9920,
+             .size = SceneSize{"triangles", 1000, 1'000'000'000, 10'000},
+             .motion = "each object drifts by up to its diagonal and back"},
+            7,
+            [](const SceneParameters& p, std::uint64_t seed) {
+              BuiltScene built{make_field(p.size, seed), {}};
+              built.motion = drift(built.scene);
+              return built;
+            }),
+      drawn({.name = "cylinders",
+             .description = "open cylinders of 200 triangles in a room (CULLIDE)",
+             .objects = 100,
+             .triangles = 20000,
+             .size = SceneSize{"cylinders", 2, 100'000, 100},
+             .motion = "each goes its own way, turns, bends and breathes"},
+            9, make_cylinders),
+      drawn({.name = "torii",
+             .description = "six torii in a room (CULLIDE)",
+             .objects = 6,
+             .triangles = 120'000,
+             .size = SceneSize{"triangles of each torus", 72, 2'000'000, 20'000},
+             .motion = "each goes its own way and turns while waves run around it",
+             .costly = true},
+            10, make_torii),
+      drawn({.name = "tree-leaves",
+             .description = "a tree of 4,000 triangles and leaves of 200 (FAR)",
+             .objects = 201,
+             .triangles = 44'000,
+             .size = SceneSize{"leaves", 1, 100'000, 200},
+             .motion = "the leaves fall and turn through the branches",
+             .costly = true},
+            11, make_tree_leaves),
+      drawn({.name = "shells",
+             .description = "open non-manifold sheets, three in four of them stacked at gaps of "
+                            "2^-34 of their width, the others through them at angles as small",
+             .objects = 16,
+             .triangles = 11'136,
+             .size = SceneSize{"sheets", 4, 10'000, 16},
+             .motion = "waves run through the stack while the others tilt"},
+            12, make_shells),
+      made({.name = "two-bunnies",
+            .description = "two interpenetrating Stanford bunnies",
+            .objects = 2,
+            .triangles = 150816,
+            .needs_meshes = true,
+            .motion = "one passes through the other"},
+           make_two_bunnies, pass_through),
+      made({.name = "armadillo-elephant",
+            .description = "armadillo and elephant of one size in one place",
+            .objects = 2,
+            .triangles = 140928,
+            .needs_meshes = true},
+           make_armadillo_elephant),
+      made({.name = "dragon-bunny",
+            .description = "dragon and bunny of one size in one place",
+            .objects = 2,
+            .triangles = 95402,
+            .needs_meshes = true},
+           make_dragon_bunny),
+      made({.name = "near-copy",
+            .description = "armadillo and its copy moved by 1e-9 of its diagonal",
+            .objects = 2,
+            .triangles = 104000,
+            .needs_meshes = true},
+           make_near_copy),
+      made({.name = "bunnies-far-apart",
+            .description = "two bunnies ten diagonals from each other",
+            .objects = 2,
+            .triangles = 150816,
+            .needs_meshes = true},
+           make_bunnies_far_apart),
+      made({.name = "mannequin-devil",
+            .description = "a mannequin with horns: 1581 pairs of its triangles collide",
+            .objects = 1,
+            .triangles = 25888,
+            .needs_meshes = true},
+           make_mannequin_devil),
+      made({.name = "armadillo",
+            .description = "the armadillo against itself, where nothing collides",
+            .objects = 1,
+            .triangles = 52000,
+            .needs_meshes = true},
+           make_armadillo),
+      made({.name = "bunny",
+            .description = "the Stanford bunny against itself, where nothing collides",
+            .objects = 1,
+            .triangles = 75408,
+            .needs_meshes = true},
+           make_bunny),
+      [] {
+        BuiltinScene entry{
+            .name = "bunny-dragon",
+            .description = "bunny and dragon, its triangles divided (CULLIDE, FAR)",
+            .objects = 2,
+            .triangles = 325'408,
+            .needs_meshes = true,
+            .size = SceneSize{"triangles of the dragon", kPackagedDragon, 100'000'000, 250'000},
+            .motion = "the bunny falls through the dragon"};
+        entry.build = make_bunny_dragon;
+        return entry;
+      }(),
+      drawn({.name = "breaking-dragon",
+             .description = "a dragon that breaks into 200 pieces (CULLIDE)",
+             .objects = 121,
+             .triangles = 250'000,
+             .needs_meshes = true,
+             .size = SceneSize{"triangles", kPackagedDragon, 100'000'000, 250'000},
+             .motion = "pieces come off, become objects, fly apart, turn and fall",
+             .topology_changes = true},
+            13, make_breaking_dragon),
   };
   return scenes;
 }
@@ -133,11 +311,9 @@ const std::vector<BuiltinScene>& builtin_scenes() {
 const std::vector<SceneSuffix>& scene_suffixes() {
   static const std::vector<SceneSuffix> suffixes = {
       {"@far", "moved by 1e6 of its diagonals along (1, 1, 1)", moved_far},
-      {"@tiny", "scaled by 1e-6",
-       [](Scene scene) { return transformed(std::move(scene), 1e-6, Vec3::Zero()); }},
-      {"@huge", "scaled by 1e6",
-       [](Scene scene) { return transformed(std::move(scene), 1e6, Vec3::Zero()); }},
-      {"@ground", "with a ground of two triangles a thousand times larger", with_ground_plane},
+      {"@tiny", "scaled by 1e-6", [](const Scene&) { return SceneChange{.scale = 1e-6}; }},
+      {"@huge", "scaled by 1e6", [](const Scene&) { return SceneChange{.scale = 1e6}; }},
+      {"@ground", "with a ground of two triangles a thousand times larger", on_ground},
   };
   return suffixes;
 }
@@ -149,15 +325,11 @@ std::optional<std::uint64_t> builtin_seed(const std::string& name) {
   return entry == nullptr ? std::nullopt : entry->seed;
 }
 
-Scene make_builtin_scene(const std::string& name) {
-  const std::string base = base_of(name);
-  const BuiltinScene* const entry = find_scene(base);
-  if (entry == nullptr) {
+SceneRequest parse_scene_name(const std::string& name) {
+  SceneRequest out{.entry = find_scene(base_of(name)), .parameters = {}, .suffixes = {}};
+  if (out.entry == nullptr)
     throw Error(name, "no built-in scene has this name", "see farcull scenes for the names");
-  }
-  const std::uint64_t size = size_of(*entry, name);
-  // All suffixes before the scene is made, which may take a while.
-  std::vector<const SceneSuffix*> chosen;
+  out.parameters = parameters_of(*out.entry, name);
   for (std::size_t at = std::min(name.find('@'), name.size()); at < name.size();) {
     const std::size_t end = std::min(name.find('@', at + 1), name.size());
     const std::string word = name.substr(at, end - at);
@@ -167,12 +339,17 @@ Scene make_builtin_scene(const std::string& name) {
     if (found == known.end()) {
       throw Error(name, quote_token(word) + " is no suffix of scenes", "use " + suffix_names());
     }
-    chosen.push_back(&*found);
+    out.suffixes.push_back(&*found);
     at = end;
   }
-  Scene scene = entry->size ? entry->size->make(size) : entry->make();
+  return out;
+}
+
+Scene make_builtin_scene(const std::string& name) {
+  const SceneRequest request = parse_scene_name(name);
+  Scene scene = request.entry->build(request.parameters).scene;
   scene.name = name;
-  for (const SceneSuffix* suffix : chosen) scene = suffix->apply(std::move(scene));
+  for (const SceneSuffix* suffix : request.suffixes) apply(suffix->change(scene), scene);
   return scene;
 }
 
@@ -181,23 +358,28 @@ std::string mesh_folder() {
   return folder != nullptr && *folder != '\0' ? folder : FARCULL_MESH_DIR;
 }
 
-Scene transformed(Scene scene, double scale, const Vec3& translate) {
-  for (Vec3& p : scene.vertices) p = scale * p + translate;
+void apply(const SceneChange& change, Scene& scene) {
+  if (change.scale != 1 || !change.translate.isZero(0)) {
+    for (Vec3& p : scene.vertices) p = change.scale * p + change.translate;
+  }
+  if (change.ground) {
+    const auto vertex = static_cast<std::uint32_t>(scene.vertices.size());
+    scene.vertices.insert(scene.vertices.end(), change.ground->begin(), change.ground->end());
+    scene.objects.push_back({"ground", static_cast<std::uint32_t>(scene.triangles.size()), 2});
+    scene.triangles.push_back({vertex, vertex + 1, vertex + 2});
+    scene.triangles.push_back({vertex, vertex + 2, vertex + 3});
+    scene.source_face.insert(scene.source_face.end(), {0, 1});
+  }
   validate(scene, scene.name);
+}
+
+Scene transformed(Scene scene, double scale, const Vec3& translate) {
+  apply({.scale = scale, .translate = translate, .ground = {}}, scene);
   return scene;
 }
 
 Scene with_ground_plane(Scene scene) {
-  const Box box = bounds(scene);
-  assert(!box.is_empty());
-  const Vec3 centre = box.lo + (box.hi - box.lo) / 2;
-  const auto vertex = static_cast<std::uint32_t>(scene.vertices.size());
-  for (const Vec3& p : corners({centre, 1000 * diagonal(box)})) scene.vertices.push_back(p);
-  scene.objects.push_back({"ground", static_cast<std::uint32_t>(scene.triangles.size()), 2});
-  scene.triangles.push_back({vertex, vertex + 1, vertex + 2});
-  scene.triangles.push_back({vertex, vertex + 2, vertex + 3});
-  scene.source_face.insert(scene.source_face.end(), {0, 1});
-  validate(scene, scene.name);
+  apply(on_ground(scene), scene);
   return scene;
 }
 

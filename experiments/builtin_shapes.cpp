@@ -1,6 +1,7 @@
 #include "experiments/builtin_shapes.h"
 
 #include <map>
+#include <numbers>
 #include <utility>
 
 namespace farcull::shapes {
@@ -60,6 +61,29 @@ Mesh sphere(int level) {
       finer.insert(finer.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
     }
     triangles = std::move(finer);
+  }
+  return finished(std::move(vertices), std::move(triangles));
+}
+
+Mesh torus(double ring, double tube, std::uint32_t around, std::uint32_t across) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  std::vector<Vec3> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (std::uint32_t i = 0; i < around; ++i) {
+    for (std::uint32_t j = 0; j < across; ++j) {
+      const double u = kTurn * i / around;
+      const double v = kTurn * j / across;
+      const double r = ring + tube * std::cos(v);
+      vertices.emplace_back(r * std::cos(u), r * std::sin(u), tube * std::sin(v));
+      const std::uint32_t next_i = (i + 1) % around;
+      const std::uint32_t next_j = (j + 1) % across;
+      const std::uint32_t a = i * across + j;
+      const std::uint32_t b = next_i * across + j;
+      const std::uint32_t c = next_i * across + next_j;
+      const std::uint32_t d = i * across + next_j;
+      triangles.push_back({a, b, c});
+      triangles.push_back({a, c, d});
+    }
   }
   return finished(std::move(vertices), std::move(triangles));
 }

@@ -66,6 +66,10 @@ Mesh soup(const std::vector<Corners>& list);
 /// the same everywhere.
 Mesh sphere(int level);
 
+/// About the z axis; `around` steps along the ring, `across` around the tube (each >= 3), 2 *
+/// around * across triangles. Vertex i * across + j is at step i along and j around.
+Mesh torus(double ring, double tube, std::uint32_t around, std::uint32_t across);
+
 /// A sphere with bumps and dents of up to about a third of its radius.
 Mesh blob(int level, Random& random);
 

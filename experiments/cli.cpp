@@ -11,13 +11,12 @@
 
 #include "commit.h"
 #include "core/error.h"
-#include "experiments/builtin_motion.h"
-#include "experiments/builtin_scenes.h"
 #include "experiments/check.h"
 #include "experiments/cli_bench.h"
 #include "experiments/cli_experiment.h"
 #include "experiments/cli_parts.h"
 #include "experiments/cli_run.h"
+#include "experiments/cli_scenes.h"
 #include "experiments/compare.h"
 #include "experiments/doctor.h"
 #include "experiments/output.h"
@@ -62,49 +61,6 @@ int compare_command(const CompareCommand& command) {
     if (!broken(record, false)) continue;
     complain(missed(record));
     return kBroken;
-  }
-  return kDone;
-}
-
-int scenes_command(const Outputs& asked) {
-  const Outputs outputs = checked(asked);
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  std::string sizes;
-  Table table("lrrrl");
-  table.add({"scene", "objects", "triangles", "seed", ""});
-  for (const BuiltinScene& scene : builtin_scenes()) {
-    table.add({scene.name, grouped(scene.objects), grouped(scene.triangles),
-               scene.seed ? std::to_string(*scene.seed) : "-", scene.description});
-    list.push_back({{"name", scene.name},
-                    {"objects", scene.objects},
-                    {"triangles", scene.triangles},
-                    {"needs_meshes", scene.needs_meshes},
-                    {"moves", has_motion(scene.name)},
-                    {"seed", nullptr},
-                    {"size", nullptr},
-                    {"description", scene.description}});
-    if (scene.seed) list.back()["seed"] = *scene.seed;
-    if (!scene.size) continue;
-    const SceneSize& size = *scene.size;
-    list.back()["size"] = {
-        {"what", size.what}, {"least", size.least}, {"most", size.most}, {"usual", size.usual}};
-    sizes += fmt::format("\n{0} takes its number of {1}, {2} to {3}, as in {0}:{4}.\n", scene.name,
-                         size.what, grouped(size.least), grouped(size.most), 100 * size.usual);
-  }
-  Table motions("ll");
-  for (const BuiltinMotion& motion : builtin_motions())
-    motions.add({motion.scene, motion.description});
-  Table suffixes("ll");
-  for (const SceneSuffix& suffix : scene_suffixes())
-    suffixes.add({suffix.suffix, suffix.description});
-  if (outputs.json) write_json(list, *outputs.json);
-  if (!outputs.to_stdout()) {
-    write_output("-", table.text() + sizes +
-                          "\nEvery name takes suffixes, as in two-spheres@far:\n" +
-                          suffixes.text() +
-                          "\nThese move, as in farcull run two-bunnies --method "
-                          "far-pairs --frames 30:\n" +
-                          motions.text());
   }
   return kDone;
 }
@@ -253,10 +209,8 @@ int command_line(int argc, char** argv) {
   ExperimentCommands experiments;
   CLI::App* experiment_app = experiments.add_to(app);
 
-  Outputs scenes;
-  CLI::App* scenes_app = app.add_subcommand("scenes", "the built-in scenes with their sizes");
-  scenes_app->add_option("--json", scenes.json, kJsonHelp)->type_name("FILE");
-  scenes_app->footer("Examples:\n  farcull scenes\n  farcull run crowd@ground");
+  ScenesCommand scenes;
+  CLI::App* scenes_app = scenes.add_to(app);
 
   try {
     try {
@@ -280,7 +234,7 @@ int command_line(int argc, char** argv) {
       return check_command(certificate);
     }
     if (*experiment_app) return experiments.run();
-    if (*scenes_app) return scenes_command(scenes);
+    if (*scenes_app) return scenes.run();
     if (*doctor_app) {
       doctor.device = device_of(doctor_device);
       doctor.json = checked({.json = doctor_json, .pairs = {}, .certificate = {}, .csv = {}})

@@ -10,10 +10,9 @@
 #include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <numeric>
 
 #include "core/error.h"
-#include "experiments/builtin_motion.h"
-#include "experiments/builtin_scenes.h"
 #include "experiments/output.h"
 #include "experiments/run_pairs.h"
 #include "experiments/scene_file.h"
@@ -25,13 +24,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr long kMostFrames = 1'000'000;
-
-std::string moving_names() {
-  std::string names;
-  for (const BuiltinMotion& motion : builtin_motions())
-    names += (names.empty() ? "" : ", ") + motion.scene;
-  return names;
-}
 
 // What a signal's handler may look at.
 std::atomic<long> frames_done = 0, frames_wanted = 0;
@@ -100,11 +92,130 @@ constexpr std::array kOfFrame = {"views",           "stages",          "pcs",
                                  "candidate_pairs", "colliding_pairs", "neighbour_pairs",
                                  "neighbours",      "verification",    "time_ms"};
 
-Json frame_json(const Json& run, long frame, double read_ms) {
-  Json out = {{"frame", frame}, {"hash", run["scene"]["hash"]}};
+std::uint64_t draws_of(const RunRecord& record) {
+  return std::accumulate(record.stages.begin(), record.stages.end(), std::uint64_t{0},
+                         [](std::uint64_t sum, const Stage& stage) { return sum + stage.draws; });
+}
+
+std::uint64_t queries_of(const RunRecord& record) {
+  return std::accumulate(record.stages.begin(), record.stages.end(), std::uint64_t{0},
+                         [](std::uint64_t sum, const Stage& stage) { return sum + stage.queries; });
+}
+
+Json rate_json(double ms) {
+  const std::optional<double> rate = per_second(ms);
+  return rate ? Json(*rate) : Json(nullptr);
+}
+
+Json frame_json(const Scene& scene, const RunRecord& record, long frame, double read_ms,
+                const FrameSource& source) {
+  const Json run = to_json(scene, record);
+  Json out = {{"frame", frame},
+              {"hash", run["scene"]["hash"]},
+              {"objects", scene.objects.size()},
+              {"triangles", scene.triangles.size()},
+              {"topology_changed", source.topology_changed()}};
   for (const char* key : kOfFrame) out[key] = run[key];
   out["time_ms"]["read"] = read_ms;
+  out["fps"] = rate_json(record.ms.cull + record.ms.exact);
+  out["draws"] = draws_of(record);
+  out["queries"] = queries_of(record);
+  out["motion"] = Json::object();
+  const FrameNotes notes = source.notes();
+  // Null where it is not finite.
+  for (const auto& [name, value] : notes.values) out["motion"][name] = value;
+  out["warning"] = notes.warning.empty() ? Json(nullptr) : Json(notes.warning);
   return out;
+}
+
+// A line for each frame. Columns appear where a frame has something for them.
+class FrameTable {
+ public:
+  void add(const std::string& column, const std::string& cell) {
+    auto found = std::find_if(columns_.begin(), columns_.end(),
+                              [&](const Column& known) { return known.name == column; });
+    if (found == columns_.end()) found = columns_.insert(found, Column{column, {}});
+    found->cells.resize(row_);
+    found->cells.push_back(cell);
+  }
+  void next() { ++row_; }
+
+  std::string text() const {
+    Table table(std::string(columns_.size(), 'r'));
+    std::vector<std::string> line;
+    for (const Column& column : columns_) line.push_back(column.name);
+    table.add(line);
+    for (std::size_t row = 0; row < row_; ++row) {
+      line.clear();
+      for (const Column& column : columns_)
+        line.push_back(row < column.cells.size() ? column.cells[row] : "");
+      table.add(line);
+    }
+    return table.text();
+  }
+
+ private:
+  struct Column {
+    std::string name;
+    std::vector<std::string> cells;
+  };
+  std::vector<Column> columns_;
+  std::size_t row_ = 0;
+};
+
+void add_row(const Scene& scene, const RunRecord& record, long frame, const FrameNotes& notes,
+             FrameTable& table) {
+  table.add("frame", std::to_string(frame));
+  table.add("candidates", grouped(record.candidate_pairs));
+  table.add("colliding", grouped(record.pairs.size()));
+  if (has_self(scene)) table.add("neighbours", grouped(record.neighbour_pairs.size()));
+  if (record.verification) table.add("missed", grouped(record.verification->false_negatives));
+  table.add("cull ms", fmt::format("{:.1f}", record.ms.cull));
+  table.add("exact ms", fmt::format("{:.1f}", record.ms.exact));
+  const std::optional<double> rate = per_second(record.ms.cull + record.ms.exact);
+  table.add("fps", rate ? fmt::format("{:.1f}", *rate) : "-");
+  table.add("PCS objects", grouped(record.pcs_objects));
+  table.add("PCS triangles", grouped(record.pcs_triangles));
+  if (const std::uint64_t queries = queries_of(record)) table.add("queries", grouped(queries));
+  if (const std::uint64_t draws = draws_of(record)) table.add("draws", grouped(draws));
+  for (const auto& [name, value] : notes.values) table.add(name, fmt::format("{:.6g}", value));
+  table.next();
+}
+
+// Each warning once, with the frames that had it.
+class Warnings {
+ public:
+  void add(long frame, const std::string& warning) {
+    if (warning.empty()) return;
+    for (Line& line : lines_) {
+      if (line.text != warning) continue;
+      ++line.frames;
+      return;
+    }
+    lines_.push_back({warning, frame, 1});
+  }
+  std::string text() const {
+    std::string out;
+    for (const Line& line : lines_) {
+      out += fmt::format("warning  {} (frame {}{})\n", line.text, line.first,
+                         line.frames > 1 ? fmt::format(" and {} more", line.frames - 1) : "");
+    }
+    return out;
+  }
+
+ private:
+  struct Line {
+    std::string text;
+    long first = 0;
+    long frames = 0;
+  };
+  std::vector<Line> lines_;
+};
+
+bool same_objects(const std::vector<Object>& a, const std::vector<Object>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Object& x, const Object& y) {
+    return x.triangle_count == y.triangle_count && x.self == y.self;
+  });
 }
 
 }  // namespace
@@ -132,14 +243,15 @@ FrameRange parse_frames(const std::string& text) {
 }
 
 FrameSource::FrameSource(std::vector<std::string> arguments, FrameRange range, bool self)
-    : arguments_(std::move(arguments)),
-      range_(range),
-      builtin_(arguments_.size() == 1 && is_builtin_scene(arguments_[0])),
-      meshes_(range.first) {
-  const bool moves = !builtin_ || has_motion(arguments_[0]);
-  if (moves) scene_ = load_scene(arguments_, meshes_);
+    : arguments_(std::move(arguments)), self_(self), meshes_(range.first) {
+  const bool built_in = arguments_.size() == 1 && is_builtin_scene(arguments_[0]);
+  if (built_in && has_motion(arguments_[0])) {
+    built_in_.emplace(arguments_[0], range.count(), range.first, self);
+    return;
+  }
+  if (!built_in) scene_ = load_scene(arguments_, meshes_);
   const std::vector<std::string> paths = meshes_.numbered_paths();
-  if (!moves || (!builtin_ && paths.empty())) {
+  if (paths.empty()) {
     throw Error("--frames", "nothing in the scene moves",
                 "put %d or %04d in place of the number in the name of a mesh, or name one of " +
                     moving_names());
@@ -157,21 +269,37 @@ FrameSource::FrameSource(std::vector<std::string> arguments, FrameRange range, b
       }
     }
   }
-  for (Object& object : scene_.objects) object.self = object.self || self;
-  if (builtin_) rest_ = scene_;
 }
 
 const Scene& FrameSource::at(long frame) {
-  if (builtin_) {
-    const long last = std::max(1L, range_.count() - 1);
-    const double time = static_cast<double>(frame - range_.first) / static_cast<double>(last);
-    scene_.vertices = moved(arguments_[0], rest_, time);
-    validate(scene_, scene_.name);
-  } else {
+  if (!built_in_) {
     meshes_.set_frame(frame);
-    scene_.vertices = load_scene(arguments_, meshes_).vertices;
+    Scene now = load_scene(arguments_, meshes_);
+    if (now.triangles == scene_.triangles) now.triangles.swap(scene_.triangles);
+    scene_ = std::move(now);
+    for (Object& object : scene_.objects) object.self = object.self || self_;
   }
-  return scene_;
+  const Scene& scene = built_in_ ? built_in_->at(frame) : scene_;
+  const bool same = vertices_ == scene.vertices.size() && triangles_ == scene.triangles &&
+                    same_objects(objects_, scene.objects);
+  changed_ = !same && !first_;
+  first_ = false;
+  if (!same) {
+    vertices_ = scene.vertices.size();
+    triangles_ = scene.triangles;
+    objects_ = scene.objects;
+  }
+  return scene;
+}
+
+FrameNotes FrameSource::notes() const {
+  if (!built_in_) return {};
+  return {.values = built_in_->notes(), .warning = built_in_->warning()};
+}
+
+std::optional<double> per_second(double ms) {
+  const double rate = 1000 / ms;
+  return rate > 0 && std::isfinite(rate) ? std::optional(rate) : std::nullopt;
 }
 
 FrameTimes summary_of(std::vector<double> ms) {
@@ -188,13 +316,14 @@ FramesResult run_frames(const std::vector<std::string>& arguments, const FramesQ
   FrameSource source(arguments, question.range, question.self);
   Session session(question.options.device);
   FramesResult out;
-  RunRecord first;
   std::vector<double> times;
   Json frames = Json::array();
-  Table table("rrrrrrr");
+  FrameTable table;
+  Warnings warnings;
+  std::string heading;
   double setup_ms = 0;
   std::uint64_t missed = 0;
-  const Scene* scene = nullptr;
+  long topologies = 0;
   {
     const Interruptible interruptible(question.range.count(), static_cast<bool>(progress));
     for (long frame = question.range.first; frame <= question.range.last; ++frame) {
@@ -204,48 +333,49 @@ FramesResult run_frames(const std::vector<std::string>& arguments, const FramesQ
           progress ? [&](const std::string& stage) { progress(name + ": " + stage); } : Progress{};
       if (named) named("reading");
       const Stopwatch reading;
-      scene = &source.at(frame);
+      const Scene& scene = source.at(frame);
       const double read_ms = reading.ms();
-      RunRecord record = run_scene(*scene, question.options, session, named);
+      const RunRecord record = run_scene(scene, question.options, session, named);
       times.push_back(record.ms.cull + record.ms.exact);
       setup_ms += record.ms.setup;
-      frames.push_back(frame_json(to_json(*scene, record), frame, read_ms));
+      topologies += source.topology_changed();
+      frames.push_back(frame_json(scene, record, frame, read_ms, source));
       if (frame == question.range.first) {
-        table.add({"frame", "candidates", "colliding", has_self(*scene) ? "neighbours" : "",
-                   record.verification ? "missed" : "", "cull ms", "exact ms"});
-        if (question.pairs) out.pairs_csv = "frame," + pairs_header(*scene);
+        if (question.pairs) out.pairs_csv = "frame," + pairs_header(scene);
+        out.json = to_json(scene, record);
+        for (const char* key : kOfFrame) out.json.erase(key);
+        heading = run_heading(scene, record);
       }
       if (record.verification) missed += record.verification->false_negatives;
-      table.add({std::to_string(frame), grouped(record.candidate_pairs),
-                 grouped(record.pairs.size()),
-                 has_self(*scene) ? grouped(record.neighbour_pairs.size()) : "",
-                 record.verification ? grouped(record.verification->false_negatives) : "",
-                 fmt::format("{:.1f}", record.ms.cull), fmt::format("{:.1f}", record.ms.exact)});
-      if (question.pairs) out.pairs_csv += pairs_rows(*scene, record, std::to_string(frame) + ",");
+      add_row(scene, record, frame, source.notes(), table);
+      warnings.add(frame, source.notes().warning);
+      if (question.pairs) out.pairs_csv += pairs_rows(scene, record, std::to_string(frame) + ",");
       if (out.broken.empty() && broken(record, question.strict)) {
         out.broken =
             fmt::format("frame {}: {} culled pairs that collide: {}", frame,
                         describe(record.options), grouped(record.verification->false_negatives));
       }
-      if (frame == question.range.first) first = std::move(record);
       ++frames_done;
     }
   }
 
   const FrameTimes ms = summary_of(times);
-  out.json = to_json(*scene, first);
-  for (const char* key : kOfFrame) out.json.erase(key);
   out.json["frames"] = std::move(frames);
   out.json["summary"] = {{"frames", times.size()},
                          {"ms", {{"median", ms.median}, {"p95", ms.p95}, {"max", ms.max}}},
+                         {"fps", {{"median", rate_json(ms.median)}, {"p95", rate_json(ms.p95)}}},
                          {"setup_ms", setup_ms},
+                         {"topology_changes", topologies},
                          {"missed", question.options.verify ? Json(missed) : Json(nullptr)}};
-  out.table = run_heading(*scene, first) + "\n" + table.text() +
+  out.table = heading + "\n" + table.text() +
               fmt::format(
                   "\nper frame  median {:.1f} ms, 95% within {:.1f} ms, at most {:.1f} ms (cull + "
                   "exact; setup {:.1f} ms besides)\n",
                   ms.median, ms.p95, ms.max, setup_ms);
+  if (topologies > 0)
+    out.table += fmt::format("topology  changed {} times between frames\n", topologies);
   if (!question.options.verify) out.table += "accounted  not at all (--no-verify)\n";
+  out.table += warnings.text();
   return out;
 }
 

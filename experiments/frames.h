@@ -1,14 +1,18 @@
 // `--frames`: a scene that moves, frame after frame, by one method whose buffers stay.
 //
-// Only vertices change from frame to frame: the triangles and objects are those of the first frame,
-// in the same memory, so a backend can see what it has to send again.
+// Mostly only vertices change from frame to frame; triangles and objects then stay in the same
+// memory, so a backend can see what it has to send again. Where they change, nothing of the frame
+// before is taken over.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "experiments/builtin_motion.h"
 #include "experiments/mesh_cache.h"
 #include "experiments/run.h"
 
@@ -23,26 +27,38 @@ struct FrameRange {
 /// "N" (0 to N - 1) or "A:B", at most a million frames. Throws Error naming --frames.
 FrameRange parse_frames(const std::string& text);
 
-/// A scene whose vertices depend on a number.
+/// A scene that depends on a number.
 class FrameSource {
  public:
-  /// The arguments of load_scene(): a built-in scene with motion (builtin_motion.h), which goes
-  /// once through it over the range, or meshes some of whose names hold %d or %04d, on the command
-  /// line or in a scene file. self: every object is tested against itself. Throws Error where
-  /// nothing moves, where a file of some frame does not exist, or as load_scene() does.
+  /// The arguments of load_scene(): a built-in scene that moves (builtin_motion.h), or meshes some
+  /// of whose names hold %d or %04d, on the command line or in a scene file. self: every object is
+  /// tested against itself. Throws Error where nothing moves, where a file of some frame does not
+  /// exist, or as load_scene() does.
   FrameSource(std::vector<std::string> arguments, FrameRange range, bool self);
 
-  /// The scene at a frame of the range; the same object each time. Throws Error naming the file
-  /// where a mesh cannot be read or has another topology than in the first frame.
+  /// The scene at a frame of the range; the same object each time, and the same memory of triangles
+  /// where the topology is that of the call before. Throws Error naming the file where a mesh
+  /// cannot be read, or as MovingScene does.
   const Scene& at(long frame);
+
+  /// Whether the triangles, by their indices, the number of vertices or the objects were others in
+  /// the call of at() before the last one. False after the first call.
+  bool topology_changed() const { return changed_; }
+  /// What a built-in motion says of the frame.
+  FrameNotes notes() const;
 
  private:
   std::vector<std::string> arguments_;
-  FrameRange range_;
-  bool builtin_;
+  bool self_;
+  std::optional<MovingScene> built_in_;
   MeshCache meshes_;
-  Scene rest_;   // of a built-in scene
-  Scene scene_;  // as it is now
+  Scene scene_;  // of meshes, as it is now
+  // Of the call before.
+  std::size_t vertices_ = 0;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+  std::vector<Object> objects_;
+  bool first_ = true;
+  bool changed_ = false;
 };
 
 struct FramesQuestion {
@@ -57,6 +73,8 @@ struct FramesQuestion {
 struct FrameTimes {
   double median = 0, p95 = 0, max = 0;  // p95: by nearest rank
 };
+/// Frames per second at so many milliseconds each; empty where that is no positive number.
+std::optional<double> per_second(double ms);
 FrameTimes summary_of(std::vector<double> ms);
 
 struct FramesResult {

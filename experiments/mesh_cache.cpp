@@ -6,9 +6,6 @@
 #include <memory>
 #include <utility>
 
-#include "core/error.h"
-#include "experiments/mesh_text.h"
-
 namespace farcull {
 namespace {
 
@@ -39,29 +36,6 @@ std::pair<Place, bool> place_in(const std::string& name) {
   return {found, count == 1};
 }
 
-void require_same(const Mesh& now, const Mesh& first, const std::string& path,
-                  const std::string& first_path) {
-  const std::string remedy = "give meshes of one topology: the same triangles in every frame";
-  if (now.triangles.size() != first.triangles.size() ||
-      now.vertices.size() != first.vertices.size()) {
-    throw Error(path,
-                fmt::format("has {} triangles and {} vertices, but {} has {} and {}",
-                            now.triangles.size(), now.vertices.size(), clean_name(first_path),
-                            first.triangles.size(), first.vertices.size()),
-                remedy);
-  }
-  for (std::size_t t = 0; t < now.triangles.size(); ++t) {
-    if (now.triangles[t] == first.triangles[t]) continue;
-    throw Error(path,
-                fmt::format("its triangle {} has other vertices than that of {}", t,
-                            clean_name(first_path)),
-                remedy);
-  }
-  if (now.group != first.group) {
-    throw Error(path, "its groups are not those of " + clean_name(first_path), remedy);
-  }
-}
-
 }  // namespace
 
 bool is_numbered(const std::string& name) { return place_in(name).second; }
@@ -77,13 +51,9 @@ const Mesh& MeshCache::get(const std::string& path) {
     const std::string file = numbered(path, *frame_);
     const auto found = moving_.find(path);
     if (found == moving_.end())
-      return moving_.emplace(path, Moving{*frame_, file, load_mesh(file)}).first->second.mesh;
+      return moving_.emplace(path, Moving{*frame_, load_mesh(file)}).first->second.mesh;
     Moving& moving = found->second;
-    if (moving.frame == *frame_) return moving.mesh;
-    Mesh mesh = load_mesh(file);
-    require_same(mesh, moving.mesh, file, moving.first);
-    moving.mesh = std::move(mesh);
-    moving.frame = *frame_;
+    if (moving.frame != *frame_) moving = {*frame_, load_mesh(file)};
     return moving.mesh;
   }
   // realpath: std::filesystem would hold several more paths at once.

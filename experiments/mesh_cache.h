@@ -27,8 +27,7 @@ class MeshCache {
   void set_frame(long frame) { frame_ = frame; }
 
   /// The mesh of the path; valid until the same path is asked for in another frame. Throws Error as
-  /// load_mesh, and naming the file where the mesh of a frame has not the triangles, by their
-  /// indices, and the number of vertices of the first one that was read.
+  /// load_mesh. The meshes of two frames may differ in their triangles.
   const Mesh& get(const std::string& path);
 
   /// The numbered names that were asked for.
@@ -37,7 +36,6 @@ class MeshCache {
  private:
   struct Moving {
     long frame = 0;
-    std::string first;  // the file of the first frame
     Mesh mesh;
   };
 

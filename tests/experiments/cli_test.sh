@@ -551,7 +551,7 @@ good 'frames of a scene file' 0 run fall.json --method exact --frames 1:3 --no-v
 expect 'frames of a scene file' "$out" '^frame +candidates +colliding +neighbours +cull ms'
 expect 'frames of a scene file' "$out" '^per frame  median '
 good 'frames of a built-in scene' 0 verify two-spheres@far@ground --method far-pairs --frames 3
-expect 'frames of a built-in scene' "$out" '^ +2 .* 0 +[0-9.]+ +[0-9.]+$'
+expect 'frames of a built-in scene' "$out" '^ +2 .* 0 +[0-9.]+ +[0-9.]+ +[0-9.]+ +[0-9,]+ +[0-9,]+$'
 good 'frames of one number' 0 run crowd --method far-pairs --frames 1
 
 # The JSON has every key, stands alone on stdout, and is JSON: farcull's own reader of scene files

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <set>
 
-#include "experiments/builtin_motion.h"
 #include "experiments/builtin_scenes.h"
 #include "tests/experiments/error_of.h"
 
@@ -88,22 +88,11 @@ TEST(Frames, OnlyVerticesChange) {
   EXPECT_EQ(source.at(0).vertices, before);  // and nothing is remembered
 }
 
-TEST(Frames, AFrameOfAnotherTopologyIsNamed) {
+TEST(Frames, MissingFilesAndScenesThatStandStillAreNamed) {
   const ScratchFolder folder;
   folder.write("m_0.obj", kFloor);
+  folder.write("m_1.obj", kFloor);
   const std::string path = folder.path("m_%d.obj");
-  const auto failing = [&](const std::string& bytes) {
-    folder.write("m_1.obj", bytes);
-    FrameSource source({path}, {0, 1}, false);
-    return error_of([&] { source.at(1); });
-  };
-  const std::string floor = kFloor;
-  for (const std::string& bytes : {floor + "f 1 2 3\n", "v 2 2 2\n" + floor,
-                                   std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 3 2\n")}) {
-    const Error error = failing(bytes);
-    EXPECT_EQ(error.where, folder.path("m_1.obj"));
-    EXPECT_NE(error.reason.find("m_0.obj"), std::string::npos);
-  }
   EXPECT_EQ(error_of([&] { FrameSource({path}, {0, 2}, false); }).where, folder.path("m_2.obj"));
   EXPECT_EQ(error_of([&] {
               FrameSource({folder.path("m_0.obj")}, {0, 2}, false);
@@ -112,20 +101,60 @@ TEST(Frames, AFrameOfAnotherTopologyIsNamed) {
   EXPECT_EQ(error_of([&] { FrameSource({"two-tori"}, {0, 2}, false); }).where, "--frames");
 }
 
-TEST(Frames, BuiltinMotionsMoveEveryObjectButTheGround) {
-  for (const BuiltinMotion& motion : builtin_motions()) {
-    if (motion.scene == "two-bunnies") continue;  // made of the packaged meshes
-    const std::string name = motion.scene + "@ground@far";
-    ASSERT_TRUE(has_motion(name));
-    const Scene rest = make_builtin_scene(name);
-    const std::vector<Vec3> now = moved(name, rest, 0.3);
-    EXPECT_EQ(now, moved(name, rest, 0.3));
-    for (const Object& object : rest.objects) {
-      const std::uint32_t v = rest.triangles[object.first_triangle][0];
-      EXPECT_EQ(now[v] == rest.vertices[v], object.name == "ground") << name << ' ' << object.name;
+// A frame is what its file says, triangles included.
+TEST(Frames, MeshesMayChangeTheirTopology) {
+  const ScratchFolder folder;
+  const std::string floor = folder.write("floor.obj", kFloor);
+  const std::string high = "v 0.1 0.1 0.5\nv 0.9 0.1 0.5\nv 0.1 0.1 0.25\n";
+  const std::string low = "v 0.1 0.1 0.5\nv 0.3 0.1 0.5\nv 0.1 0.1 -0.25\n";
+  folder.write("m_0.obj", high + "f 1 2 3\n");
+  folder.write("m_1.obj", high + "f 1 2 3\n");                 // as before
+  folder.write("m_2.obj", high + low + "f 1 2 3\nf 4 5 6\n");  // one more
+  folder.write("m_3.obj", high + low + "f 1 2 3\nf 1 3 2\n");  // as many, others
+  folder.write("m_4.obj", high + low + "f 4 5 6\n");           // one fewer
+  const std::vector<std::string> scene = {folder.path("m_%d.obj"), floor};
+  for (const Method method : {Method::far_pairs, Method::exact}) {
+    const FramesResult result = run_frames(scene, question(method, {0, 4}));
+    std::vector<int> colliding, triangles;
+    std::vector<bool> changed;
+    for (const auto& frame : result.json["frames"]) {
+      colliding.push_back(frame["colliding_pairs"]);
+      triangles.push_back(frame["triangles"]);
+      changed.push_back(frame["topology_changed"]);
     }
+    EXPECT_EQ(colliding, (std::vector<int>{0, 0, 1, 0, 1}));
+    EXPECT_EQ(triangles, (std::vector<int>{2, 2, 3, 3, 2}));
+    EXPECT_EQ(changed, (std::vector<bool>{false, false, true, true, true}));
+    EXPECT_EQ(result.json["summary"]["topology_changes"], 3);
+    EXPECT_EQ(result.json["summary"]["missed"], 0);
+    EXPECT_EQ(result.json["scene"]["triangles"], 2);
+    EXPECT_NE(result.table.find("topology  changed 3 times"), std::string::npos);
   }
-  EXPECT_FALSE(has_motion("two-tori"));
+  folder.write("m_1.obj", high + "f 1 2 9\n");  // and each is validated
+  FrameSource source(scene, {0, 4}, false);
+  source.at(0);
+  EXPECT_EQ(error_of([&] { source.at(1); }).where, folder.path("m_1.obj"));
+}
+
+TEST(Frames, RatesAreThoseOfTheTimes) {
+  EXPECT_EQ(per_second(20), 50);
+  EXPECT_FALSE(per_second(0));
+  EXPECT_FALSE(per_second(-1));
+  EXPECT_FALSE(per_second(std::numeric_limits<double>::infinity()));
+  const FramesResult result = run_frames({"crowd:20"}, question(Method::far_pairs, {0, 4}));
+  const auto& summary = result.json["summary"];
+  EXPECT_EQ(summary["fps"]["median"], 1000 / summary["ms"]["median"].get<double>());
+  EXPECT_EQ(summary["fps"]["p95"], 1000 / summary["ms"]["p95"].get<double>());
+  for (const auto& frame : result.json["frames"]) {
+    const double ms =
+        frame["time_ms"]["cull"].get<double>() + frame["time_ms"]["exact"].get<double>();
+    EXPECT_EQ(frame["fps"], 1000 / ms);
+    EXPECT_EQ(frame["draws"], 0);  // nothing is drawn there
+    EXPECT_EQ(frame["warning"], nullptr);
+  }
+  for (const char* column : {"fps", "PCS objects", "PCS triangles"})
+    EXPECT_NE(result.table.find(column), std::string::npos) << column;
+  EXPECT_EQ(result.table.find("draws"), std::string::npos);
 }
 
 TEST(Frames, EveryFrameOfAMotionIsAccountedFor) {
