@@ -418,7 +418,7 @@ TEST(SweepPrune, AGroundUnderManyObjects) {
   }
   moving.sizes.push_back(200);
   for (int o = 0; o < 150; ++o) {
-    const Vec3 at(random.uniform(0, 20), random.uniform(0, 10), random.uniform(-1, 0.5));
+    const Vec3 at(random.uniform(0, 20), random.uniform(0, 10), random.uniform(-0.3, 0));
     for (int k = 0; k < 2; ++k) moving.boxes.push_back({at, at + random.cube(0.6).cwiseAbs()});
     moving.sizes.push_back(2);
   }
