@@ -408,6 +408,28 @@ TEST(SweepPrune, AsBoxJoinOnManyBoxesOfEveryShape) {
   }
 }
 
+// Extents whose reciprocal overflows, extents that do so themselves, and a mean length of zero.
+TEST(SweepPrune, TheEndsOfTheDoubles) {
+  Random random(610);
+  for (const double unit : {5e-324, 1e-310, 1.0, DBL_MAX / 4}) {
+    for (const bool points : {false, true}) {
+      SweepPrune sweep;
+      for (int frame = 0; frame < 3; ++frame) {
+        Moving moving;
+        for (std::uint32_t o = 0; o < 100; ++o) {
+          const Vec3 lo(random.below(8) - 4, random.below(8) - 4, random.below(8) - 4);
+          const double length = points ? 0 : random.below(2);
+          moving.boxes.push_back({lo * unit, (lo.array() + length).matrix() * unit});
+          moving.sizes.push_back(1);
+          moving.self.push_back(false);
+        }
+        const Scene scene = moving.scene();
+        ASSERT_NO_FATAL_FAILURE(expect_right(sweep.find(scene), scene)) << "unit " << unit;
+      }
+    }
+  }
+}
+
 // More partners than a triangle is compared with one by one.
 TEST(SweepPrune, AGroundUnderManyObjects) {
   Random random(609);
