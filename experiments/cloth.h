@@ -38,7 +38,7 @@ struct ClothSettings {
   double time_step = 0.01;          // s; > 0
   double tolerance = 1e-3;          // of the residual, as a part of the weight of the largest
                                     // vertex mass (at 9.81 m/s^2); > 0
-  int max_iterations = 100;         // of Newton's method in a step; >= 0
+  int max_iterations = 400;         // of Newton's method in a step; >= 0
   std::uint64_t seed = 1;           // of the unevenness that breaks the symmetry at the start
 };
 
