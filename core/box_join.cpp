@@ -88,4 +88,13 @@ std::vector<TrianglePair> box_join(std::span<const Box> boxes,
   return pairs;
 }
 
+std::vector<std::uint32_t> join_owners(const Scene& scene) {
+  std::vector<std::uint32_t> out = owners(scene);
+  const auto objects = static_cast<std::uint32_t>(scene.objects.size());
+  for (std::uint32_t t = 0; t < out.size(); ++t) {
+    if (scene.objects[out[t]].self) out[t] = objects + t;
+  }
+  return out;
+}
+
 }  // namespace farcull

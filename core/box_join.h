@@ -16,4 +16,8 @@ std::vector<TrianglePair> box_join(std::span<const Box> boxes,
                                    std::span<const std::uint32_t> owners,
                                    std::span<const std::uint32_t> items);
 
+/// Owners for box_join() that count pairs inside objects marked `self` too: a triangle of one is an
+/// owner by itself.
+std::vector<std::uint32_t> join_owners(const Scene& scene);
+
 }  // namespace farcull

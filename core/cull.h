@@ -78,8 +78,8 @@ struct CullSettings {
   Fattener fattener;
   RadiusRule radius;
   bool quick = true;  // Quick-CULLIDE; false: plain CULLIDE
-  /// Every triangle of an object with Object::self is an owner; make_plan(scene, true) goes with
-  /// it.
+  /// Every triangle of an object with Object::self is an owner; make_plan(scene, {.self = true})
+  /// goes with it.
   bool self = false;
   bool touching = true;  // false: what only touches is not seen, see Pass::touching
   Clusters clusters = {};

@@ -226,7 +226,7 @@ std::vector<PairChoice> choose_pair_views(const Scene& scene, const PairRegions&
   const auto by_work = [](const Ranked& a, const Ranked& b) { return a.work < b.work; };
   if (deep && sample.count >= kTrialFrom) {
     const Scene part = scene_of(sample, scene);
-    const PairRegions places = pair_regions(part, 0, 1);
+    const PairRegions places = pair_regions(part, 0, false, 1);
     const auto backend = cpu_pair_backend(1);
     // Those that meet few pixels first; who meets more than the best of them costs is not tried.
     for (Ranked& r : ranked) {

@@ -128,7 +128,7 @@ Box grown_box(const Scene& scene, std::uint32_t triangle, double clearance) {
   return grow(box, half_of(clearance));
 }
 
-PairRegions pair_regions(const Scene& scene, double clearance, unsigned threads) {
+PairRegions pair_regions(const Scene& scene, double clearance, bool full, unsigned threads) {
   PairRegions out;
   std::vector<Box> boxes = boxes_of_objects(scene, threads);
   for (Box& box : boxes) box = grow(box, half_of(clearance));
@@ -147,6 +147,7 @@ PairRegions pair_regions(const Scene& scene, double clearance, unsigned threads)
       out.objects[o] = boxes[o];
       ++out.self;
     }
+    if (full) out.objects[o] = boxes[o];
     if (out.objects[o].is_empty()) continue;
     out.reach.add(boxes[o]);
     count += scene.objects[o].triangle_count;

@@ -23,7 +23,9 @@ struct PairRegions {
   std::uint64_t self = 0;                // objects that collide with themselves
   std::vector<std::uint32_t> triangles;  // ascending: of the objects that can meet anything
 };
-PairRegions pair_regions(const Scene& scene, double clearance, unsigned threads = 0);
+/// full: every object can meet anything, anywhere.
+PairRegions pair_regions(const Scene& scene, double clearance, bool full = false,
+                         unsigned threads = 0);
 
 /// By how much each of two triangles grows so that they meet at that distance: half of it, rounded
 /// up.

@@ -13,24 +13,13 @@
 namespace farcull {
 namespace {
 
-// A further view is looked at where there are more candidates than this for each triangle that
-// takes part: fewer are mostly neighbours and contacts, which no view takes away.
-constexpr std::size_t kFurtherViewFrom = 16;
-constexpr std::size_t kMostViews = 3;  // chosen by the scene
-
 // Pairs of the scene whose grown boxes overlap and one of whose triangles is in `some` (ascending):
 // for triangles of which a view can say nothing.
 std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const PairRegions& regions,
                                          std::span<const std::uint32_t> some, double clearance) {
   std::vector<Box> boxes(scene.triangles.size(), Box::empty());
-  std::vector<std::uint32_t> group = owners(scene);
-  // Triangles of an object that collides with itself are owners of themselves.
-  const auto objects = static_cast<std::uint32_t>(scene.objects.size());
-  for (const std::uint32_t t : regions.triangles) {
-    boxes[t] = grown_box(scene, t, clearance);
-    if (scene.objects[group[t]].self) group[t] = objects + t;
-  }
-  std::vector<TrianglePair> pairs = box_join(boxes, group, regions.triangles);
+  for (const std::uint32_t t : regions.triangles) boxes[t] = grown_box(scene, t, clearance);
+  std::vector<TrianglePair> pairs = box_join(boxes, join_owners(scene), regions.triangles);
   if (some.size() < regions.triangles.size()) {
     std::erase_if(pairs, [&](const TrianglePair& pair) {
       return !std::binary_search(some.begin(), some.end(), pair.a) &&
@@ -142,12 +131,15 @@ PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBack
   PairResult out;
   const Stopwatch planning;
   if (progress) progress("planning");
-  const PairRegions regions = pair_regions(scene, settings.clearance, backend.threads());
+  const PairRegions regions =
+      pair_regions(scene, settings.clearance, settings.full, backend.threads());
   out.stages.push_back(
       {.name = "boxes",
        .ran = true,
-       .reason = "pairs of objects whose boxes overlap: " + std::to_string(regions.pairs) +
-                 "; objects tested against themselves: " + std::to_string(regions.self),
+       .reason = settings.full
+                     ? "nothing is left out"
+                     : "pairs of objects whose boxes overlap: " + std::to_string(regions.pairs) +
+                           "; objects tested against themselves: " + std::to_string(regions.self),
        .ms = planning.ms(),
        .in = scene.triangles.size(),
        .out = regions.triangles.size(),
@@ -187,9 +179,9 @@ PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBack
   if (!backend.kept) backend.kept = std::make_shared<PairScene>();
   PairScene& seen = *backend.kept;
   for (const PairChoice& choice : choices) {
-    if (settings.views.empty() && !first) {
+    if (settings.views.empty() && !first && !(settings.full && looked < kMostPairViews)) {
       const bool enough = out.candidates.size() <= kFurtherViewFrom * regions.triangles.size();
-      if (enough || looked == kMostViews) {
+      if (enough || looked == kMostPairViews) {
         out.stages.push_back({.name = "view " + choice.view.name,
                               .reason = enough ? "exact tests of " +
                                                      std::to_string(out.candidates.size()) +

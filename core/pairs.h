@@ -15,10 +15,16 @@
 
 namespace farcull {
 
+/// A further view is looked at where there are more candidates than this for each triangle that
+/// takes part: fewer are mostly neighbours and contacts, which no view takes away.
+constexpr std::size_t kFurtherViewFrom = 16;
+constexpr std::size_t kMostPairViews = 3;  // chosen by the scene
+
 struct PairSettings {
   std::vector<View> views = {};  // empty: chosen by the scene, by fixed rules
-  int resolution = 0;      // px along the larger side of each view's window; 0: chosen by the scene
-  double clearance = 0;    // world units, finite, >= 0: pairs at this distance or less count too
+  int resolution = 0;    // px along the larger side of each view's window; 0: chosen by the scene
+  double clearance = 0;  // world units, finite, >= 0: pairs at this distance or less count too
+  bool full = false;     // leave nothing out: every triangle takes part, three views are looked at
   bool neighbours = true;  // false: nobody asks for pairs of one object that share a vertex
                            // index; views leave them out
 };

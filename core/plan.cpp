@@ -1,5 +1,6 @@
 #include "core/plan.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "core/box_join.h"
@@ -7,7 +8,7 @@
 
 namespace farcull {
 
-Plan make_plan(const Scene& scene, bool self) {
+Plan make_plan(const Scene& scene, const PlanRules& rules) {
   Plan plan;
   plan.triangle_boxes = triangle_boxes(scene);
   plan.object_boxes = object_boxes(scene, plan.triangle_boxes);
@@ -23,21 +24,21 @@ Plan make_plan(const Scene& scene, bool self) {
   }
   for (const std::uint32_t o : objects) {
     const Object& object = scene.objects[o];
-    const bool alone = self && object.self && object.triangle_count > 1;
-    if (alone) plan.regions.push_back(plan.object_boxes[o]);
+    const bool whole = rules.self && object.self && object.triangle_count > 1;
+    if (whole) plan.regions.push_back(plan.object_boxes[o]);
     for (std::uint32_t t = object.first_triangle; t < object.first_triangle + object.triangle_count;
          ++t) {
-      if (alone) {
+      const auto meets = [&](std::uint32_t partner) {
+        return overlap(plan.triangle_boxes[t], plan.object_boxes[partner]);
+      };
+      if (rules.full || whole || std::any_of(partners[o].begin(), partners[o].end(), meets))
         plan.triangles.push_back(t);
-        continue;
-      }
-      for (const std::uint32_t partner : partners[o]) {
-        if (overlap(plan.triangle_boxes[t], plan.object_boxes[partner])) {
-          plan.triangles.push_back(t);
-          break;
-        }
-      }
     }
+  }
+  if (rules.full && plan.regions.empty() && !plan.triangles.empty()) {
+    Box all = Box::empty();
+    for (const Box& box : plan.object_boxes) all.add(box);
+    plan.regions.push_back(all);
   }
   return plan;
 }

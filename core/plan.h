@@ -30,12 +30,24 @@ struct Stage {
 struct Plan {
   std::vector<Box> triangle_boxes;
   std::vector<Box> object_boxes;
-  std::vector<Box> regions;  // where two objects' boxes overlap, one per pair; see make_plan
-  std::vector<std::uint32_t>
-      triangles;  // ascending; those whose box meets the box of another object, or in a self region
+  std::vector<Box> regions;  // the places where two objects' boxes overlap, one per pair
+  std::vector<std::uint32_t> triangles;  // ascending; those whose box meets the box of another
+                                         // object: all that can take part
 };
 
-/// self: objects with Object::self take part by themselves as well, their whole box a region.
-Plan make_plan(const Scene& scene, bool self = false);
+/// Further views and finer offsets are left out where no more triangles than this are kept: the
+/// exact tests of so few cost less than what they would save. Measured on this side of caution:
+/// docs/methods.md.
+constexpr std::uint32_t kFewTriangles = 256;
+
+struct PlanRules {
+  bool self = false;  // objects that are marked so are tested against themselves
+  bool full = false;  // leave nothing out: every triangle takes part
+};
+
+/// With `self` a marked object of two triangles or more is a region of its own, and all of it takes
+/// part. With `full` the regions are the same, or the box of the scene where there are none, so
+/// that the views are, and every triangle takes part.
+Plan make_plan(const Scene& scene, const PlanRules& rules = {});
 
 }  // namespace farcull
