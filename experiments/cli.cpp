@@ -138,9 +138,11 @@ int command_line(int argc, char** argv) {
       "  farcull compare two-tori\n"
       "  farcull doctor");
 
-  RunCommand run(false), verify(true);
+  RunCommand run(RunCommand::Kind::run), verify(RunCommand::Kind::verify),
+      plan(RunCommand::Kind::plan);
   CLI::App* run_app = run.add_to(app);
   CLI::App* verify_app = verify.add_to(app);
+  CLI::App* plan_app = plan.add_to(app);
 
   CompareCommand comparison;
   CLI::App* compare_app = app.add_subcommand("compare", "methods and resolutions side by side");
@@ -225,6 +227,7 @@ int command_line(int argc, char** argv) {
     }
     if (*run_app) return run.run();
     if (*verify_app) return verify.run();
+    if (*plan_app) return plan.run();
     if (*compare_app) return compare_command(comparison);
     if (*bench_app) return bench.run();
     if (*check_app) {

@@ -9,11 +9,13 @@
 namespace farcull {
 
 CLI::App* ExperimentCommands::add_to(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("experiment", "studies of the method's premises");
+  CLI::App* command =
+      app.add_subcommand("experiment", "studies: premises, the methods' family, savings");
   command->require_subcommand(0, 1);
   command->footer(
       "Examples:\n  farcull experiment lemma --points 1000000\n  farcull experiment oracles "
-      "--pairs 100000");
+      "--pairs 100000\n  farcull experiment family tree-leaves --methods far-pairs,i-collide\n"
+      "  farcull experiment savings two-bunnies");
 
   lemma_ = command->add_subcommand(
       "lemma", "the reliability lemmas on a canvas, decided in exact arithmetic");
@@ -54,6 +56,9 @@ CLI::App* ExperimentCommands::add_to(CLI::App& app) {
   oracles_->footer(
       "Examples:\n  farcull experiment oracles --pairs 1000000 --json oracles.json\n\n"
       "Exit status 1: they disagree about a pair.");
+
+  family_ = family_command_.add_to(*command);
+  savings_ = savings_command_.add_to(*command);
   return command;
 }
 
@@ -75,7 +80,11 @@ int ExperimentCommands::run_oracles() {
 
 int ExperimentCommands::run() {
   if (*oracles_) return run_oracles();
-  if (!*lemma_) throw Error("experiment", "no study is named", "name one: lemma, oracles");
+  if (*family_) return family_command_.run();
+  if (*savings_) return savings_command_.run();
+  if (!*lemma_) {
+    throw Error("experiment", "no study is named", "name one: lemma, oracles, family, savings");
+  }
   const Outputs outputs = checked(lemma_outputs_);
   arguments_.device = device_of(device_);
   arguments_.json = outputs.json.value_or("");

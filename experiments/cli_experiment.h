@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "experiments/cli_family.h"
 #include "experiments/cli_parts.h"
 #include "experiments/lemma_command.h"
 
@@ -21,6 +22,10 @@ class ExperimentCommands {
 
   CLI::App* lemma_ = nullptr;
   CLI::App* oracles_ = nullptr;
+  CLI::App* family_ = nullptr;
+  CLI::App* savings_ = nullptr;
+  FamilyCommand family_command_;
+  SavingsCommand savings_command_;
   LemmaArguments arguments_;
   Text device_;
   Outputs lemma_outputs_, oracle_outputs_;

@@ -80,8 +80,11 @@ inline constexpr const char* kRunDeviceHelp =
     "software; for far-pairs hardware first, then cpu";
 inline constexpr const char* kSelfHelp =
     "every object is tested against itself as well\n"
-    "(far-pairs, exact); collisions of triangles that share\n"
-    "a vertex position are listed apart";
+    "(far-pairs, s-cullide, i-collide, exact); collisions of\n"
+    "triangles that share a vertex position are listed apart";
+inline constexpr const char* kFullHelp =
+    "leave nothing out that the scene does not need, to\n"
+    "measure what leaving out saves (see farcull plan)";
 inline constexpr const char* kClearanceHelp =
     "pairs at this distance or less collide, in world\n"
     "units (far-pairs, exact); default 0";

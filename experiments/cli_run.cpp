@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "experiments/check.h"
 #include "experiments/output.h"
+#include "experiments/planner.h"
 #include "experiments/scene_file.h"
 #include "experiments/tables.h"
 
@@ -27,15 +28,24 @@ Value choose(const std::string& option, const std::string& given,
 }  // namespace
 
 CLI::App* RunCommand::add_to(CLI::App& app) {
-  CLI::App* command =
-      strict_
-          ? app.add_subcommand("verify", "run; status 1 if any culled pair intersects")
-          : app.add_subcommand("run", "cull a scene, test what is left, account for every pair");
+  const auto declare = [&] {
+    switch (kind_) {
+      case Kind::run:
+        return app.add_subcommand("run", "cull a scene, test what is left, account for every pair");
+      case Kind::verify:
+        return app.add_subcommand("verify", "run; status 1 if any culled pair intersects");
+      case Kind::plan:
+        break;
+    }
+    return app.add_subcommand("plan", "what run would do, what it would leave out, and why");
+  };
+  CLI::App* command = declare();
   command->add_option("SCENE", scene_, kSceneHelp)->required()->type_name("");
   const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
     command->add_option(name, text, help)->type_name(type);
   };
-  add("--method", method_, "METHOD", "far, cullide, far-pairs or exact; default far");
+  add("--method", method_, "METHOD",
+      "far, cullide, quick-cullide, s-cullide, i-collide,\nfar-pairs or exact; default far");
   add("--resolution", resolution_, "N|auto",
       "pixels along the larger side of each view's window;\ndefault 512; for far-pairs auto: "
       "chosen by the scene");
@@ -47,7 +57,7 @@ CLI::App* RunCommand::add_to(CLI::App& app) {
   add("--depth", depth_, "fragment|fixed",
       "entry and exit depth by the fragment program\n"
       "(reliable), or fixed function as published;\n"
-      "default fragment for far, fixed for cullide");
+      "default fragment for far, fixed for the others");
   add("--depth-format", depth_format_, "32f|24", "of the depth buffer; default 32f");
   add("--query", query_, "flags|occlusion",
       "how visibility is asked; default flags, but\n"
@@ -56,6 +66,21 @@ CLI::App* RunCommand::add_to(CLI::App& app) {
   add("--device", device_, "DEVICE", kRunDeviceHelp);
   command->add_flag("--self", self_, kSelfHelp)->disable_flag_override();
   add("--clearance", clearance_, "D", kClearanceHelp);
+  command->add_flag("--full", full_, kFullHelp)->disable_flag_override();
+  if (kind_ != Kind::verify) {
+    command->add_flag("--no-verify", no_verify_, "leave out the accounting of all pairs")
+        ->disable_flag_override();
+  }
+  if (kind_ == Kind::plan) {
+    add("--json", outputs_.json, "FILE", kJsonHelp);
+    command->footer(
+        "Examples:\n"
+        "  farcull plan two-bunnies\n"
+        "  farcull plan two-bunnies --method far --offset exact\n"
+        "  farcull plan bunnies-far-apart --method far-pairs --json -\n\n"
+        "The same scene and options give the same plan. farcull run --full leaves nothing out.");
+    return command;
+  }
   add("--frames", frames_, "N|A:B",
       "run N frames (0 to N-1), or those numbered A to B, of\n"
       "meshes with %d or %04d in their names, or of a\n"
@@ -66,7 +91,7 @@ CLI::App* RunCommand::add_to(CLI::App& app) {
   add("--json", outputs_.json, "FILE", kJsonHelp);
   add("--certificate", outputs_.certificate, "FILE",
       "write evidence for every pair to this file, for\n`farcull check`");
-  if (strict_) {
+  if (kind_ == Kind::verify) {
     command->footer(
         "Examples:\n"
         "  farcull verify two-spheres\n"
@@ -76,8 +101,6 @@ CLI::App* RunCommand::add_to(CLI::App& app) {
         "Exit status 1: a culled pair intersects, whatever the method.");
     return command;
   }
-  command->add_flag("--no-verify", no_verify_, "leave out the accounting of all pairs")
-      ->disable_flag_override();
   command->footer(
       "Examples:\n"
       "  farcull run two-spheres\n"
@@ -115,14 +138,12 @@ RunOptions RunCommand::parse() const {
         choose<DepthFormat>("--depth-format", *depth_format_,
                             {{"32f", DepthFormat::float32}, {"24", DepthFormat::fixed24}});
   }
-  if (query_) {
-    out.query = choose<QueryMode>(
-        "--query", *query_, {{"flags", QueryMode::flags}, {"occlusion", QueryMode::occlusion}});
-  }
+  if (query_) out.query = parse_query(*query_);
   if (views_) out.views = parse_views_option(*views_, pairs);
   if (clearance_) out.clearance = parse_clearance(*clearance_);
   out.device = device_of(device_);
   out.verify = !no_verify_;
+  out.full = full_;
   out.seed = seed_of(scene_);
   validate(out);
   refuse_idle(out.method);
@@ -131,27 +152,30 @@ RunOptions RunCommand::parse() const {
 
 // An option that the method has no use for was meant for something: no result without it.
 void RunCommand::refuse_idle(Method chosen) const {
-  const auto refuse = [&](const char* option, bool given, const char* method) {
+  const auto refuse = [&](const char* option, bool given, const std::string& methods) {
     if (!given) return;
     throw Error(option, "has no meaning for --method " + to_string(chosen),
-                std::string("leave ") + option + " out, or use --method " + method);
+                std::string("leave ") + option + " out, or use --method " + methods);
   };
-  if (chosen == Method::far || chosen == Method::cullide) {
-    refuse("--self", self_, "far-pairs");
-    refuse("--clearance", clearance_.has_value(), "far-pairs");
+  if (!tests_self(chosen)) refuse("--self", self_, method_names(tests_self));
+  if (!takes_clearance(chosen))
+    refuse("--clearance", clearance_.has_value(), method_names(takes_clearance));
+  if (chosen != Method::far) {
+    refuse("--radius", radius_.has_value(), "far");
+    refuse("--offset", offset_.has_value(), "far");
+    refuse("--depth", depth_.has_value(), "far");
   }
-  if (chosen == Method::far) return;
-  refuse("--radius", radius_.has_value(), "far");
-  refuse("--offset", offset_.has_value(), "far");
-  if (chosen == Method::cullide) return;
-  refuse("--depth", depth_.has_value(), "far");
-  refuse("--depth-format", depth_format_.has_value(), "far");
-  refuse("--query", query_.has_value(), "far");
+  if (!draws(chosen)) {
+    refuse("--depth-format", depth_format_.has_value(), method_names(draws));
+    refuse("--query", query_.has_value(), method_names(draws));
+  }
+  if (chosen == Method::exact) refuse("--full", full_, "another");
 }
 
 int RunCommand::run() const {
   const RunOptions options = parse();
   check_scene(scene_);
+  if (kind_ == Kind::plan) return plan(options);
   if (outputs_.certificate && options.clearance > 0) {
     throw Error("--certificate", "is about triangles that meet, not about a clearance",
                 "leave --certificate or --clearance out");
@@ -164,6 +188,16 @@ int RunCommand::run() const {
   if (frames_) range = parse_frames(*frames_);
   const Outputs outputs = checked(outputs_);
   return range ? run_frames(options, outputs, *range) : run_once(options, outputs);
+}
+
+int RunCommand::plan(const RunOptions& options) const {
+  const Outputs outputs = checked(outputs_);
+  Scene scene = load_scene(scene_);
+  if (self_) make_self(scene);
+  const std::vector<PlannedStep> steps = planned(scene, options);
+  if (outputs.json) write_json(plan_json(scene, options, steps), *outputs.json);
+  if (!outputs.to_stdout()) write_output("-", plan_table(scene, options, steps));
+  return kDone;
 }
 
 int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) const {
@@ -181,7 +215,7 @@ int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) cons
   }
   if (outputs.json) write_json(to_json(scene, record), *outputs.json);
   if (!outputs.to_stdout()) write_output("-", run_table(scene, record));
-  if (!broken(record, strict_)) return kDone;
+  if (!broken(record, kind_ == Kind::verify)) return kDone;
   complain(missed(record));
   return kBroken;
 }
@@ -192,7 +226,7 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
   FramesQuestion question{.options = options,
                           .range = range,
                           .self = self_,
-                          .strict = strict_,
+                          .strict = kind_ == Kind::verify,
                           .pairs = outputs.pairs.has_value()};
   const FramesResult result = farcull::run_frames(scene_, question, terminal.callback());
   terminal.clear();

@@ -1,4 +1,4 @@
-// `farcull run` and `farcull verify`.
+// `farcull run`, `farcull verify` and `farcull plan`.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,11 +10,12 @@
 
 namespace farcull {
 
-/// Declares one of the two commands on the program's options; run() runs it.
+/// Declares one of the three commands on the program's options; run() runs it.
 class RunCommand {
  public:
-  /// strict: `verify`, which asks the guarantee of every method.
-  explicit RunCommand(bool strict) : strict_(strict) {}
+  /// verify asks the guarantee of every method; plan says what run would do, and does not.
+  enum class Kind { run, verify, plan };
+  explicit RunCommand(Kind kind) : kind_(kind) {}
   CLI::App* add_to(CLI::App& app);
   /// The exit status: 0 done, 1 a guarantee is broken. Throws Error where the arguments are bad.
   int run() const;
@@ -22,15 +23,16 @@ class RunCommand {
  private:
   RunOptions parse() const;
   void refuse_idle(Method chosen) const;
+  int plan(const RunOptions& options) const;
   int run_once(const RunOptions& options, const Outputs& outputs) const;
   int run_frames(const RunOptions& options, const Outputs& outputs, FrameRange range) const;
 
-  bool strict_;
+  Kind kind_;
   std::vector<std::string> scene_;
   Text method_, resolution_, radius_, offset_, depth_, depth_format_, query_, views_, device_;
   Text clearance_, frames_;
   Outputs outputs_;
-  bool self_ = false, no_verify_ = false;
+  bool self_ = false, no_verify_ = false, full_ = false;
 };
 
 }  // namespace farcull

@@ -13,14 +13,6 @@
 namespace farcull {
 namespace {
 
-int parse_repeat(const std::string& text) {
-  int value = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (code != std::errc() || end != text.data() + text.size() || value < 1)
-    throw Error("--repeat", "'" + text + "' is no number of runs", "give 1 or more");
-  return value;
-}
-
 constexpr const char* kAllMethods = "far,cullide,far-pairs,exact";
 constexpr const char* kBeyondCulling = "far-pairs,exact";
 constexpr const char* kUsualResolutions = "128,256,512,1024,2048";
@@ -29,7 +21,7 @@ constexpr const char* kAuto = "auto";
 // What a method is run at; `exact` is, once.
 std::vector<int> resolutions_of(const CompareArguments& arguments, Method method) {
   const bool pairs = method == Method::far_pairs;
-  if (method == Method::exact) return {0};
+  if (!pairs && !draws(method)) return {0};
   const std::string text = arguments.resolutions.value_or(pairs ? kAuto : kUsualResolutions);
   std::vector<int> out;
   for (const std::string& resolution : split_list(text)) {
@@ -55,10 +47,10 @@ std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
        split_list(arguments.methods.value_or(beyond ? kBeyondCulling : kAllMethods))) {
     RunOptions options = arguments.options;
     options.method = parse_method(method, "--methods");
-    if (self && (options.method == Method::far || options.method == Method::cullide)) {
+    if (self && !tests_self(options.method)) {
       throw Error("--methods",
                   method + " tests no object against itself, as one of the scene has to be",
-                  "give far-pairs or exact");
+                  "give " + method_names(tests_self));
     }
     for (const std::string& offset : split_list(arguments.offsets)) {
       if (options.method == Method::far) options.offset = offset;
@@ -78,8 +70,7 @@ std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
 void require_room(const std::vector<RunOptions>& cells, Session& session) {
   int largest = 0;
   for (const RunOptions& cell : cells) {
-    if (cell.method == Method::far || cell.method == Method::cullide)
-      largest = std::max(largest, cell.resolution);
+    if (draws(cell.method)) largest = std::max(largest, cell.resolution);
   }
   if (largest <= 8192) return;
   const int limit = GlCanvas(session.context(), DepthMode::fixed, {}).limits().max_resolution;

@@ -211,10 +211,10 @@ int write_and_close(std::FILE* file, const std::string& text, bool to_disk) {
 
 nlohmann::ordered_json to_json(const Scene& scene, const RunRecord& record) {
   const RunOptions& o = record.options;
-  const bool draws = o.method == Method::far || o.method == Method::cullide;
+  const bool drawn = draws(o.method);
   const bool pairs = o.method == Method::far_pairs;
   Json resolution = nullptr;
-  if (draws || pairs) resolution = resolution_of(o) > 0 ? Json(resolution_of(o)) : Json("auto");
+  if (drawn || pairs) resolution = resolution_of(o) > 0 ? Json(resolution_of(o)) : Json("auto");
   Json views = Json::array();
   for (const ViewReport& view : record.views) views.push_back(view_json(view));
   for (const PairView& view : record.pair_views) views.push_back(view_json(view));
@@ -241,13 +241,13 @@ nlohmann::ordered_json to_json(const Scene& scene, const RunRecord& record) {
           {"resolution", resolution},
           {"radius", o.method == Method::far ? Json(radius_text(o.radius)) : Json(nullptr)},
           {"offset", o.method == Method::far ? Json(o.offset) : Json(nullptr)},
-          {"depth", !draws ? Json(nullptr)
+          {"depth", !drawn ? Json(nullptr)
                            : Json(depth_of(o) == DepthMode::fragment ? "fragment" : "fixed")},
           {"depth_format",
-           draws ? Json(o.depth_format == DepthFormat::float32 ? "32f" : "24") : Json(nullptr)},
+           drawn ? Json(o.depth_format == DepthFormat::float32 ? "32f" : "24") : Json(nullptr)},
           {"query",
-           draws ? Json(query_of(o) == QueryMode::flags ? "flags" : "occlusion") : Json(nullptr)},
-          {"clearance", draws ? Json(nullptr) : Json(o.clearance)},
+           drawn ? Json(query_of(o) == QueryMode::flags ? "flags" : "occlusion") : Json(nullptr)},
+          {"clearance", takes_clearance(o.method) ? Json(o.clearance) : Json(nullptr)},
           {"promises", record.promises},
           {"views", views},
           {"budget", budget_json(record.views)},

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "verify/exact.h"
-
 namespace farcull {
 namespace {
 
@@ -49,8 +47,10 @@ void run_far_pairs(const Scene& scene, Session& session, const Progress& progres
                            .unit = ""});
 
   const Stopwatch cull;
-  PairSettings settings{
-      .views = {}, .resolution = resolution_of(options), .clearance = options.clearance};
+  PairSettings settings{.views = {},
+                        .resolution = resolution_of(options),
+                        .clearance = options.clearance,
+                        .full = options.full};
   if (!views_of(options).empty()) settings.views = parse_views(views_of(options));
   PairResult result = find_pairs(scene, settings, *device.backend, progress);
   record.ms.cull = cull.ms();
@@ -58,21 +58,6 @@ void run_far_pairs(const Scene& scene, Session& session, const Progress& progres
   record.candidate_pairs = record.kept.size();
   record.pair_views = std::move(result.views);
   record.stages.insert(record.stages.end(), result.stages.begin(), result.stages.end());
-
-  const Stopwatch exact;
-  if (progress) progress("exact tests");
-  Collisions collisions = decide(scene, record.kept, {.clearance = options.clearance});
-  record.ms.exact = exact.ms();
-  record.pairs = std::move(collisions.pairs);
-  record.neighbour_pairs = std::move(collisions.neighbour_pairs);
-  record.neighbours = collisions.neighbours;
-  record.stages.push_back({.name = "exact",
-                           .ran = true,
-                           .reason = "exact predicates on the candidates",
-                           .ms = record.ms.exact,
-                           .in = record.kept.size(),
-                           .out = record.pairs.size() + record.neighbour_pairs.size(),
-                           .unit = "pairs"});
 
   const std::vector<std::uint32_t> live = members(scene, record.kept);
   record.pcs_triangles = live.size();

@@ -36,7 +36,7 @@ std::string method_text(const RunRecord& record) {
   const RunOptions& o = record.options;
   std::string text = describe(o);
   if (o.method == Method::far) text += fmt::format(", {} offsets", o.offset);
-  if (o.method == Method::far || o.method == Method::cullide) {
+  if (draws(o.method)) {
     text += fmt::format(", {} depth, {}",
                         depth_of(o) == DepthMode::fragment ? "fragment" : "fixed-function",
                         query_of(o) == QueryMode::flags ? "flags" : "occlusion queries");
@@ -185,7 +185,7 @@ std::string accounting_lines(const Scene& scene, const RunRecord& record) {
 
 // The window that was looked at where the scene chose.
 std::string resolution_text(const RunRecord& r) {
-  if (r.options.method == Method::exact) return "-";
+  if (!draws(r.options.method) && r.options.method != Method::far_pairs) return "-";
   if (resolution_of(r.options) > 0) return std::to_string(resolution_of(r.options));
   for (const PairView& view : r.pair_views) {
     if (view.looked) return fmt::format("auto {}", std::max(view.width, view.height));

@@ -1,0 +1,265 @@
+#include "experiments/family.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "commit.h"
+#include "core/error.h"
+#include "experiments/builtin_motion.h"
+#include "experiments/tables.h"
+
+namespace farcull {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The methods of the table, in its order; far once with each offset.
+struct Contestant {
+  Method method;
+  std::string offset;
+};
+
+std::vector<Contestant> contestants(const FamilyArguments& arguments) {
+  std::vector<Method> methods(all_methods().begin(), all_methods().end());
+  if (arguments.methods) {
+    methods.clear();
+    for (const std::string& name : split_list(*arguments.methods))
+      methods.push_back(parse_method(name, "--methods"));
+  }
+  std::vector<Contestant> out;
+  for (const Method method : methods) {
+    out.push_back({method, "obb"});
+    if (method == Method::far) out.push_back({method, "exact"});
+  }
+  return out;
+}
+
+std::string label(const FamilyCell& cell) {
+  return to_string(cell.method) + (cell.offset.empty() ? "" : ", " + cell.offset);
+}
+
+template <class Value>
+double median_of(const FamilyCell& cell, Value value) {
+  std::vector<double> values;
+  for (const FamilyFrame& frame : cell.frames) values.push_back(static_cast<double>(value(frame)));
+  return summary_of(values).median;
+}
+
+FamilyFrame frame_of(const RunRecord& record, long frame) {
+  FamilyFrame out{.frame = frame,
+                  .ms = record.ms.cull + record.ms.exact,
+                  .pcs_objects = record.pcs_objects,
+                  .pcs_triangles = record.pcs_triangles,
+                  .candidates = record.candidate_pairs,
+                  .colliding = record.pairs.size(),
+                  .neighbours = record.neighbour_pairs.size(),
+                  .missed = {},
+                  .missed_contacts = record.missed};
+  for (const Stage& stage : record.stages) {
+    out.queries += stage.queries;
+    out.draws += stage.draws;
+    out.queries_saved += stage.queries_saved;
+    out.draws_saved += stage.draws_saved;
+  }
+  if (record.verification) out.missed = record.verification->false_negatives;
+  return out;
+}
+
+std::string device_of(const RunRecord& record) {
+  if (record.device) return record.device->renderer;
+  return record.on_cpu ? "cpu" : "none";
+}
+
+// One scene by one method; nothing where the method has no question to ask of the scene.
+std::optional<FamilyCell> run_cell(const std::string& scene, const Contestant& contestant,
+                                   const FamilyArguments& arguments, Session& session,
+                                   const Progress& progress) {
+  RunOptions options = arguments.options;
+  options.method = contestant.method;
+  options.offset = contestant.method == Method::far ? contestant.offset : "obb";
+  FamilyCell cell{.scene = scene,
+                  .method = contestant.method,
+                  .offset = contestant.method == Method::far ? contestant.offset : "",
+                  .device = {},
+                  .frames = {}};
+  FrameSource source({scene}, arguments.range, arguments.self);
+  session.sweep().forget();
+  for (long frame = arguments.range.first; frame <= arguments.range.last; ++frame) {
+    const std::string name =
+        fmt::format("{}, {}, frame {} of {}: ", scene, label(cell),
+                    frame - arguments.range.first + 1, arguments.range.count());
+    const Progress named =
+        progress ? [&](const std::string& stage) { progress(name + stage); } : Progress{};
+    const Scene& moved = source.at(frame);
+    Scene unmarked;
+    const bool strip = has_self(moved) && !tests_self(contestant.method);
+    if (!has_self(moved) && tests_self_alone(contestant.method)) return std::nullopt;
+    if (strip) {
+      unmarked = moved;
+      for (Object& object : unmarked.objects) object.self = false;
+    }
+    const RunRecord record = run_scene(strip ? unmarked : moved, options, session, named);
+    if (cell.frames.empty()) {
+      cell.objects = moved.objects.size();
+      cell.triangles = moved.triangles.size();
+    }
+    cell.promises = record.promises;
+    if (cell.device.empty() || record.device) cell.device = device_of(record);
+    cell.setup_ms += record.ms.setup;
+    cell.frames.push_back(frame_of(record, frame));
+  }
+  return cell;
+}
+
+std::string rate(double ms) { return ms > 0 ? fmt::format("{:.1f}", 1000 / ms) : "-"; }
+
+}  // namespace
+
+FrameTimes FamilyCell::times() const {
+  std::vector<double> ms;
+  for (const FamilyFrame& frame : frames) ms.push_back(frame.ms);
+  return summary_of(ms);
+}
+
+std::optional<std::uint64_t> FamilyCell::missed() const {
+  std::uint64_t sum = 0;
+  for (const FamilyFrame& frame : frames) {
+    if (!frame.missed) return std::nullopt;
+    sum += *frame.missed;
+  }
+  return sum;
+}
+
+PaperRate paper_rate(const std::string& scene) {
+  const std::string base = scene.substr(0, scene.find_first_of(":@"));
+  if (base == "tree-leaves") return {15, "FAR 2004, tree with leaves"};
+  if (base == "bunny-dragon") return {15, "FAR 2004, bunny and dragon"};
+  if (base == "cloth") return {13, "FAR 2004, cloth"};
+  return {};
+}
+
+std::vector<FamilyCell> run_family(const FamilyArguments& arguments, const Progress& progress) {
+  std::vector<std::string> scenes = arguments.scenes;
+  if (scenes.empty()) {
+    for (const BuiltinScene& scene : builtin_scenes()) {
+      if (has_motion(scene.name)) scenes.push_back(scene.name);
+    }
+  }
+  const std::vector<Contestant> methods = contestants(arguments);
+  Session session(arguments.options.device);
+  std::vector<FamilyCell> cells;
+  for (const std::string& scene : scenes) {
+    for (const Contestant& contestant : methods) {
+      std::optional<FamilyCell> cell = run_cell(scene, contestant, arguments, session, progress);
+      if (cell) cells.push_back(std::move(*cell));
+    }
+  }
+  return cells;
+}
+
+std::string family_table(const std::vector<FamilyCell>& cells) {
+  Table table("lrlrrrrrrrrr");
+  table.add({"scene", "triangles", "method", "fps", "p95", "paper", "objects", "triangles", "pairs",
+             "queries", "draws", "missed"});
+  for (const FamilyCell& cell : cells) {
+    const FrameTimes times = cell.times();
+    const PaperRate paper = paper_rate(cell.scene);
+    const auto count = [&](auto value) {
+      return grouped(static_cast<std::uint64_t>(median_of(cell, value)));
+    };
+    const std::optional<std::uint64_t> missed = cell.missed();
+    table.add({cell.scene, grouped(cell.triangles), label(cell), rate(times.median),
+               rate(times.p95), paper.fps > 0 ? fmt::format("{:.0f}", paper.fps) : "",
+               count([](const FamilyFrame& f) { return f.pcs_objects; }),
+               count([](const FamilyFrame& f) { return f.pcs_triangles; }),
+               count([](const FamilyFrame& f) { return f.candidates; }),
+               count([](const FamilyFrame& f) { return f.queries; }),
+               count([](const FamilyFrame& f) { return f.draws; }),
+               missed ? grouped(*missed) + (cell.promises && *missed > 0 ? " BROKEN" : "") : "-"});
+  }
+  return table.text() +
+         "\nfps: frames per second from moved vertices to exact pairs, median and at the 95th "
+         "percentile of\n"
+         "the times; paper: as published, on its hardware. objects, triangles, pairs: kept for the "
+         "exact\ntests, queries, draws: of a frame, medians; missed: in all frames together.\n";
+}
+
+std::string family_csv(const std::vector<FamilyCell>& cells) {
+  std::map<std::pair<std::string, long>, const FamilyFrame*> swept;
+  for (const FamilyCell& cell : cells) {
+    if (cell.method != Method::i_collide) continue;
+    for (const FamilyFrame& frame : cell.frames) swept[{cell.scene, frame.frame}] = &frame;
+  }
+  std::string out =
+      "scene,method,offset,frame,ms,pcs_objects,pcs_triangles,candidate_pairs,colliding_pairs,"
+      "neighbour_pairs,queries,draws,queries_saved,draws_saved,missed,missed_touching,"
+      "missed_penetrating,factor_triangles,factor_pairs\n";
+  for (const FamilyCell& cell : cells) {
+    for (const FamilyFrame& f : cell.frames) {
+      const auto found = swept.find({cell.scene, f.frame});
+      const auto factor = [&](std::uint64_t theirs, std::uint64_t ours) {
+        return ours > 0 && theirs > 0
+                   ? fmt::format("{:.6g}", static_cast<double>(theirs) / static_cast<double>(ours))
+                   : "";
+      };
+      const FamilyFrame none;
+      const FamilyFrame& box = found == swept.end() ? none : *found->second;
+      out += fmt::format("{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+                         cell.scene, to_string(cell.method), cell.offset, f.frame, f.ms,
+                         f.pcs_objects, f.pcs_triangles, f.candidates, f.colliding, f.neighbours,
+                         f.queries, f.draws, f.queries_saved, f.draws_saved,
+                         f.missed ? std::to_string(*f.missed) : "", f.missed_contacts.touching,
+                         f.missed_contacts.penetrating, factor(box.pcs_triangles, f.pcs_triangles),
+                         factor(box.candidates, f.candidates));
+    }
+  }
+  return out;
+}
+
+nlohmann::ordered_json family_json(const std::vector<FamilyCell>& cells,
+                                   const FamilyArguments& arguments) {
+  Json rows = Json::array();
+  for (const FamilyCell& cell : cells) {
+    Json frames = Json::array();
+    for (const FamilyFrame& f : cell.frames) {
+      frames.push_back({{"frame", f.frame},
+                        {"ms", f.ms},
+                        {"pcs", {{"objects", f.pcs_objects}, {"triangles", f.pcs_triangles}}},
+                        {"candidate_pairs", f.candidates},
+                        {"colliding_pairs", f.colliding},
+                        {"neighbour_pairs", f.neighbours},
+                        {"queries", f.queries},
+                        {"draws", f.draws},
+                        {"queries_saved", f.queries_saved},
+                        {"draws_saved", f.draws_saved},
+                        {"missed", f.missed ? Json(*f.missed) : Json(nullptr)},
+                        {"missed_contacts",
+                         {{"touching", f.missed_contacts.touching},
+                          {"penetrating", f.missed_contacts.penetrating}}}});
+    }
+    const FrameTimes times = cell.times();
+    const PaperRate paper = paper_rate(cell.scene);
+    rows.push_back({{"scene", cell.scene},
+                    {"objects", cell.objects},
+                    {"triangles", cell.triangles},
+                    {"method", to_string(cell.method)},
+                    {"offset", cell.offset.empty() ? Json(nullptr) : Json(cell.offset)},
+                    {"device", cell.device},
+                    {"promises", cell.promises},
+                    {"ms", {{"median", times.median}, {"p95", times.p95}, {"max", times.max}}},
+                    {"setup_ms", cell.setup_ms},
+                    {"paper", paper.fps > 0 ? Json{{"fps", paper.fps}, {"source", paper.source}}
+                                            : Json(nullptr)},
+                    {"frames", frames}});
+  }
+  return {{"experiment", "family"},
+          {"frames", {arguments.range.first, arguments.range.last}},
+          {"resolution", arguments.options.resolution},
+          {"commit", FARCULL_COMMIT},
+          {"cells", rows}};
+}
+
+}  // namespace farcull

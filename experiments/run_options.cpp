@@ -1,0 +1,141 @@
+#include "experiments/run_options.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace farcull {
+namespace {
+
+constexpr int kUsualResolution = 512;
+constexpr const char* kUsualViews = "x,y,z";
+
+}  // namespace
+
+int parse_resolution(const std::string& text, const std::string& option) {
+  int value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc() || end != text.data() + text.size() || value < 1) {
+    throw Error(option, "'" + text + "' is no resolution",
+                "give a whole number of pixels from 1, such as 512");
+  }
+  return value;
+}
+
+RadiusRule parse_radius(const std::string& text) {
+  if (text == "published") return {.published = true, .factor = 1};
+  if (text == "budget") return {};
+  double factor = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), factor);
+  if (code != std::errc() || end != text.data() + text.size() || !std::isfinite(factor) ||
+      factor < 0 || factor > 1e5) {
+    throw Error(
+        "--radius", "'" + text + "' is no radius",
+        "give budget, published, or a factor of 0 to 100000 on the budget radius, such as 0.9");
+  }
+  return {.published = false, .factor = factor};
+}
+
+QueryMode parse_query(const std::string& text) {
+  if (text == "flags") return QueryMode::flags;
+  if (text == "occlusion") return QueryMode::occlusion;
+  throw Error("--query", "'" + text + "' is no choice", "give flags or occlusion");
+}
+
+int parse_repeat(const std::string& text) {
+  int value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc() || end != text.data() + text.size() || value < 1)
+    throw Error("--repeat", "'" + text + "' is no number of runs", "give 1 or more");
+  return value;
+}
+
+void require_pair_resolution(int resolution, const std::string& option) {
+  if (resolution <= kMostPairResolution) return;
+  throw Error(
+      option,
+      fmt::format("{} is outside 1 .. {}, the limit of far-pairs", resolution, kMostPairResolution),
+      "give a number in that range, or auto");
+}
+
+int resolution_of(const RunOptions& options) {
+  if (options.resolution > 0 || options.method == Method::far_pairs) return options.resolution;
+  return kUsualResolution;
+}
+
+std::string views_of(const RunOptions& options) {
+  if (!options.views.empty() || options.method == Method::far_pairs) return options.views;
+  return kUsualViews;
+}
+
+DepthMode depth_of(const RunOptions& options) {
+  return options.depth.value_or(options.method == Method::far ? DepthMode::fragment
+                                                              : DepthMode::fixed);
+}
+
+QueryMode query_of(const RunOptions& options) {
+  return options.query.value_or(
+      options.depth_format == DepthFormat::float32 ? QueryMode::flags : QueryMode::occlusion);
+}
+
+std::string describe(const RunOptions& options) {
+  if (!draws(options.method) && options.method != Method::far_pairs)
+    return to_string(options.method);
+  const int resolution = resolution_of(options);
+  if (resolution == 0) return to_string(options.method);
+  return fmt::format("{} at {} px", to_string(options.method), resolution);
+}
+
+void validate(const RunOptions& options) {
+  if (options.resolution < 0) {
+    throw Error("--resolution", fmt::format("{} is no resolution", options.resolution),
+                "give 1 px or more");
+  }
+  const bool pairs = options.method == Method::far_pairs;
+  if (pairs) require_pair_resolution(options.resolution);
+  if (!(options.clearance >= 0) || !std::isfinite(options.clearance)) {
+    throw Error("--clearance", fmt::format("{} is no distance", options.clearance),
+                "give a finite distance in world units, 0 or more");
+  }
+  if (options.clearance > 0 && !takes_clearance(options.method)) {
+    throw Error("--clearance", to_string(options.method) + " finds what meets, not what is near",
+                "use --method " + method_names(takes_clearance));
+  }
+  if (options.offset != "obb" && options.offset != "exact") {
+    throw Error("--offset", "'" + options.offset + "' is no offset", "give obb or exact");
+  }
+  if (options.offset == "exact" && options.depth == DepthMode::fixed) {
+    throw Error("--offset",
+                "exact offsets are evaluated by the fragment program, not drawn as surfaces",
+                "use --depth fragment, or --offset obb");
+  }
+  if (draws(options.method) && options.method != Method::far &&
+      options.depth == DepthMode::fragment) {
+    throw Error("--depth",
+                to_string(options.method) + " draws the triangles themselves, by fixed function",
+                "leave --depth out, or use --method far");
+  }
+  if (options.query == QueryMode::flags && options.depth_format == DepthFormat::fixed24) {
+    throw Error("--query",
+                "flags cannot be used with a 24-bit depth buffer: a comparison in the shader loses "
+                "equal depths",
+                "use --query occlusion or --depth-format 32f");
+  }
+  // Whether there is such a device is seen when one is needed; what can be none is refused at once.
+  const std::string& device = options.device;
+  if (device == "cpu" && draws(options.method)) {
+    throw Error("--device", to_string(options.method) + " draws with OpenGL, not on the cpu",
+                "give software, or use --method far-pairs");
+  }
+  if (device != "" && device != "cpu" && device != "hardware" && device != "software" &&
+      device.find_first_not_of("0123456789") != std::string::npos) {
+    throw Error("--device", "'" + device + "' is no device",
+                "give cpu (far-pairs), software, hardware or a number that `farcull doctor` lists");
+  }
+  if (!options.views.empty()) parse_views(options.views);
+}
+
+}  // namespace farcull

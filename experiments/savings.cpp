@@ -1,0 +1,111 @@
+#include "experiments/savings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "commit.h"
+#include "experiments/builtin_scenes.h"
+#include "experiments/frames.h"
+#include "experiments/scene_file.h"
+#include "experiments/tables.h"
+
+namespace farcull {
+namespace {
+
+// The same pairs in both: neighbours as well, whatever their order of finding.
+bool same(const RunRecord& a, const RunRecord& b) {
+  return a.pairs == b.pairs && a.neighbour_pairs == b.neighbour_pairs;
+}
+
+SavingsRow run_row(const Scene& scene, Method method, const SavingsArguments& arguments,
+                   Session& session, const Progress& progress) {
+  SavingsRow row{.scene = scene.name, .method = method, .planned_ms = {}, .full_ms = {}};
+  RunOptions options = arguments.options;
+  options.method = method;
+  options.verify = false;
+  const auto run = [&](bool full, std::vector<double>* ms) {
+    options.full = full;
+    RunRecord record = run_scene(scene, options, session);
+    if (ms != nullptr) ms->push_back(record.ms.cull + record.ms.exact);
+    return record;
+  };
+  for (int repeat = -1; repeat < arguments.repeat; ++repeat) {
+    if (progress) {
+      progress(fmt::format("{}, {}: {} of {}", scene.name, to_string(method), repeat + 1,
+                           arguments.repeat));
+    }
+    const RunRecord planned = run(false, repeat < 0 ? nullptr : &row.planned_ms);
+    const RunRecord full = run(true, repeat < 0 ? nullptr : &row.full_ms);
+    row.same_pairs = row.same_pairs && same(planned, full);
+  }
+  return row;
+}
+
+}  // namespace
+
+double SavingsRow::planned() const { return summary_of(planned_ms).median; }
+double SavingsRow::full() const { return summary_of(full_ms).median; }
+bool SavingsRow::pays() const { return planned() <= 1.05 * full() + 2; }
+
+std::vector<SavingsRow> run_savings(const SavingsArguments& arguments, const Progress& progress) {
+  std::vector<std::string> scenes = arguments.scenes;
+  if (scenes.empty()) {
+    for (const BuiltinScene& scene : builtin_scenes()) {
+      if (!scene.costly) scenes.push_back(scene.name);
+    }
+  }
+  Session session(arguments.options.device);
+  std::vector<SavingsRow> rows;
+  for (const std::string& name : scenes) {
+    Scene scene = load_scene({name});
+    for (const std::string& text : split_list(arguments.methods)) {
+      const Method method = parse_method(text, "--methods");
+      Scene unmarked = scene;
+      if (!tests_self(method)) {
+        for (Object& object : unmarked.objects) object.self = false;
+      }
+      if (!has_self(unmarked) && tests_self_alone(method)) continue;
+      rows.push_back(run_row(unmarked, method, arguments, session, progress));
+    }
+  }
+  return rows;
+}
+
+std::string savings_table(const std::vector<SavingsRow>& rows) {
+  Table table("llrrrrl");
+  table.add({"scene", "method", "planned ms", "full ms", "planned/full", "spread", ""});
+  for (const SavingsRow& row : rows) {
+    const auto [least, most] = std::minmax_element(row.planned_ms.begin(), row.planned_ms.end());
+    table.add({row.scene, to_string(row.method), fmt::format("{:.2f}", row.planned()),
+               fmt::format("{:.2f}", row.full()), fmt::format("{:.2f}", row.planned() / row.full()),
+               fmt::format("{:.2f}-{:.2f}", *least, *most),
+               std::string(row.same_pairs ? "" : "DIFFERENT PAIRS ") +
+                   (row.pays() ? "" : "slower than --full")});
+  }
+  return table.text() +
+         "\ncull + exact ms of the run as planned and of --full, medians; spread: of the planned "
+         "runs.\n";
+}
+
+nlohmann::ordered_json savings_json(const std::vector<SavingsRow>& rows,
+                                    const SavingsArguments& arguments) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const SavingsRow& row : rows) {
+    list.push_back({{"scene", row.scene},
+                    {"method", to_string(row.method)},
+                    {"planned_ms", row.planned_ms},
+                    {"full_ms", row.full_ms},
+                    {"ratio", row.planned() / row.full()},
+                    {"same_pairs", row.same_pairs},
+                    {"pays", row.pays()}});
+  }
+  return {{"experiment", "savings"},
+          {"repeat", arguments.repeat},
+          {"resolution", arguments.options.resolution},
+          {"commit", FARCULL_COMMIT},
+          {"rows", list}};
+}
+
+}  // namespace farcull
