@@ -1,0 +1,249 @@
+// The planner without a GL device: what is left out, that it is said, and that it changes no
+// answer.
+#include "experiments/planner.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/builtin_scenes.h"
+#include "experiments/family.h"
+#include "experiments/output.h"
+#include "experiments/savings.h"
+#include "tests/core/scenes.h"
+#include "tests/experiments/error_of.h"
+#include "tests/experiments/plan_lab.h"
+
+namespace farcull {
+namespace {
+
+using lab::not_followed;
+
+RunOptions on_cpu(Method method, bool full = false) {
+  RunOptions options;
+  options.method = method;
+  options.device = "cpu";
+  options.full = full;
+  return options;
+}
+
+RunRecord run(const Scene& scene, const RunOptions& options) {
+  Session session(options.device);
+  return run_scene(scene, options, session);
+}
+
+PlannedStep step(const std::vector<PlannedStep>& steps, const std::string& name) {
+  for (const PlannedStep& s : steps) {
+    if (s.name == name) return s;
+  }
+  ADD_FAILURE() << name << " is not in the plan";
+  return {};
+}
+
+TEST(Planner, LeavesTheDeviceOutWhereBoxesDecide) {
+  const Scene scene = make_builtin_scene("far-apart");
+  RunOptions far;
+  EXPECT_EQ(step(planned(scene, far), "device").decision, Decision::left_out);
+  far.full = true;
+  EXPECT_EQ(step(planned(scene, far), "device").decision, Decision::runs);
+  EXPECT_EQ(step(planned(scene, on_cpu(Method::far_pairs)), "views").decision, Decision::left_out);
+}
+
+TEST(Planner, SaysWhatItLeavesOut) {
+  const Scene scene = make_builtin_scene("two-spheres");
+  RunOptions far;
+  EXPECT_EQ(step(planned(scene, far), "exact offsets").decision, Decision::left_out);
+  EXPECT_EQ(step(planned(scene, far), "sub-object level").decision, Decision::left_out);
+  EXPECT_EQ(step(planned(scene, far), "self").decision, Decision::left_out);
+  EXPECT_EQ(step(planned(scene, far), "view x").decision, Decision::runs);
+  EXPECT_EQ(step(planned(scene, far), "view y").decision, Decision::depends);
+  far.offset = "exact";
+  EXPECT_EQ(step(planned(scene, far), "exact offsets").decision, Decision::depends);
+  far.verify = false;
+  EXPECT_EQ(step(planned(scene, far), "accounting").decision, Decision::left_out);
+  // What promises nothing runs as published: its answer would change with a view.
+  far = {};
+  far.method = Method::cullide;
+  EXPECT_EQ(step(planned(scene, far), "view y").decision, Decision::runs);
+}
+
+TEST(Planner, IsTheSameTwiceAndNamesEveryStepInJson) {
+  const Scene scene = make_builtin_scene("crowd");
+  for (const Method method : all_methods()) {
+    if (tests_self_alone(method)) continue;
+    RunOptions options;
+    options.method = method;
+    const nlohmann::ordered_json once = plan_json(scene, options, planned(scene, options));
+    EXPECT_EQ(once, plan_json(scene, options, planned(scene, options)));
+    EXPECT_EQ(once["steps"].size(), planned(scene, options).size());
+    for (const auto& s : once["steps"]) EXPECT_FALSE(s["reason"].get<std::string>().empty());
+  }
+}
+
+TEST(Planner, RefusesWhatTheMethodHasNoUseFor) {
+  Scene scene = make_builtin_scene("two-spheres");
+  RunOptions options;
+  options.method = Method::s_cullide;
+  EXPECT_EQ(error_of([&] { planned(scene, options); }).where, "two-spheres");
+  for (Object& object : scene.objects) object.self = true;
+  EXPECT_NO_THROW(planned(scene, options));
+  options.method = Method::far;
+  EXPECT_EQ(error_of([&] { planned(scene, options); }).where, "two-spheres");
+}
+
+TEST(Planner, RunsFollowIt) {
+  for (const char* name : {"two-spheres", "far-apart", "crowd", "degenerate"}) {
+    for (const bool self : {false, true}) {
+      Scene scene = make_builtin_scene(name);
+      for (Object& object : scene.objects) object.self = self;
+      for (const Method method : {Method::far_pairs, Method::i_collide, Method::exact}) {
+        for (const bool full : {false, true}) {
+          const RunOptions options = on_cpu(method, full);
+          EXPECT_EQ(not_followed(planned(scene, options), run(scene, options)), "")
+              << name << " " << to_string(method) << " full " << full << " self " << self;
+        }
+      }
+    }
+  }
+}
+
+TEST(Planner, ARunThatDoesNotFollowIsNoticed) {
+  const Scene scene = make_builtin_scene("far-apart");
+  const RunRecord record = run(scene, on_cpu(Method::far_pairs));
+  EXPECT_NE(not_followed(planned(scene, on_cpu(Method::far_pairs, true)), record), "");
+  RunOptions unverified = on_cpu(Method::far_pairs);
+  unverified.verify = false;
+  EXPECT_EQ(not_followed(planned(scene, unverified), record), "accounting");
+}
+
+// The guarantee of the planner: what is left out changes no answer.
+RC_GTEST_PROP(Planner, FullFindsTheSamePairs, ()) {
+  Scene scene = lab::random_scene(*rc::gen::arbitrary<std::uint64_t>());
+  const bool self = *rc::gen::arbitrary<bool>();
+  for (Object& object : scene.objects) object.self = self;
+  const RunRecord exact = run(scene, on_cpu(Method::exact));
+  for (const Method method : {Method::far_pairs, Method::i_collide}) {
+    for (const bool full : {false, true}) {
+      const RunRecord record = run(scene, on_cpu(method, full));
+      RC_ASSERT(record.pairs == exact.pairs);
+      RC_ASSERT(record.neighbour_pairs == exact.neighbour_pairs);
+      RC_ASSERT(record.verification->false_negatives == 0u);
+    }
+  }
+}
+
+TEST(Planner, FullTakesEverything) {
+  const Scene scene = make_builtin_scene("far-apart");
+  const RunRecord record = run(scene, on_cpu(Method::far_pairs, true));
+  EXPECT_EQ(record.stages.front().name, "setup");
+  for (const Stage& stage : record.stages) {
+    if (stage.name == "boxes") EXPECT_EQ(stage.out, scene.triangles.size());
+  }
+  EXPECT_EQ(record.pair_views.size(), 3u);
+}
+
+TEST(ICollide, FindsThePairsOfExactAndKeepsEveryBoxPair) {
+  for (const char* name : {"two-spheres", "crowd", "degenerate", "far-apart"}) {
+    for (const bool self : {false, true}) {
+      Scene scene = make_builtin_scene(name);
+      for (Object& object : scene.objects) object.self = self;
+      const RunRecord swept = run(scene, on_cpu(Method::i_collide));
+      const RunRecord exact = run(scene, on_cpu(Method::exact));
+      EXPECT_EQ(swept.pairs, exact.pairs) << name;
+      EXPECT_EQ(swept.neighbour_pairs, exact.neighbour_pairs) << name;
+      EXPECT_EQ(swept.candidate_pairs, exact.candidate_pairs) << name;
+      EXPECT_TRUE(swept.promises);
+      EXPECT_FALSE(broken(swept, true));
+    }
+  }
+}
+
+TEST(ICollide, TheSweepOfASessionServesAnyScene) {
+  Session session("cpu");
+  for (const char* name : {"crowd", "two-spheres", "crowd", "far-apart", "crowd"}) {
+    const Scene scene = make_builtin_scene(name);
+    const RunRecord kept = run_scene(scene, on_cpu(Method::i_collide), session);
+    EXPECT_EQ(kept.pairs, run(scene, on_cpu(Method::exact)).pairs) << name;
+  }
+}
+
+TEST(Savings, ComparesTheSamePairsAndCountsEveryRun) {
+  SavingsArguments arguments;
+  arguments.scenes = {"far-apart", "crowd"};
+  arguments.methods = "far-pairs,i-collide";
+  arguments.repeat = 3;
+  arguments.options.device = "cpu";
+  const std::vector<SavingsRow> rows = run_savings(arguments);
+  ASSERT_EQ(rows.size(), 4u);
+  for (const SavingsRow& row : rows) {
+    EXPECT_TRUE(row.same_pairs);
+    EXPECT_EQ(row.planned_ms.size(), 3u);
+    EXPECT_EQ(row.full_ms.size(), 3u);
+  }
+  EXPECT_EQ(savings_json(rows, arguments)["rows"].size(), 4u);
+}
+
+TEST(Savings, PaysUpToTheMarginAndNotBeyond) {
+  SavingsRow row{.scene = "", .planned_ms = {102.9, 107, 200}, .full_ms = {50, 100, 300}};
+  EXPECT_TRUE(row.pays());  // 1.05 * 100 + 2
+  row.planned_ms[1] = 107.1;
+  EXPECT_FALSE(row.pays());
+}
+
+FamilyArguments small_family() {
+  FamilyArguments arguments;
+  arguments.scenes = {"two-spheres"};
+  arguments.methods = "far-pairs,i-collide,exact,s-cullide";
+  arguments.range = {0, 3};
+  arguments.options.device = "cpu";
+  return arguments;
+}
+
+TEST(Family, HasARowForEachFrameAndTheFactorAgainstBoxes) {
+  const FamilyArguments arguments = small_family();
+  const std::vector<FamilyCell> cells = run_family(arguments);
+  ASSERT_EQ(cells.size(), 3u);  // s-cullide has no question to ask
+  for (const FamilyCell& cell : cells) {
+    ASSERT_EQ(cell.frames.size(), 4u);
+    EXPECT_EQ(cell.missed(), 0u);
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_EQ(cell.frames[i].colliding, cells.back().frames[i].colliding);
+      EXPECT_GT(cell.frames[i].ms, 0);
+    }
+  }
+  const std::string csv = family_csv(cells);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 13);
+  // far-pairs first, frame 0: i-collide keeps at least as much.
+  const std::string row = csv.substr(csv.find('\n') + 1, csv.find('\n', csv.find('\n') + 1));
+  EXPECT_TRUE(row.starts_with("two-spheres,far-pairs,,0,"));
+  const FamilyFrame &ours = cells[0].frames[0], &boxes = cells[1].frames[0];
+  EXPECT_GE(boxes.pcs_triangles, ours.pcs_triangles);
+  EXPECT_GE(boxes.candidates, ours.candidates);
+  EXPECT_EQ(family_json(cells, arguments)["cells"].size(), 3u);
+  EXPECT_NE(family_table(cells).find("i-collide"), std::string::npos);
+}
+
+TEST(Family, ScenesOfThePapersCarryTheirRates) {
+  EXPECT_EQ(paper_rate("tree-leaves:10").fps, 15);
+  EXPECT_EQ(paper_rate("bunny-dragon").fps, 15);
+  EXPECT_EQ(paper_rate("cloth:800:1e4").fps, 13);
+  EXPECT_EQ(paper_rate("two-spheres").fps, 0);
+}
+
+TEST(Family, RefusesWhatDoesNotMove) {
+  FamilyArguments arguments = small_family();
+  arguments.scenes = {"two-tori"};
+  EXPECT_EQ(error_of([&] { run_family(arguments); }).where, "--frames");
+}
+
+TEST(Methods, NamesGoBothWaysAndUnknownOnesAreRefused) {
+  for (const Method method : all_methods()) EXPECT_EQ(parse_method(to_string(method)), method);
+  const Error error = error_of([] { parse_method("nope"); });
+  EXPECT_EQ(error.where, "--method");
+  for (const Method method : all_methods())
+    EXPECT_NE(error.remedy.find(to_string(method)), std::string::npos);
+}
+
+}  // namespace
+}  // namespace farcull
