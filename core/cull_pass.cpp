@@ -58,9 +58,9 @@ class PassBuilder {
   }
 
  private:
-  bool applies(const bool (&table)[2][2], std::size_t item) const {
-    const std::uint8_t bits = state_.bits[items_[item]];
-    return bits != kCulled && table[(bits & ask_) != 0][(bits & ~ask_) != 0];
+  bool asks(std::size_t item) const { return rule_.asks[ask_ == kL][state_.bits[items_[item]]]; }
+  bool stores(std::size_t item) const {
+    return rule_.stores[ask_ == kL][state_.bits[items_[item]]];
   }
 
   void ask_owner(std::size_t from, std::size_t to) {
@@ -68,7 +68,7 @@ class PassBuilder {
     std::uint32_t group = 0;
     bool first = true;
     for (std::size_t i = from; i < to; ++i) {
-      if (undrawable_[i] || !applies(rule_.asks, i)) continue;
+      if (undrawable_[i] || !asks(i)) continue;
       const auto item = static_cast<std::uint32_t>(i);
       if (!anything_stored_ || drawables_.first[i] == drawables_.first[i + 1]) {
         undrawn_.push_back(item);
@@ -87,7 +87,7 @@ class PassBuilder {
   void store_owner(std::size_t from, std::size_t to) {
     const Step step{Verb::store, static_cast<std::uint32_t>(pass_.draws.size()), 0};
     for (std::size_t i = from; i < to; ++i) {
-      if (!applies(rule_.stores, i)) continue;
+      if (!stores(i)) continue;
       if (undrawable_[i]) {
         pass_.draws.push_back({kEverywhere, 0});
       } else {

@@ -14,15 +14,23 @@ namespace farcull {
 
 enum Bit : std::uint8_t { kF = 1, kL = 2, kCulled = kF | kL };
 
-/// Which live triangles a pass asks and stores, by [has the bit that is asked][has the other bit].
+/// Which live triangles a pass asks and stores: by [first, second pass][visibility set, as bits:
+/// NFV, FFV, SFV, BFV].
 struct PassRule {
-  bool asks[2][2];
-  bool stores[2][2];
+  bool asks[2][4];
+  bool stores[2][4];
   bool forgets;  // every level begins without bits
 };
-constexpr PassRule kPlainRule = {{{true, true}, {true, true}}, {{true, true}, {true, true}}, true};
+constexpr PassRule kPlainRule = {
+    .asks = {{true, true, true, false}, {true, true, true, false}},
+    .stores = {{true, true, true, false}, {true, true, true, false}},
+    .forgets = true,
+};
 constexpr PassRule kQuickRule = {
-    {{true, true}, {false, false}}, {{true, false}, {true, false}}, false};
+    .asks = {{true, false, true, false}, {true, true, false, false}},
+    .stores = {{true, true, false, false}, {true, false, true, false}},
+    .forgets = false,
+};
 
 /// A level asks once for all open triangles of a group; groups stand together inside an owner.
 struct Level {

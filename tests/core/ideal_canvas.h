@@ -1,6 +1,7 @@
 // A canvas without errors of its own, for tests of what culling does with the answers: coverage is
-// decided in double at the pixel centre, closed edges; depth is the solid's interval under the
-// depth map of core/canvas.h, in float. Its faults, one at a time, are for tests that must fail.
+// decided in double at the pixel centre, closed edges; depth is the solid's interval, or that of
+// the triangle's plane (fixed depth), under the depth map of core/canvas.h, in float. Its faults,
+// one at a time, are for tests that must fail.
 #pragma once
 
 #include <algorithm>
@@ -16,6 +17,7 @@ namespace farcull {
 enum class CanvasFault {
   none,
   greater,            // asks with GREATER instead of GEQUAL
+  swapped,            // asks with LEQUAL, where something is stored
   drops_first_store,  // of every pass
   nothing_everywhere  // kEverywhere draws nothing
 };
@@ -32,13 +34,15 @@ class IdealCanvas : public Canvas {
   const RasterLimits& limits() const override { return limits_; }
 
   void begin(const Window& window, const Drawables& drawables) override {
-    if (drawables.mode != DepthMode::fragment) throw std::logic_error("IdealCanvas: proxies only");
     width_ = window.width;
     height_ = window.height;
     const float scale = depth_scale(window);
     fragments_.assign(drawables.elements(), {});
-    for (std::size_t e = 0; e < drawables.elements(); ++e)
-      fragments_[e] = rasterize(drawables.proxies[e], scale);
+    for (std::size_t e = 0; e < drawables.elements(); ++e) {
+      fragments_[e] = drawables.mode == DepthMode::fragment
+                          ? rasterize(drawables.proxies[e], scale)
+                          : rasterize(drawables.triangles[e], scale);
+    }
   }
 
   std::vector<std::uint8_t> run(const Pass& pass) override {
@@ -52,7 +56,7 @@ class IdealCanvas : public Canvas {
         if (step.verb == Verb::store) {
           store(draw, stored);
         } else {
-          seen.at(draw.slot) |= sees(draw, stored);
+          seen.at(draw.slot) |= sees(draw, stored, pass.touching);
         }
       }
     }
@@ -65,16 +69,18 @@ class IdealCanvas : public Canvas {
     float entry, exit;
   };
 
+  // The pixels of a side whose centres may lie in [lo, hi].
+  static int first(float lo, int side) {
+    return std::max(0, static_cast<int>(std::floor(lo)) + side / 2);
+  }
+  static int last(float hi, int side) {
+    return std::min(side - 1, static_cast<int>(std::ceil(hi)) + side / 2);
+  }
+
   std::vector<Fragment> rasterize(const Proxy& proxy, float scale) const {
     const auto& c = proxy.corners;
     const auto [x0, x1] = std::minmax({c[0], c[2], c[4], c[6]});
     const auto [y0, y1] = std::minmax({c[1], c[3], c[5], c[7]});
-    const auto first = [](float lo, int side) {
-      return std::max(0, static_cast<int>(std::floor(lo)) + side / 2);
-    };
-    const auto last = [](float hi, int side) {
-      return std::min(side - 1, static_cast<int>(std::ceil(hi)) + side / 2);
-    };
     const auto map = [scale](float z) {
       const float product = z * scale;
       return std::clamp(0.5f + product, 0.25f, 0.75f);
@@ -89,6 +95,31 @@ class IdealCanvas : public Canvas {
           continue;
         }
         out.push_back({static_cast<std::size_t>(j) * width_ + i, map(entry), map(exit)});
+      }
+    }
+    return out;
+  }
+
+  // Of a triangle at fixed depth; seen from its edge it covers nothing.
+  std::vector<Fragment> rasterize(const std::array<float, 12>& t, float scale) const {
+    const auto cross = [](double ax, double ay, double bx, double by, double px, double py) {
+      return (bx - ax) * (py - ay) - (by - ay) * (px - ax);
+    };
+    const double area = cross(t[0], t[1], t[4], t[5], t[8], t[9]);
+    std::vector<Fragment> out;
+    if (area == 0) return out;
+    const auto [x0, x1] = std::minmax({t[0], t[4], t[8]});
+    const auto [y0, y1] = std::minmax({t[1], t[5], t[9]});
+    for (int j = first(y0, height_); j <= last(y1, height_); ++j) {
+      for (int i = first(x0, width_); i <= last(x1, width_); ++i) {
+        const double x = i - width_ / 2 + 0.5, y = j - height_ / 2 + 0.5;
+        const double a = cross(t[4], t[5], t[8], t[9], x, y) / area;
+        const double b = cross(t[8], t[9], t[0], t[1], x, y) / area;
+        const double c = cross(t[0], t[1], t[4], t[5], x, y) / area;
+        if (a < 0 || b < 0 || c < 0) continue;
+        const auto z = static_cast<float>(a * t[2] + b * t[6] + c * t[10]);
+        const float mapped = 0.5f + z * scale;
+        out.push_back({static_cast<std::size_t>(j) * width_ + i, mapped, mapped});
       }
     }
     return out;
@@ -115,11 +146,14 @@ class IdealCanvas : public Canvas {
       stored[f.pixel] = std::min(stored[f.pixel], f.entry);
   }
 
-  bool sees(const Draw& draw, const std::vector<float>& stored) const {
+  bool sees(const Draw& draw, const std::vector<float>& stored, bool touching) const {
     if (draw.element == kEverywhere) return fault_ != CanvasFault::nothing_everywhere;
     const auto& fragments = fragments_.at(draw.element);
     return std::any_of(fragments.begin(), fragments.end(), [&](const Fragment& f) {
-      return fault_ == CanvasFault::greater ? f.exit > stored[f.pixel] : f.exit >= stored[f.pixel];
+      const float behind = stored[f.pixel];
+      if (fault_ == CanvasFault::swapped) return behind < 1 && f.exit <= behind;
+      if (fault_ == CanvasFault::greater || !touching) return f.exit > behind;
+      return f.exit >= behind;
     });
   }
 
