@@ -107,16 +107,30 @@ std::string moving_names() {
   return names;
 }
 
-MovingScene::MovingScene(const std::string& name, long frames, long first, bool self)
-    : frames_(frames), first_(first), self_(self) {
-  assert(frames >= 1 && first >= 0);
-  const SceneRequest request = parse_scene_name(name);
+namespace {
+
+BuiltScene built_for(const SceneRequest& request, const std::string& name) {
   if (request.entry->motion.empty())
     throw Error(name, "nothing in the scene moves", "name one of " + moving_names());
   BuiltScene built = request.entry->build(request.parameters);
-  plain_ = std::move(built.scene);
-  plain_.name = name;
-  motion_ = std::move(built.motion);
+  built.scene.name = name;
+  return built;
+}
+
+}  // namespace
+
+MovingScene::MovingScene(BuiltScene built, long frames, long first, bool self)
+    : frames_(frames),
+      first_(first),
+      self_(self),
+      motion_(std::move(built.motion)),
+      plain_(std::move(built.scene)) {
+  assert(frames >= 1 && first >= 0 && motion_);
+}
+
+MovingScene::MovingScene(const std::string& name, long frames, long first, bool self)
+    : MovingScene(built_for(parse_scene_name(name), name), frames, first, self) {
+  const SceneRequest request = parse_scene_name(name);
   if (request.suffixes.empty()) return;
   changed_ = plain_;
   for (const SceneSuffix* suffix : request.suffixes) {

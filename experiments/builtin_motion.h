@@ -25,6 +25,8 @@ class MovingScene {
   /// against itself, besides those that are anyway. Throws Error as make_builtin_scene(), and where
   /// nothing moves.
   explicit MovingScene(const std::string& name, long frames, long first = 0, bool self = false);
+  /// The same for a scene that is not built in. Precondition: it has a motion.
+  explicit MovingScene(BuiltScene built, long frames, long first = 0, bool self = false);
 
   /// The scene at a frame of the range, validated: the same object each time, and the same memory
   /// of triangles and vertices where the topology is that of the call before. What suffixes do is

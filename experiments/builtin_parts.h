@@ -35,6 +35,8 @@ BuiltScene make_tree_leaves(const SceneParameters& parameters, std::uint64_t see
 BuiltScene make_shells(const SceneParameters& parameters, std::uint64_t seed);
 /// Between neighbours in the stack of make_shells(), all over their surface.
 inline constexpr double kShellGap = 0x1p-34;
+/// size: triangles of the cloth, as near as a square grid comes; second: stiffness, N/m.
+BuiltScene make_cloth(const SceneParameters& parameters);
 /// size: triangles of the dragon. These throw Error where a packaged mesh cannot be read.
 BuiltScene make_bunny_dragon(const SceneParameters& parameters);
 BuiltScene make_breaking_dragon(const SceneParameters& parameters, std::uint64_t seed);

@@ -44,6 +44,12 @@ BuiltinScene made(BuiltinScene entry, Scene (*make)(), Motion (*moved)(const Sce
   return entry;
 }
 
+// One that takes numbers, and of which nothing is drawn.
+BuiltinScene taking(BuiltinScene entry, BuiltScene (*build)(const SceneParameters&)) {
+  entry.build = build;
+  return entry;
+}
+
 // The same for what is drawn with a seed, which the entry records.
 template <class Make>
 BuiltinScene drawn(BuiltinScene entry, std::uint64_t seed, Make make) {
@@ -234,6 +240,15 @@ const std::vector<BuiltinScene>& builtin_scenes() {
              .size = SceneSize{"sheets", 4, 10'000, 16},
              .motion = "waves run through the stack while the others tilt"},
             12, make_shells),
+      taking({.name = "cloth",
+              .description = "a cloth above a sphere, against itself as well (FAR)",
+              .objects = 2,
+              .triangles = 25'120,
+              .size = SceneSize{"triangles of the cloth", 8, 2'000'000, 20'000},
+              .second = SceneSecond{"stiffness in N/m", 1e2, 1e8, 1e4},
+              .motion = "it falls on the sphere and folds over itself; a frame is a time step",
+              .costly = true},
+             make_cloth),
       made({.name = "two-bunnies",
             .description = "two interpenetrating Stanford bunnies",
             .objects = 2,
@@ -283,18 +298,14 @@ const std::vector<BuiltinScene>& builtin_scenes() {
             .triangles = 75408,
             .needs_meshes = true},
            make_bunny),
-      [] {
-        BuiltinScene entry{
-            .name = "bunny-dragon",
-            .description = "bunny and dragon, its triangles divided (CULLIDE, FAR)",
-            .objects = 2,
-            .triangles = 325'408,
-            .needs_meshes = true,
-            .size = SceneSize{"triangles of the dragon", kPackagedDragon, 100'000'000, 250'000},
-            .motion = "the bunny falls through the dragon"};
-        entry.build = make_bunny_dragon;
-        return entry;
-      }(),
+      taking({.name = "bunny-dragon",
+              .description = "bunny and dragon, its triangles divided (CULLIDE, FAR)",
+              .objects = 2,
+              .triangles = 325'408,
+              .needs_meshes = true,
+              .size = SceneSize{"triangles of the dragon", kPackagedDragon, 100'000'000, 250'000},
+              .motion = "the bunny falls through the dragon"},
+             make_bunny_dragon),
       drawn({.name = "breaking-dragon",
              .description = "a dragon that breaks into 200 pieces (CULLIDE)",
              .objects = 121,

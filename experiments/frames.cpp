@@ -271,6 +271,8 @@ FrameSource::FrameSource(std::vector<std::string> arguments, FrameRange range, b
   }
 }
 
+FrameSource::FrameSource(MovingScene moving) : built_in_(std::move(moving)) {}
+
 const Scene& FrameSource::at(long frame) {
   if (!built_in_) {
     meshes_.set_frame(frame);
@@ -314,6 +316,11 @@ FramesResult run_frames(const std::vector<std::string>& arguments, const FramesQ
                         const Progress& progress) {
   if (progress) progress("reading the scene");
   FrameSource source(arguments, question.range, question.self);
+  return run_frames(source, question, progress);
+}
+
+FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
+                        const Progress& progress) {
   Session session(question.options.device);
   FramesResult out;
   std::vector<double> times;

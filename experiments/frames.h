@@ -35,6 +35,8 @@ class FrameSource {
   /// tested against itself. Throws Error where nothing moves, where a file of some frame does not
   /// exist, or as load_scene() does.
   FrameSource(std::vector<std::string> arguments, FrameRange range, bool self);
+  /// A scene that is not named, whose frames the range has to be.
+  explicit FrameSource(MovingScene moving);
 
   /// The scene at a frame of the range; the same object each time, and the same memory of triangles
   /// where the topology is that of the call before. Throws Error naming the file where a mesh
@@ -49,7 +51,7 @@ class FrameSource {
 
  private:
   std::vector<std::string> arguments_;
-  bool self_;
+  bool self_ = false;
   std::optional<MovingScene> built_in_;
   MeshCache meshes_;
   Scene scene_;  // of meshes, as it is now
@@ -88,6 +90,9 @@ struct FramesResult {
 /// on standard error that says how many frames were done; nothing is written before the last frame.
 /// Throws Error as FrameSource and run_scene() do.
 FramesResult run_frames(const std::vector<std::string>& scene, const FramesQuestion& question,
+                        const Progress& progress = {});
+/// The same of a source; question.self is not looked at.
+FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
                         const Progress& progress = {});
 
 }  // namespace farcull

@@ -124,6 +124,7 @@ TEST(BuiltinScenes, AreWhatTheirEntrySays) {
                            "torii",
                            "tree-leaves",
                            "shells",
+                           "cloth",
                            "bunny-dragon",
                            "breaking-dragon"}) {
     EXPECT_TRUE(names.contains(name)) << name;

@@ -26,7 +26,7 @@ TEST(GlMovingScenes, FarPairsMissNothingInAnyFrame) {
     SCOPED_TRACE(name);
     FramesQuestion question;
     question.options.method = Method::far_pairs;
-    question.range = {0, kFrames - 1};
+    question.range = {lab::first_frame(name), lab::first_frame(name) + kFrames - 1};
     question.pairs = true;
     question.options.device = "software";
     const FramesResult gl = run_frames({name}, question);

@@ -35,6 +35,9 @@ inline std::vector<std::string> moving_scenes(bool of_packaged_meshes) {
   return names;
 }
 
+/// The first of kFrames frames in which something collides.
+inline long first_frame(const std::string& name) { return name.starts_with("cloth") ? 30 : 0; }
+
 /// Two objects of 60 triangles each on 50 vertices each, in a cube, whose indices are drawn again
 /// for each frame: the numbers of everything, the vertices and the objects stay.
 class Reconnected {

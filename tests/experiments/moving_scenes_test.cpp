@@ -53,15 +53,16 @@ bool same_topology(const Scene& a, const Scene& b) {
 // Moves, stays the same object and where promised the same memory, and forgets what was before.
 void expect_motion(const std::string& name) {
   SCOPED_TRACE(name);
-  MovingScene moving(name, kFrames);
-  const Scene& scene = moving.at(0);
+  const long first = lab::first_frame(name);
+  MovingScene moving(name, kFrames, first);
+  const Scene& scene = moving.at(first);
   std::vector<Scene> frames;
   std::set<std::string> hashes;
   bool changes = false;
   for (long frame = 0; frame < kFrames; ++frame) {
     const auto* const vertices = scene.vertices.data();
     const auto* const triangles = scene.triangles.data();
-    EXPECT_EQ(&moving.at(frame), &scene);
+    EXPECT_EQ(&moving.at(first + frame), &scene);
     EXPECT_EQ(scene.name, name);
     if (frame > 0 && !same_topology(frames.back(), scene)) {
       changes = true;
@@ -75,9 +76,9 @@ void expect_motion(const std::string& name) {
   EXPECT_EQ(changes, entry_of(name).topology_changes);
   EXPECT_GT(hashes.size(), static_cast<std::size_t>(kFrames / 2)) << "hardly moves";
   for (const long frame : {5L, 2L, 6L}) {
-    EXPECT_EQ(scene_hash(moving.at(frame)), scene_hash(frames[static_cast<std::size_t>(frame)]));
-    EXPECT_EQ(scene_hash(MovingScene(name, kFrames).at(frame)),
-              scene_hash(frames[static_cast<std::size_t>(frame)]));
+    const std::string hash = scene_hash(frames[static_cast<std::size_t>(frame)]);
+    EXPECT_EQ(scene_hash(moving.at(first + frame)), hash);
+    EXPECT_EQ(scene_hash(MovingScene(name, kFrames, first).at(first + frame)), hash);
   }
 }
 
@@ -85,7 +86,7 @@ FramesResult frames_of(const std::string& name, Method method) {
   FramesQuestion question;
   question.options.method = method;
   question.options.device = "cpu";
-  question.range = {0, kFrames - 1};
+  question.range = {lab::first_frame(name), lab::first_frame(name) + kFrames - 1};
   question.pairs = true;
   return run_frames({name}, question);
 }
@@ -164,6 +165,63 @@ TEST(MovingScenes, APathDependsOnItsPartOfTheRange) {
   MovingScene five("cylinders:3", 5), nine("cylinders:3", 9, 100);
   for (long frame = 0; frame < 5; ++frame)
     EXPECT_EQ(scene_hash(five.at(frame)), scene_hash(nine.at(100 + 2 * frame)));
+}
+
+TEST(MovingScenes, ASimulationDependsOnTheNumberOfItsFrame) {
+  MovingScene few("cloth:200:1e3", 3, 10), many("cloth:200:1e3", 20);
+  for (long frame = 10; frame < 13; ++frame) {
+    EXPECT_EQ(scene_hash(few.at(frame)), scene_hash(many.at(frame)));
+    EXPECT_EQ(few.notes(), many.notes());
+  }
+  MovingScene stiff("cloth:200:1e6", 20);
+  EXPECT_NE(scene_hash(stiff.at(12)), scene_hash(many.at(12)));
+  EXPECT_TRUE(few.at(11).objects[0].self);
+  EXPECT_FALSE(few.at(11).objects[1].self);
+  EXPECT_EQ(few.warning(), "");
+  const FramesResult result = frames_of("cloth:200:1e3", Method::far_pairs);
+  for (const auto& frame : result.json["frames"]) {
+    double sum = 0;
+    for (const char* part : {"kinetic J", "elastic J", "bending J", "gravitational J", "contact J"})
+      sum += frame["motion"][part].get<double>();
+    EXPECT_NEAR(sum, frame["motion"]["total J"].get<double>(), 8 * 0x1p-53);  // of parts below 1
+    EXPECT_EQ(frame["motion"]["converged"], 1);
+    EXPECT_GT(frame["motion"]["iterations"], 0);
+  }
+  EXPECT_NE(result.table.find("residual N"), std::string::npos);
+}
+
+// Two triangles, one of which falls; it has something to say of some frames.
+TEST(MovingScenes, NotesAndWarningsReachTheRecordAndTheTable) {
+  BuiltScene built;
+  built.scene.name = "noted";
+  built.scene.vertices = {{0, 0, 0},     {1, 0, 0},     {0, 1, 0},
+                          {0.1, 0.1, 1}, {0.5, 0.1, 1}, {0.1, 0.1, 2}};
+  built.scene.triangles = {{0, 1, 2}, {3, 4, 5}};
+  built.scene.source_face = {0, 0};
+  built.scene.objects = {{"floor", 0, 1}, {"falling", 1, 1}};
+  built.motion = [rest = built.scene.vertices](const Instant& now, Scene& out, FrameNotes& notes) {
+    for (std::size_t v = 3; v < 6; ++v) out.vertices[v].z() = rest[v].z() - 3 * now.time;
+    notes.values = {{"height", 1 - 3 * now.time}, {"odd", now.frame % 2 ? 1.0 : NAN}};
+    if (now.frame >= 2) notes.warning = "it fell far";
+    if (now.frame == 4) notes.warning = "it fell through";
+  };
+  FrameSource source{MovingScene(built, 5)};
+  FramesQuestion question;
+  question.options.method = Method::exact;
+  question.range = {0, 4};
+  const FramesResult result = run_frames(source, question);
+  const auto& frames = result.json["frames"];
+  EXPECT_EQ(frames[1]["motion"]["height"], 1 - 3 * 0.25);
+  EXPECT_EQ(frames[1]["motion"]["odd"], 1);
+  EXPECT_EQ(nlohmann::json::parse(result.json.dump())["frames"][0]["motion"]["odd"], nullptr);
+  EXPECT_EQ(frames[1]["warning"], nullptr);
+  EXPECT_EQ(frames[3]["warning"], "it fell far");
+  EXPECT_EQ(frames[2]["colliding_pairs"], 1);
+  EXPECT_NE(result.table.find("height"), std::string::npos);
+  EXPECT_NE(result.table.find("\nwarning  it fell far (frame 2 and 1 more)\n"
+                              "warning  it fell through (frame 4)\n"),
+            std::string::npos);
+  EXPECT_TRUE(result.table.ends_with("(frame 4)\n"));
 }
 
 TEST(MovingScenes, SizesAreThoseOfTheirNames) {
