@@ -18,31 +18,26 @@ constexpr double kShrinks = 0.5;      // a round that shrinks the change to this
 constexpr double kLoose = 0.1;        // tolerance of a round but the last, over the weight
 constexpr double kSettled = 0.01;     // tensions that change by less, over the weight, are settled
 
-// Nested dissection (George 1973): the middle two rows or columns of a part come after its halves.
-// Two, as hinges reach two cells far.
-void dissect(std::uint32_t side, std::uint32_t i0, std::uint32_t i1, std::uint32_t j0,
-             std::uint32_t j1, std::uint32_t& next, std::vector<std::uint32_t>& places) {
-  const auto number = [&](std::uint32_t from_i, std::uint32_t to_i, std::uint32_t from_j,
-                          std::uint32_t to_j) {
-    for (std::uint32_t j = from_j; j < to_j; ++j) {
-      for (std::uint32_t i = from_i; i < to_i; ++i) places[j * side + i] = next++;
+// The lower triangle, with the values that no x changes.
+Eigen::SparseMatrix<double> pattern(const Model& model, const std::vector<std::uint32_t>& places) {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto couple = [&](std::uint32_t a, std::uint32_t b, const Block& block) {
+    const auto row = static_cast<int>(3 * std::max(places[a], places[b]));
+    const auto column = static_cast<int>(3 * std::min(places[a], places[b]));
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) {
+        if (row + r >= column + c) entries.emplace_back(row + r, column + c, block(r, c));
+      }
     }
   };
-  const std::uint32_t width = i1 - i0;
-  const std::uint32_t height = j1 - j0;
-  if (width <= 4 && height <= 4) {
-    number(i0, i1, j0, j1);
-  } else if (width >= height) {
-    const std::uint32_t middle = i0 + width / 2 - 1;
-    dissect(side, i0, middle, j0, j1, next, places);
-    dissect(side, middle + 2, i1, j0, j1, next, places);
-    number(middle, middle + 2, j0, j1);
-  } else {
-    const std::uint32_t middle = j0 + height / 2 - 1;
-    dissect(side, i0, i1, j0, middle, next, places);
-    dissect(side, i0, i1, middle + 2, j1, next, places);
-    number(i0, i1, middle, middle + 2);
+  for_constant_blocks(model, couple);
+  for (const Spring& spring : model.springs) {
+    couple(spring.vertices[0], spring.vertices[1], Block::Zero());
   }
+  const auto size = static_cast<Eigen::Index>(3 * model.mass.size());
+  Eigen::SparseMatrix<double> matrix(size, size);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
 }
 
 double largest_force(const Eigen::VectorXd& gradient) {
@@ -57,41 +52,22 @@ double largest_force(const Eigen::VectorXd& gradient) {
 
 }  // namespace
 
-Solver::Solver(const Model& model) : model_(model) {
-  const std::uint32_t side = model.cells + 1;
-  places_.resize(model.mass.size());
-  std::uint32_t next = 0;
-  dissect(side, 0, side, 0, side, next, places_);
-
-  std::vector<Eigen::Triplet<double>> entries;
-  const auto couple = [&](std::uint32_t a, std::uint32_t b, const Block& block) {
-    const auto row = static_cast<int>(3 * std::max(places_[a], places_[b]));
-    const auto column = static_cast<int>(3 * std::min(places_[a], places_[b]));
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) {
-        if (row + r >= column + c) entries.emplace_back(row + r, column + c, block(r, c));
-      }
-    }
-  };
-  for_constant_blocks(model, couple);
-  for (const Spring& spring : model.springs) {
-    couple(spring.vertices[0], spring.vertices[1], Block::Zero());
-  }
-  const auto size = static_cast<Eigen::Index>(3 * model.mass.size());
-  matrix_.resize(size, size);
-  matrix_.setFromTriplets(entries.begin(), entries.end());
+Solver::Solver(const Model& model)
+    : model_(model),
+      dissection_(dissect(model.cells + 1)),
+      matrix_(pattern(model, dissection_.places)),
+      factor_(dissection_, matrix_) {
   constant_.assign(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros());
   for (std::uint32_t v = 0; v < model.mass.size(); ++v) vertex_slots_.push_back(slot(v, v));
   for (const Spring& spring : model.springs) {
     spring_slots_.push_back(slot(spring.vertices[0], spring.vertices[1]));
   }
   tensions_.assign(model.springs.size(), Vec3::Zero());
-  factor_.analyzePattern(matrix_);
 }
 
 Solver::Slot Solver::slot(std::uint32_t a, std::uint32_t b) const {
-  const auto row = static_cast<int>(3 * std::max(places_[a], places_[b]));
-  const auto column = static_cast<int>(3 * std::min(places_[a], places_[b]));
+  const auto row = static_cast<int>(3 * std::max(dissection_.places[a], dissection_.places[b]));
+  const auto column = static_cast<int>(3 * std::min(dissection_.places[a], dissection_.places[b]));
   const int* const rows = matrix_.innerIndexPtr();
   Slot result{};
   for (int c = 0; c < 3; ++c) {
@@ -137,15 +113,14 @@ double Solver::tolerance(const Eigen::VectorXd& x) const {
 
 // Newton's direction; false where there is none.
 bool Solver::direction(const Step& step, const Minimum& best, Eigen::VectorXd& result) {
-  factor_.factorize(hessian(step, best.x));
-  if (factor_.info() != Eigen::Success) return false;
+  if (!factor_.factorize(hessian(step, best.x))) return false;
   Eigen::VectorXd permuted(best.x.size());
-  for (std::size_t v = 0; v < places_.size(); ++v) {
-    permuted.segment<3>(3 * places_[v]) = -best.gradient.segment<3>(3 * v);
+  for (std::size_t v = 0; v < dissection_.places.size(); ++v) {
+    permuted.segment<3>(3 * dissection_.places[v]) = -best.gradient.segment<3>(3 * v);
   }
-  permuted = factor_.solve(permuted).eval();
-  for (std::size_t v = 0; v < places_.size(); ++v) {
-    result.segment<3>(3 * v) = permuted.segment<3>(3 * places_[v]);
+  factor_.solve_in_place(permuted);
+  for (std::size_t v = 0; v < dissection_.places.size(); ++v) {
+    result.segment<3>(3 * v) = permuted.segment<3>(3 * dissection_.places[v]);
   }
   return true;
 }

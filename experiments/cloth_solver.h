@@ -3,12 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <array>
 #include <string>
 #include <vector>
 
+#include "experiments/cloth_factor.h"
 #include "experiments/cloth_model.h"
 
 namespace farcull::cloth {
@@ -41,7 +41,7 @@ class Solver {
   /// The Hessian at x: the lower triangle, in the order of places().
   const Eigen::SparseMatrix<double>& hessian(const Step& step, const Eigen::VectorXd& x);
   /// Per vertex: its place in the matrix, in blocks of 3.
-  const std::vector<std::uint32_t>& places() const { return places_; }
+  const std::vector<std::uint32_t>& places() const { return dissection_.places; }
 
  private:
   using Slot = std::array<int, 3>;  // per column of a block: where its first value is stored
@@ -50,14 +50,13 @@ class Solver {
   bool direction(const Step& step, const Minimum& best, Eigen::VectorXd& result);
 
   const Model& model_;
-  std::vector<std::uint32_t> places_;
+  Dissection dissection_;
   Eigen::SparseMatrix<double> matrix_;
   std::vector<double> constant_;    // values of the matrix that no x changes
   std::vector<Slot> vertex_slots_;  // per vertex
   std::vector<Slot> spring_slots_;  // per spring: of its two ends
   std::vector<Vec3> tensions_;      // per spring, N
-  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>
-      factor_;
+  Factor factor_;
 };
 
 }  // namespace farcull::cloth
