@@ -68,6 +68,12 @@ struct GlCanvas::State {
 
   std::size_t vec4s() const { return mode == DepthMode::fragment ? 7 : 3; }
   GLsizei vertices() const { return mode == DepthMode::fragment ? 6 : 3; }
+  // Proxies write their depth, so their fragments compare with the stored one themselves. Triangles
+  // at fixed depth let the depth test decide before the fragment program raises the flag: then no
+  // step reads the texture that another draws to, which would have to be finished first.
+  bool compares_in_shader() const {
+    return options.query == QueryMode::flags && mode == DepthMode::fragment;
+  }
   GLuint primitives() const { return mode == DepthMode::fragment ? 2 : 1; }
 
   GlProgram program(const std::string& name, std::vector<std::string> defines) const;
@@ -82,7 +88,10 @@ struct GlCanvas::State {
 
   std::vector<Run> lay_out(const Pass& pass, std::vector<GpuDraw>& list, std::vector<float>& own,
                            std::uint32_t& slots) const;
-  void bind(const Run& run) const;
+  // What storing or asking needs of GL's state.
+  void set_verb(Verb verb, bool touching) const;
+  // Binds a run's buffers; `before`: the run that was bound last, whose elements may serve again.
+  void bind(const Run& run, const Run* before = nullptr) const;
   void draw(std::size_t first, std::size_t count) const;
   float draw_all(GLuint program, Verb verb, const std::vector<Draw>& wanted, GLuint target);
   std::vector<std::uint8_t> read_flags(std::uint32_t slots);
@@ -207,9 +216,32 @@ std::vector<Run> GlCanvas::State::lay_out(const Pass& pass, std::vector<GpuDraw>
   return runs;
 }
 
-void GlCanvas::State::bind(const Run& run) const {
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kElements,
-                   run.chunk == kExtras ? extras : chunks[run.chunk]);
+// A pass may have as many steps as triangles: what a step does not need is not called.
+void GlCanvas::State::set_verb(Verb verb, bool touching) const {
+  const bool ask = verb == Verb::ask;
+  glUseProgram(ask ? ask_program : store_program);
+  if (ask && compares_in_shader()) {
+    glBindFramebuffer(GL_FRAMEBUFFER, bare_target);
+    glDisable(GL_DEPTH_TEST);
+    return;
+  }
+  if (compares_in_shader()) {
+    glBindFramebuffer(GL_FRAMEBUFFER, depth_target);
+    glEnable(GL_DEPTH_TEST);
+  }
+  glDepthMask(ask ? GL_FALSE : GL_TRUE);
+  if (ask) {
+    glDepthFunc(touching ? GL_GEQUAL : GL_GREATER);
+  } else {
+    glDepthFunc(options.reversed_depth_test ? GL_GREATER : GL_LESS);
+  }
+}
+
+void GlCanvas::State::bind(const Run& run, const Run* before) const {
+  if (before == nullptr || before->chunk != run.chunk) {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kElements,
+                     run.chunk == kExtras ? extras : chunks[run.chunk]);
+  }
   glBindBufferRange(GL_SHADER_STORAGE_BUFFER, kDraws, draws,
                     static_cast<GLintptr>(run.offset * sizeof(GpuDraw)),
                     static_cast<GLsizeiptr>(run.count * sizeof(GpuDraw)));
@@ -364,32 +396,18 @@ std::vector<std::uint8_t> GlCanvas::run(const Pass& pass) {
   const auto end_query = [&open] {
     if (std::exchange(open, kNone) != kNone) glEndQuery(GL_ANY_SAMPLES_PASSED);
   };
+  const Run* before = nullptr;  // the run whose state is set
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const Run& run = runs[r];
     expected += static_cast<GLuint64>(run.count) * s.primitives();
     if (fault == Fault::lost_draw && r == 0) continue;
-    if (run.verb == Verb::store) {
-      glUseProgram(s.store_program);
-      glBindFramebuffer(GL_FRAMEBUFFER, s.depth_target);
-      glEnable(GL_DEPTH_TEST);
-      glDepthFunc(s.options.reversed_depth_test ? GL_GREATER : GL_LESS);
-      glDepthMask(GL_TRUE);
-      s.bind(run);
+    if (before == nullptr || before->verb != run.verb) s.set_verb(run.verb, pass.touching);
+    s.bind(run, before);
+    before = &run;
+    if (run.verb == Verb::store || flags) {
       s.draw(0, run.count);
       continue;
     }
-    glUseProgram(s.ask_program);
-    s.bind(run);
-    if (flags) {
-      glBindFramebuffer(GL_FRAMEBUFFER, s.bare_target);
-      glDisable(GL_DEPTH_TEST);
-      s.draw(0, run.count);
-      continue;
-    }
-    glBindFramebuffer(GL_FRAMEBUFFER, s.depth_target);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(pass.touching ? GL_GEQUAL : GL_GREATER);
-    glDepthMask(GL_FALSE);
     for (std::size_t from = 0; from < run.count;) {
       const std::uint32_t slot = list[run.offset + from].slot;
       std::size_t to = from + 1;

@@ -14,8 +14,9 @@
 namespace farcull {
 
 enum class DepthFormat { float32, fixed24 };
-/// flags: asked fragments compare with the stored depth in the shader (float32 only: a comparison
-/// with a texel of a 24-bit texture loses equal depths). occlusion: GL_ANY_SAMPLES_PASSED, many in
+/// flags: an asked fragment raises its slot's flag. Proxies compare with the stored depth in the
+/// shader (float32 only: a comparison with a texel of a 24-bit texture loses equal depths);
+/// triangles at fixed depth rely on early fragment tests. occlusion: GL_ANY_SAMPLES_PASSED, many in
 /// flight, as published.
 enum class QueryMode { flags, occlusion };
 

@@ -1,7 +1,7 @@
 // Stores or asks one fragment. FAR_VALUE: its depth in px is written out as well.
 // FAR_PROXY: depth from the solid's own data (its function stands before this text); entry
-// when storing, exit when asking. FAR_ASK: ask. FAR_FLAGS: an asked fragment compares with the stored depth itself and
-// raises its slot's flag; otherwise the depth test and an occlusion query do.
+// when storing, exit when asking. FAR_ASK: ask. FAR_FLAGS: an asked fragment raises its slot's flag: of a proxy, after
+// comparing with the stored depth itself; of a triangle, after the depth test. Otherwise an occlusion query counts.
 uniform ivec4 u_window;  // first pixel and size of the window inside the render target
 uniform vec2 u_centre;   // pixel-space origin inside the render target, an integer
 uniform float u_scale;   // of the depth map
@@ -16,8 +16,12 @@ out float o_value;
 #endif
 #ifdef FAR_FLAGS
 layout(std430, binding = 2) buffer Flags { uint flags[]; };
+#ifdef FAR_PROXY
 uniform sampler2D u_depth;
 uniform bool u_touching;  // Pass::touching
+#else
+layout(early_fragment_tests) in;
+#endif
 #endif
 
 void main() {
@@ -51,12 +55,12 @@ void main() {
     precise float mapped = 0.5 + z;
     depth = clamp(mapped, 0.25, 0.75);
   }
-#else
-  float depth = gl_FragCoord.z;
 #endif
-#ifdef FAR_FLAGS
+#if defined(FAR_FLAGS) && defined(FAR_PROXY)
   float stored = texelFetch(u_depth, pixel, 0).r;
   if (depth > stored || (u_touching && depth == stored)) flags[v_slot] = 1u;
+#elif defined(FAR_FLAGS)
+  flags[v_slot] = 1u;
 #elif defined(FAR_PROXY)
   gl_FragDepth = depth;
 #endif

@@ -138,6 +138,27 @@ inline Trace run_by(const PassRule& rule, const Scene& scene, const Drawing& dra
   return run;
 }
 
+/// Whether b has all bits of a.
+inline bool contains(const std::vector<std::uint8_t>& b, const std::vector<std::uint8_t>& a) {
+  for (std::size_t t = 0; t < a.size(); ++t) {
+    if (a[t] & ~b[t]) return false;
+  }
+  return true;
+}
+
+/// The first step of plain CULLIDE at which Quick-CULLIDE is behind in what it cleared, or ahead in
+/// what it drew or asked; empty: none. Where Quick-CULLIDE has ended, its last step stands.
+inline std::string first_step_behind(const Trace& quick, const Trace& plain) {
+  for (std::size_t i = 0; i < plain.steps.size(); ++i) {
+    if (quick.steps.empty()) return plain.steps[i].name;
+    const StepRecord& p = plain.steps[i];
+    const StepRecord& q = quick.steps[std::min(i, quick.steps.size() - 1)];
+    if (i < quick.steps.size() && q.name != p.name) return "schedules part at " + p.name;
+    if (!contains(q.bits, p.bits) || q.draws > p.draws || q.queries > p.queries) return p.name;
+  }
+  return "";
+}
+
 using Pairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
 /// Pairs u < t of different owners of which, in every view, each is seen behind (or at, where

@@ -11,32 +11,12 @@ namespace farcull {
 namespace {
 
 using lab::Drawing;
+using lab::first_step_behind;
 using lab::StepRecord;
 using lab::Trace;
 
-// What `a` has that `b` lacks.
-bool contains(const std::vector<std::uint8_t>& b, const std::vector<std::uint8_t>& a) {
-  for (std::size_t t = 0; t < a.size(); ++t) {
-    if (a[t] & ~b[t]) return false;
-  }
-  return true;
-}
-
 bool subset(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
   return std::includes(b.begin(), b.end(), a.begin(), a.end());
-}
-
-// The first step of plain CULLIDE at which Quick-CULLIDE is behind in what it cleared, or ahead in
-// what it drew or asked; empty: none. Where Quick-CULLIDE has ended, its last step stands.
-std::string first_step_behind(const Trace& quick, const Trace& plain) {
-  for (std::size_t i = 0; i < plain.steps.size(); ++i) {
-    if (quick.steps.empty()) return plain.steps[i].name;
-    const StepRecord& p = plain.steps[i];
-    const StepRecord& q = quick.steps[std::min(i, quick.steps.size() - 1)];
-    if (i < quick.steps.size() && q.name != p.name) return "schedules part at " + p.name;
-    if (!contains(q.bits, p.bits) || q.draws > p.draws || q.queries > p.queries) return p.name;
-  }
-  return "";
 }
 
 struct Case {
