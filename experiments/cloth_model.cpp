@@ -13,6 +13,10 @@
 namespace farcull::cloth {
 namespace {
 
+// Of the weight of a cell times its side: what an edge that is slack by a ten-thousandth of itself
+// is held with is a ten-thousandth of that weight.
+constexpr double kCrimp = 1e-8;
+
 void check(bool good, const char* what, double value, const char* range) {
   if (good) return;
   throw Error("cloth", fmt::format("{} is {}", what, value), fmt::format("give {}", range));
@@ -122,29 +126,46 @@ void add_springs_and_hinges(Model& model) {
   }
 }
 
-// Where the convex spring begins: k L / (k + T).
+// Of the convex spring less the thrust T l^2/2; 0 at rest.
+double spring_energy(const Model& model, std::size_t spring, double l) {
+  const ClothSettings& s = model.settings;
+  const double c = s.stiffness + s.buckling_load;
+  const double from = slack_length(model, spring);
+  const double rest = model.springs[spring].length;
+  return smooth_energy(c, model.crimp, l - from) - smooth_energy(c, model.crimp, rest - from) -
+         0.5 * s.buckling_load * (l - rest) * (l + rest);
+}
+
+double depth_energy(const Model& model, std::size_t vertex, double depth) {
+  return smooth_energy(contact_stiffness(model, vertex), model.crimp, depth);
+}
+
+}  // namespace
+
+double smooth_force(double c, double crimp, double e) {
+  const double root = std::sqrt(e * e + 4 * crimp / c);
+  return e < 0 ? 2 * crimp / (root - e) : 0.5 * c * (e + root);
+}
+
+double smooth_stiffness(double c, double crimp, double e) {
+  return smooth_force(c, crimp, e) / std::sqrt(e * e + 4 * crimp / c);
+}
+
+double smooth_energy(double c, double crimp, double e) {
+  const double root = std::sqrt(e * e + 4 * crimp / c);
+  // e^2 + e root, without cancellation below 0.
+  const double sum = e < 0 ? 4 * crimp / c * e / (root - e) : e * (e + root);
+  return 0.25 * c * sum + crimp * std::asinh(0.5 * e * std::sqrt(c / crimp));
+}
+
 double slack_length(const Model& model, std::size_t spring) {
   const ClothSettings& s = model.settings;
   return s.stiffness / (s.stiffness + s.buckling_load) * model.springs[spring].length;
 }
 
-// The vector along a spring, moved by its shift.
-Vec3 along(const Step& step, std::size_t spring, const Eigen::VectorXd& x) {
-  const auto [a, b] = step.model.springs[spring].vertices;
-  const Vec3 d = at(x, b) - at(x, a);
-  return step.shift.empty() ? d : Vec3(d + step.shift[spring]);
+double contact_stiffness(const Model& model, std::size_t vertex) {
+  return model.settings.contact_modulus * model.area[vertex];
 }
-
-double spring_energy(const Model& model, std::size_t spring, double l) {
-  const ClothSettings& s = model.settings;
-  const double from = slack_length(model, spring);
-  const double longer = std::max(l, from) - model.springs[spring].length;
-  double energy = 0.5 * s.stiffness * longer * longer;
-  if (l < from) energy += 0.5 * s.buckling_load * (from - l) * (from + l);
-  return energy;
-}
-
-}  // namespace
 
 Model make_model(const ClothSettings& settings) {
   check(settings);
@@ -161,6 +182,7 @@ Model make_model(const ClothSettings& settings) {
     for (const std::uint32_t v : corners) model.area[v] += cell * cell / 6;
   }
   for (const double area : model.area) model.mass.push_back(settings.density * area);
+  model.crimp = kCrimp * 9.81 * settings.density * cell * cell * cell;
   return model;
 }
 
@@ -179,8 +201,7 @@ Energies energies(const Model& model, const Eigen::VectorXd& x, const Eigen::Vec
   for (std::uint32_t v = 0; v < model.mass.size(); ++v) {
     sum.kinetic += 0.5 * model.mass[v] * at(velocity, v).squaredNorm();
     sum.gravitational += model.mass[v] * s.gravity * x[3 * v + 2];
-    const double depth = std::max(0.0, s.radius - at(x, v).norm());
-    sum.contact += 0.5 * s.contact_modulus * model.area[v] * depth * depth;
+    if (s.radius > 0) sum.contact += depth_energy(model, v, s.radius - at(x, v).norm());
   }
   return sum;
 }
@@ -192,14 +213,13 @@ Step make_step(const Model& model, const Eigen::VectorXd& x0, const Eigen::Vecto
             v0,
             std::vector<Vec3>(model.mass.size(), Vec3::Zero()),
             std::vector<double>(model.mass.size(), 0),
-            s.stiffness + s.buckling_load,
-            {}};
+            s.stiffness + s.buckling_load};
   for (std::uint32_t v = 0; v < model.mass.size(); ++v) {
     const double distance = at(x0, v).norm();
     if (s.radius == 0 || !(distance > 0)) continue;
     step.normal[v] = at(x0, v) / distance;
-    const double depth = std::max(0.0, s.radius - distance);
-    step.friction[v] = s.friction * s.contact_modulus * model.area[v] * depth;
+    step.friction[v] =
+        s.friction * smooth_force(contact_stiffness(model, v), model.crimp, s.radius - distance);
   }
   return step;
 }
@@ -215,8 +235,7 @@ double value(const Step& step, const Eigen::VectorXd& x) {
     sum += 0.5 * s.drag * model.area[v] / h * moved.squaredNorm();
     sum += model.mass[v] * s.gravity * x[3 * v + 2];
     if (step.normal[v].isZero(0)) continue;
-    const double depth = std::max(0.0, s.radius - step.normal[v].dot(at(x, v)));
-    sum += 0.5 * s.contact_modulus * model.area[v] * depth * depth;
+    sum += depth_energy(model, v, s.radius - step.normal[v].dot(at(x, v)));
     if (step.friction[v] == 0) continue;
     const double slid = (moved - step.normal[v].dot(moved) * step.normal[v]).norm();
     const double stick = h * s.stick_speed;
@@ -224,9 +243,9 @@ double value(const Step& step, const Eigen::VectorXd& x) {
   }
   for (std::size_t i = 0; i < model.springs.size(); ++i) {
     const auto [a, b] = model.springs[i].vertices;
-    const double longer = std::max(0.0, along(step, i, x).norm() - slack_length(model, i));
-    sum += 0.5 * step.stretch * longer * longer;
-    sum -= s.buckling_load * (at(step.x0, b) - at(step.x0, a)).dot(at(x, b) - at(x, a));
+    const Vec3 d = at(x, b) - at(x, a);
+    sum += smooth_energy(step.stretch, model.crimp, d.norm() - slack_length(model, i));
+    sum -= s.buckling_load * (at(step.x0, b) - at(step.x0, a)).dot(d);
   }
   for (const Hinge& hinge : model.hinges) {
     Vec3 w = Vec3::Zero();
@@ -236,7 +255,7 @@ double value(const Step& step, const Eigen::VectorXd& x) {
   return sum;
 }
 
-void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result) {
+void soft_gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result) {
   const Model& model = step.model;
   const ClothSettings& s = model.settings;
   const double h = s.time_step;
@@ -246,22 +265,17 @@ void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& resul
     Vec3 force = model.mass[v] / h * (moved / h - at(step.v0, v));
     force += s.drag * model.area[v] / h * moved;
     force.z() += model.mass[v] * s.gravity;
-    const Vec3& n = step.normal[v];
-    if (!n.isZero(0)) {
-      const double depth = std::max(0.0, s.radius - n.dot(at(x, v)));
-      force -= s.contact_modulus * model.area[v] * depth * n;
-      if (step.friction[v] != 0) {
-        const Vec3 slid = moved - n.dot(moved) * n;
-        force += step.friction[v] / std::max(slid.norm(), h * s.stick_speed) * slid;
-      }
+    if (step.friction[v] != 0) {
+      const Vec3 slid = moved - step.normal[v].dot(moved) * step.normal[v];
+      force += step.friction[v] / std::max(slid.norm(), h * s.stick_speed) * slid;
     }
     result.segment<3>(3 * v) = force;
   }
-  for (std::size_t i = 0; i < model.springs.size(); ++i) {
-    const auto [a, b] = model.springs[i].vertices;
-    const Vec3 force = tension(step, i, x) - s.buckling_load * (at(step.x0, b) - at(step.x0, a));
-    result.segment<3>(3 * b) += force;
-    result.segment<3>(3 * a) -= force;
+  for (const Spring& spring : model.springs) {
+    const auto [a, b] = spring.vertices;
+    const Vec3 thrust = s.buckling_load * (at(step.x0, b) - at(step.x0, a));
+    result.segment<3>(3 * b) -= thrust;
+    result.segment<3>(3 * a) += thrust;
   }
   for (const Hinge& hinge : model.hinges) {
     Vec3 w = Vec3::Zero();
@@ -271,21 +285,37 @@ void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& resul
   }
 }
 
-Vec3 tension(const Step& step, std::size_t spring, const Eigen::VectorXd& x) {
-  const Vec3 d = along(step, spring, x);
-  const double l = d.norm();
-  // What is not a number is not slack: it must not hide.
-  if (l <= slack_length(step.model, spring)) return Vec3::Zero();
-  return step.stretch * (l - slack_length(step.model, spring)) / l * d;
+void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result) {
+  const Model& model = step.model;
+  soft_gradient(step, x, result);
+  for (std::size_t i = 0; i < model.springs.size(); ++i) {
+    const auto [a, b] = model.springs[i].vertices;
+    const Vec3 d = at(x, b) - at(x, a);
+    const double l = d.norm();
+    if (l == 0) continue;  // no direction, and hardly a force
+    const Vec3 force =
+        smooth_force(step.stretch, model.crimp, l - slack_length(model, i)) / l * d;
+    result.segment<3>(3 * b) += force;
+    result.segment<3>(3 * a) -= force;
+  }
+  for (std::uint32_t v = 0; v < model.mass.size(); ++v) {
+    const Vec3& n = step.normal[v];
+    if (n.isZero(0)) continue;
+    const double depth = model.settings.radius - n.dot(at(x, v));
+    result.segment<3>(3 * v) -= smooth_force(contact_stiffness(model, v), model.crimp, depth) * n;
+  }
 }
 
 Block spring_block(const Step& step, std::size_t spring, const Eigen::VectorXd& x) {
-  const Vec3 d = along(step, spring, x);
+  const auto [a, b] = step.model.springs[spring].vertices;
+  const Vec3 d = at(x, b) - at(x, a);
   const double l = d.norm();
-  if (l <= slack_length(step.model, spring)) return Block::Zero();
-  const double across = step.stretch * (l - slack_length(step.model, spring)) / l;
+  if (l == 0) return Block::Zero();
+  const double e = l - slack_length(step.model, spring);
+  const double across = smooth_force(step.stretch, step.model.crimp, e) / l;
   const Block outer = d / l * (d / l).transpose();
-  return across * Block::Identity() + (step.stretch - across) * outer;
+  return across * Block::Identity() +
+         (smooth_stiffness(step.stretch, step.model.crimp, e) - across) * outer;
 }
 
 void for_constant_blocks(
@@ -307,23 +337,24 @@ void for_constant_blocks(
 }
 
 Block contact_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x) {
+  const Vec3& n = step.normal[vertex];
+  if (n.isZero(0)) return Block::Zero();
+  const double c = contact_stiffness(step.model, vertex);
+  const double depth = step.model.settings.radius - n.dot(at(x, vertex));
+  return smooth_stiffness(c, step.model.crimp, depth) * n * n.transpose();
+}
+
+Block friction_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x) {
+  if (step.friction[vertex] == 0) return Block::Zero();
   const ClothSettings& s = step.model.settings;
   const Vec3& n = step.normal[vertex];
-  Block block = Block::Zero();
-  if (n.isZero(0)) return block;
-  if (s.radius - n.dot(at(x, vertex)) > 0) {
-    block += s.contact_modulus * step.model.area[vertex] * n * n.transpose();
-  }
-  if (step.friction[vertex] != 0) {
-    const Vec3 moved = at(x, vertex) - at(step.x0, vertex);
-    const Vec3 slid = moved - n.dot(moved) * n;
-    const double speed = slid.norm();
-    const double stick = s.time_step * s.stick_speed;
-    Block tangent = Block::Identity() - n * n.transpose();
-    if (speed > stick) tangent -= slid / speed * (slid / speed).transpose();
-    block += step.friction[vertex] / std::max(speed, stick) * tangent;
-  }
-  return block;
+  const Vec3 moved = at(x, vertex) - at(step.x0, vertex);
+  const Vec3 slid = moved - n.dot(moved) * n;
+  const double way = slid.norm();
+  const double stick = s.time_step * s.stick_speed;
+  Block tangent = Block::Identity() - n * n.transpose();
+  if (way > stick) tangent -= slid / way * (slid / way).transpose();
+  return step.friction[vertex] / std::max(way, stick) * tangent;
 }
 
 }  // namespace farcull::cloth

@@ -37,6 +37,7 @@ struct Model {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<double> area;  // per vertex, m^2: a third of its triangles
   std::vector<double> mass;  // per vertex, kg
+  double crimp = 0;          // of all smooth springs, J
   std::vector<Spring> springs;
   std::vector<Hinge> hinges;
   Eigen::VectorXd rest;  // where it starts, m
@@ -69,8 +70,7 @@ struct Step {
   Eigen::VectorXd v0;
   std::vector<Vec3> normal;      // per vertex; 0 where there is no contact at all
   std::vector<double> friction;  // per vertex: mu N, newtons
-  double stretch = 0;            // k + T, N/m; less in an auxiliary problem of the solver
-  std::vector<Vec3> shift;       // per spring, m; empty but in such a problem: added to d in max()
+  double stretch = 0;            // k + T, N/m
 };
 /// Precondition: sizes are those of the model. The model must outlive the step.
 Step make_step(const Model& model, const Eigen::VectorXd& x0, const Eigen::VectorXd& v0);
@@ -80,8 +80,20 @@ double value(const Step& step, const Eigen::VectorXd& x);
 /// N. `result` gets the size of x.
 void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result);
 
-/// What a spring pulls at its first end, along (T d0 apart): stretch max(0, l - l*) d/l, N.
-Vec3 tension(const Step& step, std::size_t spring, const Eigen::VectorXd& x);
+/// A spring of stiffness c on a length e, with a smooth start: the force f > 0 with
+/// f (f/c - e) = crimp, which is c e far above 0 and crimp/-e far below. Newtons.
+double smooth_force(double c, double crimp, double e);
+/// Its derivative by e, and the energy whose derivative it is.
+double smooth_stiffness(double c, double crimp, double e);
+double smooth_energy(double c, double crimp, double e);
+
+/// l*, where the convex spring begins, m.
+double slack_length(const Model& model, std::size_t spring);
+/// Of the sphere's surface at a vertex, N/m.
+double contact_stiffness(const Model& model, std::size_t vertex);
+
+/// The part of the gradient that is not of springs or contact, thrust and friction included.
+void soft_gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result);
 
 /// The Hessian has a block for each pair of vertices of a spring or a hinge and for each vertex.
 using Block = Eigen::Matrix3d;
@@ -94,5 +106,6 @@ void for_constant_blocks(
 Block spring_block(const Step& step, std::size_t spring, const Eigen::VectorXd& x);
 /// What contact and friction add to the block of a vertex. Positive semidefinite.
 Block contact_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x);
+Block friction_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x);
 
 }  // namespace farcull::cloth

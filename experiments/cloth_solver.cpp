@@ -6,17 +6,16 @@
 #include <cmath>
 #include <limits>
 
+#include "experiments/cloth_interior.h"
+
 namespace farcull::cloth {
 namespace {
 
-constexpr double kStandardGravity = 9.81;  // of the unit of forces, whatever the setting
-constexpr int kTrials = 60;                // along one direction; a double has no more halvings
-// Measured on cloths of 800 triangles; they change how long a step takes and not where it ends.
-constexpr double kFirstRound = 2000;  // stiffness of the first round, over mass / h^2
-constexpr double kHarder = 3;         // factor between rounds
-constexpr double kShrinks = 0.5;      // a round that shrinks the change to this is repeated
-constexpr double kLoose = 0.1;        // tolerance of a round but the last, over the weight
-constexpr double kSettled = 0.01;     // tensions that change by less, over the weight, are settled
+constexpr int kTrials = 60;  // along one direction; a double has no more halvings
+// These change how long a step takes and not where it ends.
+constexpr int kPatience = 12;              // iterations of Newton's method before interior points
+constexpr double kFirstTarget = 0.1;       // complementarity at first, over weight * length
+constexpr double kInteriorTolerance = 1;   // of the complementarity at the end, over crimp
 
 // The lower triangle, with the values that no x changes.
 Eigen::SparseMatrix<double> pattern(const Model& model, const std::vector<std::uint32_t>& places) {
@@ -62,7 +61,6 @@ Solver::Solver(const Model& model)
   for (const Spring& spring : model.springs) {
     spring_slots_.push_back(slot(spring.vertices[0], spring.vertices[1]));
   }
-  tensions_.assign(model.springs.size(), Vec3::Zero());
 }
 
 Solver::Slot Solver::slot(std::uint32_t a, std::uint32_t b) const {
@@ -79,7 +77,8 @@ Solver::Slot Solver::slot(std::uint32_t a, std::uint32_t b) const {
   return result;
 }
 
-const Eigen::SparseMatrix<double>& Solver::hessian(const Step& step, const Eigen::VectorXd& x) {
+void Solver::assemble(const std::function<Block(std::size_t)>& of_spring,
+                      const std::function<Block(std::uint32_t)>& of_vertex) {
   double* const values = matrix_.valuePtr();
   std::copy(constant_.begin(), constant_.end(), values);
   const auto add_diagonal = [&](std::uint32_t v, const Block& block) {
@@ -88,16 +87,21 @@ const Eigen::SparseMatrix<double>& Solver::hessian(const Step& step, const Eigen
     }
   };
   for (std::size_t i = 0; i < model_.springs.size(); ++i) {
-    const Block block = spring_block(step, i, x);
+    const Block block = of_spring(i);
     add_diagonal(model_.springs[i].vertices[0], block);
     add_diagonal(model_.springs[i].vertices[1], block);
     for (int c = 0; c < 3; ++c) {
       for (int r = 0; r < 3; ++r) values[spring_slots_[i][c] + r] -= block(r, c);
     }
   }
-  for (std::uint32_t v = 0; v < model_.mass.size(); ++v) {
-    add_diagonal(v, contact_block(step, v, x));
-  }
+  for (std::uint32_t v = 0; v < model_.mass.size(); ++v) add_diagonal(v, of_vertex(v));
+}
+
+const Eigen::SparseMatrix<double>& Solver::hessian(const Step& step, const Eigen::VectorXd& x) {
+  assemble([&](std::size_t i) { return spring_block(step, i, x); },
+           [&](std::uint32_t v) {
+             return Block(contact_block(step, v, x) + friction_block(step, v, x));
+           });
   return matrix_;
 }
 
@@ -106,48 +110,52 @@ double Solver::tolerance(const Eigen::VectorXd& x) const {
   const double heaviest = *std::max_element(model_.mass.begin(), model_.mass.end());
   // A coordinate is stored with an error of up to u |x|, at either end of a spring, which answers
   // with a force of (k + T) times the error; a vertex has at most 8 springs, and 3 coordinates.
-  const double rounding =
-      16 * std::sqrt(3.0) * 0x1p-53 * x.lpNorm<Eigen::Infinity>() * (s.stiffness + s.buckling_load);
-  return s.tolerance * kStandardGravity * heaviest + rounding;
+  const double rounding = 16 * std::sqrt(3.0) * 0x1p-53 * x.lpNorm<Eigen::Infinity>() *
+                          (s.stiffness + s.buckling_load);
+  return s.tolerance * 9.81 * heaviest + rounding;
 }
 
-// Newton's direction; false where there is none.
-bool Solver::direction(const Step& step, const Minimum& best, Eigen::VectorXd& result) {
-  if (!factor_.factorize(hessian(step, best.x))) return false;
-  Eigen::VectorXd permuted(best.x.size());
-  for (std::size_t v = 0; v < dissection_.places.size(); ++v) {
-    permuted.segment<3>(3 * dissection_.places[v]) = -best.gradient.segment<3>(3 * v);
+// With the matrix as it is assembled; false where it has no factor.
+bool Solver::solve(const Eigen::VectorXd& right, Eigen::VectorXd& result) {
+  if (!factor_.factorize(matrix_)) return false;
+  Eigen::VectorXd permuted(right.size());
+  for (std::size_t v = 0; v < places().size(); ++v) {
+    permuted.segment<3>(3 * places()[v]) = right.segment<3>(3 * v);
   }
   factor_.solve_in_place(permuted);
-  for (std::size_t v = 0; v < dissection_.places.size(); ++v) {
-    result.segment<3>(3 * v) = permuted.segment<3>(3 * dissection_.places[v]);
+  result.resize(right.size());
+  for (std::size_t v = 0; v < places().size(); ++v) {
+    result.segment<3>(3 * v) = permuted.segment<3>(3 * places()[v]);
   }
   return true;
 }
 
 // Each iteration goes along Newton's direction to where the slope, which begins below 0 and never
 // falls, as the function is convex, is a tenth of what it was or less: the value falls on the way.
-void Solver::newton(const Step& step, double tolerance, Minimum& best) {
+// False if more iterations would not help.
+bool Solver::newton(const Step& step, int iterations, Minimum& best) {
   Eigen::VectorXd p(best.x.size());
   Eigen::VectorXd x(best.x.size());
   gradient(step, best.x, best.gradient);
-  best.residual = largest_force(best.gradient);
-  for (;;) {
-    best.converged = best.residual <= tolerance;
-    if (best.converged) return;
+  for (int i = 0;; ++i) {
+    best.residual = largest_force(best.gradient);
+    best.converged = best.residual <= tolerance(best.x);
+    if (best.converged) return true;
     if (!std::isfinite(best.residual)) {
       best.reason = "a force is not finite";
-      return;
+      return false;
     }
     if (best.iterations >= model_.settings.max_iterations) {
       best.reason = fmt::format("{} iterations left a force of {:.3g} N, and {:.3g} N is allowed",
-                                best.iterations, best.residual, tolerance);
-      return;
+                                best.iterations, best.residual, tolerance(best.x));
+      return false;
     }
+    if (i == iterations) return true;
     ++best.iterations;
-    if (!direction(step, best, p)) {
+    hessian(step, best.x);
+    if (!solve(-best.gradient, p)) {
       best.reason = "the matrix has no Cholesky factor";
-      return;
+      return false;
     }
     const double first = best.gradient.dot(p);
     double lo = 0;
@@ -171,44 +179,59 @@ void Solver::newton(const Step& step, double tolerance, Minimum& best) {
       length = std::clamp(secant, lo + margin, hi - margin);
     }
     best.x = x;
-    best.residual = largest_force(best.gradient);
+    if (getenv("V")) fmt::print("  n {} {:.2e} {:.1e}\n", best.iterations, largest_force(best.gradient), length);
   }
+}
+
+// False if it fails; otherwise best.x is close to the minimum.
+bool Solver::interior(const Step& step, Minimum& best) {
+  const double heaviest = *std::max_element(model_.mass.begin(), model_.mass.end());
+  Eigen::VectorXd x = best.x;
+  static const double FT = getenv("FT") ? atof(getenv("FT")) : kFirstTarget;
+  Interior interior(step, x, FT * 9.81 * heaviest * model_.springs[0].length);
+  Eigen::VectorXd force;
+  Eigen::VectorXd p;
+  double aim = 0.1;
+  static const double DONE = getenv("DONE") ? atof(getenv("DONE")) : 1;
+  for (;;) {
+    const double now = interior.complementarity();
+    if (now <= (1+DONE) * model_.crimp && aim < 0.2) break;
+    if (!std::isfinite(now) || best.iterations >= model_.settings.max_iterations) return false;
+    ++best.iterations;
+    interior.linearize(x, std::max(model_.crimp, aim * now));
+    assemble([&](std::size_t i) { return interior.spring_block(i); },
+             [&](std::uint32_t v) {
+               return Block(interior.contact_block(v) + friction_block(step, v, x));
+             });
+    soft_gradient(step, x, force);
+    for (std::size_t i = 0; i < model_.springs.size(); ++i) {
+      const auto [a, b] = model_.springs[i].vertices;
+      force.segment<3>(3 * b) += interior.spring_force(i);
+      force.segment<3>(3 * a) -= interior.spring_force(i);
+    }
+    for (std::uint32_t v = 0; v < model_.mass.size(); ++v) {
+      force.segment<3>(3 * v) += interior.contact_force(v);
+    }
+    if (!solve(-force, p)) return false;
+    const double way = interior.move(p, x);
+    if (getenv("V")) fmt::print("  i {} {:.2e} {:.1e}\n", best.iterations, now / model_.crimp, way);
+    aim = way > 0.8 ? 0.1 : way > 0.3 ? 0.4 : 0.9;
+  }
+  best.x = x;
+  return true;
 }
 
 Minimum Solver::minimize(const Step& step) {
   Minimum best;
   best.x = step.x0;
-  const double h = model_.settings.time_step;
-  const double heaviest = *std::max_element(model_.mass.begin(), model_.mass.end());
-  const double weight = kStandardGravity * heaviest;
-  double softness = kFirstRound * heaviest / (h * h);  // r, N/m
-  double last_change = std::numeric_limits<double>::infinity();
-  Step soft = step;
-  while (softness < step.stretch) {
-    soft.stretch = step.stretch * softness / (step.stretch + softness);
-    soft.shift.resize(tensions_.size());
-    for (std::size_t i = 0; i < tensions_.size(); ++i) soft.shift[i] = tensions_[i] / softness;
-    newton(soft, kLoose * weight + tolerance(best.x), best);
-    if (!best.converged) break;
-    double change = 0;
-    for (std::size_t i = 0; i < tensions_.size(); ++i) {
-      const Vec3 now = tension(soft, i, best.x);
-      change = std::max(change, (now - tensions_[i]).norm());
-      tensions_[i] = now;
-    }
-    if (change <= kSettled * weight) break;
-    if (change > kShrinks * last_change) softness *= kHarder;
-    last_change = change;
-  }
-  if (best.converged || best.iterations == 0) newton(step, tolerance(best.x), best);
-  // Where a softened problem failed, the residual is to be that of the step itself.
-  if (!best.converged) {
-    gradient(step, best.x, best.gradient);
-    best.residual = largest_force(best.gradient);
-    std::fill(tensions_.begin(), tensions_.end(), Vec3::Zero());
+  const int all = model_.settings.max_iterations;
+  if (!newton(step, was_stiff_ ? 2 : kPatience, best) || best.converged) {
+    was_stiff_ = false;
     return best;
   }
-  for (std::size_t i = 0; i < tensions_.size(); ++i) tensions_[i] = tension(step, i, best.x);
+  was_stiff_ = true;
+  interior(step, best);
+  newton(step, all, best);
   return best;
 }
 

@@ -1,10 +1,10 @@
-// The minimum of a step of the cloth: Newton's method within a proximal method of multipliers
-// (Rockafellar 1976, "Augmented Lagrangians and applications of the proximal point algorithm").
+// The minimum of a step of the cloth: Newton's method, and interior points where that creeps.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,22 +17,19 @@ struct Minimum {
   Eigen::VectorXd x;
   Eigen::VectorXd gradient;  // of the step's function at x, N
   double residual = 0;       // largest force on a vertex in it, N; infinite where one is not finite
-  int iterations = 0;        // of Newton's method: factorizations
+  int iterations = 0;        // factorizations
   bool converged = false;    // residual <= tolerance(x)
   std::string reason = {};   // why it did not converge
 };
 
-/// Keeps from step to step the pattern of the matrix, which is that of the model, and the tensions
-/// that the last step ended with, to begin the next with. The model must outlive it.
+/// Keeps from step to step the pattern of the matrix, which is that of the model, and whether the
+/// last step needed interior points. The model must outlive it.
 class Solver {
  public:
   explicit Solver(const Model& model);
 
-  /// Minimizes from x0. Springs far stiffer than what else holds a vertex bend the valley that the
-  /// minimum lies in so sharply that Newton's method creeps. So at first each is replaced by a
-  /// softer one, of stiffness k r/(k + r), on a vector along it that is longer by tension/r; the
-  /// tensions that come out go into the next round. Where the tensions stay, so does the minimum,
-  /// and it is that of the springs as they are; the last round is with these.
+  /// Minimizes from x0: by Newton's method with a search along each direction; if that gets stuck,
+  /// by interior points and Newton's method from where they end.
   Minimum minimize(const Step& step);
 
   /// N: the setting, and what the rounding of the positions themselves leaves.
@@ -46,8 +43,11 @@ class Solver {
  private:
   using Slot = std::array<int, 3>;  // per column of a block: where its first value is stored
   Slot slot(std::uint32_t a, std::uint32_t b) const;
-  void newton(const Step& step, double tolerance, Minimum& best);
-  bool direction(const Step& step, const Minimum& best, Eigen::VectorXd& result);
+  void assemble(const std::function<Block(std::size_t)>& of_spring,
+                const std::function<Block(std::uint32_t)>& of_vertex);
+  bool solve(const Eigen::VectorXd& right, Eigen::VectorXd& result);
+  bool newton(const Step& step, int iterations, Minimum& best);
+  bool interior(const Step& step, Minimum& best);
 
   const Model& model_;
   Dissection dissection_;
@@ -55,7 +55,7 @@ class Solver {
   std::vector<double> constant_;    // values of the matrix that no x changes
   std::vector<Slot> vertex_slots_;  // per vertex
   std::vector<Slot> spring_slots_;  // per spring: of its two ends
-  std::vector<Vec3> tensions_;      // per spring, N
+  bool was_stiff_ = false;          // the last step needed interior points
   Factor factor_;
 };
 

@@ -53,6 +53,7 @@ FamilyFrame frame_of(const RunRecord& record, long frame) {
                   .ms = record.ms.cull + record.ms.exact,
                   .pcs_objects = record.pcs_objects,
                   .pcs_triangles = record.pcs_triangles,
+                  .object_triangles = record.object_triangles,
                   .candidates = record.candidate_pairs,
                   .colliding = record.pairs.size(),
                   .neighbours = record.neighbour_pairs.size(),
@@ -196,7 +197,7 @@ std::string family_csv(const std::vector<FamilyCell>& cells) {
   std::string out =
       "scene,method,offset,frame,ms,pcs_objects,pcs_triangles,candidate_pairs,colliding_pairs,"
       "neighbour_pairs,queries,draws,queries_saved,draws_saved,missed,missed_touching,"
-      "missed_penetrating,factor_triangles,factor_pairs\n";
+      "missed_penetrating,factor_objects,factor_triangles,factor_pairs\n";
   for (const FamilyCell& cell : cells) {
     for (const FamilyFrame& f : cell.frames) {
       const auto found = swept.find({cell.scene, f.frame});
@@ -207,13 +208,13 @@ std::string family_csv(const std::vector<FamilyCell>& cells) {
       };
       const FamilyFrame none;
       const FamilyFrame& box = found == swept.end() ? none : *found->second;
-      out += fmt::format("{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-                         cell.scene, to_string(cell.method), cell.offset, f.frame, f.ms,
-                         f.pcs_objects, f.pcs_triangles, f.candidates, f.colliding, f.neighbours,
-                         f.queries, f.draws, f.queries_saved, f.draws_saved,
-                         f.missed ? std::to_string(*f.missed) : "", f.missed_contacts.touching,
-                         f.missed_contacts.penetrating, factor(box.pcs_triangles, f.pcs_triangles),
-                         factor(box.candidates, f.candidates));
+      out += fmt::format(
+          "{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", cell.scene,
+          to_string(cell.method), cell.offset, f.frame, f.ms, f.pcs_objects, f.pcs_triangles,
+          f.candidates, f.colliding, f.neighbours, f.queries, f.draws, f.queries_saved,
+          f.draws_saved, f.missed ? std::to_string(*f.missed) : "", f.missed_contacts.touching,
+          f.missed_contacts.penetrating, factor(box.object_triangles, f.pcs_triangles),
+          factor(box.pcs_triangles, f.pcs_triangles), factor(box.candidates, f.candidates));
     }
   }
   return out;

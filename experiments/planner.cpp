@@ -22,7 +22,7 @@ std::string of_all(std::size_t some, std::size_t all) {
 }
 
 void add_views(const Plan& plan, const RunOptions& options, std::uint32_t enough, Steps& steps) {
-  bool first = true;
+  bool sure = true;
   for (const View& view : parse_views(views_of(options))) {
     const std::string name = "view " + view.name;
     const std::optional<Window> window = fit_window(view, plan.regions, resolution_of(options));
@@ -31,14 +31,12 @@ void add_views(const Plan& plan, const RunOptions& options, std::uint32_t enough
           {name, Decision::left_out, "double arithmetic cannot resolve the region in pixels"});
       continue;
     }
-    const std::string size = fmt::format("{} x {} px", window->width, window->height);
-    if (first || enough == 0) {
-      steps.push_back({name, Decision::runs, size});
-    } else {
-      steps.push_back({name, Decision::depends,
-                       fmt::format("{}; if more than {} triangles are left", size, enough)});
-    }
-    first = false;
+    std::string reason = fmt::format("{} x {} px", window->width, window->height);
+    if (!sure)
+      reason += enough > 0 ? fmt::format("; if more than {} triangles are left", enough)
+                           : "; if any triangle is left";
+    steps.push_back({name, sure ? Decision::runs : Decision::depends, reason});
+    sure = options.full;
   }
 }
 
@@ -49,8 +47,8 @@ void add_levels(const Plan& plan, const RunOptions& options, Steps& steps) {
     steps.push_back({"objects", Decision::runs, "in the first round"});
   }
   const Clusters clusters = clusters_of(options, plan.triangles.size());
-  steps.push_back(
-      {"clusters", clusters.sizes.empty() ? Decision::left_out : Decision::runs, clusters.reason});
+  steps.push_back({"sub-object level", clusters.sizes.empty() ? Decision::left_out : Decision::runs,
+                   clusters.reason});
   steps.push_back(
       {"triangles", options.full ? Decision::runs : Decision::depends,
        options.full ? "--full" : "if any are left; passes whose stored set has changed"});

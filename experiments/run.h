@@ -43,6 +43,8 @@ struct RunRecord {
   std::vector<Stage> stages;
   std::uint64_t pcs_objects = 0;
   std::uint64_t pcs_triangles = 0;
+  std::uint64_t object_triangles = 0;  // of i-collide: of the objects that their boxes leave, which
+                                       // is where I-COLLIDE as published ends
   std::uint64_t candidate_pairs = 0;
   std::vector<TrianglePair>
       kept;  // sorted: the candidates; for exact, which tests them all, the colliding ones

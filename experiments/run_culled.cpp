@@ -100,6 +100,19 @@ Stage boxes_stage(const Scene& scene, const Plan& plan, const RunOptions& option
           .unit = "triangles"};
 }
 
+// Those in a pair, and those that are tested against themselves; ascending.
+std::vector<std::uint32_t> surviving_objects(const Scene& scene,
+                                             const std::vector<TrianglePair>& pairs) {
+  std::vector<std::uint8_t> in(scene.objects.size(), 0);
+  for (const TrianglePair& pair : pairs) in[pair.a] = in[pair.b] = 1;
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t o = 0; o < in.size(); ++o) {
+    const Object& object = scene.objects[o];
+    if (in[o] != 0 || (object.self && object.triangle_count > 1)) out.push_back(o);
+  }
+  return out;
+}
+
 }  // namespace
 
 Clusters clusters_of(const RunOptions& options, std::size_t triangles) {
@@ -143,14 +156,15 @@ void run_swept(const Scene& scene, Session& session, const Progress& progress, R
   record.candidate_pairs = record.kept.size();
   record.pcs_triangles = result.triangles.size();
   record.pcs_objects = count_objects(scene, result.triangles);
+  for (const std::uint32_t o : surviving_objects(scene, result.object_pairs))
+    record.object_triangles += scene.objects[o].triangle_count;
   record.stages.push_back(
       {.name = "sweep",
        .ran = true,
-       .reason =
-           fmt::format("boxes of {} objects overlap, in {} pairs; {} places changed, {} lists "
-                       "sorted from scratch",
-                       result.counts.objects, result.counts.object_pairs, result.counts.swaps,
-                       result.counts.sorts),
+       .reason = fmt::format("boxes of {} objects overlap, which have {} triangles; {} places "
+                             "changed, {} lists sorted from scratch",
+                             result.counts.objects, record.object_triangles, result.counts.swaps,
+                             result.counts.sorts),
        .ms = record.ms.cull,
        .in = scene.triangles.size(),
        .out = record.kept.size(),

@@ -62,9 +62,11 @@ TEST(Planner, SaysWhatItLeavesOut) {
   EXPECT_EQ(step(planned(scene, far), "exact offsets").decision, Decision::depends);
   far.verify = false;
   EXPECT_EQ(step(planned(scene, far), "accounting").decision, Decision::left_out);
-  // What promises nothing runs as published: its answer would change with a view.
+  // What promises nothing leaves out no view that could cull: its answer would change.
   far = {};
   far.method = Method::cullide;
+  EXPECT_TRUE(step(planned(scene, far), "view y").reason.ends_with("if any triangle is left"));
+  far.full = true;
   EXPECT_EQ(step(planned(scene, far), "view y").decision, Decision::runs);
 }
 
@@ -138,7 +140,9 @@ TEST(Planner, FullTakesEverything) {
   const RunRecord record = run(scene, on_cpu(Method::far_pairs, true));
   EXPECT_EQ(record.stages.front().name, "setup");
   for (const Stage& stage : record.stages) {
-    if (stage.name == "boxes") EXPECT_EQ(stage.out, scene.triangles.size());
+    if (stage.name == "boxes") {
+      EXPECT_EQ(stage.out, scene.triangles.size());
+    }
   }
   EXPECT_EQ(record.pair_views.size(), 3u);
 }
