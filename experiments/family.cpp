@@ -58,7 +58,7 @@ FamilyFrame frame_of(const RunRecord& record, long frame) {
                   .colliding = record.pairs.size(),
                   .neighbours = record.neighbour_pairs.size(),
                   .missed = {},
-                  .missed_contacts = record.missed};
+                  .missed_contacts = record.missed.value_or(ContactCounts{})};
   for (const Stage& stage : record.stages) {
     out.queries += stage.queries;
     out.draws += stage.draws;

@@ -94,7 +94,8 @@ Json place_json(const Scene& scene, const std::vector<std::uint32_t>& owner,
           {"face", scene.source_face[triangle]}};
 }
 
-Json verification_json(const Scene& scene, const std::optional<Accounting>& accounting) {
+Json verification_json(const Scene& scene, const RunRecord& record) {
+  const std::optional<Accounting>& accounting = record.verification;
   if (!accounting) return nullptr;
   const std::vector<std::uint32_t> owner = owners(scene);
   Json examples = Json::array();
@@ -108,6 +109,8 @@ Json verification_json(const Scene& scene, const std::optional<Accounting>& acco
           {"certified_by_predicates", accounting->certified_by_predicates},
           {"neighbours", accounting->neighbours},
           {"false_negatives", accounting->false_negatives},
+          {"touching", record.missed ? Json(record.missed->touching) : Json(nullptr)},
+          {"penetrating", record.missed ? Json(record.missed->penetrating) : Json(nullptr)},
           {"examples", examples},
           {"ms", accounting->ms}};
 }
@@ -228,7 +231,9 @@ nlohmann::ordered_json to_json(const Scene& scene, const RunRecord& record) {
                       {"out", s.out},
                       {"unit", s.unit},
                       {"draws", s.draws},
-                      {"queries", s.queries}});
+                      {"queries", s.queries},
+                      {"draws_saved", s.draws_saved},
+                      {"queries_saved", s.queries_saved}});
   }
   return {{"scene",
            {{"name", scene.name},
@@ -248,17 +253,20 @@ nlohmann::ordered_json to_json(const Scene& scene, const RunRecord& record) {
           {"query",
            drawn ? Json(query_of(o) == QueryMode::flags ? "flags" : "occlusion") : Json(nullptr)},
           {"clearance", takes_clearance(o.method) ? Json(o.clearance) : Json(nullptr)},
+          {"full", o.full},
           {"promises", record.promises},
           {"views", views},
           {"budget", budget_json(record.views)},
           {"device", device_json(record)},
           {"stages", stages},
           {"pcs", {{"objects", record.pcs_objects}, {"triangles", record.pcs_triangles}}},
+          {"object_triangles",
+           o.method == Method::i_collide ? Json(record.object_triangles) : Json(nullptr)},
           {"candidate_pairs", record.candidate_pairs},
           {"colliding_pairs", record.pairs.size()},
           {"neighbour_pairs", record.neighbour_pairs.size()},
           {"neighbours", record.neighbours},
-          {"verification", verification_json(scene, record.verification)},
+          {"verification", verification_json(scene, record)},
           {"time_ms",
            {{"setup", record.ms.setup},
             {"cull", record.ms.cull},

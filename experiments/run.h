@@ -52,7 +52,8 @@ struct RunRecord {
   std::vector<TrianglePair> neighbour_pairs;  // colliding neighbours, sorted (verify/exact.h)
   std::uint64_t neighbours = 0;               // candidates that are neighbours, colliding or not
   std::optional<Accounting> verification;     // with kExamples examples
-  ContactCounts missed;  // what was missed, by the kind of contact; without a clearance only
+  std::optional<ContactCounts> missed;        // what was missed, by the kind of contact; with a
+                                              // verification, without a clearance
   RunTimes ms;
 };
 

@@ -170,6 +170,10 @@ std::string accounting_lines(const Scene& scene, const RunRecord& record) {
       grouped(v.certified_by_predicates),
       v.neighbours > 0 ? " + " + grouped(v.neighbours) + " neighbours" : "",
       grouped(v.false_negatives));
+  if (v.false_negatives > 0 && record.missed) {
+    out += fmt::format("           of those missed {} touching, {} penetrating\n",
+                       grouped(record.missed->touching), grouped(record.missed->penetrating));
+  }
   const std::vector<std::uint32_t> owner = owners(scene);
   const auto place = [&](std::uint32_t triangle) {
     const Object& object = scene.objects[owner[triangle]];
@@ -181,6 +185,24 @@ std::string accounting_lines(const Scene& scene, const RunRecord& record) {
   if (v.false_negatives > shown && shown > 0)
     out += fmt::format("  missed: {} more\n", grouped(v.false_negatives - shown));
   return out;
+}
+
+// What was drawn and asked, of the methods that do so.
+std::string work_line(const RunRecord& record) {
+  if (!draws(record.options.method)) return "";
+  Stage sum;
+  for (const Stage& s : record.stages) {
+    sum.draws += s.draws;
+    sum.queries += s.queries;
+    sum.draws_saved += s.draws_saved;
+    sum.queries_saved += s.queries_saved;
+  }
+  return fmt::format("drawn      {}, {}{}\n", counted(sum.draws, "element", "elements"),
+                     counted(sum.queries, "query", "queries"),
+                     sum.draws_saved + sum.queries_saved == 0
+                         ? ""
+                         : fmt::format("; {} and {} fewer than plain CULLIDE would",
+                                       grouped(sum.draws_saved), grouped(sum.queries_saved)));
 }
 
 // The window that was looked at where the scene chose.
@@ -258,6 +280,7 @@ std::string run_table(const Scene& scene, const RunRecord& record) {
                                                            "neighbour pair", "neighbour pairs"),
                                                    grouped(record.neighbours))
                                      : "");
+  out += work_line(record);
   out += accounting_lines(scene, record);
   out += fmt::format(
       "time       {:.1f} ms = setup {:.1f} + cull {:.1f} + exact {:.1f}{}\n", record.ms.total,

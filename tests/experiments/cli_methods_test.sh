@@ -70,7 +70,7 @@ expect 'plan as JSON' "$out" '"decision": "depends"'
 good 'plan of self-collision' 0 plan folded.obj --method far-pairs --self
 expect 'plan of self-collision' "$out" '^self +runs '
 
-good 'quick-cullide' 0 run two-spheres --method quick-cullide --resolution 64 --device software --json -
+good 'quick-cullide' 0 run crowd --method quick-cullide --resolution 64 --device software --json -
 expect 'quick-cullide' "$out" '"draws_saved": [1-9]'
 expect 'quick-cullide' "$out" '"promises": false'
 good 'cullide by occlusion queries' 0 run two-spheres --method cullide --resolution 64 \
