@@ -60,8 +60,8 @@ struct Clusters {
   std::string reason;                // for the record; empty: the record says nothing
 };
 
-/// The fixed rule: clusters of 128 triangles where a question costs (occlusion queries) and more
-/// than 4096 triangles may take part; none otherwise.
+/// The fixed rule: clusters of 32 triangles where a question costs (occlusion queries) and more
+/// than 32,768 triangles may take part; none otherwise.
 Clusters usual_clusters(bool occlusion_queries, std::size_t triangles);
 
 /// What a watcher sees after each pass of the schedule that has at least one triangle to decide.

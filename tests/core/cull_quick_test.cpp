@@ -239,6 +239,14 @@ TEST(CullClusters, CutEachOwnerAlongTheCurve) {
   }
 }
 
+TEST(CullClusters, AreUsualWhereAQuestionCostsAndManyTrianglesAreAsked) {
+  EXPECT_TRUE(usual_clusters(false, 1'000'000).sizes.empty());
+  EXPECT_TRUE(usual_clusters(true, 1'000).sizes.empty());
+  const Clusters clusters = usual_clusters(true, 1'000'000);
+  EXPECT_FALSE(clusters.sizes.empty());
+  EXPECT_NE(clusters.reason.find("occlusion queries"), std::string::npos);
+}
+
 TEST(CullClusters, OrderSurvivesTheLargestBoxes) {
   const double most = std::numeric_limits<double>::max();
   const std::vector<Box> boxes = {{Vec3(-most, -most, -most), Vec3(most, most, most)},
