@@ -7,7 +7,7 @@
 namespace farcull::cloth {
 namespace {
 
-constexpr double kWidth = 1e-2;        // of a spring's length: how far inside the cone it begins
+constexpr double kWidth = 1e-2;          // of a spring's length: how far inside the cone it begins
 constexpr double kToTheBoundary = 0.95;  // no further than this part of the way
 
 }  // namespace
@@ -92,16 +92,15 @@ void Interior::linearize(const Eigen::VectorXd& x, double target) {
     spring.across = step_.stretch + tt;
     // dz = target u^-1 - z - W^-2 du and du_t = dz_t/c - (t - l* - z_t/c), whence du_t.
     const double inverse = target / (size_u * size_u);
-    spring.right = inverse * u.t - z.t -
-                   step_.stretch * (u.t - spring.length - z.t / step_.stretch);
+    spring.right =
+        inverse * u.t - z.t - step_.stretch * (u.t - spring.length - z.t / step_.stretch);
     spring.block = spring.whole - spring.mixed * spring.mixed.transpose() / spring.across;
     spring.force = inverse * u.d + spring.mixed * spring.right / spring.across;
   }
   for (std::size_t v = 0; v < contacts_.size(); ++v) {
     ContactState& contact = contacts_[v];
     if (!contact.is_there) continue;
-    const double away =
-        step_.normal[v].dot(x.segment<3>(3 * v)) - step_.model.settings.radius;
+    const double away = step_.normal[v].dot(x.segment<3>(3 * v)) - step_.model.settings.radius;
     contact.scaling = contact.f / contact.s;
     // s = f/c + away; the same as above in one dimension.
     const double off = contact.s - contact.f / contact.stiffness - away;
@@ -132,8 +131,8 @@ double Interior::move(const Eigen::VectorXd& direction, Eigen::VectorXd& x) {
     const double tt = spring.across - step_.stretch;
     spring.du.d = direction.segment<3>(3 * b) - direction.segment<3>(3 * a);
     spring.du.t = (spring.right - spring.mixed.dot(spring.du.d)) / spring.across;
-    spring.dz.t = inverse * spring.u.t - spring.z.t - tt * spring.du.t -
-                  spring.mixed.dot(spring.du.d);
+    spring.dz.t =
+        inverse * spring.u.t - spring.z.t - tt * spring.du.t - spring.mixed.dot(spring.du.d);
     spring.dz.d = -inverse * spring.u.d - spring.z.d - spring.mixed * spring.du.t -
                   spring.whole * spring.du.d;
     way = std::min({way, room(spring.u, spring.du), room(spring.z, spring.dz)});

@@ -51,12 +51,12 @@ class Interior {
     ConePoint z;
     ConePoint du;
     ConePoint dz;
-    double across = 0;    // of the scaling: t with t, and stiffness
-    double right = 0;     // of the equation of t
-    Vec3 mixed;           // of the scaling: t with d
-    Block whole;          // of the scaling: d with d
-    Block block;          // of the matrix, t eliminated
-    Vec3 force;           // of the right hand side
+    double across = 0;  // of the scaling: t with t, and stiffness
+    double right = 0;   // of the equation of t
+    Vec3 mixed;         // of the scaling: t with d
+    Block whole;        // of the scaling: d with d
+    Block block;        // of the matrix, t eliminated
+    Vec3 force;         // of the right hand side
   };
   struct ContactState {
     double stiffness = 0;
@@ -64,7 +64,7 @@ class Interior {
     double f = 0;
     double ds = 0;
     double df = 0;
-    double scaling = 0;   // f/s
+    double scaling = 0;  // f/s
     double block = 0;
     double force = 0;
     double right = 0;

@@ -182,7 +182,7 @@ Model make_model(const ClothSettings& settings) {
     for (const std::uint32_t v : corners) model.area[v] += cell * cell / 6;
   }
   for (const double area : model.area) model.mass.push_back(settings.density * area);
-  model.crimp = kCrimp * 9.81 * settings.density * cell * cell * cell;
+  model.crimp = kCrimp * kStandardGravity * settings.density * cell * cell * cell;
   return model;
 }
 
@@ -216,8 +216,8 @@ Step make_step(const Model& model, const Eigen::VectorXd& x0, const Eigen::Vecto
             s.stiffness + s.buckling_load};
   for (std::uint32_t v = 0; v < model.mass.size(); ++v) {
     const double distance = at(x0, v).norm();
-    if (s.radius == 0 || !(distance > 0)) continue;
-    step.normal[v] = at(x0, v) / distance;
+    if (s.radius == 0) continue;
+    step.normal[v] = distance > 0 ? Vec3(at(x0, v) / distance) : Vec3(Vec3::UnitZ());
     step.friction[v] =
         s.friction * smooth_force(contact_stiffness(model, v), model.crimp, s.radius - distance);
   }
@@ -293,8 +293,7 @@ void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& resul
     const Vec3 d = at(x, b) - at(x, a);
     const double l = d.norm();
     if (l == 0) continue;  // no direction, and hardly a force
-    const Vec3 force =
-        smooth_force(step.stretch, model.crimp, l - slack_length(model, i)) / l * d;
+    const Vec3 force = smooth_force(step.stretch, model.crimp, l - slack_length(model, i)) / l * d;
     result.segment<3>(3 * b) += force;
     result.segment<3>(3 * a) -= force;
   }

@@ -15,8 +15,11 @@
 
 namespace farcull::cloth {
 
-/// A spring along an edge. Its force is stiffness * (l - length) while that is at least
-/// -buckling_load * l, and -buckling_load * l below (it buckles).
+inline constexpr double kStandardGravity = 9.81;  // m/s^2, of a weight as a unit of force
+
+/// A spring along an edge. But for the smooth start below, its force is stiffness * (l - length)
+/// while that is at least -buckling_load * l, and -buckling_load * l where it is shorter: it
+/// buckles.
 struct Spring {
   std::array<std::uint32_t, 2> vertices;
   double length = 0;  // at rest, m
@@ -58,12 +61,12 @@ Energies energies(const Model& model, const Eigen::VectorXd& x, const Eigen::Vec
 
 /// One step from x0 with velocity v0: minimize
 ///   sum m/(2 h^2) |x - x0 - h v0|^2 + drag area/(2 h) |x - x0|^2      inertia, air
-///   + sum (k+T)/2 max(0, l - l*)^2 - T d0.d                           springs; l* = k L/(k+T)
+///   + sum S(k + T, l - l*) - T d0.d                                   springs; l* = k L/(k + T)
 ///   + bending(x) + sum m g z
-///   + sum c/2 max(0, R - n.x)^2 + mu N H(|P (x - x0)|)                contact, friction
-/// with d an edge, d0 the same at x0, n = x0/|x0|, P = I - n n', N the contact force at x0 and H
-/// Huber's function: s^2/(2 e) for s <= e = h stick_speed, s - e/2 above. Convex; strictly, by the
-/// masses.
+///   + sum S(c, R - n.x) + mu N H(|P (x - x0)|)                        contact, friction
+/// with S = smooth_energy, d an edge and l = |d|, d0 the same at x0, n = x0/|x0|, P = I - n n', c =
+/// contact_stiffness, N the contact force at x0 and H Huber's function: s^2/(2 e) for s <= e = h
+/// stick_speed, s - e/2 above. Strictly convex.
 struct Step {
   const Model& model;
   Eigen::VectorXd x0;

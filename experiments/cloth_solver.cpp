@@ -13,9 +13,11 @@ namespace {
 
 constexpr int kTrials = 60;  // along one direction; a double has no more halvings
 // These change how long a step takes and not where it ends.
-constexpr int kPatience = 12;              // iterations of Newton's method before interior points
-constexpr double kFirstTarget = 0.1;       // complementarity at first, over weight * length
-constexpr double kInteriorTolerance = 1;   // of the complementarity at the end, over crimp
+constexpr int kPatience = 40;      // iterations of Newton's method before interior points,
+constexpr double kCreeps = 0.125;  // or three steps shorter than this; one, if the last step of
+constexpr int kCreepsAtMost = 3;   // the cloth needed interior points
+constexpr double kStart = 1;       // complementarity at first, over weight * length
+constexpr double kEnd = 2;         // at the end, over crimp: Newton's method is quick from there
 
 // The lower triangle, with the values that no x changes.
 Eigen::SparseMatrix<double> pattern(const Model& model, const std::vector<std::uint32_t>& places) {
@@ -110,9 +112,9 @@ double Solver::tolerance(const Eigen::VectorXd& x) const {
   const double heaviest = *std::max_element(model_.mass.begin(), model_.mass.end());
   // A coordinate is stored with an error of up to u |x|, at either end of a spring, which answers
   // with a force of (k + T) times the error; a vertex has at most 8 springs, and 3 coordinates.
-  const double rounding = 16 * std::sqrt(3.0) * 0x1p-53 * x.lpNorm<Eigen::Infinity>() *
-                          (s.stiffness + s.buckling_load);
-  return s.tolerance * 9.81 * heaviest + rounding;
+  const double rounding =
+      16 * std::sqrt(3.0) * 0x1p-53 * x.lpNorm<Eigen::Infinity>() * (s.stiffness + s.buckling_load);
+  return s.tolerance * kStandardGravity * heaviest + rounding;
 }
 
 // With the matrix as it is assembled; false where it has no factor.
@@ -132,8 +134,8 @@ bool Solver::solve(const Eigen::VectorXd& right, Eigen::VectorXd& result) {
 
 // Each iteration goes along Newton's direction to where the slope, which begins below 0 and never
 // falls, as the function is convex, is a tenth of what it was or less: the value falls on the way.
-// False if more iterations would not help.
-bool Solver::newton(const Step& step, int iterations, Minimum& best) {
+// At most `iterations`, and no more after `creeps` short steps. False if it failed for good.
+bool Solver::newton(const Step& step, int iterations, int creeps, Minimum& best) {
   Eigen::VectorXd p(best.x.size());
   Eigen::VectorXd x(best.x.size());
   gradient(step, best.x, best.gradient);
@@ -150,7 +152,7 @@ bool Solver::newton(const Step& step, int iterations, Minimum& best) {
                                 best.iterations, best.residual, tolerance(best.x));
       return false;
     }
-    if (i == iterations) return true;
+    if (i == iterations || creeps == 0) return true;
     ++best.iterations;
     hessian(step, best.x);
     if (!solve(-best.gradient, p)) {
@@ -179,24 +181,22 @@ bool Solver::newton(const Step& step, int iterations, Minimum& best) {
       length = std::clamp(secant, lo + margin, hi - margin);
     }
     best.x = x;
-    if (getenv("V")) fmt::print("  n {} {:.2e} {:.1e}\n", best.iterations, largest_force(best.gradient), length);
+    if (length < kCreeps) --creeps;
   }
 }
 
-// False if it fails; otherwise best.x is close to the minimum.
-bool Solver::interior(const Step& step, Minimum& best) {
+// Moves best.x close to the minimum; where it fails, best.x stays.
+void Solver::interior(const Step& step, Minimum& best) {
   const double heaviest = *std::max_element(model_.mass.begin(), model_.mass.end());
   Eigen::VectorXd x = best.x;
-  static const double FT = getenv("FT") ? atof(getenv("FT")) : kFirstTarget;
-  Interior interior(step, x, FT * 9.81 * heaviest * model_.springs[0].length);
+  Interior interior(step, x, kStart * kStandardGravity * heaviest * model_.springs[0].length);
   Eigen::VectorXd force;
   Eigen::VectorXd p;
-  double aim = 0.1;
-  static const double DONE = getenv("DONE") ? atof(getenv("DONE")) : 1;
+  double aim = 0.1;  // the smaller, the better the last direction did
   for (;;) {
     const double now = interior.complementarity();
-    if (now <= (1+DONE) * model_.crimp && aim < 0.2) break;
-    if (!std::isfinite(now) || best.iterations >= model_.settings.max_iterations) return false;
+    if (now <= kEnd * model_.crimp && aim < 0.2) break;
+    if (!std::isfinite(now) || best.iterations >= model_.settings.max_iterations) return;
     ++best.iterations;
     interior.linearize(x, std::max(model_.crimp, aim * now));
     assemble([&](std::size_t i) { return interior.spring_block(i); },
@@ -212,26 +212,24 @@ bool Solver::interior(const Step& step, Minimum& best) {
     for (std::uint32_t v = 0; v < model_.mass.size(); ++v) {
       force.segment<3>(3 * v) += interior.contact_force(v);
     }
-    if (!solve(-force, p)) return false;
+    if (!solve(-force, p)) return;
     const double way = interior.move(p, x);
-    if (getenv("V")) fmt::print("  i {} {:.2e} {:.1e}\n", best.iterations, now / model_.crimp, way);
     aim = way > 0.8 ? 0.1 : way > 0.3 ? 0.4 : 0.9;
   }
   best.x = x;
-  return true;
 }
 
 Minimum Solver::minimize(const Step& step) {
   Minimum best;
   best.x = step.x0;
-  const int all = model_.settings.max_iterations;
-  if (!newton(step, was_stiff_ ? 2 : kPatience, best) || best.converged) {
+  if (!newton(step, kPatience, was_stiff_ ? 1 : kCreepsAtMost, best) || best.converged) {
     was_stiff_ = false;
     return best;
   }
   was_stiff_ = true;
+  const int all = model_.settings.max_iterations;
   interior(step, best);
-  newton(step, all, best);
+  newton(step, all, all, best);
   return best;
 }
 

@@ -46,8 +46,8 @@ class Solver {
   void assemble(const std::function<Block(std::size_t)>& of_spring,
                 const std::function<Block(std::uint32_t)>& of_vertex);
   bool solve(const Eigen::VectorXd& right, Eigen::VectorXd& result);
-  bool newton(const Step& step, int iterations, Minimum& best);
-  bool interior(const Step& step, Minimum& best);
+  bool newton(const Step& step, int iterations, int creeps, Minimum& best);
+  void interior(const Step& step, Minimum& best);
 
   const Model& model_;
   Dissection dissection_;

@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
 
 #include "experiments/builtin_shapes.h"
+#include "experiments/cloth_interior.h"
 #include "experiments/cloth_solver.h"
 
 namespace farcull::cloth {
@@ -84,9 +86,9 @@ TEST(ClothModel, GradientIsThatOfTheValue) {
     const Difference d = difference(along, 1e-6, 1e3 * 1e3 * 1e3);
     EXPECT_LE(std::abs(d.value[0] - g.dot(p)), d.allowed) << seed;
     EXPECT_LT(d.allowed, 1e-2 * std::abs(g.dot(p)) + 1) << "the bound says nothing";
-    // The twin: one force with the wrong sign.
+    // The twin: one force that is a little too large.
     Step wrong = s.step;
-    wrong.stretch = -wrong.stretch;
+    wrong.stretch *= 1.02;
     gradient(wrong, s.x, g);
     EXPECT_GT(std::abs(d.value[0] - g.dot(p)), d.allowed) << seed;
   }
@@ -194,6 +196,86 @@ TEST(ClothModel, AStepBoundsThePotentialEnergiesFromAbove) {
     below_without_thrust += above - thrust < is ? 1 : 0;
   }
   EXPECT_GT(below_without_thrust, 0);  // the twin
+}
+
+// f (f/c - e) = crimp, to a few roundings of each of the two products where these do not cancel,
+// and of c e^2 where they do; the derivative and the energy by differences that halve their errors.
+TEST(ClothModel, ASmoothSpringIsWhatItSays) {
+  for (const double c : {1.0, 1e4, 1e8}) {
+    const double crimp = 1e-12;
+    const double width = std::sqrt(4 * crimp / c);
+    for (const double e : {-1e3 * width, -3 * width, -width, 0.0, width, 3 * width, 1e3 * width}) {
+      const double f = smooth_force(c, crimp, e);
+      EXPECT_GT(f, 0);
+      EXPECT_LE(std::abs(f * (f / c - e) - crimp), 16 * 0x1p-53 * (f * f / c + f * std::abs(e)));
+      const auto slope = [&](const auto& of, double d) {
+        return (of(e + d) - of(e - d)) / (2 * d);
+      };
+      const auto force = [&](double at) { return smooth_force(c, crimp, at); };
+      const auto energy = [&](double at) { return smooth_energy(c, crimp, at); };
+      // Central differences at d = width/100: of the third derivatives, which are at most c/width^2
+      // and c/width, a sixth of d^2; and rounding over d.
+      const double d = width / 100;
+      const double big = std::max(std::abs(e), width);
+      EXPECT_LE(std::abs(slope(force, d) - smooth_stiffness(c, crimp, e)),
+                c * (1e-4 / 6 + 100 * 0x1p-53 * big / d));
+      EXPECT_LE(std::abs(slope(energy, d) - f),
+                c * (width * 1e-4 / 6 + 100 * 0x1p-53 * big * big / d));
+      // The twin: the force of another crimp.
+      if (std::abs(e) <= 3 * width) {
+        const double other = smooth_force(c, 1.1 * crimp, e);
+        EXPECT_GT(std::abs(other * (other / c - e) - crimp),
+                  16 * 0x1p-53 * (f * f / c + f * std::abs(e)));
+      }
+    }
+  }
+}
+
+TEST(ClothInterior, RoomEndsAtTheCone) {
+  shapes::Random random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const ConePoint u{1.01 + random.unit(), random.direction()};
+    const ConePoint du{random.between(-1, 1), random.in_cube(1)};
+    const double way = room(u, du);
+    const auto inside = [&](double a) {
+      const ConePoint at{u.t + a * du.t, u.d + a * du.d};
+      return at.t > 0 && determinant(at) > 0;
+    };
+    for (const double part : {0.1, 0.5, 0.9, 0.999}) {
+      EXPECT_TRUE(inside(part * std::min(way, 1e6))) << i;
+    }
+    if (std::isfinite(way)) {
+      EXPECT_FALSE(inside(1.001 * way)) << i;
+    }
+  }
+}
+
+TEST(ClothInterior, EndsAtTheMinimum) {
+  ClothSettings settings = settings_of(98);
+  settings.triangles = 98;
+  settings.stiffness = 1e6;
+  settings.buckling_load = 1;
+  settings.height = 0;
+  const Model model = make_model(settings);
+  const VectorXd thrown = VectorXd::Constant(model.rest.size(), -0.5);
+  const Step step = make_step(model, model.rest, thrown);
+  const Minimum minimum = Solver(model).minimize(step);
+  ASSERT_TRUE(minimum.converged) << minimum.reason;
+  VectorXd g;
+  gradient(step, minimum.x, g);
+  EXPECT_EQ(g, minimum.gradient);
+  // Strong convexity: a point with gradient g is within |g| h^2/m of the minimum and no lower than
+  // it by more than |g|^2 h^2/(2 m); so no other point may be lower than this one by more.
+  double lightest = model.mass[0];
+  for (const double mass : model.mass) lightest = std::min(lightest, mass);
+  const double h = settings.time_step;
+  const double gap = g.squaredNorm() * h * h / (2 * lightest);
+  shapes::Random random(5);
+  for (const double by : {1e-12, 1e-9, 1e-6, 1e-3}) {
+    const VectorXd other = shaken(minimum.x, by, random);
+    EXPECT_GE(value(step, other) - value(step, minimum.x), -gap - 1e3 * 1e3 * 0x1p-53) << by;
+  }
+  EXPECT_LT(value(step, minimum.x), value(step, step.x0));
 }
 
 TEST(ClothModel, BendingHasTheRigidityOfAPlate) {

@@ -35,19 +35,21 @@ VectorXd positions(const Cloth& cloth) {
   return x;
 }
 
-// What rounding may add to a total energy. Each of the sums has at most 3 terms per triangle, so a
-// sum of n terms that are positive is off by n u of itself (Higham, section 4.2); the terms' own
-// few roundings are below the same once more. Heights have either sign: there the sum of sizes
-// counts. A spring's term is the exception: its length is off by 4 u of itself, which the energy
-// answers with its force times that; that sum is bounded by sqrt(2 stiffness energy n) l 4 u.
+// What rounding may add to a total energy. Each of its sums has at most n = 3 terms per triangle,
+// so it is off by n u of the sum of their sizes (Higham, section 4.2), and the terms' own few
+// roundings are below the same once more. Sizes are the energies themselves where terms have one
+// sign; heights, and the thrust of springs, of which each has at most T L^2/2 beside what remains,
+// are bounded apart. The length of a spring is off by 4 u of itself, which its energy answers with
+// its force times that: over all, at most sqrt(2 stiffness energy n) l 4 u.
 double rounding(const ClothSettings& s, const Cloth& cloth) {
   const ClothReport& r = cloth.report();
   const auto n = 3 * static_cast<double>(cloth.scene().objects[0].triangle_count);
   const double cell = s.side / std::sqrt(n / 6);
   const double heights =
       s.density * s.side * s.side * s.gravity * positions(cloth).lpNorm<Eigen::Infinity>();
-  const double sums = r.kinetic + r.elastic + r.bending + r.contact + heights;
-  const double springs = std::sqrt(2 * s.stiffness * r.elastic * n) * 2 * cell * 4;
+  const double thrust = s.buckling_load * 2 * cell * cell / 2 * n;
+  const double sums = r.kinetic + r.elastic + r.bending + r.contact + heights + 2 * thrust;
+  const double springs = std::sqrt(2 * s.stiffness * (r.elastic + thrust) * n) * 2 * cell * 4;
   return 2 * 0x1p-53 * (2 * n * sums + springs);
 }
 
