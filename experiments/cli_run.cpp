@@ -60,8 +60,8 @@ CLI::App* RunCommand::add_to(CLI::App& app) {
       "default fragment for far, fixed for the others");
   add("--depth-format", depth_format_, "32f|24", "of the depth buffer; default 32f");
   add("--query", query_, "flags|occlusion",
-      "how visibility is asked; default flags, but\n"
-      "occlusion with --depth-format 24");
+      "how visibility is asked; default flags, but occlusion\n"
+      "with --depth-format 24 and for s-cullide");
   add("--views", views_, "VIEWS", kViewsHelp);
   add("--device", device_, "DEVICE", kRunDeviceHelp);
   command->add_flag("--self", self_, kSelfHelp)->disable_flag_override();

@@ -77,8 +77,10 @@ DepthMode depth_of(const RunOptions& options) {
 }
 
 QueryMode query_of(const RunOptions& options) {
-  return options.query.value_or(
-      options.depth_format == DepthFormat::float32 ? QueryMode::flags : QueryMode::occlusion);
+  // One step a triangle: flags would wait for each of them.
+  const bool steps = options.method == Method::s_cullide;
+  const bool flags = options.depth_format == DepthFormat::float32 && !steps;
+  return options.query.value_or(flags ? QueryMode::flags : QueryMode::occlusion);
 }
 
 std::string describe(const RunOptions& options) {

@@ -30,7 +30,7 @@ struct RunOptions {
   std::string offset = "obb";      // far only
   std::optional<DepthMode> depth;  // default: fragment for far, fixed for the CULLIDE family
   DepthFormat depth_format = DepthFormat::float32;
-  std::optional<QueryMode> query;  // default: flags with float32, occlusion with fixed24
+  std::optional<QueryMode> query;  // default: flags; occlusion with fixed24 and for s-cullide
   std::string views;               // "": x,y,z, but chosen by the scene for far-pairs
   std::string device;    // "": hardware first, then software; for far-pairs see pair_device.h
   double clearance = 0;  // world units, finite, >= 0; far-pairs and exact only

@@ -88,7 +88,7 @@ struct Row {
   std::string key;  // what stages are folded by; empty: nothing joins this row
   std::string name;
   std::string note;
-  std::vector<std::string> views;  // of later rounds
+  std::vector<std::string> views;  // of later rounds; of what was left out, the stages
   Stage sum;                       // ms of all, in of the first, out of the last
 };
 
@@ -118,9 +118,19 @@ std::vector<Row> folded(const std::vector<Stage>& stages) {
   std::vector<Row> rows;
   for (const Stage& stage : stages) {
     const StageName name = parts_of(stage.name);
-    if (!stage.ran || name.round.empty()) {
-      rows.push_back(
-          {"", stage.name, stage.ran ? stage.reason : "left out: " + stage.reason, {}, stage});
+    if (!stage.ran) {
+      const std::string note = "left out: " + stage.reason;
+      if (rows.empty() || rows.back().note != note || rows.back().sum.ran) {
+        rows.push_back({"", stage.name, note, {stage.name}, stage});
+      } else {
+        Row& row = rows.back();
+        row.views.push_back(stage.name);
+        row.name = fmt::format("{} and {} more", row.views.front(), row.views.size() - 1);
+      }
+      continue;
+    }
+    if (name.round.empty()) {
+      rows.push_back({"", stage.name, stage.reason, {}, stage});
       continue;
     }
     const bool first = name.round == "1";
