@@ -20,7 +20,7 @@ namespace farcull {
 
 /// All numbers finite and in SI units.
 struct ClothSettings {
-  std::uint64_t triangles = 20000;  // of the cloth, 8 to 2,000,000: 2 m^2 for the nearest m
+  std::uint64_t triangles = 20000;  // of the cloth, 8 to 200,000: 2 m^2 for the nearest m
   double stiffness = 1e4;           // of the spring along an edge, N/m; > 0
   double side = 1;                  // of the square at rest, m; > 0
   double density = 0.2;             // kg/m^2; > 0
@@ -38,7 +38,7 @@ struct ClothSettings {
   double time_step = 0.01;          // s; > 0
   double tolerance = 1e-3;          // of the residual, as a part of the weight of the largest
                                     // vertex mass (at 9.81 m/s^2); > 0
-  int max_iterations = 400;         // of Newton's method in a step; >= 0
+  int max_iterations = 400;         // factorizations in a step, at most; >= 0
   std::uint64_t seed = 1;           // of the unevenness that breaks the symmetry at the start
 };
 
@@ -49,11 +49,12 @@ struct ClothReport {
   double elastic = 0;  // of the springs, stretched or compressed
   double bending = 0;
   double gravitational = 0;  // 0 at the centre of the sphere
-  double contact = 0;        // of the sphere's surface
+  double contact = 0;        // of the sphere's surface; like `elastic`, a trifle below 0
+                             // where all is slack (docs/cloth.md, crimp)
   double residual = 0;       // largest force on a vertex that the step left unbalanced, N
   double slack = 0;          // work of the unbalanced forces in the step, J: what the total energy
                              // may have gained
-  int iterations = 0;        // of Newton's method
+  int iterations = 0;        // factorizations
   bool converged = true;     // residual <= its tolerance
   std::string warning = {};  // why not, and what was kept instead; empty where it converged
 

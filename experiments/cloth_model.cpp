@@ -23,8 +23,8 @@ void check(bool good, const char* what, double value, const char* range) {
 }
 
 void check(const ClothSettings& s) {
-  check(s.triangles >= 8 && s.triangles <= 2000000, "triangles", static_cast<double>(s.triangles),
-        "8 to 2000000");
+  check(s.triangles >= 8 && s.triangles <= 200000, "triangles", static_cast<double>(s.triangles),
+        "8 to 200000");
   const auto positive = [](const char* what, double value) {
     check(std::isfinite(value) && value > 0, what, value, "a finite number above 0");
   };
