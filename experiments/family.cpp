@@ -74,10 +74,42 @@ std::string device_of(const RunRecord& record) {
   return record.on_cpu ? "cpu" : "none";
 }
 
+// The frames of a scene for one method after the other: kept where they are not too many bytes,
+// since a simulation may take longer than all methods together; else moved anew for each method.
+class Frames {
+ public:
+  Frames(std::string scene, const FamilyArguments& arguments)
+      : scene_(std::move(scene)), arguments_(arguments) {}
+
+  const Scene& at(long frame) {
+    const FrameRange& range = arguments_.range;
+    const auto index = static_cast<std::size_t>(frame - range.first);
+    if (index < kept_.size()) return kept_[index];
+    // Every method starts at the first frame.
+    if (!source_ || frame == range.first)
+      source_.emplace(std::vector{scene_}, range, arguments_.self);
+    const Scene& scene = source_->at(frame);
+    const std::size_t bytes =
+        scene.vertices.size() * sizeof(Vec3) +
+        scene.triangles.size() * (sizeof scene.triangles[0] + sizeof(std::uint32_t));
+    if (index == kept_.size() && bytes * static_cast<std::size_t>(range.count()) <= kMostBytes)
+      kept_.push_back(scene);
+    return scene;
+  }
+
+ private:
+  static constexpr std::size_t kMostBytes = std::size_t{1} << 31;
+
+  std::string scene_;
+  const FamilyArguments& arguments_;
+  std::optional<FrameSource> source_;
+  std::vector<Scene> kept_;
+};
+
 // One scene by one method; nothing where the method has no question to ask of the scene.
 std::optional<FamilyCell> run_cell(const std::string& scene, const Contestant& contestant,
-                                   const FamilyArguments& arguments, Session& session,
-                                   const Progress& progress) {
+                                   const FamilyArguments& arguments, Frames& frames,
+                                   Session& session, const Progress& progress) {
   RunOptions options = arguments.options;
   options.method = contestant.method;
   options.offset = contestant.method == Method::far ? contestant.offset : "obb";
@@ -86,7 +118,6 @@ std::optional<FamilyCell> run_cell(const std::string& scene, const Contestant& c
                   .offset = contestant.method == Method::far ? contestant.offset : "",
                   .device = {},
                   .frames = {}};
-  FrameSource source({scene}, arguments.range, arguments.self);
   session.sweep().forget();
   for (long frame = arguments.range.first; frame <= arguments.range.last; ++frame) {
     const std::string name =
@@ -94,7 +125,8 @@ std::optional<FamilyCell> run_cell(const std::string& scene, const Contestant& c
                     frame - arguments.range.first + 1, arguments.range.count());
     const Progress named =
         progress ? [&](const std::string& stage) { progress(name + stage); } : Progress{};
-    const Scene& moved = source.at(frame);
+    if (named) named("moving");
+    const Scene& moved = frames.at(frame);
     Scene unmarked;
     const bool strip = has_self(moved) && !tests_self(contestant.method);
     if (!has_self(moved) && tests_self_alone(contestant.method)) return std::nullopt;
@@ -153,8 +185,10 @@ std::vector<FamilyCell> run_family(const FamilyArguments& arguments, const Progr
   Session session(arguments.options.device);
   std::vector<FamilyCell> cells;
   for (const std::string& scene : scenes) {
+    Frames frames(scene, arguments);
     for (const Contestant& contestant : methods) {
-      std::optional<FamilyCell> cell = run_cell(scene, contestant, arguments, session, progress);
+      std::optional<FamilyCell> cell =
+          run_cell(scene, contestant, arguments, frames, session, progress);
       if (cell) cells.push_back(std::move(*cell));
     }
   }
