@@ -244,7 +244,7 @@ const std::vector<BuiltinScene>& builtin_scenes() {
               .description = "a cloth above a sphere, against itself as well (FAR)",
               .objects = 2,
               .triangles = 25'120,
-              .size = SceneSize{"triangles of the cloth", 8, 2'000'000, 20'000},
+              .size = SceneSize{"triangles of the cloth", 8, 200'000, 20'000},
               .second = SceneSecond{"stiffness in N/m", 1e2, 1e8, 1e4},
               .motion = "it falls on the sphere and folds over itself; a frame is a time step",
               .costly = true},
