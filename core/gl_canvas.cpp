@@ -202,8 +202,9 @@ std::vector<Run> GlCanvas::State::lay_out(const Pass& pass, std::vector<GpuDraw>
     stores += step.verb == Verb::store;
     if (stores > kMaxControls) {
       throw Error("GL pass",
-                  "more than " + std::to_string(kMaxControls) + " objects are stored in one pass",
-                  "join objects that cannot collide with each other");
+                  "more than " + std::to_string(kMaxControls) +
+                      " owners (objects; for s-cullide triangles) are stored in one pass",
+                  "join objects that cannot collide with each other, or use far-pairs");
     }
     const double behind = step.verb == Verb::store ? 0 : 0.5;
     add_control(own, static_cast<float>(kControlTop -

@@ -60,13 +60,10 @@ int FamilyCommand::run() {
   if (outputs.csv) write_output(*outputs.csv, family_csv(cells));
   if (outputs.json) write_json(family_json(cells, arguments_), *outputs.json);
   if (!outputs.to_stdout()) write_output("-", family_table(cells));
-  for (const FamilyCell& cell : cells) {
-    if (!cell.promises || cell.missed().value_or(0) == 0) continue;
-    complain(cell.scene + ": " + to_string(cell.method) + " missed " +
-             std::to_string(*cell.missed()) + " pairs");
-    return kBroken;
-  }
-  return kDone;
+  const std::string promise = broken(cells);
+  if (promise.empty()) return kDone;
+  complain(promise);
+  return kBroken;
 }
 
 CLI::App* SavingsCommand::add_to(CLI::App& experiments) {
@@ -104,14 +101,10 @@ int SavingsCommand::run() {
   terminal.clear();
   if (outputs.json) write_json(savings_json(rows, arguments_), *outputs.json);
   if (!outputs.to_stdout()) write_output("-", savings_table(rows));
-  for (const SavingsRow& row : rows) {
-    RunOptions asked = options;
-    asked.method = row.method;
-    if (row.same_pairs || !promises(asked)) continue;
-    complain(row.scene + ": " + to_string(row.method) + " finds other pairs with --full");
-    return kBroken;
-  }
-  return kDone;
+  const std::string promise = broken(rows, options);
+  if (promise.empty()) return kDone;
+  complain(promise);
+  return kBroken;
 }
 
 }  // namespace farcull

@@ -62,6 +62,10 @@ CLI::App* RunCommand::add_to(CLI::App& app) {
   add("--query", query_, "flags|occlusion",
       "how visibility is asked; default flags, but occlusion\n"
       "with --depth-format 24 and for s-cullide");
+  add("--clusters", clusters_, "LIST|none",
+      "sizes of clusters of triangles that are asked before\n"
+      "single ones, for far, cullide and quick-cullide; default\n"
+      "32 with occlusion queries and more than 32768 triangles");
   add("--views", views_, "VIEWS", kViewsHelp);
   add("--device", device_, "DEVICE", kRunDeviceHelp);
   command->add_flag("--self", self_, kSelfHelp)->disable_flag_override();
@@ -139,6 +143,7 @@ RunOptions RunCommand::parse() const {
                             {{"32f", DepthFormat::float32}, {"24", DepthFormat::fixed24}});
   }
   if (query_) out.query = parse_query(*query_);
+  if (clusters_) out.clusters = parse_clusters(*clusters_);
   if (views_) out.views = parse_views_option(*views_, pairs);
   if (clearance_) out.clearance = parse_clearance(*clearance_);
   out.device = device_of(device_);
@@ -169,7 +174,17 @@ void RunCommand::refuse_idle(Method chosen) const {
     refuse("--depth-format", depth_format_.has_value(), method_names(draws));
     refuse("--query", query_.has_value(), method_names(draws));
   }
-  if (chosen == Method::exact) refuse("--full", full_, "another");
+  if (clusters_ && (!draws(chosen) || tests_self_alone(chosen)))
+    refuse("--clusters", true, "far, cullide or quick-cullide");
+  if (!draws(chosen) && chosen != Method::far_pairs) {
+    const std::string others =
+        method_names([](Method m) { return draws(m) || m == Method::far_pairs; });
+    refuse("--resolution", resolution_.has_value(), others);
+    refuse("--views", views_.has_value(), others);
+    refuse("--device", device_.has_value(), others);
+  }
+  if (chosen == Method::exact && full_)
+    throw Error("--full", "exact leaves nothing out", "leave --full out");
 }
 
 int RunCommand::run() const {

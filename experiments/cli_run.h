@@ -29,7 +29,8 @@ class RunCommand {
 
   Kind kind_;
   std::vector<std::string> scene_;
-  Text method_, resolution_, radius_, offset_, depth_, depth_format_, query_, views_, device_;
+  Text method_, resolution_, radius_, offset_, depth_, depth_format_, query_, clusters_, views_,
+      device_;
   Text clearance_, frames_;
   Outputs outputs_;
   bool self_ = false, no_verify_ = false, full_ = false;

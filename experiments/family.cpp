@@ -9,6 +9,7 @@
 #include "commit.h"
 #include "core/error.h"
 #include "experiments/builtin_motion.h"
+#include "experiments/scene_file.h"
 #include "experiments/tables.h"
 
 namespace farcull {
@@ -58,7 +59,7 @@ FamilyFrame frame_of(const RunRecord& record, long frame) {
                   .colliding = record.pairs.size(),
                   .neighbours = record.neighbour_pairs.size(),
                   .missed = {},
-                  .missed_contacts = record.missed.value_or(ContactCounts{})};
+                  .missed_contacts = record.missed};
   for (const Stage& stage : record.stages) {
     out.queries += stage.queries;
     out.draws += stage.draws;
@@ -72,6 +73,12 @@ FamilyFrame frame_of(const RunRecord& record, long frame) {
 std::string device_of(const RunRecord& record) {
   if (record.device) return record.device->renderer;
   return record.on_cpu ? "cpu" : "none";
+}
+
+void require_motion(const std::string& scene) {
+  require_known(scene);
+  if (!is_builtin_scene(scene) || has_motion(scene)) return;
+  throw Error("--frames", "nothing in " + scene + " moves", "name one of " + moving_names());
 }
 
 // The frames of a scene for one method after the other: kept where they are not too many bytes,
@@ -113,6 +120,11 @@ std::optional<FamilyCell> run_cell(const std::string& scene, const Contestant& c
   RunOptions options = arguments.options;
   options.method = contestant.method;
   options.offset = contestant.method == Method::far ? contestant.offset : "obb";
+  if (!draws(contestant.method)) {
+    options.resolution = 0;
+    options.views = "";
+    options.query.reset();
+  }
   FamilyCell cell{.scene = scene,
                   .method = contestant.method,
                   .offset = contestant.method == Method::far ? contestant.offset : "",
@@ -145,6 +157,14 @@ std::optional<FamilyCell> run_cell(const std::string& scene, const Contestant& c
     cell.frames.push_back(frame_of(record, frame));
   }
   return cell;
+}
+
+// A field of a CSV file, in quotes where it has to be (RFC 4180).
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char ch : text) out += ch == '"' ? std::string("\"\"") : std::string(1, ch);
+  return out + "\"";
 }
 
 std::string rate(double ms) { return ms > 0 ? fmt::format("{:.1f}", 1000 / ms) : "-"; }
@@ -182,6 +202,8 @@ std::vector<FamilyCell> run_family(const FamilyArguments& arguments, const Progr
     }
   }
   const std::vector<Contestant> methods = contestants(arguments);
+  // All names before the first run, not after an hour of them.
+  for (const std::string& scene : scenes) require_motion(scene);
   Session session(arguments.options.device);
   std::vector<FamilyCell> cells;
   for (const std::string& scene : scenes) {
@@ -192,7 +214,20 @@ std::vector<FamilyCell> run_family(const FamilyArguments& arguments, const Progr
       if (cell) cells.push_back(std::move(*cell));
     }
   }
+  if (cells.empty()) {
+    throw Error("--methods", "none of them has a question to ask of these scenes",
+                "add --self, or name other methods");
+  }
   return cells;
+}
+
+std::string broken(const std::vector<FamilyCell>& cells) {
+  for (const FamilyCell& cell : cells) {
+    const std::uint64_t missed = cell.missed().value_or(0);
+    if (cell.promises && missed > 0)
+      return fmt::format("{}: {} missed {} pairs", cell.scene, label(cell), grouped(missed));
+  }
+  return "";
 }
 
 std::string family_table(const std::vector<FamilyCell>& cells) {
@@ -240,15 +275,19 @@ std::string family_csv(const std::vector<FamilyCell>& cells) {
                    ? fmt::format("{:.6g}", static_cast<double>(theirs) / static_cast<double>(ours))
                    : "";
       };
+      const auto contacts = [&](std::uint64_t ContactCounts::*kind) {
+        return f.missed_contacts ? std::to_string(*f.missed_contacts.*kind) : "";
+      };
       const FamilyFrame none;
       const FamilyFrame& box = found == swept.end() ? none : *found->second;
       out += fmt::format(
-          "{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", cell.scene,
+          "{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", field(cell.scene),
           to_string(cell.method), cell.offset, f.frame, f.ms, f.pcs_objects, f.pcs_triangles,
           f.candidates, f.colliding, f.neighbours, f.queries, f.draws, f.queries_saved,
-          f.draws_saved, f.missed ? std::to_string(*f.missed) : "", f.missed_contacts.touching,
-          f.missed_contacts.penetrating, factor(box.object_triangles, f.pcs_triangles),
-          factor(box.pcs_triangles, f.pcs_triangles), factor(box.candidates, f.candidates));
+          f.draws_saved, f.missed ? std::to_string(*f.missed) : "",
+          contacts(&ContactCounts::touching), contacts(&ContactCounts::penetrating),
+          factor(box.object_triangles, f.pcs_triangles), factor(box.pcs_triangles, f.pcs_triangles),
+          factor(box.candidates, f.candidates));
     }
   }
   return out;
@@ -272,8 +311,9 @@ nlohmann::ordered_json family_json(const std::vector<FamilyCell>& cells,
                         {"draws_saved", f.draws_saved},
                         {"missed", f.missed ? Json(*f.missed) : Json(nullptr)},
                         {"missed_contacts",
-                         {{"touching", f.missed_contacts.touching},
-                          {"penetrating", f.missed_contacts.penetrating}}}});
+                         f.missed_contacts ? Json{{"touching", f.missed_contacts->touching},
+                                                  {"penetrating", f.missed_contacts->penetrating}}
+                                           : Json(nullptr)}});
     }
     const FrameTimes times = cell.times();
     const PaperRate paper = paper_rate(cell.scene);

@@ -30,7 +30,7 @@ struct FamilyFrame {
   std::uint64_t queries = 0, draws = 0;
   std::uint64_t queries_saved = 0, draws_saved = 0;  // against plain CULLIDE
   std::optional<std::uint64_t> missed;
-  ContactCounts missed_contacts;
+  std::optional<ContactCounts> missed_contacts;
 };
 
 /// A scene by a method.
@@ -59,6 +59,9 @@ PaperRate paper_rate(const std::string& scene);
 /// tested against themselves by the methods that do so; the others see the scene without the marks
 /// (and are said to). Throws Error as run_frames() does, before the first run where it can.
 std::vector<FamilyCell> run_family(const FamilyArguments& arguments, const Progress& progress = {});
+
+/// The first promise that was broken; empty: none.
+std::string broken(const std::vector<FamilyCell>& cells);
 
 std::string family_table(const std::vector<FamilyCell>& cells);
 /// A row for each frame. Culling efficiency against I-COLLIDE, where it was run as well, as what it

@@ -24,6 +24,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr long kMostFrames = 1'000'000;
+constexpr long kLastFrame = 1'000'000'000;
 
 // What a signal's handler may look at.
 std::atomic<long> frames_done = 0, frames_wanted = 0;
@@ -88,9 +89,9 @@ class Interruptible {
 };
 
 // What a frame has of its own in the record of a run; the rest is that of all.
-constexpr std::array kOfFrame = {"views",           "stages",          "pcs",
-                                 "candidate_pairs", "colliding_pairs", "neighbour_pairs",
-                                 "neighbours",      "verification",    "time_ms"};
+constexpr std::array kOfFrame = {
+    "views",           "stages",          "pcs",        "object_triangles", "candidate_pairs",
+    "colliding_pairs", "neighbour_pairs", "neighbours", "verification",     "time_ms"};
 
 std::uint64_t draws_of(const RunRecord& record) {
   return std::accumulate(record.stages.begin(), record.stages.end(), std::uint64_t{0},
@@ -238,7 +239,10 @@ FrameRange parse_frames(const std::string& text) {
     range.first = number(text.substr(0, colon));
     range.last = number(text.substr(colon + 1));
   }
-  if (range.last < range.first || range.last - range.first >= kMostFrames) throw bad;
+  if (range.last < range.first || range.last > kLastFrame ||
+      range.last - range.first >= kMostFrames) {
+    throw bad;
+  }
   return range;
 }
 

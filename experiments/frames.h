@@ -24,7 +24,8 @@ struct FrameRange {
   long last = 0;
   long count() const { return last - first + 1; }
 };
-/// "N" (0 to N - 1) or "A:B", at most a million frames. Throws Error naming --frames.
+/// "N" (0 to N - 1) or "A:B", at most a million frames, numbers up to 1e9. Throws Error naming
+/// --frames.
 FrameRange parse_frames(const std::string& text);
 
 /// A scene that depends on a number.

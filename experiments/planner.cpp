@@ -86,7 +86,7 @@ void add_pairs(const Scene& scene, const RunOptions& options, Steps& steps) {
   steps.push_back({"boxes", Decision::runs,
                    of_all(regions.triangles.size(), scene.triangles.size()) + " can take part"});
   if (regions.triangles.empty()) {
-    steps.push_back({"views", Decision::left_out, "boxes decide: there is nothing to look at"});
+    steps.push_back({"device", Decision::left_out, "boxes decide: there is nothing to look at"});
     return;
   }
   const std::string device = options.device.empty()
@@ -132,7 +132,8 @@ Steps planned(const Scene& scene, const RunOptions& options) {
     steps.push_back({"self", Decision::left_out, "not asked for (--self)"});
   }
   if (options.method == Method::exact || options.full) {
-    steps.push_back({"exact tests", Decision::runs, "of all pairs whose boxes overlap"});
+    steps.push_back({"exact tests", Decision::runs,
+                     options.full ? "of the candidates" : "of all pairs whose boxes overlap"});
   } else {
     steps.push_back({"exact tests", Decision::depends, "if there are candidates"});
   }

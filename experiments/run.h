@@ -68,6 +68,7 @@ class Session {
   /// The canvas for the drawables of this fattener, by its name.
   GlCanvas& canvas(const Fattener& fattener, const GlCanvasOptions& options);
   PairDevice& pairs();
+  bool has_pairs() const { return pairs_.has_value(); }
   SweepPrune& sweep() { return sweep_; }
 
  private:

@@ -118,6 +118,7 @@ std::vector<std::uint32_t> surviving_objects(const Scene& scene,
 Clusters clusters_of(const RunOptions& options, std::size_t triangles) {
   if (options.method == Method::s_cullide)
     return {.sizes = {}, .reason = "every triangle is an owner"};
+  if (options.clusters) return {.sizes = *options.clusters, .reason = "--clusters"};
   return usual_clusters(query_of(options) == QueryMode::occlusion, triangles);
 }
 

@@ -45,6 +45,22 @@ QueryMode parse_query(const std::string& text) {
   throw Error("--query", "'" + text + "' is no choice", "give flags or occlusion");
 }
 
+std::vector<std::uint32_t> parse_clusters(const std::string& text) {
+  std::vector<std::uint32_t> sizes;
+  if (text == "none") return sizes;
+  const Error bad("--clusters", "'" + text + "' is no list of sizes",
+                  "give none, or numbers of 2 or more, each below the one before, as in 256,32");
+  for (const std::string& part : split_list(text)) {
+    std::uint32_t size = 0;
+    const auto [end, code] = std::from_chars(part.data(), part.data() + part.size(), size);
+    if (code != std::errc() || end != part.data() + part.size() || size < 2) throw bad;
+    if (!sizes.empty() && size >= sizes.back()) throw bad;
+    sizes.push_back(size);
+  }
+  if (sizes.empty()) throw bad;
+  return sizes;
+}
+
 int parse_repeat(const std::string& text) {
   int value = 0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);

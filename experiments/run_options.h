@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/cull.h"
 #include "core/gl_canvas.h"
@@ -19,6 +20,9 @@ RadiusRule parse_radius(const std::string& text);
 
 /// "flags" or "occlusion". Throws Error naming --query.
 QueryMode parse_query(const std::string& text);
+/// Sizes of clusters by commas, each 2 or more and below the one before; "none" for no clusters.
+/// Throws Error naming --clusters.
+std::vector<std::uint32_t> parse_clusters(const std::string& text);
 /// A number of runs, 1 or more. Throws Error naming --repeat.
 int parse_repeat(const std::string& text);
 
@@ -31,7 +35,8 @@ struct RunOptions {
   std::optional<DepthMode> depth;  // default: fragment for far, fixed for the CULLIDE family
   DepthFormat depth_format = DepthFormat::float32;
   std::optional<QueryMode> query;  // default: flags; occlusion with fixed24 and for s-cullide
-  std::string views;               // "": x,y,z, but chosen by the scene for far-pairs
+  std::optional<std::vector<std::uint32_t>> clusters;  // default: usual_clusters()
+  std::string views;     // "": x,y,z, but chosen by the scene for far-pairs
   std::string device;    // "": hardware first, then software; for far-pairs see pair_device.h
   double clearance = 0;  // world units, finite, >= 0; far-pairs and exact only
   bool verify = true;

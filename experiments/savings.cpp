@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commit.h"
+#include "core/error.h"
 #include "experiments/builtin_scenes.h"
 #include "experiments/frames.h"
 #include "experiments/scene_file.h"
@@ -14,17 +15,13 @@
 namespace farcull {
 namespace {
 
-// The same pairs in both: neighbours as well, whatever their order of finding.
-bool same(const RunRecord& a, const RunRecord& b) {
-  return a.pairs == b.pairs && a.neighbour_pairs == b.neighbour_pairs;
-}
-
 SavingsRow run_row(const Scene& scene, Method method, const SavingsArguments& arguments,
                    Session& session, const Progress& progress) {
   SavingsRow row{.scene = scene.name, .method = method, .planned_ms = {}, .full_ms = {}};
   RunOptions options = arguments.options;
   options.method = method;
   options.verify = false;
+  if (!draws(method)) options.resolution = 0;
   const auto run = [&](bool full, std::vector<double>* ms) {
     options.full = full;
     RunRecord record = run_scene(scene, options, session);
@@ -38,12 +35,25 @@ SavingsRow run_row(const Scene& scene, Method method, const SavingsArguments& ar
     }
     const RunRecord planned = run(false, repeat < 0 ? nullptr : &row.planned_ms);
     const RunRecord full = run(true, repeat < 0 ? nullptr : &row.full_ms);
-    row.same_pairs = row.same_pairs && same(planned, full);
+    row.same_pairs = row.same_pairs && same_pairs(planned, full);
   }
   return row;
 }
 
 }  // namespace
+
+bool same_pairs(const RunRecord& a, const RunRecord& b) {
+  return a.pairs == b.pairs && a.neighbour_pairs == b.neighbour_pairs;
+}
+
+std::string broken(const std::vector<SavingsRow>& rows, RunOptions options) {
+  for (const SavingsRow& row : rows) {
+    options.method = row.method;
+    if (!row.same_pairs && promises(options))
+      return row.scene + ": " + to_string(row.method) + " finds other pairs with --full";
+  }
+  return "";
+}
 
 double SavingsRow::planned() const { return summary_of(planned_ms).median; }
 double SavingsRow::full() const { return summary_of(full_ms).median; }
@@ -56,12 +66,19 @@ std::vector<SavingsRow> run_savings(const SavingsArguments& arguments, const Pro
       if (!scene.costly) scenes.push_back(scene.name);
     }
   }
+  // All names before the first run.
+  std::vector<Method> methods;
+  for (const std::string& text : split_list(arguments.methods)) {
+    methods.push_back(parse_method(text, "--methods"));
+    if (methods.back() == Method::exact)
+      throw Error("--methods", "exact leaves nothing out", "name other methods");
+  }
+  for (const std::string& name : scenes) require_known(name);
   Session session(arguments.options.device);
   std::vector<SavingsRow> rows;
   for (const std::string& name : scenes) {
     Scene scene = load_scene({name});
-    for (const std::string& text : split_list(arguments.methods)) {
-      const Method method = parse_method(text, "--methods");
+    for (const Method method : methods) {
       Scene unmarked = scene;
       if (!tests_self(method)) {
         for (Object& object : unmarked.objects) object.self = false;
@@ -69,6 +86,10 @@ std::vector<SavingsRow> run_savings(const SavingsArguments& arguments, const Pro
       if (!has_self(unmarked) && tests_self_alone(method)) continue;
       rows.push_back(run_row(unmarked, method, arguments, session, progress));
     }
+  }
+  if (rows.empty()) {
+    throw Error("--methods", "none of them has a question to ask of these scenes",
+                "name other methods, or scenes that are tested against themselves");
   }
   return rows;
 }

@@ -36,6 +36,11 @@ struct SavingsRow {
 std::vector<SavingsRow> run_savings(const SavingsArguments& arguments,
                                     const Progress& progress = {});
 
+/// Whether two runs found the same pairs, neighbours among them.
+bool same_pairs(const RunRecord& a, const RunRecord& b);
+/// The first method that promises, by these options, and whose pairs differ; empty: none.
+std::string broken(const std::vector<SavingsRow>& rows, RunOptions options);
+
 std::string savings_table(const std::vector<SavingsRow>& rows);
 nlohmann::ordered_json savings_json(const std::vector<SavingsRow>& rows,
                                     const SavingsArguments& arguments);

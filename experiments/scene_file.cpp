@@ -291,4 +291,15 @@ Scene parse_scene_file(const std::string& text, const std::string& path) {
   return parse(text, path, meshes);
 }
 
+void require_known(const std::string& name) {
+  if (is_builtin_scene(name)) {
+    parse_scene_name(name);
+    return;
+  }
+  std::error_code error;
+  if (name.find('%') != std::string::npos || std::filesystem::exists(name, error)) return;
+  throw Error(name, "no built-in scene has this name, and there is no such file",
+              "see farcull scenes for the names");
+}
+
 }  // namespace farcull

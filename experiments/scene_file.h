@@ -37,4 +37,8 @@ Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes);
 /// relative to.
 Scene parse_scene_file(const std::string& text, const std::string& path);
 
+/// Throws Error where load_scene({name}) could only fail: no built-in scene as parse_scene_name()
+/// takes it, and no file. A name with a number in it (%d) is not looked for.
+void require_known(const std::string& name);
+
 }  // namespace farcull

@@ -38,6 +38,15 @@ bad 'i-collide with a query' '--query: ' run two-spheres --method i-collide --qu
 bad 'i-collide with a clearance' '--clearance: ' run two-spheres --method i-collide --clearance 1
 bad 'exact with full' '--full: ' run two-spheres --method exact --full
 bad 'a value for --full' '--full: ' run two-spheres --full=7
+for sizes in '' 1 0 x 32,32 16,32 32, 1e3; do
+  bad "clusters '$sizes'" '--clusters: ' run two-spheres --clusters "$sizes"
+done
+bad 'clusters with far-pairs' '--clusters: ' run two-spheres --method far-pairs --clusters 32
+for method in i-collide exact; do
+  bad "$method with a resolution" '--resolution: ' run two-spheres --method "$method" --resolution 64
+  bad "$method with views" '--views: ' run two-spheres --method "$method" --views x
+  bad "$method with a device" '--device: ' run two-spheres --method "$method" --device software
+done
 bad 'an unknown method' '--method: .*quick-cullide' run two-spheres --method quick
 for command in plan; do
   bad "$command without a scene" 'SCENE: ' "$command"
@@ -54,6 +63,11 @@ bad 'family with no query' '--query: ' experiment family two-spheres --query may
 bad 'family with auto views' '--views: ' experiment family two-spheres --views auto
 bad 'family into a folder' '\.: ' experiment family two-spheres --frames 1 --csv .
 bad 'savings of nothing known' 'nope: ' experiment savings nope
+bad 'family of an unknown scene last' 'nosuch: ' experiment family two-bunnies nosuch --frames 1000
+bad 'family of nothing to ask' '--methods: .*--self' experiment family two-spheres \
+  --methods s-cullide --frames 1
+bad 'savings of exact' '--methods: ' experiment savings far-apart --methods exact
+bad 'savings of an unknown scene last' 'nosuch: ' experiment savings two-bunnies nosuch
 bad 'savings never repeated' '--repeat: ' experiment savings far-apart --repeat 0
 bad 'savings by no method' '--methods: ' experiment savings far-apart --methods nope
 
@@ -81,6 +95,9 @@ expect 's-cullide' "$out" '^method     s-cullide at 64 px'
 good 'i-collide' 0 verify two-spheres --method i-collide
 expect 'i-collide' "$out" '^colliding  298 pairs$'
 good 'i-collide in motion' 0 verify two-spheres --method i-collide --frames 3
+good 'clusters' 0 run crowd --method cullide --clusters 64,8 --resolution 64 --device software
+expect 'clusters' "$out" 'clusters of 8'
+good 'exact offsets' 0 verify crowd --offset exact --resolution 64 --device software
 good 'full' 0 verify far-apart --method far-pairs --device cpu --full
 expect 'full' "$out" '^colliding  0 pairs$'
 good 'compare the family' 0 compare two-spheres --methods cullide,quick-cullide,i-collide,exact \

@@ -47,7 +47,8 @@ for clearance in -1 -1e-300 nan inf 1e999 '' 1x ' 1' 0x1p3; do
   bad "compare clearance '$clearance'" '--clearance: ' compare two-spheres \
     --clearance "$clearance"
 done
-for frames in 0 -1 1.5 '' a 3:2 -1:2 1: :2 1:2:3 1000001 0:1000000 99999999999999999999 ' 1' 1-3; do
+for frames in 0 -1 1.5 '' a 3:2 -1:2 1: :2 1:2:3 1000001 0:1000000 99999999999999999999 ' 1' 1-3 \
+  9223372036854775807:9223372036854775807 1000000001:1000000001; do
   bad "frames '$frames'" '--frames: ' run "${pairs[@]}" --frames "$frames"
 done
 for option in --clearance --frames; do

@@ -47,7 +47,11 @@ TEST(Planner, LeavesTheDeviceOutWhereBoxesDecide) {
   EXPECT_EQ(step(planned(scene, far), "device").decision, Decision::left_out);
   far.full = true;
   EXPECT_EQ(step(planned(scene, far), "device").decision, Decision::runs);
-  EXPECT_EQ(step(planned(scene, on_cpu(Method::far_pairs)), "views").decision, Decision::left_out);
+  EXPECT_EQ(step(planned(scene, on_cpu(Method::far_pairs)), "device").decision, Decision::left_out);
+  const RunRecord record = run(scene, on_cpu(Method::far_pairs));
+  EXPECT_FALSE(record.on_cpu);
+  EXPECT_FALSE(record.device);
+  EXPECT_FALSE(record.device_note.empty());
 }
 
 TEST(Planner, SaysWhatItLeavesOut) {
@@ -163,6 +167,19 @@ TEST(ICollide, FindsThePairsOfExactAndKeepsEveryBoxPair) {
   }
 }
 
+TEST(ICollide, CountsTheTrianglesThatBoxesOfObjectsLeave) {
+  const Scene scene = make_builtin_scene("crowd");
+  const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
+  std::uint64_t triangles = 0;
+  for (std::size_t a = 0; a < boxes.size(); ++a) {
+    bool meets = false;
+    for (std::size_t b = 0; b < boxes.size(); ++b) meets |= a != b && overlap(boxes[a], boxes[b]);
+    if (meets) triangles += scene.objects[a].triangle_count;
+  }
+  EXPECT_GT(triangles, 0u);
+  EXPECT_EQ(run(scene, on_cpu(Method::i_collide)).object_triangles, triangles);
+}
+
 TEST(ICollide, TheSweepOfASessionServesAnyScene) {
   Session session("cpu");
   for (const char* name : {"crowd", "two-spheres", "crowd", "far-apart", "crowd"}) {
@@ -186,6 +203,36 @@ TEST(Savings, ComparesTheSamePairsAndCountsEveryRun) {
     EXPECT_EQ(row.full_ms.size(), 3u);
   }
   EXPECT_EQ(savings_json(rows, arguments)["rows"].size(), 4u);
+}
+
+TEST(Savings, OtherPairsOfAMethodThatPromisesAreBroken) {
+  RunRecord some, other;
+  some.pairs = {{0, 1}};
+  EXPECT_TRUE(same_pairs(some, some));
+  EXPECT_FALSE(same_pairs(some, other));
+  other.pairs = some.pairs;
+  other.neighbour_pairs = {{2, 3}};
+  EXPECT_FALSE(same_pairs(some, other));
+  std::vector<SavingsRow> rows = {{.scene = "s",
+                                   .method = Method::cullide,
+                                   .planned_ms = {},
+                                   .full_ms = {},
+                                   .same_pairs = false}};
+  EXPECT_EQ(broken(rows, {}), "");
+  rows[0].method = Method::far_pairs;
+  EXPECT_EQ(broken(rows, {}), "s: far-pairs finds other pairs with --full");
+  rows[0].same_pairs = true;
+  EXPECT_EQ(broken(rows, {}), "");
+}
+
+TEST(Savings, RefusesWhatLeavesNothingOutAndUnknownNamesAtOnce) {
+  SavingsArguments arguments;
+  arguments.scenes = {"far-apart", "nosuch"};
+  arguments.methods = "exact";
+  EXPECT_EQ(error_of([&] { run_savings(arguments); }).where, "--methods");
+  arguments.methods = "s-cullide";
+  arguments.scenes = {"far-apart"};
+  EXPECT_EQ(error_of([&] { run_savings(arguments); }).where, "--methods");
 }
 
 TEST(Savings, PaysUpToTheMarginAndNotBeyond) {
@@ -226,6 +273,38 @@ TEST(Family, HasARowForEachFrameAndTheFactorAgainstBoxes) {
   EXPECT_GE(boxes.candidates, ours.candidates);
   EXPECT_EQ(family_json(cells, arguments)["cells"].size(), 3u);
   EXPECT_NE(family_table(cells).find("i-collide"), std::string::npos);
+}
+
+TEST(Family, FactorsAreWhatBoxesKeepOverWhatTheMethodKeeps) {
+  FamilyCell boxes{
+      .scene = "a,b", .method = Method::i_collide, .offset = "", .device = "", .frames = {}};
+  boxes.frames.push_back({.frame = 0,
+                          .pcs_triangles = 40,
+                          .object_triangles = 600,
+                          .candidates = 90,
+                          .missed = {},
+                          .missed_contacts = {}});
+  FamilyCell ours{.scene = "a,b",
+                  .method = Method::far,
+                  .offset = "obb",
+                  .device = "",
+                  .promises = true,
+                  .frames = {}};
+  ours.frames.push_back({.frame = 0,
+                         .pcs_triangles = 10,
+                         .candidates = 30,
+                         .missed = 2,
+                         .missed_contacts = ContactCounts{.touching = 2, .penetrating = 0}});
+  const std::string csv = family_csv({boxes, ours});
+  EXPECT_NE(csv.find("\n\"a,b\",far,obb,0,0.000,0,10,30,0,0,0,0,0,0,2,2,0,60,4,3\n"),
+            std::string::npos)
+      << csv;
+  EXPECT_NE(csv.find("\n\"a,b\",i-collide,,0,0.000,0,40,90,0,0,0,0,0,0,,,,15,1,1\n"),
+            std::string::npos)
+      << csv;
+  EXPECT_EQ(broken({boxes, ours}), "a,b: far, obb missed 2 pairs");
+  ours.promises = false;
+  EXPECT_EQ(broken({boxes, ours}), "");
 }
 
 TEST(Family, ScenesOfThePapersCarryTheirRates) {
