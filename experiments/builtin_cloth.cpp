@@ -15,6 +15,7 @@ FrameNotes notes_of(const ClothReport& report) {
                      {"gravitational J", report.gravitational},
                      {"contact J", report.contact},
                      {"total J", report.total()},
+                     {"slack J", report.slack},
                      {"residual N", report.residual},
                      {"iterations", report.iterations},
                      {"converged", report.converged ? 1 : 0}},

@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# The cloth at every stiffness: all frames accounted for pair by pair by far-pairs, energies and residuals in the records.
+# Prints a row a stiffness and fails where a pair is missed, a number is not finite, a step did not converge or the energy grew by
+# more than the unbalanced forces can do. Keeps a record a stiffness in build/cloth/ and goes on where it was interrupted.
+#
+#   bash experiments/cloth.sh                              20,000 triangles, 500 frames: hours where it is stiff (docs/cloth.md)
+#   TRIANGLES=800 bash experiments/cloth.sh                minutes
+set -euo pipefail
+
+# shellcheck source-path=SCRIPTDIR source=setup.sh
+source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
+cd "$farcull_root"
+farcull_setup
+farcull_build farcull
+
+triangles=${TRIANGLES:-20000}
+frames=${FRAMES:-500}
+out=build/cloth
+mkdir -p "$out"
+failed=0
+printf '%-9s %7s %7s %12s %13s %13s %11s %12s %12s %7s\n' stiffness frames failed 'iterations' 'energy first' 'energy last' 'most gained' 'residual N' 'colliding' missed
+for stiffness in 1e2 1e4 1e6 1e8; do
+  record="$out/$triangles.$stiffness.$frames.json"
+  if [[ ! -s $record ]]; then
+    build/farcull verify "cloth:$triangles:$stiffness" --method far-pairs --frames "$frames" --json "$record" >/dev/null || failed=1
+  fi
+  [[ -s $record ]] || continue
+  # One number a line, in the order of the record.
+  awk -F': ' -v stiffness="$stiffness" '
+    { value = $2; sub(/,$/, "", value) }
+    /"total J"/ { growth = n ? value - last : 0; if (!n++) first = value; last = value; if (value != value + 0) bad = 1 }
+    # The total energy grows by the work of the unbalanced forces at most.
+    /"slack J"/ { if (growth > most) most = growth; if (growth > value + 0) bad = 1 }
+    /"residual N"/ && value > residual { residual = value }
+    /"iterations"/ && value > iterations { iterations = value }
+    /"converged": 0/ { unconverged++ }
+    /^      "colliding_pairs"/ && value > colliding { colliding = value }
+    /^    "missed"/ { missed = value }
+    /null|nan|inf/ && /"(total|kinetic|elastic|residual)/ { bad = 1 }
+    END {
+      printf "%-9s %7d %7d %12d %13.6g %13.6g %11.2g %12.3g %12d %7s\n", stiffness, n, unconverged, iterations, first, last, most, residual, colliding, missed
+      exit bad || n == 0 || unconverged > 0 || missed != "0"
+    }' "$record" || failed=1
+done
+if ((failed)); then
+  echo "cloth: a pair was missed, a step failed, or the energy grew" >&2
+  exit 1
+fi
+echo "cloth: finite, energy bounded, nothing missed; all records are in $out/"
