@@ -15,12 +15,14 @@ farcull_build farcull
 
 triangles=${TRIANGLES:-20000}
 frames=${FRAMES:-500}
+# Of these sources: what another commit found is not taken for done.
+commit=$(git rev-parse --short HEAD 2>/dev/null || echo unknown)
 out=build/cloth
 mkdir -p "$out"
 failed=0
 printf '%-9s %7s %7s %12s %13s %13s %11s %12s %12s %7s\n' stiffness frames failed 'iterations' 'energy first' 'energy last' 'most gained' 'residual N' 'colliding' missed
 for stiffness in 1e2 1e4 1e6 1e8; do
-  record="$out/$triangles.$stiffness.$frames.json"
+  record="$out/$triangles.$stiffness.$frames.$commit.json"
   if [[ ! -s $record ]]; then
     build/farcull verify "cloth:$triangles:$stiffness" --method far-pairs --frames "$frames" --json "$record" >/dev/null || failed=1
   fi

@@ -73,8 +73,9 @@ void add_canvas(const Scene& scene, const RunOptions& options, bool promised, St
   if (options.method != Method::far) return;
   if (options.offset != "exact") {
     steps.push_back({"exact offsets", Decision::left_out, "not asked for (--offset exact)"});
-  } else if (options.full) {
-    steps.push_back({"boxes before exact offsets", Decision::left_out, "--full"});
+  } else if (options.full || !promised) {
+    steps.push_back({"boxes before exact offsets", Decision::left_out,
+                     options.full ? "--full" : "nothing is promised at this radius"});
   } else {
     steps.push_back({"exact offsets", Decision::depends,
                      fmt::format("if oriented boxes leave more than {} triangles", enough)});

@@ -20,11 +20,13 @@ scenes=("$@")
 if ((${#scenes[@]} == 0)); then
   mapfile -t scenes < <(build/farcull scenes --json - | awk -F'"' '$2 == "name" { name = $4 } /"moves": true/ { print name }')
 fi
+# Of these sources: what another commit found is not taken for done.
+commit=$(git rev-parse --short HEAD 2>/dev/null || echo unknown)
 out=build/reliability-motion
 mkdir -p "$out"
 failed=()
 for scene in "${scenes[@]}"; do
-  record="$out/$scene.$frames.$methods"
+  record="$out/$scene.$frames.$methods.$commit"
   if [[ -s $record.json ]]; then
     echo "$scene: done before, see $record.txt"
     continue

@@ -18,7 +18,8 @@ std::vector<Fattener> fatteners_of(const RunOptions& options) {
   if (options.method != Method::far) return {raw_triangles()};
   if (depth_of(options) == DepthMode::fixed) return {obb_surface_fattener()};
   if (options.offset != "exact") return {obb_fattener()};
-  if (options.full) return {exact_fattener()};
+  // Where nothing is promised, boxes before would be one more chance to miss.
+  if (options.full || !promises(options)) return {exact_fattener()};
   return {obb_fattener(), exact_fattener()};
 }
 

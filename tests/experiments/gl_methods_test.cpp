@@ -116,6 +116,22 @@ TEST(GlMethods, ExactOffsetsSeeWhatBoxesHaveLeft) {
   EXPECT_LT(draws, alone_draws / 2);
 }
 
+// Without a promise the exact offset stands alone, as a study of it means.
+TEST(GlMethods, BoxesComeFirstOnlyWhereTheyCannotMiss) {
+  const Scene scene = make_builtin_scene("crowd");
+  RunOptions options = options_of(Method::far);
+  options.offset = "exact";
+  options.verify = false;
+  const auto setups = [&] {
+    const RunRecord record = run_scene(scene, options, session());
+    return std::count_if(record.stages.begin(), record.stages.end(),
+                         [](const Stage& s) { return s.name == "setup"; });
+  };
+  EXPECT_EQ(setups(), 2);
+  options.radius.factor = 0.9;
+  EXPECT_EQ(setups(), 1);
+}
+
 TEST(GlMethods, ExactOffsetsAreLeftOutWhereFewTrianglesAreLeft) {
   RunOptions options = options_of(Method::far, 128);
   options.offset = "exact";
