@@ -24,9 +24,11 @@ farcull_packages=(
   # libOpenGL.so.0 or libGL.so.1 by name). The last two are named here because the package system
   # does not derive them from what the program is linked to.
   libegl-dev libepoxy-dev libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri
-  # exact predicates, linear algebra, tests, command line, records, figures
+  # exact predicates, linear algebra, tests, command line, records
   libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev libgtest-dev librapidcheck-dev libcli11-dev
-  nlohmann-json3-dev libfmt-dev libpng-dev
+  nlohmann-json3-dev libfmt-dev
+  # results, pictures, figures
+  libsqlitecpp-dev libsqlite3-dev libpng-dev gnuplot-nox
   # what farcull bench compares with, and the cases of single kernels; a build without them works
   libfcl-dev libembree-dev libtbb-dev libbenchmark-dev
 )

@@ -1,0 +1,175 @@
+#include "experiments/studies/lab.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "experiments/scene_file.h"
+#include "experiments/tables.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+std::vector<TrianglePair> all_pairs(const std::vector<TrianglePair>& pairs,
+                                    const std::vector<TrianglePair>& neighbours) {
+  std::vector<TrianglePair> out;
+  out.reserve(pairs.size() + neighbours.size());
+  std::set_union(pairs.begin(), pairs.end(), neighbours.begin(), neighbours.end(),
+                 std::back_inserter(out));
+  return out;
+}
+
+std::vector<std::uint32_t> triangles_of(const std::vector<TrianglePair>& pairs) {
+  std::vector<std::uint32_t> out;
+  out.reserve(2 * pairs.size());
+  for (const TrianglePair& pair : pairs) {
+    out.push_back(pair.a);
+    out.push_back(pair.b);
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+// How many of a are not in b; both sorted.
+template <class T>
+std::uint64_t lacking(const std::vector<T>& a, const std::vector<T>& b) {
+  std::vector<T> difference;
+  std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(difference));
+  return difference.size();
+}
+
+// Of the repeats, the one with the median of cull + exact.
+const RunRecord& median_of(std::vector<RunRecord>& records) {
+  const auto middle = records.begin() + static_cast<std::ptrdiff_t>((records.size() - 1) / 2);
+  std::nth_element(records.begin(), middle, records.end(),
+                   [](const RunRecord& a, const RunRecord& b) {
+                     return a.ms.cull + a.ms.exact < b.ms.cull + b.ms.exact;
+                   });
+  return *middle;
+}
+
+}  // namespace
+
+Errors errors_of(const Truth& truth, const std::vector<TrianglePair>& pairs) {
+  return {.missed = lacking(truth.pairs, pairs),
+          .missed_triangles = lacking(triangles_of(truth.pairs), triangles_of(pairs)),
+          .wrong = lacking(pairs, truth.pairs)};
+}
+
+Lab::Lab(std::string device, Progress progress)
+    : device_(std::move(device)), progress_(std::move(progress)), session_(device_) {}
+
+const Scene& Lab::scene(const std::string& name, long frame, long frames) {
+  if (current_ != nullptr && name == name_ && frame == frame_) return *current_;
+  if (progress_) progress_("reading " + name);
+  current_ = nullptr;
+  truth_.reset();
+  if (name != name_) {
+    source_.reset();
+    session_.sweep().forget();
+  }
+  if (frame < 0) {
+    source_.reset();
+    scene_ = load_scene({name});
+    current_ = &scene_;
+  } else {
+    if (!source_) source_.emplace(std::vector{name}, FrameRange{0, frames - 1}, false);
+    current_ = &source_->at(frame);
+  }
+  name_ = name;
+  frame_ = frame;
+  return *current_;
+}
+
+const Scene& Lab::scene(const std::string& name, const std::function<Scene()>& make) {
+  if (current_ != nullptr && name == name_ && frame_ < 0) return *current_;
+  current_ = nullptr;
+  truth_.reset();
+  source_.reset();
+  session_.sweep().forget();
+  scene_ = make();
+  name_ = name;
+  frame_ = -1;
+  current_ = &scene_;
+  return scene_;
+}
+
+const Truth& Lab::truth() {
+  if (!truth_) {
+    if (progress_) progress_("exact tests of every pair");
+    ExactResult result = all_colliding_pairs(*current_, {});
+    truth_.emplace();
+    truth_->pairs = all_pairs(result.pairs, result.neighbour_pairs);
+    truth_->triangles = triangles_of(truth_->pairs).size();
+    truth_->ms = result.join_ms + result.predicates_ms;
+  }
+  return *truth_;
+}
+
+const Scene& Lab::current() const { return *current_; }
+
+RunOptions options_of(const Point& point, const Lab& lab) {
+  RunOptions options;
+  options.method = parse_method(point.method);
+  options.resolution = point.resolution;
+  options.radius = parse_radius(point.radius.empty() ? "budget" : point.radius);
+  if (!point.offset.empty()) options.offset = point.offset;
+  if (point.depth_mode == "fragment") options.depth = DepthMode::fragment;
+  if (point.depth_mode == "fixed") options.depth = DepthMode::fixed;
+  if (point.depth_format == "fixed24") options.depth_format = DepthFormat::fixed24;
+  options.views = point.views;
+  options.device = lab.device();
+  options.verify = false;
+  return options;
+}
+
+Measurement measure_run(const Point& point, Lab& lab, int repeat) {
+  const RunOptions options = options_of(point, lab);
+  const Scene& scene = lab.current();
+  const Truth& truth = lab.truth();
+  std::vector<RunRecord> records;
+  double setup = 0;
+  for (int i = 0; i < repeat; ++i) {
+    records.push_back(run_scene(scene, options, lab.session(), lab.progress()));
+    setup += records.back().ms.setup;
+  }
+  const RunRecord& record = median_of(records);
+  const Errors errors = errors_of(truth, all_pairs(record.pairs, record.neighbour_pairs));
+
+  Measurement out;
+  out.device = record.device ? record.device->renderer : "cpu";
+  out.counts = {
+      {"colliding", truth.pairs.size()},        {"missed", errors.missed},
+      {"colliding_triangles", truth.triangles}, {"missed_triangles", errors.missed_triangles},
+      {"candidates", record.candidate_pairs},   {"kept_triangles", record.pcs_triangles},
+      {"kept_objects", record.pcs_objects},     {"triangles", scene.triangles.size()},
+      {"objects", scene.objects.size()},        {"promises", record.promises},
+      {"scene_hash", record.scene_hash}};
+  if (options.method == Method::i_collide) out.counts["object_triangles"] = record.object_triangles;
+  if (draws(options.method)) {
+    Stage sum;
+    for (const Stage& stage : record.stages) {
+      sum.queries += stage.queries;
+      sum.draws += stage.draws;
+      sum.queries_saved += stage.queries_saved;
+      sum.draws_saved += stage.draws_saved;
+    }
+    out.counts["queries"] = sum.queries;
+    out.counts["draws"] = sum.draws;
+    out.counts["queries_saved"] = sum.queries_saved;
+    out.counts["draws_saved"] = sum.draws_saved;
+    if (const ViewReport* view = widest_budget(record.views)) {
+      out.counts["radius_px"] = view->radius_px;
+      out.counts["pixel_size"] = view->pixel_size;
+    }
+  }
+  out.times = {{"cull", record.ms.cull},
+               {"exact", record.ms.exact},
+               {"total", record.ms.cull + record.ms.exact},
+               {"setup", setup}};
+  return out;
+}
+
+}  // namespace farcull

@@ -1,0 +1,99 @@
+// Where results are kept: one SQLite file, a transaction for every row, so that whatever ends a run
+// (a signal, a full disk, the power) takes at most the point that was being measured.
+//
+//   runs    one row for each start of the program: commit, device, driver, CPU, options, time
+//   points  the declared grid of each study, all shards of it
+//   rows    what came of a point, and in which run
+// PRAGMA user_version holds kStoreVersion, PRAGMA application_id kStoreId.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/studies/study.h"
+
+namespace farcull {
+
+constexpr std::int32_t kStoreId = 0x46415243;  // "FARC"
+constexpr std::int32_t kStoreVersion = 1;
+
+/// Who measured, on what, when.
+struct Provenance {
+  std::string started;  // UTC, ISO 8601
+  std::string commit;   // of the program
+  std::string gl_vendor, gl_renderer, gl_version;
+  std::string cpu;           // model
+  std::string cpu_features;  // as /proc/cpuinfo lists them
+  unsigned cores = 0;
+  std::string options;  // of the command line, as JSON
+};
+
+/// Of this process: opens the device to ask for its names. Throws Error where there is none.
+Provenance provenance_now(const std::string& device, const std::string& options);
+
+/// What a study was declared with.
+struct Declaration {
+  std::string study;
+  GridChoice choice;
+  int shard = 1, of = 1;      // which part of the points this file answers for, 1 <= shard <= of
+  std::vector<Point> points;  // of all shards
+};
+
+struct Row {
+  std::size_t position = 0;  // in the grid
+  Point point;
+  Measurement measurement;
+  std::int64_t run = 0;
+  std::string measured;  // UTC, ISO 8601
+};
+
+struct StoredStudy {
+  Declaration declaration;
+  std::vector<Row> rows;  // by position
+  /// Whether every point of the grid has a row, of whatever shard.
+  bool complete() const { return rows.size() == declaration.points.size(); }
+};
+
+class Store {
+ public:
+  enum class Access { read, write };
+  /// write: makes the file where it is not there, and keeps every other program out until it is
+  /// closed. Throws Error naming the path for a file that is none of ours, of another version,
+  /// damaged, in use, or that cannot be opened.
+  Store(const std::string& path, Access access);
+  ~Store();
+  Store(Store&&) noexcept;
+  Store& operator=(Store&&) noexcept;
+
+  const std::string& path() const;
+
+  /// The number of the run in this file.
+  std::int64_t begin_run(const Provenance& provenance);
+  std::vector<std::pair<std::int64_t, Provenance>> runs() const;
+
+  std::vector<std::string> studies() const;
+  /// Empty where the study was not declared here.
+  std::optional<Declaration> declaration(const std::string& study) const;
+  /// The same again changes nothing. Throws Error where the study was declared otherwise.
+  void declare(const Declaration& declaration);
+  /// Positions that have a row, ascending.
+  std::vector<std::size_t> done(const std::string& study) const;
+  /// In one transaction, on the disk when it returns. Throws Error where the disk refuses; the file
+  /// is then as before.
+  void add(const std::string& study, std::int64_t run, std::size_t position,
+           const Measurement& measurement);
+
+  StoredStudy study(const std::string& name) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// DIR/results.sqlite, or DIR/results-K-of-N.sqlite for a shard.
+std::string store_path(const std::string& folder, int shard = 1, int of = 1);
+
+}  // namespace farcull
