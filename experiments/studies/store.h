@@ -85,6 +85,8 @@ class Store {
   /// is then as before.
   void add(const std::string& study, std::int64_t run, std::size_t position,
            const Measurement& measurement);
+  /// The same for a row of another store; row.run is the number here. `point` is not looked at.
+  void add(const std::string& study, const Row& row);
 
   StoredStudy study(const std::string& name) const;
 

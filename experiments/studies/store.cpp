@@ -1,0 +1,403 @@
+#include "experiments/studies/store.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+#include <sqlite3.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <utility>
+
+#include "commit.h"
+#include "core/error.h"
+#include "core/gl_context.h"
+#include "experiments/bench_machine.h"
+
+namespace farcull {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The shape of a file of version kStoreVersion. `results` is for people who ask by SQL.
+constexpr const char* kSchema = R"(
+CREATE TABLE runs (
+  run INTEGER PRIMARY KEY, started TEXT NOT NULL, commit_id TEXT NOT NULL, gl_vendor TEXT NOT NULL,
+  gl_renderer TEXT NOT NULL, gl_version TEXT NOT NULL, cpu TEXT NOT NULL,
+  cpu_features TEXT NOT NULL, cores INTEGER NOT NULL, options TEXT NOT NULL) STRICT;
+CREATE TABLE studies (
+  study TEXT PRIMARY KEY, quick INTEGER NOT NULL, seed INTEGER NOT NULL, shard INTEGER NOT NULL,
+  shards INTEGER NOT NULL) STRICT;
+CREATE TABLE points (
+  study TEXT NOT NULL REFERENCES studies, position INTEGER NOT NULL, scene TEXT NOT NULL,
+  method TEXT NOT NULL, "offset" TEXT NOT NULL, radius TEXT NOT NULL, depth_format TEXT NOT NULL,
+  depth_mode TEXT NOT NULL, resolution INTEGER NOT NULL, views TEXT NOT NULL,
+  frame INTEGER NOT NULL, seed INTEGER NOT NULL, PRIMARY KEY (study, position)) STRICT;
+CREATE TABLE rows (
+  study TEXT NOT NULL, position INTEGER NOT NULL, run INTEGER NOT NULL REFERENCES runs,
+  measured TEXT NOT NULL, device TEXT NOT NULL, counts TEXT NOT NULL, times TEXT NOT NULL,
+  left_out TEXT NOT NULL, PRIMARY KEY (study, position),
+  FOREIGN KEY (study, position) REFERENCES points) STRICT;
+CREATE VIEW results AS
+  SELECT points.*, rows.device, rows.counts, rows.times, rows.left_out, rows.measured,
+         runs.commit_id, runs.gl_renderer, runs.cpu
+  FROM points JOIN rows USING (study, position) JOIN runs USING (run);
+)";
+
+std::string now() {
+  const std::time_t seconds =
+      std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc = {};
+  ::gmtime_r(&seconds, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+std::string cpu_features() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    const std::size_t colon = line.find(": ");
+    // x86 says flags, Arm Features.
+    if ((line.starts_with("flags") || line.starts_with("Features")) && colon != std::string::npos)
+      return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+// What SQLite refuses, as an Error that says what to do.
+Error refusal(const std::string& path, const SQLite::Exception& error) {
+  const std::string text = error.getErrorStr();
+  switch (error.getErrorCode() & 0xff) {
+    case SQLITE_NOTADB:
+      return Error(path, "is no store of farcull (" + text + ")",
+                   "name another folder, or move the file away");
+    case SQLITE_CORRUPT:
+      return Error(path, "is damaged (" + text + ")",
+                   "restore it from a copy, or start anew in another folder");
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return Error(path, "another program is writing it",
+                   "wait for its end, or name another folder");
+    case SQLITE_FULL:
+    case SQLITE_IOERR:
+      return Error(
+          path, "cannot be written: " + text,
+          "make room on the disk; the rows before are kept, --resume goes on with the next");
+    case SQLITE_READONLY:
+    case SQLITE_PERM:
+    case SQLITE_CANTOPEN:
+      return Error(path, "cannot be opened: " + text,
+                   "look whether the folder is there and may be written");
+    default:
+      return Error(path, text, "name another folder, or move the file away");
+  }
+}
+
+template <class Work>
+auto guarded(const std::string& path, const Work& work) {
+  try {
+    return work();
+  } catch (const SQLite::Exception& error) {
+    throw refusal(path, error);
+  }
+}
+
+std::int64_t stored(std::uint64_t number, const char* what) {
+  if (number > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
+    throw Error(what, std::to_string(number) + " is too large to be stored",
+                "give at most 2^63 - 1");
+  return static_cast<std::int64_t>(number);
+}
+
+Json parsed(const std::string& path, const std::string& text) {
+  Json out = Json::parse(text, nullptr, false);
+  if (!out.is_object()) {
+    throw Error(path, "is damaged: counts or times of a row are no JSON object",
+                "restore it from a copy, or start anew in another folder");
+  }
+  return out;
+}
+
+std::string grid_text(const GridChoice& choice) {
+  return fmt::format("the {} grid with seed {}", choice.quick ? "quick" : "full", choice.seed);
+}
+
+}  // namespace
+
+Provenance provenance_now(const std::string& device, const std::string& options) {
+  const GlInfo gl = GlContext(device).info();
+  return {.started = now(),
+          .commit = FARCULL_COMMIT,
+          .gl_vendor = gl.vendor,
+          .gl_renderer = gl.renderer,
+          .gl_version = gl.version,
+          .cpu = cpu_model(),
+          .cpu_features = cpu_features(),
+          .cores = usable_cores(),
+          .options = options};
+}
+
+struct Store::State {
+  std::string path;
+  SQLite::Database database;
+};
+
+Store::Store(const std::string& path, Access access) {
+  const bool write = access == Access::write;
+  struct stat info = {};
+  const bool there = ::stat(path.c_str(), &info) == 0;
+  if (there && !S_ISREG(info.st_mode))
+    throw Error(path, "is no file", "name another folder for the results");
+  if (!there && !write) {
+    throw Error(path, std::string("cannot be opened: ") + std::strerror(errno),
+                "measure first: farcull experiment all --quick");
+  }
+  guarded(path, [&] {
+    // Also for reading: what a killed program left half done is taken back first.
+    const int flags = SQLite::OPEN_READWRITE | (write ? SQLite::OPEN_CREATE : 0);
+    state_ = std::make_unique<State>(State{path, SQLite::Database(path, flags)});
+    SQLite::Database& database = state_->database;
+    database.exec("PRAGMA foreign_keys = ON");
+    // No other program gets in, until the file is closed or the program ends, however it ends.
+    if (write) database.exec("PRAGMA locking_mode = EXCLUSIVE; BEGIN EXCLUSIVE");
+    const std::int32_t id = database.execAndGet("PRAGMA application_id").getInt();
+    const std::int32_t version = database.execAndGet("PRAGMA user_version").getInt();
+    const int tables = database.execAndGet("SELECT count(*) FROM sqlite_schema").getInt();
+    if (id == 0 && version == 0 && tables == 0) {
+      if (!write) {
+        throw Error(path, "holds nothing yet", "measure first: farcull experiment all --quick");
+      }
+      database.exec(kSchema);
+      database.exec(fmt::format("PRAGMA application_id = {}", kStoreId));
+      database.exec(fmt::format("PRAGMA user_version = {}", kStoreVersion));
+    } else if (id != kStoreId) {
+      throw Error(path, "is a database of another program",
+                  "name another folder, or move the file away");
+    } else if (version != kStoreVersion) {
+      throw Error(path,
+                  fmt::format("is a store of version {}, and this farcull knows {}", version,
+                              kStoreVersion),
+                  "use the farcull that made it, or start anew in another folder");
+    }
+    if (write) database.exec("COMMIT");
+    const std::string sound = database.execAndGet("PRAGMA quick_check(1)").getString();
+    if (sound != "ok") {
+      throw Error(path, "is damaged (" + sound + ")",
+                  "restore it from a copy, or start anew in another folder");
+    }
+  });
+}
+
+Store::~Store() = default;
+Store::Store(Store&&) noexcept = default;
+Store& Store::operator=(Store&&) noexcept = default;
+
+const std::string& Store::path() const { return state_->path; }
+
+std::int64_t Store::begin_run(const Provenance& p) {
+  return guarded(state_->path, [&] {
+    SQLite::Statement insert(state_->database,
+                             "INSERT INTO runs (started, commit_id, gl_vendor, gl_renderer, "
+                             "gl_version, cpu, cpu_features, cores, options) "
+                             "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    int at = 0;
+    for (const std::string& text :
+         {p.started, p.commit, p.gl_vendor, p.gl_renderer, p.gl_version, p.cpu, p.cpu_features})
+      insert.bind(++at, text);
+    insert.bind(++at, static_cast<std::int64_t>(p.cores));
+    insert.bind(++at, p.options);
+    insert.exec();
+    return static_cast<std::int64_t>(state_->database.getLastInsertRowid());
+  });
+}
+
+std::vector<std::pair<std::int64_t, Provenance>> Store::runs() const {
+  return guarded(state_->path, [&] {
+    std::vector<std::pair<std::int64_t, Provenance>> out;
+    SQLite::Statement select(state_->database,
+                             "SELECT run, started, commit_id, gl_vendor, gl_renderer, gl_version, "
+                             "cpu, cpu_features, cores, options FROM runs ORDER BY run");
+    while (select.executeStep()) {
+      const auto text = [&](int column) { return select.getColumn(column).getString(); };
+      out.push_back({select.getColumn(0).getInt64(),
+                     {.started = text(1),
+                      .commit = text(2),
+                      .gl_vendor = text(3),
+                      .gl_renderer = text(4),
+                      .gl_version = text(5),
+                      .cpu = text(6),
+                      .cpu_features = text(7),
+                      .cores = static_cast<unsigned>(select.getColumn(8).getInt64()),
+                      .options = text(9)}});
+    }
+    return out;
+  });
+}
+
+std::vector<std::string> Store::studies() const {
+  return guarded(state_->path, [&] {
+    std::vector<std::string> out;
+    SQLite::Statement select(state_->database, "SELECT study FROM studies ORDER BY rowid");
+    while (select.executeStep()) out.push_back(select.getColumn(0).getString());
+    return out;
+  });
+}
+
+std::optional<Declaration> Store::declaration(const std::string& study) const {
+  return guarded(state_->path, [&]() -> std::optional<Declaration> {
+    SQLite::Statement select(state_->database,
+                             "SELECT quick, seed, shard, shards FROM studies WHERE study = ?");
+    select.bind(1, study);
+    if (!select.executeStep()) return std::nullopt;
+    Declaration out{.study = study,
+                    .choice = {.quick = select.getColumn(0).getInt() != 0,
+                               .seed = static_cast<std::uint64_t>(select.getColumn(1).getInt64())},
+                    .shard = select.getColumn(2).getInt(),
+                    .of = select.getColumn(3).getInt(),
+                    .points = {}};
+    SQLite::Statement points(
+        state_->database,
+        "SELECT scene, method, \"offset\", radius, depth_format, depth_mode, resolution, views, "
+        "frame, seed, position FROM points WHERE study = ? ORDER BY position");
+    points.bind(1, study);
+    while (points.executeStep()) {
+      const auto text = [&](int column) { return points.getColumn(column).getString(); };
+      if (points.getColumn(10).getInt64() != static_cast<std::int64_t>(out.points.size())) {
+        throw Error(state_->path, "is damaged: points of " + study + " are missing",
+                    "restore it from a copy, or start anew in another folder");
+      }
+      out.points.push_back({.scene = text(0),
+                            .method = text(1),
+                            .offset = text(2),
+                            .radius = text(3),
+                            .depth_format = text(4),
+                            .depth_mode = text(5),
+                            .resolution = points.getColumn(6).getInt(),
+                            .views = text(7),
+                            .frame = static_cast<long>(points.getColumn(8).getInt64()),
+                            .seed = static_cast<std::uint64_t>(points.getColumn(9).getInt64())});
+    }
+    return out;
+  });
+}
+
+void Store::declare(const Declaration& wanted) {
+  const auto otherwise = [&](const std::string& what) {
+    throw Error(state_->path, wanted.study + " stands there with " + what,
+                "measure it into another folder (--out)");
+  };
+  if (const std::optional<Declaration> known = declaration(wanted.study)) {
+    if (known->choice.quick != wanted.choice.quick || known->choice.seed != wanted.choice.seed)
+      otherwise(grid_text(known->choice) + ", not " + grid_text(wanted.choice));
+    if (known->shard != wanted.shard || known->of != wanted.of)
+      otherwise(
+          fmt::format("shard {}/{}, not {}/{}", known->shard, known->of, wanted.shard, wanted.of));
+    if (known->points != wanted.points) otherwise("other points: of another version of farcull");
+    return;
+  }
+  guarded(state_->path, [&] {
+    SQLite::Transaction transaction(state_->database);
+    SQLite::Statement study(state_->database, "INSERT INTO studies VALUES (?, ?, ?, ?, ?)");
+    study.bind(1, wanted.study);
+    study.bind(2, wanted.choice.quick ? 1 : 0);
+    study.bind(3, stored(wanted.choice.seed, "--seed"));
+    study.bind(4, wanted.shard);
+    study.bind(5, wanted.of);
+    study.exec();
+    SQLite::Statement insert(state_->database,
+                             "INSERT INTO points VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    for (std::size_t i = 0; i < wanted.points.size(); ++i) {
+      const Point& p = wanted.points[i];
+      insert.reset();
+      insert.bind(1, wanted.study);
+      insert.bind(2, static_cast<std::int64_t>(i));
+      int at = 2;
+      for (const std::string& text :
+           {p.scene, p.method, p.offset, p.radius, p.depth_format, p.depth_mode})
+        insert.bind(++at, text);
+      insert.bind(9, p.resolution);
+      insert.bind(10, p.views);
+      insert.bind(11, static_cast<std::int64_t>(p.frame));
+      insert.bind(12, stored(p.seed, "--seed"));
+      insert.exec();
+    }
+    transaction.commit();
+  });
+}
+
+std::vector<std::size_t> Store::done(const std::string& study) const {
+  return guarded(state_->path, [&] {
+    std::vector<std::size_t> out;
+    SQLite::Statement select(state_->database,
+                             "SELECT position FROM rows WHERE study = ? ORDER BY position");
+    select.bind(1, study);
+    while (select.executeStep())
+      out.push_back(static_cast<std::size_t>(select.getColumn(0).getInt64()));
+    return out;
+  });
+}
+
+void Store::add(const std::string& study, std::int64_t run, std::size_t position,
+                const Measurement& measurement) {
+  add(study, {.position = position,
+              .point = {},
+              .measurement = measurement,
+              .run = run,
+              .measured = now()});
+}
+
+void Store::add(const std::string& study, const Row& row) {
+  guarded(state_->path, [&] {
+    // One statement is one transaction.
+    SQLite::Statement insert(state_->database, "INSERT INTO rows VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+    insert.bind(1, study);
+    insert.bind(2, static_cast<std::int64_t>(row.position));
+    insert.bind(3, row.run);
+    insert.bind(4, row.measured);
+    insert.bind(5, row.measurement.device);
+    insert.bind(6, row.measurement.counts.dump());
+    insert.bind(7, row.measurement.times.dump());
+    insert.bind(8, row.measurement.left_out);
+    insert.exec();
+  });
+}
+
+StoredStudy Store::study(const std::string& name) const {
+  std::optional<Declaration> declared = declaration(name);
+  if (!declared) {
+    throw Error(state_->path, "holds no study '" + name + "'",
+                "measure it first: farcull experiment " + name);
+  }
+  StoredStudy out{.declaration = std::move(*declared), .rows = {}};
+  guarded(state_->path, [&] {
+    SQLite::Statement select(state_->database,
+                             "SELECT position, run, measured, device, counts, times, left_out "
+                             "FROM rows WHERE study = ? ORDER BY position");
+    select.bind(1, name);
+    while (select.executeStep()) {
+      const auto text = [&](int column) { return select.getColumn(column).getString(); };
+      const auto position = static_cast<std::size_t>(select.getColumn(0).getInt64());
+      out.rows.push_back({.position = position,
+                          .point = out.declaration.points.at(position),
+                          .measurement = {.counts = parsed(state_->path, text(4)),
+                                          .times = parsed(state_->path, text(5)),
+                                          .device = text(3),
+                                          .left_out = text(6)},
+                          .run = select.getColumn(1).getInt64(),
+                          .measured = text(2)});
+    }
+  });
+  return out;
+}
+
+std::string store_path(const std::string& folder, int shard, int of) {
+  if (of == 1) return folder + "/results.sqlite";
+  return fmt::format("{}/results-{}-of-{}.sqlite", folder, shard, of);
+}
+
+}  // namespace farcull
