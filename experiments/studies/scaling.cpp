@@ -1,0 +1,114 @@
+// The papers' three plots, time against the number of objects, of polygons and of pixels, and two
+// more: against density and against the pairs that collide.
+//
+// CULLIDE (Graphics Hardware 2003), figures of time against objects, polygons and resolution.
+#include <fmt/format.h>
+
+#include <set>
+
+#include "experiments/studies/lab.h"
+
+namespace farcull {
+namespace {
+
+// A scene of one of the plots. A scene may serve in several, where it is measured once.
+struct Case {
+  std::string scene;
+  int resolution;  // of the methods that draw
+  bool drawn;      // whether they take part: they are far slower on a software device
+};
+
+std::vector<Case> cases(bool quick) {
+  constexpr int kUsual = 256;
+  std::vector<Case> out;
+  const auto add = [&out](std::string scene, int resolution, bool drawn) {
+    out.push_back({std::move(scene), resolution, drawn});
+  };
+  // Objects: of about the same size, in a box that grows with their number.
+  for (const int n : quick ? std::vector{10, 20, 40} : std::vector{25, 50, 100, 200, 400, 800}) {
+    add(fmt::format("crowd:{}", n), kUsual, n <= 400);
+  }
+  if (!quick) {
+    for (const int n : {1600, 3200, 6400}) add(fmt::format("crowd:{}", n), kUsual, false);
+  }
+  // Density: the same objects closer together. What collides grows with it.
+  const int objects = quick ? 20 : 100;
+  for (const double density : {0.05, 0.1, 0.2, 0.4, 0.8}) {
+    if (quick && (density < 0.1 || density > 0.5)) continue;
+    add(fmt::format("crowd:{}:{}", objects, density), kUsual, true);
+  }
+  // Polygons: six tori, ever finer.
+  for (const int n : quick ? std::vector{72, 200, 500} : std::vector{72, 200, 400, 800, 1600}) {
+    add(fmt::format("torii:{}", n), kUsual, true);
+  }
+  if (!quick) {
+    for (const int n : {5000, 20000, 80000}) add(fmt::format("torii:{}", n), kUsual, false);
+  }
+  // Pixels.
+  for (const int pixels :
+       quick ? std::vector{64, 128, 256} : std::vector{64, 128, 256, 512, 1024, 2048}) {
+    add("two-spheres", pixels, true);
+  }
+  return out;
+}
+
+Point drawn_point(const Case& c, const char* method) {
+  Point point;
+  point.scene = c.scene;
+  point.method = method;
+  const bool far = point.method == "far";
+  if (far) {
+    point.offset = "obb";
+    point.radius = "budget";
+  }
+  point.depth_format = "float32";
+  point.depth_mode = far ? "fragment" : "fixed";
+  point.resolution = c.resolution;
+  return point;
+}
+
+// Times swing by a third on a shared machine; the methods that take less are run more often.
+int repeats_of(const Point& point) {
+  if (point.method == "far" || point.method == "cullide") return 3;
+  return 5;
+}
+
+}  // namespace
+
+Study scaling_study() {
+  Study study;
+  study.name = "scaling";
+  study.title = "Time against size";
+  study.question =
+      "How does the time from triangles to exact pairs grow with the number of objects, of "
+      "triangles, of pixels, with density, and with the pairs that collide?";
+  study.grid = [](const GridChoice& choice) {
+    std::vector<Point> out;
+    std::set<Point> had;
+    const auto add = [&](Point point) {
+      if (had.insert(point).second) out.push_back(std::move(point));
+    };
+    for (const Case& c : cases(choice.quick)) {
+      for (const char* method : {"far", "cullide"}) {
+        if (c.drawn) add(drawn_point(c, method));
+      }
+      for (const char* method : {"far-pairs", "i-collide", "exact"}) {
+        Point point;
+        point.scene = c.scene;
+        point.method = method;
+        // Alone of these far-pairs has pixels; where the plot is of pixels it takes those.
+        if (point.method == "far-pairs" && c.scene == "two-spheres")
+          point.resolution = c.resolution;
+        add(std::move(point));
+      }
+    }
+    return out;
+  };
+  study.measure = [](const Point& point, Lab& lab) {
+    lab.scene(point.scene);
+    return measure_run(point, lab, repeats_of(point));
+  };
+  return study;
+}
+
+}  // namespace farcull
