@@ -15,8 +15,10 @@
 #include "experiments/cli_bench.h"
 #include "experiments/cli_experiment.h"
 #include "experiments/cli_parts.h"
+#include "experiments/cli_picture.h"
 #include "experiments/cli_run.h"
 #include "experiments/cli_scenes.h"
+#include "experiments/cli_studies.h"
 #include "experiments/compare.h"
 #include "experiments/doctor.h"
 #include "experiments/output.h"
@@ -211,6 +213,12 @@ int command_line(int argc, char** argv) {
   ExperimentCommands experiments;
   CLI::App* experiment_app = experiments.add_to(app);
 
+  MergeCommand merge;
+  CLI::App* merge_app = merge.add_to(app);
+
+  PictureCommand picture;
+  CLI::App* picture_app = picture.add_to(app);
+
   ScenesCommand scenes;
   CLI::App* scenes_app = scenes.add_to(app);
 
@@ -237,6 +245,8 @@ int command_line(int argc, char** argv) {
       return check_command(certificate);
     }
     if (*experiment_app) return experiments.run();
+    if (*merge_app) return merge.run();
+    if (*picture_app) return picture.run();
     if (*scenes_app) return scenes.run();
     if (*doctor_app) {
       doctor.device = device_of(doctor_device);

@@ -5,18 +5,21 @@
 #include "core/error.h"
 #include "experiments/oracles.h"
 #include "experiments/output.h"
+#include "experiments/studies/study.h"
 
 namespace farcull {
 
 CLI::App* ExperimentCommands::add_to(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("experiment", "studies: premises, the methods' family, savings");
+      app.add_subcommand("experiment", "studies for publication, and their premises");
   command->require_subcommand(0, 1);
   command->footer(
-      "Examples:\n  farcull experiment lemma --points 1000000\n  farcull experiment oracles "
+      "Examples:\n  farcull experiment all --quick\n  farcull experiment accuracy --out results\n"
+      "  farcull experiment lemma --points 1000000\n  farcull experiment oracles "
       "--pairs 100000\n  farcull experiment family tree-leaves --methods far-pairs,i-collide\n"
       "  farcull experiment savings two-bunnies");
 
+  studies_.add_to(*command);
   lemma_ = command->add_subcommand(
       "lemma", "the reliability lemmas on a canvas, decided in exact arithmetic");
   lemma_->add_option("--points", arguments_.points, "points in all; default 100000")
@@ -82,8 +85,12 @@ int ExperimentCommands::run() {
   if (*oracles_) return run_oracles();
   if (*family_) return family_command_.run();
   if (*savings_) return savings_command_.run();
+  if (studies_.named()) return studies_.run();
   if (!*lemma_) {
-    throw Error("experiment", "no study is named", "name one: lemma, oracles, family, savings");
+    std::string known = "all";
+    for (const Study& study : studies()) known += ", " + study.name;
+    throw Error("experiment", "no study is named",
+                "name one: " + known + ", lemma, oracles, family, savings");
   }
   const Outputs outputs = checked(lemma_outputs_);
   arguments_.device = device_of(device_);

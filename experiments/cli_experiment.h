@@ -5,6 +5,7 @@
 
 #include "experiments/cli_family.h"
 #include "experiments/cli_parts.h"
+#include "experiments/cli_studies.h"
 #include "experiments/lemma_command.h"
 
 namespace farcull {
@@ -24,6 +25,7 @@ class ExperimentCommands {
   CLI::App* oracles_ = nullptr;
   CLI::App* family_ = nullptr;
   CLI::App* savings_ = nullptr;
+  StudiesCommand studies_;
   FamilyCommand family_command_;
   SavingsCommand savings_command_;
   LemmaArguments arguments_;

@@ -1,18 +1,16 @@
 #include "experiments/frames.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <charconv>
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 #include <numeric>
 
 #include "core/error.h"
+#include "experiments/interrupt.h"
 #include "experiments/output.h"
 #include "experiments/run_pairs.h"
 #include "experiments/scene_file.h"
@@ -25,68 +23,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr long kMostFrames = 1'000'000;
 constexpr long kLastFrame = 1'000'000'000;
-
-// What a signal's handler may look at.
-std::atomic<long> frames_done = 0, frames_wanted = 0;
-static_assert(std::atomic<long>::is_always_lock_free);
-volatile std::sig_atomic_t on_terminal = 0;
-
-std::size_t append(char* text, std::size_t at, const char* more) {
-  while (*more != '\0') text[at++] = *more++;
-  return at;
-}
-
-std::size_t append(char* text, std::size_t at, long number) {
-  char digits[24];
-  std::size_t n = 0;
-  do {
-    digits[n++] = static_cast<char>('0' + number % 10);
-    number /= 10;
-  } while (number > 0);
-  while (n > 0) text[at++] = digits[--n];
-  return at;
-}
-
-extern "C" void say_how_far(int signal) {
-  char text[160];
-  std::size_t size = append(text, 0, on_terminal ? "\r\033[K" : "");
-  size = append(text, size, "farcull: interrupted: after ");
-  size = append(text, size, frames_done.load());
-  size = append(text, size, " of ");
-  size = append(text, size, frames_wanted.load());
-  size = append(text, size, " frames; nothing was written\n");
-  (void)!::write(STDERR_FILENO, text, size);
-  std::signal(signal, SIG_DFL);
-  std::raise(signal);
-}
-
-// While it lives, a signal that ends the program says how far it came.
-class Interruptible {
- public:
-  Interruptible(long frames, bool terminal) {
-    frames_done = 0;
-    frames_wanted = frames;
-    on_terminal = terminal;
-    for (std::size_t i = 0; i < kSignals.size(); ++i) {
-      ::sigaction(kSignals[i], nullptr, &before_[i]);
-      // A signal that the caller had us ignore (nohup) stays ignored.
-      if (before_[i].sa_handler == SIG_IGN) continue;
-      struct sigaction action = {};
-      action.sa_handler = say_how_far;
-      ::sigaction(kSignals[i], &action, nullptr);
-    }
-  }
-  ~Interruptible() {
-    for (std::size_t i = 0; i < kSignals.size(); ++i)
-      ::sigaction(kSignals[i], &before_[i], nullptr);
-  }
-  Interruptible(const Interruptible&) = delete;
-  Interruptible& operator=(const Interruptible&) = delete;
-
- private:
-  static constexpr std::array<int, 3> kSignals = {SIGINT, SIGTERM, SIGHUP};
-  std::array<struct sigaction, 3> before_ = {};
-};
 
 // What a frame has of its own in the record of a run; the rest is that of all.
 constexpr std::array kOfFrame = {
@@ -336,7 +272,8 @@ FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
   std::uint64_t missed = 0;
   long topologies = 0;
   {
-    const Interruptible interruptible(question.range.count(), static_cast<bool>(progress));
+    Interruptible interruptible(question.range.count(), "frames", "nothing was written",
+                                static_cast<bool>(progress));
     for (long frame = question.range.first; frame <= question.range.last; ++frame) {
       const std::string name =
           fmt::format("frame {} of {}", times.size() + 1, question.range.count());
@@ -366,7 +303,7 @@ FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
             fmt::format("frame {}: {} culled pairs that collide: {}", frame,
                         describe(record.options), grouped(record.verification->false_negatives));
       }
-      ++frames_done;
+      interruptible.done(static_cast<long>(times.size()));
     }
   }
 

@@ -367,6 +367,14 @@ void Store::add(const std::string& study, const Row& row) {
   });
 }
 
+void Store::together(const std::function<void()>& work) {
+  guarded(state_->path, [&] {
+    SQLite::Transaction transaction(state_->database);
+    work();
+    transaction.commit();
+  });
+}
+
 StoredStudy Store::study(const std::string& name) const {
   std::optional<Declaration> declared = declaration(name);
   if (!declared) {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -87,6 +88,8 @@ class Store {
            const Measurement& measurement);
   /// The same for a row of another store; row.run is the number here. `point` is not looked at.
   void add(const std::string& study, const Row& row);
+  /// What `work` adds, in one transaction: all of it, or nothing where it throws.
+  void together(const std::function<void()>& work);
 
   StoredStudy study(const std::string& name) const;
 

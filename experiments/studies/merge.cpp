@@ -1,0 +1,179 @@
+#include "experiments/studies/merge.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <system_error>
+
+#include "core/error.h"
+
+namespace farcull {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file that is taken away again unless it was put in its place.
+class Part {
+ public:
+  explicit Part(std::string path) : path_(std::move(path)) { remove(); }
+  ~Part() { remove(); }
+  Part(const Part&) = delete;
+  Part& operator=(const Part&) = delete;
+
+  const std::string& path() const { return path_; }
+  void put(const std::string& place) {
+    std::error_code code;
+    fs::rename(path_, place, code);
+    if (code) throw Error(place, "cannot be written: " + code.message(), "name another file");
+  }
+
+ private:
+  void remove() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+    fs::remove(path_ + "-journal", ignored);
+  }
+  std::string path_;
+};
+
+struct Source {
+  std::string path;
+  std::vector<std::pair<std::int64_t, Provenance>> runs;
+  std::vector<StoredStudy> studies;
+};
+
+Source read(const std::string& path) {
+  const Store store(path, Store::Access::read);
+  Source out{.path = path, .runs = store.runs(), .studies = {}};
+  for (const std::string& name : store.studies()) out.studies.push_back(store.study(name));
+  return out;
+}
+
+const char* const kMeasureAgain = "measure it again as the others were";
+
+// That both speak of the same studies, grids and program.
+void require_alike(const Source& first, const Source& other) {
+  const auto refuse = [&](const std::string& what) {
+    throw Error(other.path, what + " than " + first.path, kMeasureAgain);
+  };
+  if (other.studies.size() != first.studies.size()) refuse("holds other studies");
+  for (std::size_t i = 0; i < first.studies.size(); ++i) {
+    const Declaration& a = first.studies[i].declaration;
+    const Declaration& b = other.studies[i].declaration;
+    if (a.study != b.study) refuse("holds other studies");
+    if (a.choice.quick != b.choice.quick || a.choice.seed != b.choice.seed)
+      refuse(a.study + " has another grid or seed");
+    if (a.points != b.points) refuse(a.study + " has other points");
+    if (a.of != b.of) refuse(a.study + " is divided into another number of shards");
+  }
+  for (const auto& [run, provenance] : other.runs) {
+    if (!first.runs.empty() && provenance.commit != first.runs.front().second.commit)
+      refuse("is of another commit (" + provenance.commit + ")");
+  }
+}
+
+// That every shard is there once, and every point has one row.
+void require_whole(const std::vector<Source>& sources) {
+  for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {
+    const Declaration& all = sources.front().studies[i].declaration;
+    std::map<int, std::string> shards;
+    std::map<std::size_t, std::string> rows;
+    for (const Source& source : sources) {
+      const StoredStudy& stored = source.studies[i];
+      const auto [same, fresh] = shards.emplace(stored.declaration.shard, source.path);
+      if (!fresh) {
+        throw Error(source.path,
+                    fmt::format("is shard {}/{} of {}, and so is {}", stored.declaration.shard,
+                                all.of, all.study, same->second),
+                    "name one of the two");
+      }
+      for (const Row& row : stored.rows) {
+        const auto [other, first] = rows.emplace(row.position, source.path);
+        if (!first) {
+          throw Error(source.path,
+                      "holds a point of " + all.study + " that " + other->second +
+                          " holds too: " + describe(row.point),
+                      kMeasureAgain);
+        }
+      }
+    }
+    for (int shard = 1; shard <= all.of; ++shard) {
+      if (!shards.contains(shard)) {
+        throw Error(fmt::format("shard {}/{}", shard, all.of), "of " + all.study + " is missing",
+                    "name its file as well");
+      }
+    }
+    for (std::size_t p = 0; p < all.points.size(); ++p) {
+      if (!rows.contains(p)) {
+        const int shard = static_cast<int>(p % static_cast<std::size_t>(all.of)) + 1;
+        throw Error(shards.at(shard), "has no row of " + all.study + ": " + describe(all.points[p]),
+                    "finish it: the command that began it, with --resume");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> shard_files(const std::string& folder) {
+  std::error_code code;
+  std::vector<std::string> out;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("results-") && name.ends_with(".sqlite") &&
+        name.find("-of-") != std::string::npos)
+      out.push_back(entry.path().string());
+  }
+  if (code)
+    throw Error(folder, "cannot be read: " + code.message(), "name the folder of the shards");
+  if (out.empty()) {
+    throw Error(folder, "holds no shards (results-K-of-N.sqlite)",
+                "measure them first: farcull experiment NAME --shard K/N --out " + folder);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+MergeSummary merge_stores(const std::vector<std::string>& files, const std::string& out) {
+  if (fs::exists(fs::symlink_status(out)))
+    throw Error(out, "is there already", "move it away, or name another file with -o");
+  std::vector<Source> sources;
+  for (const std::string& file : files) {
+    sources.push_back(read(file));
+    require_alike(sources.front(), sources.back());
+  }
+  require_whole(sources);
+
+  Part part(out + ".part-" + std::to_string(::getpid()));
+  MergeSummary summary{.files = files.size(), .studies = sources.front().studies.size()};
+  {
+    Store store(part.path(), Store::Access::write);
+    for (const StoredStudy& stored : sources.front().studies) {
+      Declaration whole = stored.declaration;
+      whole.shard = whole.of = 1;
+      store.declare(whole);
+    }
+    store.together([&] {
+      for (const Source& source : sources) {
+        std::map<std::int64_t, std::int64_t> renamed;
+        for (const auto& [run, provenance] : source.runs)
+          renamed[run] = store.begin_run(provenance);
+        for (const StoredStudy& stored : source.studies) {
+          for (Row row : stored.rows) {
+            row.run = renamed.at(row.run);
+            store.add(stored.declaration.study, row);
+            ++summary.rows;
+          }
+        }
+      }
+    });
+  }
+  part.put(out);
+  return summary;
+}
+
+}  // namespace farcull

@@ -1,0 +1,24 @@
+// Shards of studies, each measured into a file of its own, made one.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/studies/store.h"
+
+namespace farcull {
+
+/// The files of the shards in a folder, by name. Throws Error where there is none.
+std::vector<std::string> shard_files(const std::string& folder);
+
+struct MergeSummary {
+  std::size_t files = 0, studies = 0, rows = 0;
+};
+
+/// Writes the store `out` with the rows of all files; it appears whole or not at all. Throws Error
+/// naming the file where it is none of ours, where its studies, grids, seeds or commit are not
+/// those of the first file, where two files hold the same shard or the same point, where a shard or
+/// a point has no row in any of them, and where `out` is there already.
+MergeSummary merge_stores(const std::vector<std::string>& files, const std::string& out);
+
+}  // namespace farcull

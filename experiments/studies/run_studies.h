@@ -1,0 +1,71 @@
+// Measures the points of studies one after the other and keeps every answer at once.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/studies/shard.h"
+#include "experiments/studies/store.h"
+#include "experiments/studies/study.h"
+
+namespace farcull {
+
+struct StudiesRequest {
+  std::vector<Study> studies;
+  std::string folder;  // made where it is not there
+  GridChoice choice;
+  bool resume = false;  // go on where the store has rows of a study already
+  Shard shard;
+  std::string device;   // as --device
+  std::string options;  // for the record, as JSON
+};
+
+/// How far it is.
+struct StudiesProgress {
+  std::string study;
+  std::string point;                  // in words
+  std::string stage;                  // of its run
+  std::size_t done = 0, points = 0;   // of this shard, in all studies, those of earlier runs among
+                                      // them
+  std::optional<double> remaining_s;  // as the points before took; empty until one was measured
+};
+
+struct StudySummary {
+  std::string study;
+  std::size_t points = 0;    // of this shard
+  std::size_t before = 0;    // had a row already
+  std::size_t measured = 0;  // in this run, those left out among them
+  std::size_t left_out = 0;  // of all rows: nothing could be measured, and the row says why
+  double seconds = 0;        // of this run
+};
+
+struct StudiesSummary {
+  std::string store;  // path
+  std::vector<StudySummary> studies;
+  /// Points whose measuring failed, in words, with the error. They have no row and are tried again
+  /// by the next run.
+  std::vector<std::string> failed;
+  /// Rows, of this run or an earlier one, of methods that promise and missed. Empty, or the worst
+  /// has happened.
+  std::vector<std::string> broken;
+};
+
+/// Whether the counts tell of a promise that was not kept: `promises` is true and `missed` or
+/// `violations` above 0.
+bool breaks_promise(const Measurement& measurement);
+
+/// Measures what has no row yet. An Error at a point is noted and the next point gets a new device;
+/// one of the store ends the run. Signals end the program, with a line that says how many points
+/// are kept. Throws Error for a folder that cannot be made, a store as Store and Store::declare()
+/// refuse it, one that has rows of a study where `resume` is not set, or rows by another commit of
+/// farcull.
+StudiesSummary run_studies(const StudiesRequest& request,
+                           const std::function<void(const StudiesProgress&)>& progress = {});
+
+/// For people.
+std::string summary_table(const StudiesSummary& summary);
+
+}  // namespace farcull

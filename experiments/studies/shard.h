@@ -1,0 +1,28 @@
+// Which part of a study a process measures, where several share it.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace farcull {
+
+struct Shard {
+  int index = 1, of = 1;  // 1 <= index <= of
+  std::string from;       // where it was read, for people; empty: nothing was divided
+
+  /// Every of-th point, so that each shard has its share of the cheap and the costly ones.
+  bool holds(std::size_t position) const {
+    return position % static_cast<std::size_t>(of) == static_cast<std::size_t>(index - 1);
+  }
+};
+
+/// "K/N" with 1 <= K <= N <= 100000. Throws Error naming --shard.
+Shard parse_shard(const std::string& text);
+
+/// As an array job of Slurm (SLURM_ARRAY_TASK_ID, _MIN, _MAX, _COUNT; steps of one) or a process of
+/// Open MPI (OMPI_COMM_WORLD_RANK, _SIZE) says; the whole study where neither speaks. `variable`
+/// gives an environment variable or null. Throws Error naming the variable where it is no number,
+/// the array has gaps, or both speak.
+Shard shard_from_environment(const std::function<const char*(const char*)>& variable);
+
+}  // namespace farcull
