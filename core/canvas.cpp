@@ -10,6 +10,10 @@ std::vector<float> Canvas::samples(Verb, const std::vector<Draw>&) {
   throw std::logic_error("this canvas offers no samples");
 }
 
+std::vector<float> Canvas::depths(Verb, const std::vector<Draw>&) {
+  throw std::logic_error("this canvas offers no depths");
+}
+
 float depth_scale(const Window& window) {
   const double reach = std::max(std::abs(window.lo[2]), std::abs(window.hi[2])) + 2;
   return static_cast<float>(0.25 / reach);
@@ -20,6 +24,10 @@ double depth_step(const Window& window, int depth_bits) {
   // fixed point.
   (void)depth_bits;
   return 0x1p-24 / depth_scale(window);
+}
+
+double depth_rounding(int depth_bits) {
+  return depth_bits == 24 ? 0.5 + 1 + 0x1p24 / (0x1p24 - 1) + 1 : 0.5 + 1;
 }
 
 }  // namespace farcull

@@ -102,6 +102,11 @@ class Canvas {
   /// Where mapped depths are equal, any of theirs. Proxies only. For the lemmas' tests and for
   /// pictures.
   virtual std::vector<float> samples(Verb verb, const std::vector<Draw>& draws);
+  /// The depths, as the depth buffer holds them, that storing (entry, nearest kept) or asking
+  /// (exit, farthest kept) leaves in each pixel of the window for `draws`; height rows of width
+  /// values in [0, 1], empty pixels 1 for store and 0 for ask. For the lemmas' tests and for
+  /// pictures.
+  virtual std::vector<float> depths(Verb verb, const std::vector<Draw>& draws);
 };
 
 /// The depth map of a window, the same float expression wherever it stands:
@@ -111,5 +116,10 @@ class Canvas {
 float depth_scale(const Window& window);
 /// The depth of one step of a depth buffer in px.
 double depth_step(const Window& window, int depth_bits);
+/// How far a depth that a buffer gives back may be from 0.5 + z * scale of an exact z of the
+/// window, in steps of 2^-24, whatever the rounding of its operations: the product, of at most 1/4,
+/// rounds by 2^-25, and the sum, below 1, by 2^-24. Of 24 bits, storing rounds by 1 / (2^24 - 1)
+/// more, and reading back as a float by 2^-24.
+double depth_rounding(int depth_bits);
 
 }  // namespace farcull

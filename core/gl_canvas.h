@@ -52,10 +52,7 @@ class GlCanvas final : public Canvas {
   std::vector<std::uint8_t> run(const Pass& pass) override;
   std::vector<float> samples(Verb verb, const std::vector<Draw>& draws) override;
 
-  /// The depths that storing (entry, nearest kept) or asking (exit, farthest kept) leaves in each
-  /// pixel of the window for `draws`; height rows of width values, empty pixels 1 for store and 0
-  /// for ask. For tests and pictures. float32 only.
-  std::vector<float> depths(Verb verb, const std::vector<Draw>& draws);
+  std::vector<float> depths(Verb verb, const std::vector<Draw>& draws) override;
 
   void inject(Fault fault);
 

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include "verify/exact_point.h"
 
 namespace farcull {
 namespace {
+
+constexpr double kUsualDepth = 128;  // LemmaSettings::depth
 
 // Uniform numbers that are the same on every platform.
 class Random {
@@ -146,7 +149,7 @@ constexpr Generator kGenerators[] = {{"pixel corners", false, 508, false, corner
                                      {"needles", true, 764, false, needle},
                                      {"segments and points", true, 764, false, segment_or_point}};
 
-Window lab_window(int side) {
+Window lab_window(int side, double depth) {
   Window w{.view = parse_view("z"),
            .origin = Vec3::Zero(),
            .map = Eigen::Matrix3d::Identity(),
@@ -155,7 +158,7 @@ Window lab_window(int side) {
            .height = side,
            .lo = {},
            .hi = {}};
-  w.hi = Vec3(0.5 * side, 0.5 * side, 128);
+  w.hi = Vec3(0.5 * side, 0.5 * side, depth);
   w.lo = -w.hi;
   return w;
 }
@@ -167,28 +170,59 @@ void displace(std::array<Vec3, 3>& corners, Random& random) {
   for (Vec3& c : corners) c += by * kMaxDoubleError;
 }
 
+// What a pixel's samples make of a point in it.
+void count(const ExactPoint& point, float entry, float exit, const Window& window, int depth_bits,
+           bool stored, LemmaRow& row) {
+  ++row.points;
+  if (stored ? entry == 1 || exit == 0 : std::isnan(entry) || std::isnan(exit)) {
+    ++row.no_sample;
+    return;
+  }
+  if (!std::isfinite(entry) || !std::isfinite(exit)) {  // no kernel answers so
+    ++row.not_bounding;
+    row.largest_steps = row.largest_px = HUGE_VAL;
+    return;
+  }
+  const double step = depth_step(window, depth_bits);
+  const double by = stored ? beyond_stored(point, entry, exit, depth_scale(window)) * 0x1p24
+                           : beyond(point, entry, exit) / step;
+  if (by <= 0) return;
+  ++(stored && by <= depth_rounding(depth_bits) ? row.rounded : row.not_bounding);
+  row.largest_steps = std::max(row.largest_steps, by);
+  row.largest_px = std::max(row.largest_px, by * step);
+}
+
+// Random streams: of the trials, and of where in a deep window they stand.
+struct Streams {
+  Random trials;
+  Random lifts;
+};
+
 // One window full of trials; returns the row's increments.
 void run_round(Canvas& canvas, const Fattener& fattener, const LemmaSettings& settings,
-               const Generator& generator, Random& random, std::uint64_t wanted, LemmaRow& row) {
-  const Window window = lab_window(generator.side);
-  const Budget budget = budget_for(canvas.limits(), viewport_side(generator.side));
-  const double radius = settings.radius(budget, depth_step(window, canvas.limits().depth_bits));
+               const Generator& generator, Streams& random, std::uint64_t wanted, LemmaRow& row) {
+  const int side = settings.side > 0 ? settings.side : generator.side;
+  const Window window = lab_window(side, settings.depth);
+  const Budget budget = budget_for(canvas.limits(), viewport_side(side));
+  const int depth_bits = canvas.limits().depth_bits;
+  const double radius = settings.radius(budget, depth_step(window, depth_bits));
   const ProxyBounds bounds = proxy_bounds(window);
   const int cell = generator.large ? 128 : 6;
-  const int first = generator.rim ? generator.side / 2 - 20 * cell : -generator.side / 2;
+  const int first = generator.rim ? side / 2 - std::min(20 * cell, side) : -side / 2;
   Drawables drawables;
   drawables.mode = fattener.mode;
   std::vector<ExactPoint> points;
-  for (int y = first; y + cell <= generator.side / 2; y += cell) {
-    for (int x = first; x + cell <= generator.side / 2; x += cell) {
+  for (int y = first; y + cell <= side / 2; y += cell) {
+    for (int x = first; x + cell <= side / 2; x += cell) {
       if (row.points + points.size() >= wanted) continue;
-      Trial trial = generator.make(random);
-      const Vec3 centre(x + cell / 2, y + cell / 2, 0);
+      Trial trial = generator.make(random.trials);
+      const double lift = (settings.depth - kUsualDepth) * random.lifts.between(-1, 1);
+      const Vec3 centre(x + cell / 2, y + cell / 2, lift);
       for (Vec3& c : trial.corners) c += centre;
       for (const auto& weights : trial.weights) points.push_back({trial.corners, weights});
       Patch patch;
       patch.count = 3;
-      if (settings.displace) displace(trial.corners, random);
+      if (settings.displace) displace(trial.corners, random.trials);
       std::copy_n(trial.corners.begin(), 3, patch.corners.begin());
       fattener.fatten(patch, radius, bounds, drawables);
       drawables.first.push_back(static_cast<std::uint32_t>(drawables.elements()));
@@ -197,17 +231,14 @@ void run_round(Canvas& canvas, const Fattener& fattener, const LemmaSettings& se
   std::vector<Draw> draws;
   for (std::uint32_t e = 0; e < drawables.elements(); ++e) draws.push_back({e, 0});
   canvas.begin(window, drawables);
-  const std::vector<float> entries = canvas.samples(Verb::store, draws);
-  const std::vector<float> exits = canvas.samples(Verb::ask, draws);
+  const auto read = [&](Verb verb) {
+    return settings.stored ? canvas.depths(verb, draws) : canvas.samples(verb, draws);
+  };
+  const std::vector<float> entries = read(Verb::store), exits = read(Verb::ask);
   for (const ExactPoint& point : points) {
     for (const Pixel& pixel : pixels_containing(point, window.width, window.height)) {
       const std::size_t at = static_cast<std::size_t>(pixel.y) * window.width + pixel.x;
-      ++row.points;
-      if (std::isnan(entries[at]) || std::isnan(exits[at])) {
-        ++row.no_sample;
-      } else if (!bounded(point, entries[at], exits[at])) {
-        ++row.not_bounding;
-      }
+      count(point, entries[at], exits[at], window, depth_bits, settings.stored, row);
     }
   }
 }
@@ -222,13 +253,20 @@ std::vector<std::string> lemma_generators() {
 
 std::vector<LemmaRow> lemma_experiment(Canvas& canvas, const Fattener& fattener,
                                        const LemmaSettings& settings, const Progress& progress) {
+  const std::vector<std::string> names = lemma_generators();
+  if (!settings.generator.empty() &&
+      std::find(names.begin(), names.end(), settings.generator) == names.end()) {
+    throw std::logic_error("lemma_experiment: no generator " + settings.generator);
+  }
   std::vector<LemmaRow> rows;
   std::uint64_t index = 0;
   const std::uint64_t each =
       (settings.points + std::size(kGenerators) - 1) / std::size(kGenerators);
   for (const Generator& generator : kGenerators) {
+    const std::uint64_t seed = settings.seed * 1000003 + index++;
+    if (!settings.generator.empty() && settings.generator != generator.name) continue;
     LemmaRow row{.generator = generator.name};
-    Random random(settings.seed * 1000003 + index++);
+    Streams random{Random(seed), Random(~seed)};
     while (row.points < each) {
       if (progress) progress(fmt::format("{}: {} of {} points", row.generator, row.points, each));
       run_round(canvas, fattener, settings, generator, random, each, row);
@@ -244,6 +282,9 @@ LemmaRow lemma_total(const std::vector<LemmaRow>& rows) {
     total.points += row.points;
     total.no_sample += row.no_sample;
     total.not_bounding += row.not_bounding;
+    total.rounded += row.rounded;
+    total.largest_px = std::max(total.largest_px, row.largest_px);
+    total.largest_steps = std::max(total.largest_steps, row.largest_steps);
   }
   return total;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace farcull {
 namespace {
@@ -30,6 +31,13 @@ std::pair<int, int> indices(const mpq_class& x, int size) {
   return {std::max(lower, 0), std::min(upper, size - 1)};
 }
 
+// Of the same sign, so never a positive number made 0.
+double larger(const mpq_class& a, const mpq_class& b) {
+  const mpq_class& most = a > b ? a : b;
+  const double cut = most.get_d();
+  return cut == 0 && most > 0 ? std::numeric_limits<double>::denorm_min() : cut;
+}
+
 }  // namespace
 
 std::vector<Pixel> pixels_containing(const ExactPoint& point, int width, int height) {
@@ -47,6 +55,16 @@ bool bounded(const ExactPoint& point, float entry, float exit) {
   if (std::isinf(entry) || std::isinf(exit)) return false;  // no kernel answers so
   const mpq_class z = coordinate(point, 2);
   return mpq_class(entry) <= z && z <= mpq_class(exit);
+}
+
+double beyond(const ExactPoint& point, float entry, float exit) {
+  const mpq_class z = coordinate(point, 2);
+  return larger(mpq_class(entry) - z, z - mpq_class(exit));
+}
+
+double beyond_stored(const ExactPoint& point, float entry, float exit, float scale) {
+  const mpq_class depth = mpq_class(1, 2) + coordinate(point, 2) * mpq_class(scale);
+  return larger(mpq_class(entry) - depth, depth - mpq_class(exit));
 }
 
 }  // namespace farcull

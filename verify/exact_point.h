@@ -30,4 +30,12 @@ std::vector<Pixel> pixels_containing(const ExactPoint& point, int width, int hei
 /// entry <= z(point) <= exit, exactly; false where a sample is NaN.
 bool bounded(const ExactPoint& point, float entry, float exit);
 
+/// How far z(point) is outside the samples: the larger of entry - z and z - exit, computed exactly
+/// and cut off to a double. Not positive where it is bounded. Precondition: finite samples.
+double beyond(const ExactPoint& point, float entry, float exit);
+/// The same for depths of a depth buffer: the larger of entry - D and D - exit for D = 1/2 +
+/// z(point)
+/// * scale, exactly.
+double beyond_stored(const ExactPoint& point, float entry, float exit, float scale);
+
 }  // namespace farcull

@@ -158,6 +158,19 @@ std::vector<std::uint8_t> WorstCanvas::run(const Pass& pass) {
   return seen;
 }
 
+std::vector<float> WorstCanvas::depths(Verb verb, const std::vector<Draw>& draws) {
+  const bool store = verb == Verb::store;
+  std::vector<float> out(static_cast<std::size_t>(window_.width) * window_.height,
+                         store ? 1.0f : 0.0f);
+  for (const Draw& draw : draws) {
+    rasterize(draw.element, verb, [&](std::size_t pixel, float, float mapped) {
+      const float d = stored_depth(mapped);
+      out[pixel] = store ? std::min(out[pixel], d) : std::max(out[pixel], d);
+    });
+  }
+  return out;
+}
+
 std::vector<float> WorstCanvas::samples(Verb verb, const std::vector<Draw>& draws) {
   if (drawables_->mode == DepthMode::fixed)
     throw std::logic_error("WorstCanvas::samples: proxies only");

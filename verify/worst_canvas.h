@@ -33,6 +33,7 @@ class WorstCanvas final : public Canvas {
   void begin(const Window& window, const Drawables& drawables) override;
   std::vector<std::uint8_t> run(const Pass& pass) override;
   std::vector<float> samples(Verb verb, const std::vector<Draw>& draws) override;
+  std::vector<float> depths(Verb verb, const std::vector<Draw>& draws) override;
 
  private:
   template <class Visit>
