@@ -20,6 +20,10 @@ std::vector<Peer> fcl_peers() {
   return {missing("fcl-obbrss", "FCL", "libfcl-dev"), missing("fcl-obb", "FCL", "libfcl-dev"),
           missing("fcl-aabb", "FCL", "libfcl-dev")};
 }
+
+std::vector<Peer> narrow_peers() {
+  return {missing("fcl-float", "FCL", "libfcl-dev"), missing("fcl-double", "FCL", "libfcl-dev")};
+}
 #endif
 
 #if !FARCULL_WITH_EMBREE

@@ -48,6 +48,14 @@ std::vector<Peer> cgal_peers(unsigned threads);
 std::vector<Peer> fcl_peers();
 std::vector<Peer> embree_peers();
 
+/// Libraries as their users run them, with their own inexact test of two triangles, so that pairs
+/// may be missed or wrong: fcl-float and fcl-double are FCL's OBBRSS hierarchies and fcl::collide()
+/// on coordinates rounded to that type. BenchAnswer::pairs is what the library reports, without
+/// neighbours (verify/exact.h) inside an object that is `self`; candidate_pairs is their number.
+/// One traversal has one thread, pairs of objects are divided over the threads. Not among
+/// all_peers(), whose answers are exact; `refuses` is null, since they vouch for nothing.
+std::vector<Peer> narrow_peers();
+
 /// CGAL's exact predicate by itself, as its users call it: what decide() falls back to. Neither may
 /// be degenerate.
 bool cgal_do_intersect(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);

@@ -2,8 +2,6 @@
 // is inexact, so its leaves are candidates here; and its traversal, which has one thread, is
 // written anew so that it can be divided and can take a model with itself.
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
-#include <fcl/config.h>
-#include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/AABB.h>
 #include <fcl/math/bv/OBB.h>
 #include <fcl/math/bv/OBBRSS.h>
@@ -11,57 +9,20 @@
 
 #include <algorithm>
 #include <memory>
-#include <span>
 #include <utility>
 
-#include "core/error.h"
+#include "experiments/peer_fcl_parts.h"
 #include "experiments/peer_parts.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
 
-constexpr const char* kLibrary = "FCL " FCL_VERSION;
-
-/// The hierarchy of one object; its primitive i is triangle first + i.
-template <class Volume>
-struct Model {
-  std::shared_ptr<fcl::BVHModel<Volume>> hierarchy;
-  std::uint32_t first = 0;
-};
-
-template <class Volume>
-Model<Volume> build(const Scene& scene, const Object& object) {
-  const auto triangles =
-      std::span(scene.triangles).subspan(object.first_triangle, object.triangle_count);
-  // Objects mostly own a range of the vertices.
-  std::uint32_t least = triangles[0][0], most = least;
-  for (const auto& triangle : triangles) {
-    for (const std::uint32_t v : triangle) {
-      least = std::min(least, v);
-      most = std::max(most, v);
-    }
-  }
-  const std::vector<fcl::Vector3d> points(scene.vertices.begin() + least,
-                                          scene.vertices.begin() + most + 1);
-  std::vector<fcl::Triangle> faces;
-  faces.reserve(triangles.size());
-  for (const auto& [a, b, c] : triangles) faces.emplace_back(a - least, b - least, c - least);
-  Model<Volume> model{std::make_shared<fcl::BVHModel<Volume>>(), object.first_triangle};
-  const auto count = static_cast<int>(faces.size());
-  if (model.hierarchy->beginModel(count, static_cast<int>(points.size())) != fcl::BVH_OK ||
-      model.hierarchy->addSubModel(points, faces) != fcl::BVH_OK ||
-      model.hierarchy->endModel() != fcl::BVH_OK) {
-    throw Error(kLibrary, "builds no hierarchy of this object", "leave it out with --peers");
-  }
-  return model;
-}
-
 /// Two nodes whose leaves are to be compared; a model with itself where one of them is all.
 template <class Volume>
 struct Task {
-  const Model<Volume>* first;
-  const Model<Volume>* second;
+  const FclModel<Volume>* first;
+  const FclModel<Volume>* second;
   int a;
   int b;
   bool inner = false;  // the leaves below a with each other
@@ -126,10 +87,10 @@ BenchAnswer collide(const Scene& scene, unsigned threads) {
   for (const Object& object : scene.objects) {
     if (object.triangle_count > 0) objects.push_back(&object);
   }
-  std::vector<Model<Volume>> models(objects.size());
+  std::vector<FclModel<Volume>> models(objects.size());
   std::vector<std::unique_ptr<fcl::CollisionObjectd>> placed(objects.size());
   for_each_taken(objects.size(), 1, threads, [&](std::size_t i) {
-    models[i] = build<Volume>(scene, *objects[i]);
+    models[i] = fcl_model<Volume>(scene, *objects[i]);
     placed[i] = std::make_unique<fcl::CollisionObjectd>(models[i].hierarchy);
     placed[i]->setUserData(reinterpret_cast<void*>(i));
   });
@@ -168,7 +129,7 @@ BenchAnswer collide(const Scene& scene, unsigned threads) {
 
 template <class Volume>
 Peer peer(const std::string& name) {
-  return {name, kLibrary, "", [](unsigned threads) -> BenchRun {
+  return {name, kFclLibrary, "", [](unsigned threads) -> BenchRun {
             return [=](const Scene& scene) { return collide<Volume>(scene, threads); };
           }};
 }
