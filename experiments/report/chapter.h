@@ -76,6 +76,7 @@ struct Chapter {
   std::vector<Figure> figures;
   std::vector<DataTable> tables;
   std::string command;  // that measures it again
+  std::vector<Picture> pictures = {};
 };
 
 /// The chapter of a study from its rows, all or those that are there.

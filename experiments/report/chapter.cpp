@@ -1,0 +1,30 @@
+#include "experiments/report/chapter.h"
+
+#include <map>
+
+#include "core/error.h"
+
+namespace farcull {
+namespace {
+
+const std::map<std::string, ChapterOf>& chapters() {
+  static const std::map<std::string, ChapterOf> all = {
+      {"efficiency", efficiency_chapter},
+      {"scaling", scaling_chapter},
+  };
+  return all;
+}
+
+}  // namespace
+
+Chapter chapter_of(const StoredStudy& stored) {
+  const auto at = chapters().find(stored.declaration.study);
+  if (at == chapters().end()) {
+    throw Error("report",
+                "'" + stored.declaration.study + "' is no study that this program reports",
+                "use the farcull that measured it");
+  }
+  return at->second(stored);
+}
+
+}  // namespace farcull

@@ -1,0 +1,521 @@
+#include "experiments/report/figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/error.h"
+#include "experiments/output.h"
+#include "experiments/report/axes.h"
+#include "experiments/report/gnuplot.h"
+#include "experiments/report/html.h"
+#include "experiments/report/style.h"
+
+namespace farcull {
+namespace {
+
+// Of text of kFigureText px, on average: names are drawn where they fit by this measure.
+constexpr double kCharacter = 7.3;
+constexpr double kLine = 19;
+constexpr const char* kFont = "farcull-font";  // replaced in the SVG by families
+constexpr const char* kFamilies =
+    "Helvetica Neue, Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif";
+
+// In pixels from the top left corner.
+struct Box {
+  double left = 0, right = 0, top = 0, bottom = 0;
+};
+
+struct PlacedPanel {
+  Scale x, y;
+  Box box;
+  bool x_label = true, y_label = true;
+  double y_room = 0;  // from the axis to the middle of its label
+};
+
+struct Layout {
+  std::vector<PlacedPanel> panels;
+  double key_top = 0;
+  std::size_t key_columns = 1;
+  double height = 0;
+};
+
+std::size_t columns_for(std::size_t panels) {
+  if (panels <= 1) return 1;
+  return panels == 3 || panels > 4 ? 3 : 2;
+}
+
+double plot_height(std::size_t columns) { return columns == 1 ? 300 : columns == 2 ? 215 : 150; }
+
+void check(const Figure& figure) {
+  const auto require = [&](bool holds, const char* what) {
+    if (!holds) throw std::logic_error("figure '" + figure.name + "': " + what);
+  };
+  require(!figure.name.empty() && figure.name.find_first_not_of(
+                                      "abcdefghijklmnopqrstuvwxyz0123456789-") == std::string::npos,
+          "the name is no name of a file");
+  require(!figure.panels.empty(), "no panel");
+  for (const Panel& panel : figure.panels) {
+    for (const Series& series : panel.series) {
+      require(series.x.size() == series.y.size(), "x and y differ in length");
+      require(series.lo.size() == series.hi.size(), "bars differ in length");
+      require(series.lo.empty() || series.lo.size() == series.y.size(), "not a bar for each y");
+    }
+  }
+}
+
+std::vector<double> values_along(const Panel& panel, bool horizontal) {
+  std::vector<double> out;
+  const auto add = [&out](const std::vector<double>& from) {
+    out.insert(out.end(), from.begin(), from.end());
+  };
+  for (const Series& series : panel.series) {
+    // A point that has no place on the other axis is still part of this one's range.
+    add(horizontal ? series.x : series.y);
+    if (!horizontal) {
+      for (const std::vector<double>* bars : {&series.lo, &series.hi}) {
+        // Bars down to 0 do not ask for a place for zeros.
+        for (const double value : *bars) {
+          if (!panel.y.logarithmic || value > 0) out.push_back(value);
+        }
+      }
+    }
+  }
+  for (const Mark& mark : panel.marks) {
+    if (mark.vertical == horizontal) out.push_back(mark.at);
+  }
+  return out;
+}
+
+Layout layout_of(const Figure& figure) {
+  Layout out;
+  const std::size_t count = figure.panels.size();
+  const std::size_t columns = columns_for(count);
+  const std::size_t rows = (count + columns - 1) / columns;
+  const double high = plot_height(columns);
+  const double cell = static_cast<double>(kFigureWidth) / static_cast<double>(columns);
+  // Labels that a panel shares with the first of its row, or the last of its column, stand there.
+  const auto same = [&](auto label) {
+    return std::all_of(figure.panels.begin(), figure.panels.end(), [&](const Panel& panel) {
+      return label(panel) == label(figure.panels.front());
+    });
+  };
+  const bool one_x = same([](const Panel& p) { return p.x.label; });
+  const bool one_y = same([](const Panel& p) { return p.y.label; });
+  const bool titled = std::any_of(figure.panels.begin(), figure.panels.end(),
+                                  [](const Panel& p) { return !p.title.empty(); });
+
+  std::vector<double> left(columns, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Panel& panel = figure.panels[i];
+    PlacedPanel placed;
+    const double wide = cell - 70;
+    placed.x =
+        scale_of(panel.x, values_along(panel, true), static_cast<std::size_t>(wide / kCharacter));
+    placed.y = scale_of(panel.y, values_along(panel, false),
+                        static_cast<std::size_t>(8 * high / (2.1 * kLine)));
+    placed.x_label = !one_x || i + columns >= count;
+    placed.y_label = !one_y || i % columns == 0;
+    placed.y_room = kCharacter * static_cast<double>(placed.y.label_width()) + 10 + kLine / 2;
+    left[i % columns] =
+        std::max(left[i % columns], placed.y_room + (placed.y_label ? kLine / 2 : -kLine / 2) + 2);
+    out.panels.push_back(std::move(placed));
+  }
+  // The last label of an x axis reaches beyond it.
+  constexpr double kRight = 20;
+  double wide = kFigureWidth - kRight * static_cast<double>(columns);
+  for (const double l : left) wide -= l;
+  wide /= static_cast<double>(columns);
+
+  double top = 6;
+  for (std::size_t row = 0; row < rows; ++row) {
+    top += titled ? kLine + 5 : 4;
+    double x = 0;
+    bool labelled = false;
+    for (std::size_t column = 0; column < columns; ++column) {
+      const std::size_t i = row * columns + column;
+      x += left[column];
+      if (i < count) {
+        out.panels[i].box = {x, x + wide, top, top + high};
+        labelled = labelled || out.panels[i].x_label;
+      }
+      x += wide + kRight;
+    }
+    top += high + kLine + 6 + (labelled ? kLine : 0) + 10;
+  }
+
+  const std::vector<std::string> names = series_names(figure);
+  std::size_t longest = 1;
+  for (const std::string& name : names) longest = std::max(longest, characters(name));
+  const double entry = 52 + kCharacter * static_cast<double>(longest);
+  out.key_columns = std::clamp<std::size_t>(static_cast<std::size_t>((kFigureWidth - 20) / entry),
+                                            1, std::max<std::size_t>(names.size(), 1));
+  out.key_top = top + 4;
+  if (!names.empty()) {
+    const std::size_t lines = (names.size() + out.key_columns - 1) / out.key_columns;
+    // As even as it goes: four and three rather than six and one.
+    out.key_columns = (names.size() + lines - 1) / lines;
+    top = out.key_top + kLine * static_cast<double>(lines) + 6;
+  }
+  out.height = std::ceil(top);
+  return out;
+}
+
+class Script {
+ public:
+  explicit Script(const Figure& figure)
+      : figure_(figure),
+        layout_(layout_of(figure)),
+        names_(series_names(figure)),
+        styles_(styles_of(names_)) {}
+
+  FigureScript made() {
+    head();
+    for (std::size_t i = 0; i < figure_.panels.size(); ++i) panel(i);
+    line("unset multiplot");
+    line("unset output");
+    return {script_, data_, static_cast<int>(layout_.height)};
+  }
+
+ private:
+  void line(const std::string& text) { script_ += text + "\n"; }
+
+  std::string screen_x(double x) const { return fmt::format("{:.5f}", x / kFigureWidth); }
+  std::string screen_y(double y) const { return fmt::format("{:.5f}", 1 - y / layout_.height); }
+
+  // The emphasised ones get thinner in the order in which they are drawn over each other, so that
+  // those with the same values (0, where nothing is missed) all stay visible.
+  double order_of(std::size_t style) const {
+    double before = 0;
+    for (std::size_t i = 0; i < style; ++i) before += first_of(names_[i])->emphasis ? 1 : 0;
+    return std::min(before, 2.0);
+  }
+  double width_of(std::size_t style) const {
+    return first_of(names_[style])->emphasis ? 4.2 - 1.3 * order_of(style) : 1.5;
+  }
+  double size_of(std::size_t style) const {
+    return first_of(names_[style])->emphasis ? 1.15 - 0.25 * order_of(style) : 0.7;
+  }
+
+  void head() {
+    const std::string& name = figure_.name;
+    line("# " + gnuplot_text(figure_.title));
+    line("# Draws " + name + ".svg: gnuplot " + name + ".gp");
+    line("# and " + name + ".pdf: gnuplot -e \"kind='pdf'\" " + name + ".gp");
+    line("if (!exists('kind')) kind = 'svg'");
+    line("set encoding utf8");
+    line("if (kind eq 'pdf') {");
+    // 17 cm are 482 pt, so that a pixel of the SVG is 0.669 pt.
+    const double cm = 17.0 / kFigureWidth;
+    line(
+        fmt::format("  set terminal pdfcairo color noenhanced size {:.3f}cm,{:.3f}cm font "
+                    "'DejaVu Sans,{:.2f}' fontscale 0.76 pointscale 1.2 linewidth 0.85 rounded",
+                    cm * kFigureWidth, cm * layout_.height, kFigureText * cm / 2.54 * 72));
+    line("  set output '" + name + ".pdf'");
+    line("} else {");
+    line(
+        fmt::format("  set terminal svg noenhanced size {},{:.0f} font '{},{}' rounded "
+                    "background '#ffffff'",
+                    kFigureWidth, layout_.height, kFont, kFigureText));
+    line("  set output '" + name + ".svg'");
+    line("}");
+    line("set multiplot");
+    line("set border 3 lc rgb '#444444' lw 1");
+    line("set grid xtics ytics back lt 1 lc rgb '#e4e4e4' lw 0.8, lt 0 lw 0");
+    line("set tics nomirror out scale 0.6,0.3 textcolor rgb '#222222'");
+    line("set xtics offset 0,character 0.4");
+    line("unset key");
+    key();
+  }
+
+  // Names in columns below the panels: a sample of the line, the point, the name.
+  void key() {
+    const std::size_t columns = layout_.key_columns;
+    std::vector<double> widths(columns, 0);
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      widths[i % columns] = std::max(widths[i % columns],
+                                     52 + kCharacter * static_cast<double>(characters(names_[i])));
+    }
+    double total = 0;
+    for (const double width : widths) total += width;
+    const double start = std::max(10.0, (kFigureWidth - total) / 2);
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      double x = start;
+      for (std::size_t c = 0; c < i % columns; ++c) x += widths[c];
+      const double y = layout_.key_top + kLine * (static_cast<double>(i / columns) + 0.5);
+      const Series* series = first_of(names_[i]);
+      const bool lines = series->style != Series::Style::points;
+      const bool dots =
+          series->style == Series::Style::lines_points || series->style == Series::Style::points;
+      if (lines) {
+        line(fmt::format(
+            "set arrow from screen {0},{2} to screen {1},{2} nohead front dt {3} "
+            "lc rgb '{4}' lw {5}",
+            screen_x(x), screen_x(x + 30), screen_y(y), dash(i), styles_[i].colour, width_of(i)));
+      }
+      line(fmt::format("set label {} at screen {},{} left front textcolor rgb '#222222'",
+                       gnuplot_text(names_[i]), screen_x(x + 38), screen_y(y)));
+      if (dots) {
+        line(fmt::format("set label '' at screen {},{} front point pt {} ps {} lc rgb '{}'",
+                         screen_x(x + 15), screen_y(y), styles_[i].point, size_of(i),
+                         styles_[i].colour));
+      }
+    }
+  }
+
+  const Series* first_of(const std::string& name) const {
+    for (const Panel& panel : figure_.panels) {
+      for (const Series& series : panel.series) {
+        if (series.name == name) return &series;
+      }
+    }
+    throw std::logic_error("no series of that name");
+  }
+
+  std::string dash(std::size_t style) const {
+    return dashes()[static_cast<std::size_t>(styles_[style].dash)];
+  }
+
+  void axis(const char* name, const Scale& scale) {
+    line(fmt::format("{} logscale {}", scale.logarithmic ? "set" : "unset", name));
+    line(fmt::format("set {}range [{:.17g}:{:.17g}]", name, scale.from, scale.to));
+    std::string ticks;
+    for (const Tick& tick : scale.ticks) {
+      ticks += fmt::format("{}{} {:.17g}{}", ticks.empty() ? "" : ", ", gnuplot_text(tick.label),
+                           tick.at, tick.label.empty() ? " 1" : "");
+    }
+    line(fmt::format("set {}tics ({})", name, ticks));
+  }
+
+  // Centred below and left of the panel, at places of our own: the plotter's depend on its fonts.
+  void axis_labels(const Panel& panel, const PlacedPanel& placed) {
+    constexpr const char* kText = "front textcolor rgb '#222222'";
+    const Box& box = placed.box;
+    if (placed.x_label && !panel.x.label.empty()) {
+      line(fmt::format("set label {} at screen {},{} center {}", gnuplot_text(panel.x.label),
+                       screen_x((box.left + box.right) / 2),
+                       screen_y(box.bottom + 2.05 * kLine + 2), kText));
+    }
+    if (placed.y_label && !panel.y.label.empty()) {
+      line(fmt::format("set label {} at screen {},{} center rotate by 90 {}",
+                       gnuplot_text(panel.y.label), screen_x(box.left - placed.y_room),
+                       screen_y((box.top + box.bottom) / 2), kText));
+    }
+  }
+
+  // Zeros have a line of their own, which a thin one tells from the powers above or beside it.
+  void zero_lines(const Scale& x, const Scale& y) {
+    if (y.zero > 0) {
+      line(
+          fmt::format("set arrow from graph 0,first {0:.17g} to graph 1,first {0:.17g} nohead back "
+                      "lc rgb '#999999' lw 0.8 dt (2,4)",
+                      y.zero));
+    }
+    if (x.zero > 0) {
+      line(
+          fmt::format("set arrow from first {0:.17g},graph 0 to first {0:.17g},graph 1 nohead back "
+                      "lc rgb '#999999' lw 0.8 dt (2,4)",
+                      x.zero));
+    }
+  }
+
+  void mark(const Mark& mark, const PlacedPanel& placed) {
+    const double at = (mark.vertical ? placed.x : placed.y).place(mark.at);
+    if (std::isnan(at)) return;
+    constexpr const char* kLook = "nohead front lc rgb '#444444' lw 1.2 dt (6,4)";
+    constexpr const char* kText = "front textcolor rgb '#444444'";
+    if (mark.vertical) {
+      const Scale& x = placed.x;
+      const double along = x.logarithmic ? std::log(at / x.from) / std::log(x.to / x.from)
+                                         : (at - x.from) / (x.to - x.from);
+      line(fmt::format("set arrow from first {0:.17g},graph 0 to first {0:.17g},graph 1 {1}", at,
+                       kLook));
+      // Beside the line, on the side where there is room.
+      line(
+          fmt::format("set label {} at first {:.17g},graph 0.97 right rotate by 90 offset "
+                      "character {},0 {}",
+                      gnuplot_text(mark.name), at, along < 0.06 ? 0.8 : -0.8, kText));
+    } else {
+      line(fmt::format("set arrow from graph 0,first {0:.17g} to graph 1,first {0:.17g} {1}", at,
+                       kLook));
+      line(fmt::format("set label {} at graph 0.99,first {:.17g} right offset 0,character 0.5 {}",
+                       gnuplot_text(mark.name), at, kText));
+    }
+  }
+
+  // The block of a series in the data: x y, and lo hi where it has bars. Empty where no point of it
+  // has a place.
+  bool add_data(const Series& series, const PlacedPanel& placed) {
+    bool any = false;
+    std::string block = fmt::format("# {}\n", gnuplot_text(series.name));
+    for (std::size_t i = 0; i < series.x.size(); ++i) {
+      const double x = placed.x.place(series.x[i]), y = placed.y.place(series.y[i]);
+      const bool there = !std::isnan(x) && !std::isnan(y);
+      any = any || there;
+      const auto number = [there](double v) { return there ? fmt::format("{:.17g}", v) : "NaN"; };
+      block += number(x) + " " + number(y);
+      if (!series.lo.empty()) {
+        const double lo = placed.y.place_bar(series.lo[i]), hi = placed.y.place_bar(series.hi[i]);
+        block += " " + number(std::isnan(lo) ? y : lo) + " " + number(std::isnan(hi) ? y : hi);
+      }
+      block += "\n";
+    }
+    if (!any) return false;
+    if (blocks_++ > 0) data_ += "\n\n";
+    data_ += block;
+    return true;
+  }
+
+  std::string plot_of(const Series& series) const {
+    const auto style = static_cast<std::size_t>(
+        std::find(names_.begin(), names_.end(), series.name) - names_.begin());
+    const SeriesStyle& look = styles_[style];
+    const std::string from = fmt::format("'{}.dat' index {}", figure_.name, blocks_ - 1);
+    const std::string lines =
+        fmt::format("dt {} lw {} lc rgb '{}'", dash(style), width_of(style), look.colour);
+    const std::string dots =
+        fmt::format("pt {} ps {} lw 1.2 lc rgb '{}'", look.point, size_of(style), look.colour);
+    std::vector<std::string> parts;
+    const bool bars = !series.lo.empty();
+    if (bars && series.style == Series::Style::lines) {
+      parts.push_back(
+          fmt::format("{} using 1:3:4 with filledcurves fs solid 0.18 noborder lc rgb '{}'", from,
+                      look.colour));
+    } else if (bars) {
+      parts.push_back(
+          fmt::format("{} using 1:2:3:4 with yerrorbars pt 0 lw 1 lc rgb '{}'", from, look.colour));
+    }
+    switch (series.style) {
+      case Series::Style::lines_points:
+        parts.push_back(from + " using 1:2 with lines " + lines);
+        parts.push_back(from + " using 1:2 with points " + dots);
+        break;
+      case Series::Style::lines:
+        parts.push_back(from + " using 1:2 with lines " + lines);
+        break;
+      case Series::Style::points:
+        parts.push_back(from + " using 1:2 with points " + dots);
+        break;
+      case Series::Style::steps:
+        parts.push_back(from + " using 1:2 with steps " + lines);
+        break;
+    }
+    return fmt::format("{}", fmt::join(parts, ", \\\n  "));
+  }
+
+  void panel(std::size_t index) {
+    const Panel& panel = figure_.panels[index];
+    const PlacedPanel& placed = layout_.panels[index];
+    const Box& box = placed.box;
+    line(fmt::format("\n# panel {}", index + 1));
+    line(fmt::format("set lmargin at screen {}", screen_x(box.left)));
+    line(fmt::format("set rmargin at screen {}", screen_x(box.right)));
+    line(fmt::format("set tmargin at screen {}", screen_y(box.top)));
+    line(fmt::format("set bmargin at screen {}", screen_y(box.bottom)));
+    axis("x", placed.x);
+    axis("y", placed.y);
+    axis_labels(panel, placed);
+    zero_lines(placed.x, placed.y);
+    if (!panel.title.empty()) {
+      line(fmt::format("set label {} at screen {},{} left front textcolor rgb '#000000'",
+                       gnuplot_text(panel.title), screen_x(box.left), screen_y(box.top - 12)));
+    }
+    for (const Mark& m : panel.marks) mark(m, placed);
+    // Emphasised ones last, above the others.
+    std::vector<std::string> plots;
+    for (const bool emphasis : {false, true}) {
+      for (const Series& series : panel.series) {
+        if (series.emphasis == emphasis && add_data(series, placed))
+          plots.push_back(plot_of(series));
+      }
+    }
+    if (plots.empty()) {
+      line(
+          "set label 'nothing was measured' at graph 0.5,graph 0.5 center textcolor rgb '#666666'");
+      // A point outside the ranges: axes without a plot are none to gnuplot.
+      line(fmt::format("$nothing << end\n{0:.17g} {1:.17g}\nend",
+                       placed.x.to + (placed.x.to - placed.x.from), placed.y.to));
+      plots.push_back("$nothing using 1:2 with dots");
+    }
+    line(fmt::format("plot {}", fmt::join(plots, ", \\\n  ")));
+    line("unset label");
+    line("unset arrow");
+  }
+
+  const Figure& figure_;
+  Layout layout_;
+  std::vector<std::string> names_;
+  std::vector<SeriesStyle> styles_;
+  std::string script_, data_;
+  std::size_t blocks_ = 0;
+};
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size()) {
+    text.replace(at, what.size(), by);
+  }
+  return text;
+}
+
+// The text between two others, both included, replaced; the text as it is where they are not there.
+std::string replaced_between(std::string text, const std::string& begin, const std::string& end,
+                             const std::string& by) {
+  const std::size_t from = text.find(begin);
+  const std::size_t to = from == std::string::npos ? from : text.find(end, from);
+  if (to == std::string::npos) return text;
+  return text.replace(from, to + end.size() - from, by);
+}
+
+std::string content_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream out;
+  out << file.rdbuf();
+  return out.str();
+}
+
+}  // namespace
+
+FigureScript figure_script(const Figure& figure) {
+  check(figure);
+  return Script(figure).made();
+}
+
+void draw_figure(const Figure& figure, const std::string& folder) {
+  const FigureScript script = figure_script(figure);
+  const std::string base = folder + "/" + figure.name;
+  write_output(base + ".gp", script.script);
+  write_output(base + ".dat", script.data);
+  for (const std::string kind : {"svg", "pdf"}) {
+    run_gnuplot(folder, figure.name + ".gp", kind);
+    std::error_code ignored;
+    if (std::filesystem::file_size(base + "." + kind, ignored) == 0 || ignored) {
+      throw Error(base + "." + kind, "gnuplot left nothing there",
+                  "see whether the disk is full, and that gnuplot draws " + kind);
+    }
+  }
+  std::string svg = content_of(base + ".svg");
+  svg = replaced(svg, kFont, kFamilies);
+  svg = replaced_between(svg, "<title>", "</title>",
+                         "<title>" + html_text(figure.title) + "</title>");
+  svg =
+      replaced_between(svg, "<desc>", "</desc>", "<desc>" + html_text(figure.caption) + "</desc>");
+  write_output(base + ".svg", svg);
+}
+
+std::string inline_svg(const std::string& svg, const std::string& prefix) {
+  const std::size_t begin = svg.find("<svg");
+  if (begin == std::string::npos) throw std::logic_error("no SVG");
+  std::string out = svg.substr(begin);
+  for (const std::string mark : {"id=\"", "id='", "href=\"#", "href='#", "url(#", "url('#"}) {
+    out = replaced(out, mark, mark + prefix);
+  }
+  return out;
+}
+
+}  // namespace farcull

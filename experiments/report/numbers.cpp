@@ -1,0 +1,115 @@
+#include "experiments/report/numbers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace farcull {
+namespace {
+
+std::optional<double> number_in(const nlohmann::ordered_json& values, const std::string& name) {
+  const auto it = values.find(name);
+  if (it == values.end() || !it->is_number()) return {};
+  return it->get<double>();
+}
+
+std::string grouped_digits(std::string digits) {
+  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
+  return digits;
+}
+
+}  // namespace
+
+std::optional<double> count_of(const Row& row, const std::string& name) {
+  return number_in(row.measurement.counts, name);
+}
+
+std::optional<double> time_of(const Row& row, const std::string& name) {
+  return number_in(row.measurement.times, name);
+}
+
+std::string method_label(const Point& point) {
+  if (point.method == "far") return point.offset == "exact" ? "FAR (exact)" : "FAR (OBB)";
+  if (point.method == "far-pairs") return "FAR pairs";
+  if (point.method == "cullide") return "CULLIDE";
+  if (point.method == "quick-cullide") return "Quick-CULLIDE";
+  if (point.method == "s-cullide") return "S-CULLIDE";
+  if (point.method == "i-collide") return "I-COLLIDE";
+  return point.method;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
+std::optional<Exponent> exponent_of(const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<double> u, v;
+  for (std::size_t i = 0; i < x.size() && i < y.size(); ++i) {
+    if (!(x[i] > 0) || !(y[i] > 0) || !std::isfinite(x[i]) || !std::isfinite(y[i])) continue;
+    u.push_back(std::log(x[i]));
+    v.push_back(std::log(y[i]));
+  }
+  const auto n = static_cast<double>(u.size());
+  if (u.size() < 3) return {};
+  double mean_u = 0, mean_v = 0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    mean_u += u[i] / n;
+    mean_v += v[i] / n;
+  }
+  double uu = 0, uv = 0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    uu += (u[i] - mean_u) * (u[i] - mean_u);
+    uv += (u[i] - mean_u) * (v[i] - mean_v);
+  }
+  const auto [least, most] = std::minmax_element(u.begin(), u.end());
+  if (*least == *most) return {};
+  Exponent out;
+  out.value = uv / uu;
+  double residuals = 0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const double r = v[i] - mean_v - out.value * (u[i] - mean_u);
+    residuals += r * r;
+  }
+  out.error = std::sqrt(residuals / (n - 2) / uu);
+  out.from = std::exp(*least);
+  out.to = std::exp(*most);
+  out.points = u.size();
+  return out;
+}
+
+std::string rounded(double value, int digits) {
+  if (!std::isfinite(value)) return "-";
+  const double size = std::abs(value);
+  const std::string sign = value < 0 ? "-" : "";
+  if (size == 0) return "0";
+  if (size >= 1e9 || size < 1e-4) return fmt::format("{:.{}g}", value, digits);
+  const int whole = static_cast<int>(std::floor(std::log10(size))) + 1;
+  std::string text = fmt::format("{:.{}f}", size, std::max(0, digits - whole));
+  // 0.9996 rounds to four digits of 1.000.
+  if (const std::size_t dot = text.find('.'); dot != std::string::npos) {
+    return sign + grouped_digits(text.substr(0, dot)) + text.substr(dot);
+  }
+  return sign + grouped_digits(text);
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string out;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) out += i + 1 == words.size() ? " and " : ", ";
+    out += words[i];
+  }
+  return out;
+}
+
+std::string command_of(const Declaration& declaration) {
+  std::string out = "farcull experiment " + declaration.study;
+  if (declaration.choice.quick) out += " --quick";
+  if (declaration.choice.seed != 1) out += fmt::format(" --seed {}", declaration.choice.seed);
+  return out;
+}
+
+}  // namespace farcull

@@ -1,0 +1,290 @@
+#include "experiments/report/report.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "commit.h"
+#include "core/error.h"
+#include "experiments/output.h"
+#include "experiments/report/figures.h"
+#include "experiments/report/gnuplot.h"
+#include "experiments/report/tables.h"
+
+namespace farcull {
+namespace {
+
+namespace fs = std::filesystem;
+
+volatile std::sig_atomic_t signalled = 0;
+
+extern "C" void note_signal(int signal) { signalled = signal; }
+
+// While it lives, signals that would end the program are noted, and finish() ends it by them once
+// what was half-done is taken away.
+class Signals {
+ public:
+  Signals() {
+    signalled = 0;
+    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+      ::sigaction(kSignals[i], nullptr, &before_[i]);
+      if (before_[i].sa_handler == SIG_IGN) continue;
+      struct sigaction action = {};
+      action.sa_handler = note_signal;
+      ::sigaction(kSignals[i], &action, nullptr);
+    }
+  }
+  ~Signals() {
+    for (std::size_t i = 0; i < kSignals.size(); ++i)
+      ::sigaction(kSignals[i], &before_[i], nullptr);
+    if (signalled != 0) ::raise(signalled);
+  }
+  Signals(const Signals&) = delete;
+  Signals& operator=(const Signals&) = delete;
+
+  static void check() {
+    if (signalled != 0) throw Error("report", "was interrupted", "start it again");
+  }
+
+ private:
+  static constexpr std::array<int, 3> kSignals = {SIGINT, SIGTERM, SIGHUP};
+  std::array<struct sigaction, 3> before_ = {};
+};
+
+// A folder beside the report in which it is made; taken away unless it is put in its place.
+class Workshop {
+ public:
+  explicit Workshop(std::string place) : place_(std::move(place)) {
+    path_ = place_ + ".part-XXXXXX";
+    if (::mkdtemp(path_.data()) == nullptr) {
+      throw Error(place_, std::string("cannot be made: ") + std::strerror(errno),
+                  "use a folder with room that you may write to");
+    }
+    // mkdtemp keeps others out, which a folder of results does not.
+    const mode_t mask = ::umask(0);
+    ::umask(mask);
+    ::chmod(path_.c_str(), 0777 & ~mask);
+  }
+  ~Workshop() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Workshop(const Workshop&) = delete;
+  Workshop& operator=(const Workshop&) = delete;
+
+  std::string folder(const std::string& name) const {
+    const std::string out = path_ + "/" + name;
+    std::error_code code;
+    if (!fs::create_directory(out, code) && code) {
+      throw Error(out, "cannot be made: " + code.message(), "make room on the disk");
+    }
+    return out;
+  }
+  const std::string& path() const { return path_; }
+
+  // One step for all who look: what was there is what the destructor takes away.
+  void put() {
+    if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, place_.c_str(), RENAME_NOREPLACE) == 0 ||
+        (errno == EEXIST &&
+         ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, place_.c_str(), RENAME_EXCHANGE) == 0)) {
+      return;
+    }
+    if (errno == EINVAL || errno == ENOSYS) {  // a file system without it
+      std::error_code code;
+      fs::remove_all(place_, code);
+      if (!code) fs::rename(path_, place_, code);
+      if (!code) return;
+      errno = code.value();
+    }
+    throw Error(place_, std::string("cannot be put in place: ") + std::strerror(errno),
+                "see who may write to the folder");
+  }
+
+ private:
+  std::string place_, path_;
+};
+
+std::string content_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream out;
+  out << file.rdbuf();
+  return out.str();
+}
+
+// An earlier report may be replaced, nothing else.
+void check_place(const std::string& place) {
+  std::error_code code;
+  const fs::file_status status = fs::symlink_status(place, code);
+  if (status.type() == fs::file_type::not_found) return;
+  const bool folder = status.type() == fs::file_type::directory;
+  if (folder && fs::is_empty(place, code)) return;
+  if (folder && content_of(place + "/index.html").find(kPageMark) != std::string::npos) return;
+  throw Error(place, "is there and no report of this program", "move it away");
+}
+
+std::string now() {
+  const std::time_t time = std::time(nullptr);
+  std::tm utc = {};
+  ::gmtime_r(&time, &utc);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", utc.tm_year + 1900, utc.tm_mon + 1,
+                     utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec);
+}
+
+// In the order of studies(), those of other programs last.
+std::vector<std::string> in_order(std::vector<std::string> names) {
+  const auto place = [](const std::string& name) {
+    const auto& all = studies();
+    return std::find_if(all.begin(), all.end(), [&](const Study& s) { return s.name == name; }) -
+           all.begin();
+  };
+  std::stable_sort(names.begin(), names.end(),
+                   [&](const auto& a, const auto& b) { return place(a) < place(b); });
+  return names;
+}
+
+class Reporter {
+ public:
+  Reporter(const ReportRequest& request, const Workshop& workshop)
+      : request_(request),
+        root_(workshop.path()),
+        figures_(workshop.folder("figures")),
+        tables_(workshop.folder("tables")) {}
+
+  void add(StoredStudy stored) {
+    DrawnChapter drawn;
+    drawn.chapter = chapter_of(stored);
+    if (!stored.complete()) {
+      summary_.notes.push_back(fmt::format("{}: {} of {} points have a row", drawn.chapter.study,
+                                           stored.rows.size(), stored.declaration.points.size()));
+    }
+    for (const Figure& figure : drawn.chapter.figures) {
+      say("drawing " + figure.name);
+      name(figure.name, names_of_figures_);
+      draw_figure(figure, figures_);
+      drawn.svgs.push_back(content_of(figures_ + "/" + figure.name + ".svg"));
+      ++summary_.figures;
+    }
+    for (const DataTable& table : drawn.chapter.tables) {
+      name(table.name, names_of_tables_);
+      write_output(tables_ + "/" + table.name + ".csv", table_csv(table));
+      write_output(tables_ + "/" + table.name + ".tex", table_latex(table));
+      ++summary_.tables;
+    }
+    write_output(tables_ + "/" + drawn.chapter.study + "-rows.csv", rows_csv(stored));
+    for (const Picture& picture : drawn.chapter.pictures) drawn.pictures.push_back(draw(picture));
+    drawn.stored = std::move(stored);
+    page.chapters.push_back(std::move(drawn));
+    ++summary_.studies;
+  }
+
+  ReportSummary finish() {
+    write_output(root_ + "/index.html", page_html(page));
+    return std::move(summary_);
+  }
+
+  Page page;
+
+ private:
+  void say(const std::string& what) const {
+    Signals::check();
+    if (request_.progress) request_.progress(what);
+  }
+
+  static void name(const std::string& name, std::set<std::string>& taken) {
+    if (!taken.insert(name).second) throw std::logic_error("two are named " + name);
+  }
+
+  DrawnPicture draw(const Picture& picture) {
+    say("picture " + picture.name);
+    DrawnPicture out{.picture = picture, .png = {}, .left_out = {}};
+    const std::string folder = root_ + "/pictures";
+    std::error_code ignored;
+    fs::create_directory(folder, ignored);
+    const std::string path = folder + "/" + picture.name + ".png";
+    try {
+      if (!request_.draw_picture) throw Error("picture", "no device was asked", "");
+      request_.draw_picture(picture.command, path);
+      out.png = content_of(path);
+      ++summary_.pictures;
+    } catch (const Error& error) {
+      Signals::check();
+      out.left_out = error.where + " " + error.reason;
+      summary_.notes.push_back("picture " + picture.name + " is left out: " + out.left_out);
+    }
+    return out;
+  }
+
+  const ReportRequest& request_;
+  std::string root_, figures_, tables_;
+  std::set<std::string> names_of_figures_, names_of_tables_;
+  ReportSummary summary_;
+};
+
+}  // namespace
+
+std::string store_of(const std::string& folder) {
+  const std::string path = store_path(folder);
+  if (fs::exists(path)) return path;
+  if (!fs::is_directory(folder)) {
+    throw Error(folder, "is no folder of results",
+                "measure first, as in farcull experiment all --quick --out " + folder);
+  }
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("results-") && name.ends_with(".sqlite")) {
+      throw Error(folder, "holds shards that are not merged", "farcull merge " + folder);
+    }
+  }
+  throw Error(folder, "holds no results.sqlite",
+              "measure first, as in farcull experiment all --quick --out " + folder);
+}
+
+ReportSummary write_report(const ReportRequest& request) {
+  const std::string path = store_of(request.folder);
+  const Store store(path, Store::Access::read);
+  std::vector<StoredStudy> measured;
+  for (const std::string& name : in_order(store.studies())) {
+    StoredStudy stored = store.study(name);
+    if (stored.declaration.of > 1) {
+      throw Error(path, "holds a shard of " + name, "farcull merge " + request.folder);
+    }
+    measured.push_back(std::move(stored));
+  }
+  if (std::all_of(measured.begin(), measured.end(),
+                  [](const StoredStudy& s) { return s.rows.empty(); })) {
+    throw Error(path, "holds no row yet", "measure first, as in farcull experiment all --quick");
+  }
+  const std::string place = request.folder + "/report";
+  check_place(place);
+  require_gnuplot();
+
+  const Signals signals;
+  Workshop workshop(place);
+  Reporter reporter(request, workshop);
+  reporter.page.store = path;
+  reporter.page.commit = FARCULL_COMMIT;
+  reporter.page.written = now();
+  reporter.page.runs = store.runs();
+  for (StoredStudy& stored : measured) reporter.add(std::move(stored));
+  ReportSummary summary = reporter.finish();
+  Signals::check();
+  workshop.put();
+  summary.folder = place;
+  return summary;
+}
+
+}  // namespace farcull

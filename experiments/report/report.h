@@ -1,0 +1,39 @@
+// `farcull report`: what a store holds, as figures, tables and one page.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "experiments/report/page.h"
+#include "experiments/run.h"
+
+namespace farcull {
+
+/// Draws the picture of these arguments of farcull picture into a PNG at the path. Throws Error
+/// where it cannot (no device, no meshes): the page then says why it is left out.
+using PictureMaker = std::function<void(const std::string& arguments, const std::string& path)>;
+
+struct ReportRequest {
+  std::string folder;  // of the store
+  PictureMaker draw_picture;
+  Progress progress = {};
+};
+
+struct ReportSummary {
+  std::string folder;  // of the report
+  std::size_t studies = 0, figures = 0, tables = 0, pictures = 0;
+  std::vector<std::string> notes;  // studies that are incomplete, pictures that are left out
+};
+
+/// The path of the store in the folder. Throws Error where there is none: with what to do where
+/// there are shards that are not merged.
+std::string store_of(const std::string& folder);
+
+/// Writes FOLDER/report: index.html, figures/NAME.{svg,pdf,gp,dat}, tables/NAME.{csv,tex} and
+/// STUDY-rows.csv, pictures/NAME.png. It appears whole or not at all, in place of an earlier
+/// report; any other folder of that name is left alone. Throws Error as store_of() and Store, where
+/// nothing was measured, where gnuplot is missing or says anything, and where the disk refuses.
+ReportSummary write_report(const ReportRequest& request);
+
+}  // namespace farcull
