@@ -123,13 +123,14 @@ int StudiesCommand::run() {
                          : shard_from_environment([](const char* v) { return std::getenv(v); });
   request.device = device_of(device_);
   const Shard& shard = request.shard;
-  request.options = nlohmann::ordered_json{
+  const std::string options = nlohmann::ordered_json{
       {"experiment", name},
       {"quick", quick_},
       {"seed", seed_},
       {"shard", fmt::format("{}/{}", shard.index, shard.of)},
-      {"device",
-       request.device}}.dump();
+      {"device", request.device}}.dump();
+  // The device first: without one there is nothing to measure, and no file is made.
+  request.provenance = provenance_now(request.device, options);
   if (!shard.from.empty()) {
     write_output("-", fmt::format("shard {} of {}, by {}\n", shard.index, shard.of, shard.from));
   }

@@ -8,7 +8,6 @@
 #include <new>
 #include <set>
 
-#include "commit.h"
 #include "core/error.h"
 #include "core/stopwatch.h"
 #include "experiments/builtin_scenes.h"
@@ -38,14 +37,14 @@ void make_folder(const std::string& folder) {
 }
 
 // Rows of different programs would stand in one table as if they were of one.
-void require_commit(const Store& store, const StoredStudy& stored) {
+void require_commit(const Store& store, const StoredStudy& stored, const std::string& commit) {
   std::set<std::int64_t> used;
   for (const Row& row : stored.rows) used.insert(row.run);
   for (const auto& [run, provenance] : store.runs()) {
-    if (used.contains(run) && provenance.commit != FARCULL_COMMIT) {
+    if (used.contains(run) && provenance.commit != commit) {
       throw Error(store.path(),
                   "its rows of " + stored.declaration.study + " are of commit " +
-                      provenance.commit + ", and this is " + FARCULL_COMMIT,
+                      provenance.commit + ", and this is " + commit,
                   "go on with that commit, or start anew in another folder");
     }
   }
@@ -64,7 +63,7 @@ Task open_task(Store& store, const Study& study, const StudiesRequest& request) 
                 fmt::format("holds {} rows of {} already", stored.rows.size(), study.name),
                 "add --resume to go on, or name another folder with --out");
   }
-  require_commit(store, stored);
+  require_commit(store, stored, request.provenance.commit);
   std::vector<bool> done(task.points.size());
   for (const Row& row : stored.rows) done[row.position] = true;
   for (std::size_t i = 0; i < task.points.size(); ++i) {
@@ -122,8 +121,6 @@ bool breaks_promise(const Measurement& measurement) {
 
 StudiesSummary run_studies(const StudiesRequest& request,
                            const std::function<void(const StudiesProgress&)>& progress) {
-  // What the device says comes first: without one there is nothing to measure, and no file is made.
-  const Provenance provenance = provenance_now(request.device, request.options);
   make_folder(request.folder);
   StudiesSummary summary;
   summary.store = store_path(request.folder, request.shard.index, request.shard.of);
@@ -142,7 +139,7 @@ StudiesSummary run_studies(const StudiesRequest& request,
     now.done += mine - task.open.size();
   }
 
-  const std::int64_t run = store.begin_run(provenance);
+  const std::int64_t run = store.begin_run(request.provenance);
   Interruptible interruptible(static_cast<long>(now.points), "points",
                               "they are kept; the same command with --resume goes on",
                               ::isatty(STDERR_FILENO));

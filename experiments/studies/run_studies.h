@@ -19,8 +19,8 @@ struct StudiesRequest {
   GridChoice choice;
   bool resume = false;  // go on where the store has rows of a study already
   Shard shard;
-  std::string device;   // as --device
-  std::string options;  // for the record, as JSON
+  std::string device;     // as --device
+  Provenance provenance;  // of this run
 };
 
 /// How far it is.

@@ -27,6 +27,17 @@ Error error_of(const Call& call) {
   return Error("nothing was thrown", "", "");
 }
 
+/// The same as text, for calls that may do well: "" then.
+template <class Call>
+std::string message_of(const Call& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
 /// A folder of the running test's own, removed with the object.
 class ScratchFolder {
  public:
@@ -39,6 +50,7 @@ class ScratchFolder {
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
 
+  std::string folder() const { return path_.string(); }
   std::string path(const std::string& name) const { return (path_ / name).string(); }
   /// Writes a file and returns its path.
   std::string write(const std::string& name, const std::string& bytes) const {
