@@ -43,6 +43,7 @@ struct RunRecord {
   std::vector<Stage> stages;
   std::uint64_t pcs_objects = 0;
   std::uint64_t pcs_triangles = 0;
+  std::vector<std::uint32_t> pcs;      // those triangles, ascending; not of exact, which keeps all
   std::uint64_t object_triangles = 0;  // of i-collide: of the objects that their boxes leave, which
                                        // is where I-COLLIDE as published ends
   std::uint64_t candidate_pairs = 0;

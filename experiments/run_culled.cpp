@@ -13,16 +13,6 @@
 namespace farcull {
 namespace {
 
-// What the triangles are fattened to, in the order in which the offsets are tried.
-std::vector<Fattener> fatteners_of(const RunOptions& options) {
-  if (options.method != Method::far) return {raw_triangles()};
-  if (depth_of(options) == DepthMode::fixed) return {obb_surface_fattener()};
-  if (options.offset != "exact") return {obb_fattener()};
-  // Where nothing is promised, boxes before would be one more chance to miss.
-  if (options.full || !promises(options)) return {exact_fattener()};
-  return {obb_fattener(), exact_fattener()};
-}
-
 Canvas& open_canvas(const Fattener& fattener, Session& session, const Progress& progress,
                     RunRecord& record) {
   if (progress) progress("opening the device");
@@ -116,6 +106,15 @@ std::vector<std::uint32_t> surviving_objects(const Scene& scene,
 
 }  // namespace
 
+std::vector<Fattener> fatteners_of(const RunOptions& options) {
+  if (options.method != Method::far) return {raw_triangles()};
+  if (depth_of(options) == DepthMode::fixed) return {obb_surface_fattener()};
+  if (options.offset != "exact") return {obb_fattener()};
+  // Where nothing is promised, boxes before would be one more chance to miss.
+  if (options.full || !promises(options)) return {exact_fattener()};
+  return {obb_fattener(), exact_fattener()};
+}
+
 Clusters clusters_of(const RunOptions& options, std::size_t triangles) {
   if (options.method == Method::s_cullide)
     return {.sizes = {}, .reason = "every triangle is an owner"};
@@ -129,7 +128,8 @@ void run_culled(const Scene& scene, Session& session, const Progress& progress, 
   const bool self = record.options.method == Method::s_cullide;
   const Plan plan = make_plan(scene, {.self = self, .full = record.options.full});
   record.stages.push_back(boxes_stage(scene, plan, record.options, planning.ms()));
-  const std::vector<std::uint32_t> live = cull_stage(scene, plan, session, progress, record);
+  record.pcs = cull_stage(scene, plan, session, progress, record);
+  const std::vector<std::uint32_t>& live = record.pcs;
   record.pcs_triangles = live.size();
   record.pcs_objects = count_objects(scene, live);
 
@@ -156,8 +156,9 @@ void run_swept(const Scene& scene, Session& session, const Progress& progress, R
   record.ms.cull = sweep.ms();
   record.kept = std::move(result.candidates);
   record.candidate_pairs = record.kept.size();
-  record.pcs_triangles = result.triangles.size();
-  record.pcs_objects = count_objects(scene, result.triangles);
+  record.pcs = std::move(result.triangles);
+  record.pcs_triangles = record.pcs.size();
+  record.pcs_objects = count_objects(scene, record.pcs);
   for (const std::uint32_t o : surviving_objects(scene, result.object_pairs))
     record.object_triangles += scene.objects[o].triangle_count;
   record.stages.push_back(

@@ -10,6 +10,9 @@ namespace farcull {
 /// for any fault of the device.
 void run_culled(const Scene& scene, Session& session, const Progress& progress, RunRecord& record);
 
+/// What the triangles are fattened to, in the order in which the offsets are tried.
+std::vector<Fattener> fatteners_of(const RunOptions& options);
+
 /// The level of clusters, by the options and the number of triangles that can take part.
 Clusters clusters_of(const RunOptions& options, std::size_t triangles);
 

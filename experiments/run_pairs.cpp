@@ -79,9 +79,9 @@ void run_far_pairs(const Scene& scene, Session& session, const Progress& progres
   record.pair_views = std::move(result.views);
   record.stages.insert(record.stages.end(), result.stages.begin(), result.stages.end());
 
-  const std::vector<std::uint32_t> live = members(scene, record.kept);
-  record.pcs_triangles = live.size();
-  record.pcs_objects = count_objects(scene, live);
+  record.pcs = members(scene, record.kept);
+  record.pcs_triangles = record.pcs.size();
+  record.pcs_objects = count_objects(scene, record.pcs);
 }
 
 }  // namespace farcull
