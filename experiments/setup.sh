@@ -31,6 +31,8 @@ farcull_packages=(
   libsqlitecpp-dev libsqlite3-dev libpng-dev gnuplot-nox
   # what farcull bench compares with, and the cases of single kernels; a build without them works
   libfcl-dev libembree-dev libtbb-dev libbenchmark-dev
+  # what the test of the report opens its page with, and reads what it printed
+  chromium poppler-utils
 )
 
 # Prints those of farcull_packages that dpkg does not hold as completely installed, one per line.
