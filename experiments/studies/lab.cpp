@@ -6,6 +6,7 @@
 
 #include "experiments/scene_file.h"
 #include "experiments/tables.h"
+#include "verify/contact.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -40,14 +41,15 @@ std::uint64_t lacking(const std::vector<T>& a, const std::vector<T>& b) {
   return difference.size();
 }
 
-// Of the repeats, the one with the median of cull + exact.
-const RunRecord& median_of(std::vector<RunRecord>& records) {
-  const auto middle = records.begin() + static_cast<std::ptrdiff_t>((records.size() - 1) / 2);
-  std::nth_element(records.begin(), middle, records.end(),
-                   [](const RunRecord& a, const RunRecord& b) {
-                     return a.ms.cull + a.ms.exact < b.ms.cull + b.ms.exact;
-                   });
-  return *middle;
+double total_of(const RunRecord& record) { return record.ms.cull + record.ms.exact; }
+
+// Those colliding pairs that penetrate, of the ones that the sorted pairs lack.
+std::uint64_t missed_penetrating(const Scene& scene, const Truth& truth,
+                                 const std::vector<TrianglePair>& pairs) {
+  std::vector<TrianglePair> missed;
+  std::set_difference(truth.pairs.begin(), truth.pairs.end(), pairs.begin(), pairs.end(),
+                      std::back_inserter(missed));
+  return count_contacts(scene, missed).penetrating;
 }
 
 }  // namespace
@@ -125,7 +127,7 @@ RunOptions options_of(const Point& point, const Lab& lab) {
   return options;
 }
 
-Measurement measure_run(const Point& point, Lab& lab, int repeat) {
+Measurement measure_run(const Point& point, Lab& lab, int repeat, RunRecord* kept) {
   const RunOptions options = options_of(point, lab);
   const Scene& scene = lab.current();
   const Truth& truth = lab.truth();
@@ -135,18 +137,26 @@ Measurement measure_run(const Point& point, Lab& lab, int repeat) {
     records.push_back(run_scene(scene, options, lab.session(), lab.progress()));
     setup += records.back().ms.setup;
   }
-  const RunRecord& record = median_of(records);
-  const Errors errors = errors_of(truth, all_pairs(record.pairs, record.neighbour_pairs));
+  std::sort(records.begin(), records.end(),
+            [](const RunRecord& a, const RunRecord& b) { return total_of(a) < total_of(b); });
+  RunRecord& record = records[(records.size() - 1) / 2];
+  const std::vector<TrianglePair> found = all_pairs(record.pairs, record.neighbour_pairs);
+  const Errors errors = errors_of(truth, found);
 
   Measurement out;
   out.device = record.device ? record.device->renderer : "cpu";
-  out.counts = {
-      {"colliding", truth.pairs.size()},        {"missed", errors.missed},
-      {"colliding_triangles", truth.triangles}, {"missed_triangles", errors.missed_triangles},
-      {"candidates", record.candidate_pairs},   {"kept_triangles", record.pcs_triangles},
-      {"kept_objects", record.pcs_objects},     {"triangles", scene.triangles.size()},
-      {"objects", scene.objects.size()},        {"promises", record.promises},
-      {"scene_hash", record.scene_hash}};
+  out.counts = {{"colliding", truth.pairs.size()},
+                {"missed", errors.missed},
+                {"missed_penetrating", missed_penetrating(scene, truth, found)},
+                {"colliding_triangles", truth.triangles},
+                {"missed_triangles", errors.missed_triangles},
+                {"candidates", record.candidate_pairs},
+                {"kept_triangles", record.pcs_triangles},
+                {"kept_objects", record.pcs_objects},
+                {"triangles", scene.triangles.size()},
+                {"objects", scene.objects.size()},
+                {"promises", record.promises},
+                {"scene_hash", record.scene_hash}};
   if (options.method == Method::i_collide) out.counts["object_triangles"] = record.object_triangles;
   if (draws(options.method)) {
     Stage sum;
@@ -167,8 +177,13 @@ Measurement measure_run(const Point& point, Lab& lab, int repeat) {
   }
   out.times = {{"cull", record.ms.cull},
                {"exact", record.ms.exact},
-               {"total", record.ms.cull + record.ms.exact},
+               {"total", total_of(record)},
                {"setup", setup}};
+  if (repeat > 1) {
+    out.times["total_min"] = total_of(records.front());
+    out.times["total_max"] = total_of(records.back());
+  }
+  if (kept != nullptr) *kept = std::move(record);
   return out;
 }
 

@@ -65,11 +65,13 @@ class Lab {
 RunOptions options_of(const Point& point, const Lab& lab);
 
 /// Runs the point's method on the scene that the lab holds, once, or `repeat` times with the median
-/// time. counts: colliding, missed, missed_triangles, colliding_triangles (of the truth),
+/// time. counts: colliding, missed, of these missed_penetrating (verify/contact.h; the rest
+/// touches), missed_triangles, colliding_triangles (of the truth),
 /// candidates, kept_triangles, kept_objects, object_triangles (of i-collide), triangles, objects,
 /// queries, draws, queries_saved, draws_saved, radius_px, pixel_size (both of the view with the
 /// widest budget; of methods that draw), promises, scene_hash. times: cull, exact, total (their
-/// sum), setup.
-Measurement measure_run(const Point& point, Lab& lab, int repeat = 1);
+/// sum), setup; with several runs total_min and total_max. record: where the run with the median
+/// time goes; may be null.
+Measurement measure_run(const Point& point, Lab& lab, int repeat = 1, RunRecord* record = nullptr);
 
 }  // namespace farcull

@@ -1,0 +1,151 @@
+// The study "error-time": what is wrong with an answer against the time that it takes, ours and the
+// libraries' that one would take instead.
+#include <algorithm>
+#include <string>
+
+#include "core/stopwatch.h"
+#include "experiments/bench_machine.h"
+#include "experiments/peer.h"
+#include "experiments/studies/lab.h"
+#include "experiments/studies/points.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+struct TimedScene {
+  const char* name;
+  bool self = false;  // see accuracy.cpp
+};
+
+std::vector<TimedScene> scenes_of(bool quick) {
+  if (quick) return {{"two-spheres"}, {"needles:60"}};
+  return {{"two-tori"}, {"needles"}, {"two-bunnies"}, {"mannequin-devil", true}};
+}
+
+// Of other libraries: with exact decisions after their broad phase, and FCL as it is.
+constexpr const char* kPeers[] = {"cgal-boxes", "cgal-aabb", "embree-low", "fcl-double",
+                                  "fcl-float"};
+
+int repeat_of(const std::string& scene) {
+  for (const TimedScene& quick : scenes_of(true)) {
+    if (scene == quick.name) return 3;
+  }
+  return 5;
+}
+
+std::vector<Point> grid(const GridChoice& choice) {
+  const std::vector<int> resolutions =
+      choice.quick ? std::vector{64, 256, 1024} : std::vector{64, 128, 256, 512, 1024, 2048};
+  std::vector<Point> out;
+  for (const TimedScene& scene : scenes_of(choice.quick)) {
+    for (const int resolution : resolutions) {
+      if (scene.self) {
+        out.push_back(cullide_point(scene.name, "s-cullide", resolution));
+      } else {
+        out.push_back(cullide_point(scene.name, "cullide", resolution));
+        out.push_back(cullide_point(scene.name, "quick-cullide", resolution));
+        out.push_back(far_point(scene.name, "obb", "budget", resolution));
+        out.push_back(far_point(scene.name, "exact", "budget", resolution));
+      }
+      out.push_back(plain_point(scene.name, "far-pairs", resolution));
+    }
+    out.push_back(plain_point(scene.name, "far-pairs"));
+    out.push_back(plain_point(scene.name, "i-collide"));
+    out.push_back(plain_point(scene.name, "exact"));
+    for (const char* peer : kPeers) out.push_back(plain_point(scene.name, peer));
+  }
+  return out;
+}
+
+// Empty where no library has that name.
+std::vector<Peer> peer_named(const std::string& name, unsigned threads) {
+  for (const std::vector<Peer>& peers : {all_peers(threads), narrow_peers()}) {
+    for (const Peer& peer : peers) {
+      if (peer.name == name) return {peer};
+    }
+  }
+  return {};
+}
+
+// Peers leave neighbours out, so the truth does as well.
+Truth without_neighbours(const Scene& scene, const Truth& truth) {
+  if (!has_self(scene)) return truth;
+  Truth out;
+  out.ms = truth.ms;
+  const std::vector<std::uint32_t> owner = owners(scene);
+  std::vector<std::uint32_t> triangles;
+  for (const TrianglePair& pair : truth.pairs) {
+    if (owner[pair.a] == owner[pair.b] &&
+        share_position(scene.corners(pair.a), scene.corners(pair.b))) {
+      continue;
+    }
+    out.pairs.push_back(pair);
+    triangles.insert(triangles.end(), {pair.a, pair.b});
+  }
+  std::sort(triangles.begin(), triangles.end());
+  out.triangles = static_cast<std::uint64_t>(std::unique(triangles.begin(), triangles.end()) -
+                                             triangles.begin());
+  return out;
+}
+
+Measurement measure_peer(const Peer& peer, Lab& lab, unsigned threads, int repeat) {
+  Measurement out;
+  out.device = "cpu";
+  const Scene& scene = lab.current();
+  out.left_out = !peer.missing.empty() ? peer.missing : peer.refuses ? peer.refuses(scene) : "";
+  if (!out.left_out.empty()) return out;
+  const Truth truth = without_neighbours(scene, lab.truth());
+  const BenchRun run = peer.set_up(threads);
+  struct Timed {
+    double ms;
+    BenchAnswer answer;
+  };
+  std::vector<Timed> runs;
+  for (int i = 0; i < repeat; ++i) {
+    if (lab.progress()) lab.progress()(peer.name);
+    const Stopwatch watch;
+    BenchAnswer answer = run(scene);
+    runs.push_back({watch.ms(), std::move(answer)});
+  }
+  std::sort(runs.begin(), runs.end(), [](const Timed& a, const Timed& b) { return a.ms < b.ms; });
+  const Timed& middle = runs[(runs.size() - 1) / 2];
+  const Errors errors = errors_of(truth, middle.answer.pairs);
+  out.counts = {{"colliding", truth.pairs.size()},
+                {"missed", errors.missed},
+                {"wrong", errors.wrong},
+                {"colliding_triangles", truth.triangles},
+                {"missed_triangles", errors.missed_triangles},
+                {"candidates", middle.answer.candidate_pairs},
+                {"triangles", scene.triangles.size()},
+                {"objects", scene.objects.size()},
+                {"library", peer.library}};
+  out.times = {{"build", middle.answer.build_ms},
+               {"total", middle.ms},
+               {"total_min", runs.front().ms},
+               {"total_max", runs.back().ms}};
+  return out;
+}
+
+Measurement measure(const Point& point, Lab& lab) {
+  lab.scene(point.scene);
+  const unsigned threads = usable_cores();
+  const std::vector<Peer> peer = peer_named(point.method, threads);
+  const int repeat = repeat_of(point.scene);
+  return peer.empty() ? measure_run(point, lab, repeat)
+                      : measure_peer(peer.front(), lab, threads, repeat);
+}
+
+}  // namespace
+
+Study error_time_study() {
+  return {.name = "error-time",
+          .title = "Error against run time",
+          .question =
+              "What does each method get wrong, and how long does it take, against each other and "
+              "against the libraries that one would take instead?",
+          .grid = grid,
+          .measure = measure};
+}
+
+}  // namespace farcull
