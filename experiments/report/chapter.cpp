@@ -9,6 +9,9 @@ namespace {
 
 const std::map<std::string, ChapterOf>& chapters() {
   static const std::map<std::string, ChapterOf> all = {
+      {"accuracy", accuracy_chapter},
+      {"error-time", error_time_chapter},
+      {"offsets", offsets_chapter},
       {"efficiency", efficiency_chapter},
       {"scaling", scaling_chapter},
   };
