@@ -22,6 +22,7 @@
 #include "experiments/output.h"
 #include "experiments/report/figures.h"
 #include "experiments/report/gnuplot.h"
+#include "experiments/report/markdown.h"
 #include "experiments/report/tables.h"
 
 namespace farcull {
@@ -192,6 +193,7 @@ class Reporter {
 
   ReportSummary finish() {
     write_output(root_ + "/index.html", page_html(page));
+    write_output(root_ + "/results.md", page_markdown(page, "farcull report " + request_.folder));
     return std::move(summary_);
   }
 

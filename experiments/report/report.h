@@ -30,10 +30,11 @@ struct ReportSummary {
 /// there are shards that are not merged.
 std::string store_of(const std::string& folder);
 
-/// Writes FOLDER/report: index.html, figures/NAME.{svg,pdf,gp,dat}, tables/NAME.{csv,tex} and
-/// STUDY-rows.csv, pictures/NAME.png. It appears whole or not at all, in place of an earlier
-/// report; any other folder of that name is left alone. Throws Error as store_of() and Store, where
-/// nothing was measured, where gnuplot is missing or says anything, and where the disk refuses.
+/// Writes FOLDER/report: index.html, results.md, figures/NAME.{svg,pdf,gp,dat},
+/// tables/NAME.{csv,tex} and STUDY-rows.csv, pictures/NAME.png. It appears whole or not at all, in
+/// place of an earlier report; any other folder of that name is left alone. Throws Error as
+/// store_of() and Store, where nothing was measured, where gnuplot is missing or says anything, and
+/// where the disk refuses.
 ReportSummary write_report(const ReportRequest& request);
 
 }  // namespace farcull

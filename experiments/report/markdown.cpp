@@ -1,0 +1,140 @@
+#include "experiments/report/markdown.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "experiments/tables.h"
+
+namespace farcull {
+namespace {
+
+std::string sentence(std::string text) {
+  if (!text.empty() && std::string(".?!").find(text.back()) == std::string::npos) text += '.';
+  return text;
+}
+
+std::string bullets(const std::vector<std::string>& sentences) {
+  std::string out;
+  for (const std::string& text : sentences) out += "- " + markdown_prose(sentence(text)) + "\n";
+  return out.empty() ? out : out + "\n";
+}
+
+std::string row_of(const std::vector<std::string>& cells) {
+  std::string out = "|";
+  for (const std::string& cell : cells) out += " " + markdown_prose(cell) + " |";
+  return out + "\n";
+}
+
+std::string table_of(const DataTable& table) {
+  std::string out = row_of(table.columns) + "|";
+  for (const char side : table.alignment) out += side == 'r' ? "---:|" : "---|";
+  out += "\n";
+  for (const std::vector<std::string>& row : table.rows) out += row_of(row);
+  return out + "\n";
+}
+
+// What the points that have no numbers say, each reason once.
+std::string gaps_of(const StoredStudy& stored) {
+  std::map<std::string, std::size_t> reasons;
+  for (const Row& row : stored.rows) {
+    if (!row.measurement.left_out.empty()) ++reasons[row.measurement.left_out];
+  }
+  std::vector<std::string> out;
+  if (!stored.complete()) {
+    out.push_back(fmt::format("Incomplete: {} of {} points have a row", grouped(stored.rows.size()),
+                              grouped(stored.declaration.points.size())));
+  }
+  for (const auto& [reason, count] : reasons)
+    out.push_back(fmt::format("{} points left out: {}", grouped(count), reason));
+  return bullets(out);
+}
+
+std::string machine_of(const Page& page) {
+  std::map<std::int64_t, std::size_t> rows;
+  for (const DrawnChapter& drawn : page.chapters) {
+    for (const Row& row : drawn.stored.rows) ++rows[row.run];
+  }
+  std::string out;
+  for (const auto& [number, p] : page.runs) {
+    if (!rows.contains(number)) continue;
+    out += row_of({std::to_string(number), p.started, p.commit, p.gl_renderer,
+                   p.gl_vendor + ", " + p.gl_version, p.cpu, std::to_string(p.cores),
+                   "`" + p.options + "`", grouped(rows.at(number))});
+  }
+  if (out.empty()) return out;
+  return "| run | started | commit | device | driver | CPU | cores | options | rows |\n"
+         "|---|---|---|---|---|---|---:|---|---:|\n" +
+         out;
+}
+
+}  // namespace
+
+std::string markdown_prose(const std::string& text) {
+  const std::string signs = "\\*_<>|[]#";
+  std::string out;
+  bool code = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char ch = text[i];
+    if (ch == '`' && (code || text.find('`', i + 1) != std::string::npos)) {
+      code = !code;
+      out += ch;
+    } else if (ch == '\n' || ch == '\r') {
+      out += ' ';
+    } else {
+      // A bar ends a cell between backticks as well.
+      if (ch == '`' || ch == '|' || (!code && signs.find(ch) != std::string::npos)) out += '\\';
+      out += ch;
+    }
+  }
+  return out;
+}
+
+std::string page_markdown(const Page& page, const std::string& command) {
+  std::string out = "# Results\n\n";
+  out += fmt::format(
+      "All of this page is made from the store of results by `{}`, figures, tables and sentences: "
+      "no "
+      "number was typed. A single study is measured again by the command that stands below it. "
+      "Counts are the same, bit for bit, on the same device and CPU features; times are of the "
+      "machine [at the end](#where-it-was-measured).\n\n",
+      command);
+  std::size_t figure = 0, table = 0, section = 0;
+  for (const DrawnChapter& drawn : page.chapters) {
+    const Chapter& chapter = drawn.chapter;
+    out += fmt::format("## {}. {}\n\n{}\n\n", ++section, markdown_prose(chapter.title),
+                       markdown_prose(chapter.question));
+    out += gaps_of(drawn.stored);
+    out += bullets(chapter.findings);
+    for (const DrawnPicture& picture : drawn.pictures) {
+      if (picture.png.empty()) {
+        out += fmt::format("A picture (`farcull picture {}`) is left out: {}\n\n",
+                           picture.picture.command, markdown_prose(sentence(picture.left_out)));
+        continue;
+      }
+      out +=
+          fmt::format("![{0}](pictures/{1}.png)\n\n**Figure {2}.** {0} `farcull picture {3}`\n\n",
+                      markdown_prose(sentence(picture.picture.caption)), picture.picture.name,
+                      ++figure, picture.picture.command);
+    }
+    for (const Figure& f : chapter.figures) {
+      out += fmt::format("![{0}](figures/{1}.svg)\n\n**Figure {2}. {3}** {4}\n\n",
+                         markdown_prose(f.title), f.name, ++figure,
+                         markdown_prose(sentence(f.title)), markdown_prose(sentence(f.caption)));
+    }
+    for (const DataTable& t : chapter.tables) {
+      if (!t.in_text) continue;
+      out += fmt::format("**Table {}.** {}\n\n", ++table, markdown_prose(sentence(t.caption)));
+      out += table_of(t);
+    }
+    if (!chapter.limits.empty()) out += "What it does not show:\n\n" + bullets(chapter.limits);
+    const Declaration& d = drawn.stored.declaration;
+    out += fmt::format("Again: `{}` ({} grid, seed {}, {} points), then `farcull report`.\n\n",
+                       chapter.command, d.choice.quick ? "quick" : "full", d.choice.seed,
+                       grouped(d.points.size()));
+  }
+  out += "## Where it was measured\n\n" + machine_of(page);
+  return out;
+}
+
+}  // namespace farcull
