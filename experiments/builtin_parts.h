@@ -42,6 +42,20 @@ BuiltScene make_bunny_dragon(const SceneParameters& parameters);
 BuiltScene make_breaking_dragon(const SceneParameters& parameters, std::uint64_t seed);
 inline constexpr std::uint64_t kPackagedDragon = 19'994;  // triangles
 
+/// What goes to an extreme by its second number, for the study "stability".
+/// size: slivers of each object; second: aspect, the longest side over the height above it.
+BuiltScene make_slivers(const SceneParameters& parameters, std::uint64_t seed);
+/// size: sheets; second: from one to the next, in their widths, see stack_gap(). Every fourth leans
+/// and crosses both neighbours.
+BuiltScene make_stack(const SceneParameters& parameters);
+/// The nearest power of two (in its exponent), so that no height of the stack is rounded.
+double stack_gap(double wanted);
+/// size: large triangles, with eight small ones at each; second: ratio of their sides.
+BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed);
+/// size: pairs; second: ulps of their coordinates, the nearest whole number, by which a vertex
+/// stands above a face, or an edge above an edge: they collide where it is 0 or less.
+BuiltScene make_gap(const SceneParameters& parameters);
+
 /// For benchmarks; the counts are those of docs/bench.md.
 Scene make_needles_layers(std::uint64_t seed);
 Scene make_needles_crossed(std::uint64_t seed);

@@ -137,6 +137,18 @@ Trial segment_or_point(Random& random) {
   return {{a, b, random.below(2) ? a : b}, random_weights(random, 60)};
 }
 
+// Nearly along the view, its longest edge leaning at 45 degrees in the image, the middle of that
+// edge at a pixel corner: the face of its box that looks at a pixel's centre is as steep as the
+// edge. The lean is a multiple of 2^-20 px, so that the middle stays where it is.
+Trial steep_corner(Random& random) {
+  const double lean = std::floor(std::exp2(random.between(-10, -1)) * 0x1p20) * 0x1p-20;
+  const Vec3 q(0, 0, random.between(-20, 20));
+  const double s = random.sign();
+  const Vec3 half(lean, lean * s, std::exp2(random.between(0, 6.5)));
+  const Vec3 aside = Vec3(1, s, 0) * random.sign() * 0x1p-12;
+  return {{q - half, q + half, q + aside}, {{1, 1, 0}}};
+}
+
 constexpr Generator kGenerators[] = {{"pixel corners", false, 508, false, corner},
                                      {"exact pixel corners", false, 508, false, exact_corner},
                                      {"pixel corners at the rim", false, 4092, true, exact_corner},
@@ -147,7 +159,8 @@ constexpr Generator kGenerators[] = {{"pixel corners", false, 508, false, corner
                                      {"parallel to the view", true, 764, false, edge_on},
                                      {"almost flat", true, 764, false, flat},
                                      {"needles", true, 764, false, needle},
-                                     {"segments and points", true, 764, false, segment_or_point}};
+                                     {"segments and points", true, 764, false, segment_or_point},
+                                     {"steep at pixel corners", false, 508, false, steep_corner}};
 
 Window lab_window(int side, double depth) {
   Window w{.view = parse_view("z"),
