@@ -16,6 +16,7 @@
 #include "experiments/cli_experiment.h"
 #include "experiments/cli_parts.h"
 #include "experiments/cli_picture.h"
+#include "experiments/cli_report.h"
 #include "experiments/cli_run.h"
 #include "experiments/cli_scenes.h"
 #include "experiments/cli_studies.h"
@@ -219,6 +220,9 @@ int command_line(int argc, char** argv) {
   PictureCommand picture;
   CLI::App* picture_app = picture.add_to(app);
 
+  ReportCommand report;
+  CLI::App* report_app = report.add_to(app);
+
   ScenesCommand scenes;
   CLI::App* scenes_app = scenes.add_to(app);
 
@@ -247,6 +251,7 @@ int command_line(int argc, char** argv) {
     if (*experiment_app) return experiments.run();
     if (*merge_app) return merge.run();
     if (*picture_app) return picture.run();
+    if (*report_app) return report.run();
     if (*scenes_app) return scenes.run();
     if (*doctor_app) {
       doctor.device = device_of(doctor_device);

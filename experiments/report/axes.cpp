@@ -117,10 +117,13 @@ Scale logarithmic_scale(const Axis& axis, const std::vector<double>& values, std
     scale.from = round_down(scale.from * 0.5);
     scale.to = round_up(scale.to * 2);
   }
+  scale.from = std::min(scale.from, least);
+  scale.to = std::max(scale.to, most);
   const double lowest = scale.from;
   if (axis.shows_zero && zeros) {
     const double decades = std::log10(scale.to / scale.from);
-    const double band = std::max(0.3, 0.13 * decades);
+    // Not below what a double can be.
+    const double band = std::min(std::max(0.3, 0.13 * decades), (std::log10(lowest) + 305) / 1.5);
     scale.zero = lowest * std::pow(10, -band);
     scale.from = lowest * std::pow(10, -1.5 * band);
     scale.ticks.push_back({scale.zero, "0"});
@@ -162,6 +165,9 @@ Scale linear_scale(const Axis& axis, const std::vector<double>& values, std::siz
   const double step = std::max(round_up(span / target), std::numeric_limits<double>::min());
   scale.from = axis.from ? least : std::floor(least / step + 1e-9) * step;
   scale.to = axis.to ? most : std::ceil(most / step - 1e-9) * step;
+  // Rounding must not leave a value outside.
+  scale.from = std::min(scale.from, least);
+  scale.to = std::max(scale.to, most);
   const double begin = std::ceil(scale.from / step - 1e-9);
   for (int i = 0; i <= 12; ++i) {
     double at = (begin + i) * step;

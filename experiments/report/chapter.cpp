@@ -22,6 +22,15 @@ const std::map<std::string, ChapterOf>& chapters() {
 
 Chapter chapter_of(const StoredStudy& stored) {
   const auto at = chapters().find(stored.declaration.study);
+  for (const Study& study : studies()) {  // bare: until every study has its chapter
+    if (at != chapters().end() || study.name != stored.declaration.study) continue;
+    Chapter out;
+    out.study = study.name;
+    out.title = study.title;
+    out.question = study.question;
+    out.command = "farcull experiment " + study.name;
+    return out;
+  }
   if (at == chapters().end()) {
     throw Error("report",
                 "'" + stored.declaration.study + "' is no study that this program reports",

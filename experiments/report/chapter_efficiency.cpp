@@ -85,7 +85,15 @@ Series over_frames(const MovingRows& rows, const std::string& name, const std::s
   return out;
 }
 
-Axis frames_axis() { return {.label = "frame"}; }
+Axis frames_axis(const std::vector<MovingRows>& scenes) {
+  Axis out;
+  out.label = "frame";
+  out.from = 0;
+  out.to = 1;
+  for (const MovingRows& rows : scenes)
+    out.to = std::max(*out.to, static_cast<double>(*rows.frames.rbegin()));
+  return out;
+}
 
 Figure kept_figure(const std::vector<MovingRows>& scenes) {
   Figure out{.name = "efficiency",
@@ -94,7 +102,7 @@ Figure kept_figure(const std::vector<MovingRows>& scenes) {
              .panels = {}};
   for (const MovingRows& rows : scenes) {
     Panel panel{.title = rows.scene,
-                .x = frames_axis(),
+                .x = frames_axis(scenes),
                 .y = {.label = "triangles", .logarithmic = true, .shows_zero = true},
                 .series = {}};
     panel.series.push_back(
@@ -127,7 +135,7 @@ Figure quick_figure(const std::vector<MovingRows>& scenes) {
   for (const char* what : {"queries", "draws"}) {
     Panel panel;
     panel.title = what;
-    panel.x = frames_axis();
+    panel.x = frames_axis(scenes);
     panel.y.label = "Quick-CULLIDE / CULLIDE";
     panel.y.from = 0;
     panel.marks.push_back({.vertical = false, .at = 1, .name = "as many"});

@@ -122,7 +122,7 @@ Layout layout_of(const Figure& figure) {
                         static_cast<std::size_t>(8 * high / (2.1 * kLine)));
     placed.x_label = !one_x || i + columns >= count;
     placed.y_label = !one_y || i % columns == 0;
-    placed.y_room = kCharacter * static_cast<double>(placed.y.label_width()) + 10 + kLine / 2;
+    placed.y_room = kCharacter * static_cast<double>(placed.y.label_width()) + 17 + kLine / 2;
     left[i % columns] =
         std::max(left[i % columns], placed.y_room + (placed.y_label ? kLine / 2 : -kLine / 2) + 2);
     out.panels.push_back(std::move(placed));
@@ -283,7 +283,10 @@ class Script {
   }
 
   void axis(const char* name, const Scale& scale) {
-    line(fmt::format("{} logscale {}", scale.logarithmic ? "set" : "unset", name));
+    // A range that both kinds of axes have, so that the one of the panel before is never taken
+    // over.
+    line(fmt::format("unset logscale {0}\nset {0}range [1:10]", name));
+    if (scale.logarithmic) line(fmt::format("set logscale {}", name));
     line(fmt::format("set {}range [{:.17g}:{:.17g}]", name, scale.from, scale.to));
     std::string ticks;
     for (const Tick& tick : scale.ticks) {

@@ -233,15 +233,15 @@ class Writer {
   }
 
   void show(const DataTable& table) {
+    if (!table.in_text) {
+      add("<p class=\"longer\">{} ({} rows): <a href=\"tables/{}.csv\">{}.csv</a>.</p>",
+          html_prose(table.caption), grouped(table.rows.size()), table.name, table.name);
+      return;
+    }
     const std::string files = fmt::format(
         "<span class=\"files\"><a href=\"tables/{0}.csv\">CSV</a> <a "
         "href=\"tables/{0}.tex\">LaTeX</a></span>",
         table.name);
-    if (!table.in_text) {
-      add("<p class=\"longer\">{} ({} rows): {}</p>", html_prose(table.caption),
-          grouped(table.rows.size()), files);
-      return;
-    }
     ++table_;
     add("<figure id=\"tab-{}\" class=\"table\">\n<figcaption><strong>Table {}.</strong> {} "
         "{}</figcaption>\n<div class=\"cells\" tabindex=\"0\" role=\"region\" aria-label=\"Table "

@@ -27,7 +27,7 @@ header { border-bottom: 1px solid #1a1a1a; padding-bottom: 1.2rem; }
 .study { border-top: 1px solid #ccc; margin-top: 3rem; }
 .study > h2 { margin-top: 1.6rem; }
 .question { font-style: italic; font-size: 1.06rem; }
-nav ol { margin: .4rem 0; columns: 2; column-gap: 2.5rem; font-size: .95rem; }
+nav ol { margin: .4rem 0; font-size: .95rem; }
 nav h2, #summary h2 { font-size: 1.1rem; margin-top: 2rem; }
 .warning { background: #fff3d6; border-left: 4px solid #d98e00; padding: .7rem 1rem;
   font-size: .93rem; }
@@ -57,7 +57,6 @@ summary { font-size: .88rem; cursor: pointer; }
 @media (max-width: 40rem) {
   main { padding: 1.5rem 1rem 3rem; }
   h1 { font-size: 1.6rem; }
-  nav ol { columns: 1; }
 }
 @media print {
   @page { size: A4; margin: 18mm 20mm; }

@@ -23,7 +23,7 @@ const std::vector<MovingCase>& cases(bool quick) {
   return quick ? few : full;
 }
 
-long frames_of(bool quick) { return quick ? 4 : 8; }
+long frames_of(bool quick) { return quick ? 4 : 12; }
 
 constexpr int kResolution = 256;
 

@@ -44,7 +44,9 @@ std::string describe(const Point& point) {
 }
 
 const std::vector<Study>& studies() {
-  static const std::vector<Study> all = {accuracy_study(), error_time_study(), offsets_study()};
+  static const std::vector<Study> all = {accuracy_study(),   error_time_study(), radius_study(),
+                                         offsets_study(),    precision_study(),  stability_study(),
+                                         efficiency_study(), scaling_study()};
   return all;
 }
 

@@ -1,0 +1,64 @@
+#include "experiments/cli_report.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "core/error.h"
+#include "experiments/cli_picture.h"
+#include "experiments/cli_studies.h"
+#include "experiments/output.h"
+#include "experiments/picture.h"
+#include "experiments/report/report.h"
+
+namespace farcull {
+
+CLI::App* ReportCommand::add_to(CLI::App& app) {
+  folder_ = kResultsFolder;
+  CLI::App* command =
+      app.add_subcommand("report", "figures, tables and a page of what was measured");
+  command
+      ->add_option("DIR", folder_,
+                   fmt::format("the folder of the results; default {}", kResultsFolder))
+      ->type_name("");
+  command->add_option("--device", device_, kDeviceHelp)->type_name("DEVICE");
+  command
+      ->add_flag("--no-pictures", no_pictures_,
+                 "leave out the pictures of scenes, for which methods are\nrun")
+      ->disable_flag_override();
+  command->footer(
+      "Writes DIR/report: index.html, one page that needs nothing else; figures as SVG and PDF "
+      "with\n"
+      "their gnuplot scripts and data; tables as CSV and LaTeX. An earlier report there is "
+      "replaced.\n\n"
+      "Examples:\n"
+      "  farcull experiment all --quick && farcull report\n"
+      "  farcull report results");
+  return command;
+}
+
+int ReportCommand::run() {
+  if (folder_.empty()) throw Error("DIR", "the folder is empty", "name one");
+  while (folder_.size() > 1 && folder_.back() == '/') folder_.pop_back();
+  TerminalProgress terminal;
+  std::optional<Lab> lab;
+  ReportRequest request;
+  request.folder = folder_;
+  request.progress = terminal.callback();
+  request.draw_picture = [&](const std::string& arguments, const std::string& path) {
+    if (no_pictures_) throw Error("--no-pictures", "was given", "leave it out");
+    if (!lab) lab.emplace(device_of(device_), request.progress);
+    write_picture(picture_arguments(arguments), *lab, path);
+  };
+  const ReportSummary summary = write_report(request);
+  terminal.clear();
+  std::string text;
+  for (const std::string& note : summary.notes) text += note + "\n";
+  text += fmt::format("{} studies, {} figures, {} tables, {} pictures\n{}/index.html\n",
+                      summary.studies, summary.figures, summary.tables, summary.pictures,
+                      summary.folder);
+  write_output("-", text);
+  return 0;
+}
+
+}  // namespace farcull

@@ -1,0 +1,23 @@
+// `farcull report`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "experiments/cli_parts.h"
+
+namespace farcull {
+
+class ReportCommand {
+ public:
+  CLI::App* add_to(CLI::App& app);
+  /// The exit status. Throws Error as write_report() does.
+  int run();
+
+ private:
+  std::string folder_;
+  Text device_;
+  bool no_pictures_ = false;
+};
+
+}  // namespace farcull

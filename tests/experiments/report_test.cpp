@@ -1,0 +1,294 @@
+// What figures, tables and the page are made of. The whole report in a browser: report_test.sh.
+#include "experiments/report/report.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <set>
+
+#include "error_of.h"
+#include "experiments/report/axes.h"
+#include "experiments/report/figures.h"
+#include "experiments/report/gnuplot.h"
+#include "experiments/report/html.h"
+#include "experiments/report/numbers.h"
+#include "experiments/report/style.h"
+#include "experiments/report/tables.h"
+
+namespace farcull {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<std::string> labels_of(const Scale& scale) {
+  std::vector<std::string> out;
+  for (const Tick& tick : scale.ticks) {
+    if (!tick.label.empty()) out.push_back(tick.label);
+  }
+  return out;
+}
+
+Axis logarithmic(bool zero = false) {
+  Axis axis;
+  axis.label = "pairs";
+  axis.logarithmic = true;
+  axis.shows_zero = zero;
+  return axis;
+}
+
+TEST(ReportAxis, ZerosHaveAPlaceOfTheirOwnBelowThePowers) {
+  const Scale scale = scale_of(logarithmic(true), {0, 3, 5000}, 100);
+  EXPECT_GT(scale.zero, scale.from);
+  EXPECT_LT(scale.zero, 1);
+  EXPECT_EQ(scale.place(0), scale.zero);
+  EXPECT_EQ(scale.place(3), 3);
+  EXPECT_EQ(labels_of(scale).front(), "0");
+  // A tick below the smallest power would be taken for a value.
+  for (const Tick& tick : scale.ticks)
+    EXPECT_TRUE(tick.at == scale.zero || tick.at >= 1) << tick.at;
+}
+
+TEST(ReportAxis, ZerosAreNoValuesOfALogarithmicAxisThatDoesNotShowThem) {
+  const Scale scale = scale_of(logarithmic(), {0, 3, 5000}, 100);
+  EXPECT_TRUE(std::isnan(scale.place(0)));
+  EXPECT_EQ(scale.zero, 0);
+}
+
+TEST(ReportAxis, ZerosAloneStillHaveAnAxis) {
+  const Scale scale = scale_of(logarithmic(true), {0, 0, 0}, 100);
+  EXPECT_LT(scale.from, scale.to);
+  EXPECT_GT(scale.zero, 0);
+}
+
+TEST(ReportAxis, HoldsEveryValueOfAnySize) {
+  for (const bool log : {false, true}) {
+    Axis axis;
+    axis.logarithmic = log;
+    for (int exponent = -300; exponent <= 300; exponent += 7) {
+      for (const double m : {1.0, 1.9999999, 2.0, 4.2, 9.999999}) {
+        const double value = m * std::pow(10, exponent);
+        const Scale scale = scale_of(axis, {value, value * 3, kNone}, 60);
+        EXPECT_LT(scale.from, scale.to) << value;
+        EXPECT_LE(scale.from, value) << value;
+        EXPECT_GE(scale.to, value * 3) << value;
+        EXPECT_FALSE(scale.ticks.empty()) << value;
+        EXPECT_LE(scale.ticks.size(), 60u) << value;
+      }
+    }
+  }
+}
+
+TEST(ReportAxis, PowersOfTwoAreTicksThemselves) {
+  EXPECT_EQ(labels_of(scale_of(logarithmic(), {64, 128, 256, 512}, 100)),
+            (std::vector<std::string>{"64", "128", "256", "512"}));
+}
+
+TEST(ReportAxis, LabelsThatDoNotFitAreLeftOut) {
+  const Scale wide = scale_of(logarithmic(), {1e-9, 1e9}, 200);
+  const Scale narrow = scale_of(logarithmic(), {1e-9, 1e9}, 30);
+  EXPECT_GT(labels_of(wide).size(), labels_of(narrow).size());
+  EXPECT_GE(labels_of(narrow).size(), 2u);
+}
+
+TEST(ReportAxis, LabelsAreForPeople) {
+  EXPECT_EQ(tick_label(1000), "1,000");
+  EXPECT_EQ(tick_label(0.1), "0.1");
+  EXPECT_EQ(tick_label(0), "0");
+  EXPECT_EQ(tick_label(1e9), "10⁹");
+  EXPECT_EQ(power_label(-12), "10⁻¹²");
+  EXPECT_EQ(characters("10⁻¹²"), 5u);
+}
+
+TEST(ReportStyle, AMethodLooksTheSameInEveryFigure) {
+  const auto alone = styles_of({"CULLIDE"});
+  const auto among = styles_of({"FAR (OBB)", "FAR pairs", "Quick-CULLIDE", "CULLIDE"});
+  EXPECT_EQ(alone[0].colour, among[3].colour);
+  EXPECT_EQ(alone[0].point, among[3].point);
+  std::set<std::string> colours;
+  for (const SeriesStyle& style : among) colours.insert(style.colour);
+  EXPECT_EQ(colours.size(), 4u);
+}
+
+TEST(ReportStyle, WordsThatHoldAMethodsNameAreNone) {
+  EXPECT_NE(styles_of({"farther"})[0].colour, styles_of({"far"})[0].colour);
+}
+
+TEST(ReportStyle, TwoOfOneMethodDifferInDashAndPoint) {
+  const auto styles = styles_of({"far, obb, 64 px", "far, obb, 128 px"});
+  EXPECT_EQ(styles[0].colour, styles[1].colour);
+  EXPECT_NE(styles[0].dash, styles[1].dash);
+  EXPECT_NE(styles[0].point, styles[1].point);
+}
+
+TEST(ReportNumbers, ExponentOfAPowerIsThePower) {
+  std::vector<double> x, y;
+  for (const double v : {2.0, 8.0, 32.0, 128.0}) {
+    x.push_back(v);
+    y.push_back(3 * v * std::sqrt(v));  // exact, but for logarithms
+  }
+  const auto e = exponent_of(x, y);
+  ASSERT_TRUE(e);
+  // Logarithms and sums of four terms: some tens of units of roundoff of values below 10.
+  EXPECT_NEAR(e->value, 1.5, 1e-13);
+  EXPECT_NEAR(e->error, 0, 1e-13);
+  EXPECT_EQ(e->points, 4u);
+}
+
+TEST(ReportNumbers, StandardErrorIsThatOfTheTextbook) {
+  // log y = 0, 1, 0 over log x = 0, 1, 2: slope 0, residuals -1/3, 2/3, -1/3, so that the error is
+  // sqrt((6/9) / 1 / 2).
+  const double e = std::exp(1.0);
+  const auto fit = exponent_of({1, e, e * e}, {1, e, 1});
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->value, 0, 1e-14);
+  EXPECT_NEAR(fit->error, std::sqrt(1.0 / 3), 1e-14);
+}
+
+TEST(ReportNumbers, TwoPointsAreNoFit) {
+  EXPECT_FALSE(exponent_of({1, 2}, {1, 2}));
+  EXPECT_FALSE(exponent_of({1, 2, 0}, {1, 2, 3}));
+  EXPECT_FALSE(exponent_of({2, 2, 2}, {1, 2, 3}));
+}
+
+TEST(ReportNumbers, AreRoundedForPeople) {
+  EXPECT_EQ(rounded(12345.6), "12,346");
+  EXPECT_EQ(rounded(0.01234), "0.0123");
+  EXPECT_EQ(rounded(0), "0");
+  EXPECT_EQ(rounded(-1.5), "-1.50");
+  EXPECT_EQ(listed({"a", "b", "c"}), "a, b and c");
+  EXPECT_EQ(median({3, 1, 2}), 2);
+  EXPECT_EQ(median({4, 1, 2, 3}), 2.5);
+}
+
+TEST(ReportText, IsNoMarkup) {
+  EXPECT_EQ(html_text("<b>&\"'\n\x01"), "&lt;b&gt;&amp;&quot;&#39;\n ");
+  EXPECT_EQ(html_prose("run `a<b` `"), "run <code>a&lt;b</code> `");
+  EXPECT_EQ(latex_text("50 % of a_b & 10⁻³ ± 1"), "50 \\% of a\\_b \\& 10$^{-}$$^3$ $\\pm$ 1");
+  EXPECT_EQ(gnuplot_text("it's\n\"x\" \\ `rm`"), "'it''s \"x\" \\ `rm`'");
+}
+
+TEST(ReportText, Base64IsThatOfRfc4648) {
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("f"), "Zg==");
+  EXPECT_EQ(base64("fo"), "Zm8=");
+  EXPECT_EQ(base64("foo"), "Zm9v");
+  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(base64(std::string("\xff\x00\xfe", 3)), "/wD+");
+}
+
+TEST(ReportTables, CellsStayCells) {
+  const DataTable table{.name = "t",
+                        .caption = "c",
+                        .columns = {"a,b", "n"},
+                        .alignment = "lr",
+                        .rows = {{"say \"so\"", "1,234"}}};
+  EXPECT_EQ(table_csv(table), "\"a,b\",n\r\n\"say \"\"so\"\"\",\"1,234\"\r\n");
+  EXPECT_NE(table_html(table).find("<td class=\"r\">1,234</td>"), std::string::npos);
+  EXPECT_NE(table_latex(table).find("\\begin{tabular}{lr}"), std::string::npos);
+}
+
+TEST(ReportFigures, IdsOfTwoDrawingsDiffer) {
+  const std::string svg =
+      "<?xml version=\"1.0\"?>\n<svg><g id=\"a\"><use xlink:href='#p' clip=\"url(#q)\"/></g></svg>";
+  EXPECT_EQ(inline_svg(svg, "x-"),
+            "<svg><g id=\"x-a\"><use xlink:href='#x-p' clip=\"url(#x-q)\"/></g></svg>");
+}
+
+class Folder {
+ public:
+  Folder() {
+    path_ = (std::filesystem::temp_directory_path() / "farcull-report-XXXXXX").string();
+    if (::mkdtemp(path_.data()) == nullptr) std::abort();
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+bool has_gnuplot() {
+  try {
+    require_gnuplot();
+  } catch (const Error&) {
+    return false;
+  }
+  return true;
+}
+
+// All that has made a plotter stumble: quotes, markup, gaps, zeros, nothing, one point, no end.
+Figure trap() {
+  Figure figure{.name = "trap",
+                .title = "it's a \"trap\" & <b> \\ `date` $(date) 100 %",
+                .caption = "`x` @macro",
+                .panels = {}};
+  for (const bool log : {false, true}) {
+    for (const std::vector<double>& y :
+         {std::vector<double>{1, kNone, 3}, std::vector<double>{0, 0, 0},
+          std::vector<double>{kNone, kNone, kNone}, std::vector<double>{5, 5, 5},
+          std::vector<double>{1e-300, 1, 1e300},
+          std::vector<double>{-1, 0, std::numeric_limits<double>::infinity()}}) {
+      Panel panel;
+      panel.title = "%s a_b^{c} 'q' @x";
+      panel.x = logarithmic(true);
+      panel.x.label = "%g 'x'";
+      panel.y = logarithmic(true);
+      panel.y.logarithmic = log;
+      for (const auto style : {Series::Style::lines_points, Series::Style::lines,
+                               Series::Style::points, Series::Style::steps}) {
+        Series series{
+            .name = "s'" + std::to_string(static_cast<int>(style)), .x = {0, 1, 2}, .y = y};
+        series.lo = {0, kNone, 1};
+        series.hi = {2, 3, 4};
+        series.style = style;
+        series.emphasis = style == Series::Style::lines;
+        panel.series.push_back(series);
+      }
+      panel.marks = {{true, 1, "it's"}, {false, 0, "%d"}};
+      figure.panels.push_back(panel);
+    }
+  }
+  figure.panels.emplace_back();
+  return figure;
+}
+
+TEST(ReportFigures, AreDrawnWithoutAWarningWhateverTheyHold) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const Folder folder;
+  draw_figure(trap(), folder.path());
+  for (const char* kind : {".svg", ".pdf", ".gp", ".dat"}) {
+    EXPECT_GT(std::filesystem::file_size(folder.path() + "/trap" + kind), 0u) << kind;
+  }
+}
+
+TEST(ReportFigures, AWarningOfThePlotterIsAnError) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const Folder folder;
+  // Nothing but a warning comes of it: all points of the data are the same.
+  std::ofstream(folder.path() + "/warns.gp")
+      << "set terminal svg\nset output 'x.svg'\n$d << end\n1 1\n1 1\nend\nplot $d\n";
+  EXPECT_NE(error_of([&] { run_gnuplot(folder.path(), "warns.gp", "svg"); }).reason.find("warned"),
+            std::string::npos);
+  std::ofstream(folder.path() + "/fails.gp") << "no command of this name\n";
+  EXPECT_EQ(error_of([&] { run_gnuplot(folder.path(), "fails.gp", "svg"); }).reason.find("failed"),
+            0u);
+}
+
+TEST(ReportFigures, ThatBreakTheirHeaderAreMistakesOfTheProgram) {
+  EXPECT_THROW(figure_script({.name = "a b", .title = {}, .caption = {}, .panels = {Panel{}}}),
+               std::logic_error);
+  EXPECT_THROW(figure_script({.name = "a", .title = {}, .caption = {}, .panels = {}}),
+               std::logic_error);
+  Figure figure = trap();
+  figure.panels[0].series[0].x.pop_back();
+  EXPECT_THROW(figure_script(figure), std::logic_error);
+}
+
+}  // namespace
+}  // namespace farcull
