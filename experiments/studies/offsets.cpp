@@ -11,7 +11,7 @@ constexpr int kRepeat = 3;  // the median of their times
 std::vector<Point> grid(const GridChoice& choice) {
   const std::vector<const char*> scenes =
       choice.quick ? std::vector<const char*>{"two-spheres", "needles:60"}
-                   : std::vector<const char*>{"two-tori", "needles", "random-soup", "two-bunnies"};
+                   : std::vector<const char*>{"two-tori", "needles:100", "field", "two-bunnies"};
   const std::vector<int> resolutions =
       choice.quick ? std::vector{64, 256, 1024} : std::vector{64, 128, 256, 512, 1024, 2048};
   std::vector<Point> out;
