@@ -32,7 +32,7 @@ farcull_packages=(
   # what farcull bench compares with, and the cases of single kernels; a build without them works
   libfcl-dev libembree-dev libtbb-dev libbenchmark-dev
   # what the test of the report opens its page with, and reads what it printed
-  chromium poppler-utils
+  chromium poppler-utils sqlite3
 )
 
 # Prints those of farcull_packages that dpkg does not hold as completely installed, one per line.

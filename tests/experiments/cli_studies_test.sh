@@ -63,8 +63,8 @@ done
 measure --out killed --resume || fail "killed (seed $SEED)" "status $?"
 same "killed (seed $SEED)" killed
 
-# Ctrl-C: says how far it is and how to go on.
-"$program" experiment "$study" --quick --out interrupted >"$out" 2>"$err" &
+# Ctrl-C (which a script's background has ignored): says how far it is and how to go on.
+env --default-signal=INT "$program" experiment "$study" --quick --out interrupted >"$out" 2>"$err" &
 child=$!
 for _ in {1..100}; do
   rows_of interrupted 2>/dev/null | grep -q . && break
