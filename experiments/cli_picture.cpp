@@ -110,14 +110,13 @@ void PictureCommand::add_options(CLI::App& app) {
       "direction that the picture looks along, as in -z or\n-1:-1:-2; default -0.45:-0.35:-0.82");
   add("--up", up_, "AXIS", "upwards in the picture; default y");
   command->add_flag("--zoom", zoom_, "show only where something collides")->disable_flag_override();
-  depth_view_option_ =
-      command
-          ->add_option(
-              "--view-depth", depth_view_,
-              "instead: the depth that the method stores in one of\nits views (default z), "
-              "and what that view culls")
-          ->type_name("[VIEW]")
-          ->expected(0, 1);
+  depth_view_option_ = command
+                           ->add_option("--view-depth", depth_view_,
+                                        "instead: the depth that the method stores in one of\nits "
+                                        "views (default z; --view-depth=-z for -z), and\n"
+                                        "what that view culls")
+                           ->type_name("[VIEW]")
+                           ->expected(0, 1);
   add("--size", size_, "WxH", "px of a panel; default 900x760");
   command->footer(
       "Examples:\n"

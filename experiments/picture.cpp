@@ -24,17 +24,20 @@ constexpr Rgba kPaper = {255, 255, 255}, kGood = {0, 98, 84}, kFound = {0, 128, 
                kIdle = {240, 176, 32};
 // Of the objects, in turn: pale, so that nothing but what collides has a strong colour.
 constexpr std::array<Rgba, 8> kObjects = {{{176, 190, 210},
-                                           {214, 192, 198},
+                                           {218, 214, 206},
                                            {186, 203, 184},
                                            {216, 204, 180},
                                            {196, 190, 214},
                                            {180, 206, 208},
                                            {222, 190, 168},
-                                           {200, 202, 206}}};
+                                           {214, 192, 198}}};
 constexpr double kIdlePart = 0.6;    // of kIdle in what was kept for nothing
 constexpr double kThrough = 0.28;    // how strongly collisions shine through what hides them
 constexpr double kMargin = 0.04;     // around the scene, of the picture's size
 constexpr double kZoomMargin = 0.1;  // around what collides
+// A disc of 2 sqrt(2) px contains a whole pixel wherever it lies: half a diagonal from its middle
+// to that of the pixel, half a diagonal to its corners. So the colour of a miss is there, unmixed.
+constexpr double kWholePixel = 2.83;
 constexpr long kUsualFrames = 30;
 constexpr const char* kUsualView = "-0.45:-0.35:-0.82";
 
@@ -354,7 +357,7 @@ std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Wi
     over.push_back({.triangle = t,
                     .colour = kMissedColour,
                     .shaded = false,
-                    .outline = static_cast<float>(1.5 * line)});
+                    .outline = static_cast<float>(std::max(kWholePixel, 1.5 * line))});
     Box box = Box::empty();
     for (const Vec3& corner : scene.corners(t)) box.add(to_pixel(window, corner).p);
     const Vec3 middle = 0.5 * (box.lo + box.hi);
@@ -368,7 +371,7 @@ std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Wi
     const double size = std::max(group.x1 - group.x0, group.y1 - group.y0);
     if (size > 2 * ring) continue;  // seen without
     draw_ring(image, 0.5 * (group.x0 + group.x1), 0.5 * (group.y0 + group.y1),
-              0.5 * size + 0.6 * ring, line, kMissedColour);
+              0.5 * size + 0.6 * ring, std::max(1.5, line), kMissedColour);
     ++rings;
   }
   return rings;
@@ -435,7 +438,8 @@ std::string command_of(const PictureArguments& arguments) {
   if (!arguments.view.empty()) option("--view", arguments.view);
   if (!arguments.up.empty()) option("--up", arguments.up);
   if (arguments.zoom) add("--zoom");
-  if (arguments.depth_view) option("--view-depth", *arguments.depth_view);
+  // Its value may be left out, so what begins with - would be taken for another option.
+  if (arguments.depth_view) add("--view-depth=" + *arguments.depth_view);
   option("--size", fmt::format("{}x{}", arguments.width, arguments.height));
   return out;
 }
