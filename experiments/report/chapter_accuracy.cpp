@@ -180,8 +180,8 @@ Chapter accuracy_chapter(const StoredStudy& stored) {
       "FAR culls sets of triangles of different objects; against themselves objects are tested by "
       "S-CULLIDE and FAR pairs alone.",
       "How much CULLIDE misses depends on how a device samples: other devices give other counts.",
-      "Where the published radius misses nothing in one scene, it may in another (see the study "
-      "of the radius)."};
+      "The published radius may miss nothing in these scenes and pairs in others (see the study of "
+      "the radius)."};
   add_gaps(stored, out);
   if (scenes.empty()) return out;
   out.figures = {missed_figure(scenes, "accuracy", "pairs", "missed", "colliding"),
