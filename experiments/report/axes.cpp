@@ -72,7 +72,27 @@ std::vector<Tick> ticks_at_powers_of_two(const std::vector<double>& values) {
   return out;
 }
 
+// At equal steps from 1, 2 or 5 times a power of ten.
+std::vector<Tick> even_ticks(double from, double to, double step) {
+  std::vector<Tick> out;
+  const double begin = std::ceil(from / step - 1e-9);
+  for (int i = 0; i <= 12; ++i) {
+    double at = (begin + i) * step;
+    if (at > to + 1e-9 * step) break;
+    if (std::abs(at) < 1e-9 * step) at = 0;
+    out.push_back({at, tick_label(at)});
+  }
+  return out;
+}
+
 void add_log_ticks(Scale& scale, double lowest, std::size_t room) {
+  // Powers say nothing where there is hardly one.
+  if (scale.to < 5 * lowest) {
+    for (Tick& tick : even_ticks(lowest, scale.to, round_up((scale.to - lowest) / 4)))
+      scale.ticks.push_back(std::move(tick));
+    thin(scale.ticks, room);
+    return;
+  }
   const int first = static_cast<int>(std::ceil(std::log10(lowest) - 1e-9));
   const int last = static_cast<int>(std::floor(std::log10(scale.to) + 1e-9));
   const bool plain = first >= -kPlainPowers && last <= kPlainPowers;
@@ -168,13 +188,7 @@ Scale linear_scale(const Axis& axis, const std::vector<double>& values, std::siz
   // Rounding must not leave a value outside.
   scale.from = std::min(scale.from, least);
   scale.to = std::max(scale.to, most);
-  const double begin = std::ceil(scale.from / step - 1e-9);
-  for (int i = 0; i <= 12; ++i) {
-    double at = (begin + i) * step;
-    if (at > scale.to + 1e-9 * step) break;
-    if (std::abs(at) < 1e-9 * step) at = 0;
-    scale.ticks.push_back({at, tick_label(at)});
-  }
+  scale.ticks = even_ticks(scale.from, scale.to, step);
   thin(scale.ticks, room);
   return scale;
 }

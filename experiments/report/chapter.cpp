@@ -3,6 +3,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "experiments/report/pictures.h"
 
 namespace farcull {
 namespace {
@@ -36,7 +37,9 @@ Chapter chapter_of(const StoredStudy& stored) {
                 "'" + stored.declaration.study + "' is no study that this program reports",
                 "use the farcull that measured it");
   }
-  return at->second(stored);
+  Chapter chapter = at->second(stored);
+  if (chapter.study == "accuracy") chapter.pictures = accuracy_pictures(stored);
+  return chapter;
 }
 
 }  // namespace farcull

@@ -46,9 +46,18 @@ struct Layout {
   double height = 0;
 };
 
-std::size_t columns_for(std::size_t panels) {
+std::size_t columns_for(const Figure& figure) {
+  const std::size_t panels = figure.panels.size();
   if (panels <= 1) return 1;
-  return panels == 3 || panels > 4 ? 3 : 2;
+  if (panels != 3 && panels < 5) return 2;
+  // Three where every title fits above its panel.
+  return std::all_of(figure.panels.begin(), figure.panels.end(),
+                     [](const Panel& panel) {
+                       return kCharacter * static_cast<double>(characters(panel.title)) <
+                              kFigureWidth / 3.0 - 60;
+                     })
+             ? 3
+             : 2;
 }
 
 double plot_height(std::size_t columns) { return columns == 1 ? 300 : columns == 2 ? 215 : 150; }
@@ -96,7 +105,7 @@ std::vector<double> values_along(const Panel& panel, bool horizontal) {
 Layout layout_of(const Figure& figure) {
   Layout out;
   const std::size_t count = figure.panels.size();
-  const std::size_t columns = columns_for(count);
+  const std::size_t columns = columns_for(figure);
   const std::size_t rows = (count + columns - 1) / columns;
   const double high = plot_height(columns);
   const double cell = static_cast<double>(kFigureWidth) / static_cast<double>(columns);

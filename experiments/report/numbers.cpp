@@ -87,6 +87,7 @@ std::string rounded(double value, int digits) {
   const std::string sign = value < 0 ? "-" : "";
   if (size == 0) return "0";
   if (size >= 1e9 || size < 1e-4) return fmt::format("{:.{}g}", value, digits);
+  if (size == std::floor(size)) return sign + grouped_digits(fmt::format("{:.0f}", size));
   const int whole = static_cast<int>(std::floor(std::log10(size))) + 1;
   std::string text = fmt::format("{:.{}f}", size, std::max(0, digits - whole));
   // 0.9996 rounds to four digits of 1.000.

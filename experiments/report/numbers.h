@@ -30,7 +30,7 @@ struct Exponent {
 /// not differ.
 std::optional<Exponent> exponent_of(const std::vector<double>& x, const std::vector<double>& y);
 
-/// Three significant digits, thousands grouped: 0.0123, 1.5, 12,346.
+/// Three significant digits, all of a whole number, thousands grouped: 0.0123, 1.50, 3, 12,346.
 std::string rounded(double value, int digits = 3);
 
 /// "a, b and c".

@@ -87,6 +87,10 @@ TEST(ReportAxis, PowersOfTwoAreTicksThemselves) {
             (std::vector<std::string>{"64", "128", "256", "512"}));
 }
 
+TEST(ReportAxis, LessThanADecadeHasTicksAsWell) {
+  EXPECT_GE(labels_of(scale_of(logarithmic(), {112, 131, 190}, 60)).size(), 3u);
+}
+
 TEST(ReportAxis, LabelsThatDoNotFitAreLeftOut) {
   const Scale wide = scale_of(logarithmic(), {1e-9, 1e9}, 200);
   const Scale narrow = scale_of(logarithmic(), {1e-9, 1e9}, 30);
@@ -158,6 +162,8 @@ TEST(ReportNumbers, AreRoundedForPeople) {
   EXPECT_EQ(rounded(12345.6), "12,346");
   EXPECT_EQ(rounded(0.01234), "0.0123");
   EXPECT_EQ(rounded(0), "0");
+  EXPECT_EQ(rounded(10), "10");
+  EXPECT_EQ(rounded(1234567), "1,234,567");
   EXPECT_EQ(rounded(-1.5), "-1.50");
   EXPECT_EQ(listed({"a", "b", "c"}), "a, b and c");
   EXPECT_EQ(median({3, 1, 2}), 2);
