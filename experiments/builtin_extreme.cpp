@@ -144,13 +144,14 @@ BuiltScene make_gap(const SceneParameters& parameters) {
     const Vec3 corner = Vec3::Constant(0.5) + cell * Vec3(static_cast<double>(i % side),
                                                           static_cast<double>(i / side % side),
                                                           static_cast<double>(i / side / side));
-    // Eighths of the cell along two axes, and quarters of it above the middle along the third.
+    // Eighths of the cell along two axes; along the third quarters of it from below its middle, in
+    // a slope, since what is parallel to a view has no image in it.
     const auto axis = static_cast<int>(i % 3);
     const auto at = [&](double u, double v, double rise, double by) {
       Vec3 p = corner;
       p[(axis + 1) % 3] += u / 8 * cell;
       p[(axis + 2) % 3] += v / 8 * cell;
-      p[axis] += (0.5 + rise / 4) * cell + by;
+      p[axis] += (0.375 + rise / 4 + u / 32 + v / 64) * cell + by;
       return p;
     };
     if (i / 3 % 2 == 0) {  // a vertex over a face

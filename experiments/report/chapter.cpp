@@ -10,11 +10,10 @@ namespace {
 
 const std::map<std::string, ChapterOf>& chapters() {
   static const std::map<std::string, ChapterOf> all = {
-      {"accuracy", accuracy_chapter},
-      {"error-time", error_time_chapter},
-      {"offsets", offsets_chapter},
-      {"efficiency", efficiency_chapter},
-      {"scaling", scaling_chapter},
+      {"accuracy", accuracy_chapter},     {"error-time", error_time_chapter},
+      {"offsets", offsets_chapter},       {"radius", radius_chapter},
+      {"precision", precision_chapter},   {"stability", stability_chapter},
+      {"efficiency", efficiency_chapter}, {"scaling", scaling_chapter},
   };
   return all;
 }
@@ -23,15 +22,6 @@ const std::map<std::string, ChapterOf>& chapters() {
 
 Chapter chapter_of(const StoredStudy& stored) {
   const auto at = chapters().find(stored.declaration.study);
-  for (const Study& study : studies()) {  // bare: until every study has its chapter
-    if (at != chapters().end() || study.name != stored.declaration.study) continue;
-    Chapter out;
-    out.study = study.name;
-    out.title = study.title;
-    out.question = study.question;
-    out.command = "farcull experiment " + study.name;
-    return out;
-  }
   if (at == chapters().end()) {
     throw Error("report",
                 "'" + stored.declaration.study + "' is no study that this program reports",

@@ -18,13 +18,14 @@ std::vector<Point> grid(const GridChoice& choice) {
   const std::vector<double> depths =
       choice.quick ? std::vector{0x1p8, 0x1p20} : std::vector{0x1p8, 0x1p12, 0x1p16, 0x1p20};
   std::vector<Point> out;
-  for (const int side : sides) {
-    for (const char* mode : {"fragment", "fixed"}) {
-      for (const char* format : {"float32", "fixed24"}) {
-        for (const char* generator : kGenerators) {
-          for (const double depth : depths) {
-            for (const char* radius : {"published", "budget"})
-              out.push_back({.scene = LemmaScene{generator, points, depth}.name(),
+  for (const char* generator : kGenerators) {
+    for (const double depth : depths) {
+      const std::string scene = LemmaScene{generator, points, depth}.name();
+      for (const int side : sides) {
+        for (const char* mode : {"fragment", "fixed"}) {
+          for (const char* format : {"float32", "fixed24"}) {
+            for (const char* radius : {"published", "budget"}) {
+              out.push_back({.scene = scene,
                              .method = "lemma",
                              .offset = "obb",
                              .radius = radius,
@@ -34,6 +35,7 @@ std::vector<Point> grid(const GridChoice& choice) {
                              .views = {},
                              .frame = -1,
                              .seed = choice.seed});
+            }
           }
         }
       }

@@ -58,7 +58,7 @@ std::vector<Point> grid(const GridChoice& choice) {
     return out;
   };
   std::vector<Point> out;
-  const int slivers = quick ? 200 : 400, sheets = quick ? 8 : 24, large = quick ? 40 : 100,
+  const int slivers = quick ? 200 : 400, sheets = quick ? 6 : 8, large = quick ? 40 : 100,
             pairs = quick ? 216 : 512, cloth = quick ? 450 : 800;
   for (const int k : powers(2, 12, 5, 2))
     add(out, fmt::format("slivers:{}:1e{}", slivers, k), kBetweenObjects);
@@ -73,7 +73,7 @@ std::vector<Point> grid(const GridChoice& choice) {
     add(out, fmt::format("gap:{}:{}1e13", pairs, sign), kBetweenObjects);
   }
   add(out, fmt::format("gap:{}:0", pairs), kBetweenObjects);
-  const std::string moved = quick ? "crowd:60" : "crowd:400";
+  const std::string moved = quick ? "crowd:60" : "crowd:200";
   for (const int k : powers(0, 9, 3, 1))
     add(out, fmt::format("{}{}1e{}", moved, kOffset, k), kBetweenObjects);
   for (const int k : powers(-9, 9, 9, 3))

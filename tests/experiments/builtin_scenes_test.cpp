@@ -126,7 +126,11 @@ TEST(BuiltinScenes, AreWhatTheirEntrySays) {
                            "shells",
                            "cloth",
                            "bunny-dragon",
-                           "breaking-dragon"}) {
+                           "breaking-dragon",
+                           "slivers",
+                           "stack",
+                           "mixed",
+                           "gap"}) {
     EXPECT_TRUE(names.contains(name)) << name;
   }
 }
