@@ -206,10 +206,13 @@ class Script {
     return std::min(before, 2.0);
   }
   double width_of(std::size_t style) const {
-    return first_of(names_[style])->emphasis ? 4.2 - 1.3 * order_of(style) : 1.5;
+    return first_of(names_[style])->emphasis
+               ? (columns_for(figure_) == 3 ? 3.4 : 4.2) - 1.1 * order_of(style)
+               : 1.5;
   }
   double size_of(std::size_t style) const {
-    return first_of(names_[style])->emphasis ? 1.15 - 0.25 * order_of(style) : 0.7;
+    const double usual = first_of(names_[style])->emphasis ? 1.15 - 0.25 * order_of(style) : 0.7;
+    return columns_for(figure_) == 3 ? 0.75 * usual : usual;  // small panels, small points
   }
 
   void head() {

@@ -255,6 +255,19 @@ mkdir "$work/mine/report"
 echo mine >"$work/mine/report/notes.txt"
 refuses "a folder of somebody else" 'no report of this program' "$farcull" report "$work/mine"
 [[ -e $work/mine/report/notes.txt ]] || fail "a file of somebody else is gone"
+# Ended by a signal while it draws.
+printf '#!/bin/sh\n[ "$1" = --version ] || { touch "%s"; sleep 1; }\n' "$work/drawing" >"$work/bin/gnuplot"
+PATH="$work/bin:$PATH" "$farcull" report "$work/results" >/dev/null 2>&1 &
+pid=$!
+for ((i = 0; i < 100; ++i)); do
+  if [[ -e $work/drawing ]]; then break; fi
+  sleep 0.1
+done
+kill -TERM "$pid"
+status=0
+wait "$pid" || status=$?
+((status == 143)) || fail "ended by SIGTERM: status $status"
+[[ $(md5sum <"$page") == "$before" ]] || fail "a report that was ended replaced the one before"
 leftover=$(find "$work" -name 'report.part-*')
 [[ -z $leftover ]] || fail "half a report is left: $leftover"
 
