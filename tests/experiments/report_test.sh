@@ -256,6 +256,7 @@ echo mine >"$work/mine/report/notes.txt"
 refuses "a folder of somebody else" 'no report of this program' "$farcull" report "$work/mine"
 [[ -e $work/mine/report/notes.txt ]] || fail "a file of somebody else is gone"
 # Ended by a signal while it draws.
+# shellcheck disable=SC2016  # the script's argument, not ours
 printf '#!/bin/sh\n[ "$1" = --version ] || { touch "%s"; sleep 1; }\n' "$work/drawing" >"$work/bin/gnuplot"
 PATH="$work/bin:$PATH" "$farcull" report "$work/results" >/dev/null 2>&1 &
 pid=$!
