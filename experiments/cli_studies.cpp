@@ -45,8 +45,12 @@ class PlainProgress {
     if (p.study == study_ && now - last_ < std::chrono::seconds(30)) return;
     study_ = p.study;
     last_ = now;
-    write_output("-",
-                 fmt::format("{}: {} of {} points{}\n", p.study, p.done, p.points, left_text(p)));
+    try {
+      write_output("-",
+                   fmt::format("{}: {} of {} points{}\n", p.study, p.done, p.points, left_text(p)));
+    } catch (const Error&) {
+      // That nobody can read it is no reason to lose a point.
+    }
   }
 
  private:
@@ -128,7 +132,8 @@ int StudiesCommand::run() {
       {"quick", quick_},
       {"seed", seed_},
       {"shard", fmt::format("{}/{}", shard.index, shard.of)},
-      {"device", request.device}}.dump();
+      {"device",
+       request.device}}.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   // The device first: without one there is nothing to measure, and no file is made.
   request.provenance = provenance_now(request.device, options);
   if (!shard.from.empty()) {
@@ -190,6 +195,11 @@ int MergeCommand::run() {
   const MergeSummary summary = merge_stores(files, out);
   write_output("-", fmt::format("{} rows of {} studies from {} shards: {}\n", summary.rows,
                                 summary.studies, summary.files, out));
+  if (summary.machines > 1) {
+    write_output("-", fmt::format("note: the shards are of {} machines that differ: their counts "
+                                  "need not be those of one\n",
+                                  summary.machines));
+  }
   return 0;
 }
 

@@ -47,17 +47,19 @@ step() {
 }
 
 picture=build/demo/compare.png
-studies=build/demo/results
+# Rows of another commit do not stand beside this one's.
+commit=$(build/farcull --version)
+studies=build/demo/results-${commit##* }
 rm -f "$picture"
 step "the same as a picture: what is missed is red" build/farcull picture "$scene" \
   --compare cullide:128,cullide:1024,far:128 -o "$picture"
-step "the small grids of all studies, some minutes; what an earlier demo has measured stays" \
+step "the small grids of all studies, some minutes; what an earlier demo of this commit has measured stays" \
   build/farcull experiment all --quick --resume --out "$studies"
 step "the report about them" build/farcull report "$studies"
 
 # Where everything lies.
 echo "demo: in $farcull_root:"
-for made in "$results" "$picture" "$studies"/*.html "$studies"/*.sqlite; do
+for made in "$results" "$picture" "$studies"/report/index.html "$studies"/results.sqlite; do
   if [[ -e $made ]]; then echo "  $made"; fi
 done
 exit "$status"

@@ -15,17 +15,21 @@ farcull_setup
 farcull_build farcull
 bash experiments/meshes.sh || echo "results: points on packaged meshes will be left out"
 
-out=build/results
+# Rows of another commit do not stand beside this one's.
+commit=$(build/farcull --version)
+out=build/results-${commit##* }
 status=0
 build/farcull experiment all --out "$out" --resume "$@" || status=$?
 if ((status > 1)); then exit "$status"; fi
 build/farcull report "$out"
-for kind in figures pictures; do
-  mkdir -p "docs/$kind"
-  rm -f "docs/$kind"/*.svg "docs/$kind"/*.png
-done
 cp "$out"/report/results.md docs/results.md
-cp "$out"/report/figures/*.svg docs/figures/
-if [[ -d $out/report/pictures ]]; then cp "$out"/report/pictures/*.png docs/pictures/; fi
+for kind in figures:svg pictures:png; do
+  folder=${kind%:*}
+  mkdir -p "docs/$folder" "$out/report/$folder"
+  find "$out/report/$folder" -name "*.${kind#*:}" -exec cp -t "docs/$folder" {} +
+  for old in "docs/$folder"/*."${kind#*:}"; do
+    if [[ -e $old && ! -e $out/report/$folder/${old##*/} ]]; then rm "$old"; fi
+  done
+done
 echo "results: docs/results.md, from $out/results.sqlite"
 exit "$status"

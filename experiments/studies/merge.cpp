@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -40,6 +41,23 @@ class Part {
   std::string path_;
 };
 
+// While it lives, signals that would end the program wait, so that no half of a file stays.
+class Uninterrupted {
+ public:
+  Uninterrupted() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
+    ::pthread_sigmask(SIG_BLOCK, &signals, &before_);
+  }
+  ~Uninterrupted() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  Uninterrupted(const Uninterrupted&) = delete;
+  Uninterrupted& operator=(const Uninterrupted&) = delete;
+
+ private:
+  sigset_t before_ = {};
+};
+
 struct Source {
   std::string path;
   std::vector<std::pair<std::int64_t, Provenance>> runs;
@@ -54,6 +72,17 @@ Source read(const std::string& path) {
 }
 
 const char* const kMeasureAgain = "measure it again as the others were";
+
+// Of the program that measured the rows of a study.
+std::set<std::string> commits_of(const Source& source, std::size_t study) {
+  std::set<std::int64_t> used;
+  for (const Row& row : source.studies[study].rows) used.insert(row.run);
+  std::set<std::string> out;
+  for (const auto& [run, provenance] : source.runs) {
+    if (used.contains(run)) out.insert(provenance.commit);
+  }
+  return out;
+}
 
 // That both speak of the same studies, grids and program.
 void require_alike(const Source& first, const Source& other) {
@@ -70,9 +99,12 @@ void require_alike(const Source& first, const Source& other) {
     if (a.points != b.points) refuse(a.study + " has other points");
     if (a.of != b.of) refuse(a.study + " is divided into another number of shards");
   }
-  for (const auto& [run, provenance] : other.runs) {
-    if (!first.runs.empty() && provenance.commit != first.runs.front().second.commit)
-      refuse("is of another commit (" + provenance.commit + ")");
+  for (std::size_t i = 0; i < first.studies.size(); ++i) {
+    std::set<std::string> commits = commits_of(first, i);
+    for (const std::string& commit : commits_of(other, i)) {
+      if (!commits.empty() && !commits.contains(commit))
+        refuse(first.studies[i].declaration.study + " is of another commit (" + commit + ")");
+    }
   }
 }
 
@@ -139,8 +171,11 @@ std::vector<std::string> shard_files(const std::string& folder) {
 }
 
 MergeSummary merge_stores(const std::vector<std::string>& files, const std::string& out) {
-  if (fs::exists(fs::symlink_status(out)))
-    throw Error(out, "is there already", "move it away, or name another file with -o");
+  // A journal would be taken for that of the new file.
+  for (const char* beside : {"", "-journal", "-wal"}) {
+    if (fs::exists(fs::symlink_status(out + beside)))
+      throw Error(out + beside, "is there already", "move it away, or name another file with -o");
+  }
   std::vector<Source> sources;
   for (const std::string& file : files) {
     sources.push_back(read(file));
@@ -148,8 +183,15 @@ MergeSummary merge_stores(const std::vector<std::string>& files, const std::stri
   }
   require_whole(sources);
 
+  const Uninterrupted uninterrupted;
   Part part(out + ".part-" + std::to_string(::getpid()));
   MergeSummary summary{.files = files.size(), .studies = sources.front().studies.size()};
+  std::set<std::string> machines;
+  for (const Source& source : sources) {
+    for (const auto& [run, p] : source.runs)
+      machines.insert(p.gl_renderer + ", " + p.gl_version + ", " + p.cpu + ", " + p.cpu_features);
+  }
+  summary.machines = machines.size();
   {
     Store store(part.path(), Store::Access::write);
     for (const StoredStudy& stored : sources.front().studies) {

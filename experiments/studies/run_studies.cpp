@@ -36,17 +36,29 @@ void make_folder(const std::string& folder) {
   }
 }
 
-// Rows of different programs would stand in one table as if they were of one.
-void require_commit(const Store& store, const StoredStudy& stored, const std::string& commit) {
+// Rows of different programs or machines would stand in one table as if they were of one.
+void require_alike(const Store& store, const StoredStudy& stored, const Provenance& now) {
   std::set<std::int64_t> used;
   for (const Row& row : stored.rows) used.insert(row.run);
-  for (const auto& [run, provenance] : store.runs()) {
-    if (used.contains(run) && provenance.commit != commit) {
-      throw Error(store.path(),
-                  "its rows of " + stored.declaration.study + " are of commit " +
-                      provenance.commit + ", and this is " + commit,
-                  "go on with that commit, or start anew in another folder");
-    }
+  const auto refuse = [&](const char* what, const std::string& then, const std::string& is,
+                          const char* remedy) {
+    throw Error(store.path(),
+                fmt::format("its rows of {} are of {} {}, and this is {}", stored.declaration.study,
+                            what, then, is),
+                remedy);
+  };
+  for (const auto& [run, then] : store.runs()) {
+    if (!used.contains(run)) continue;
+    if (then.commit != now.commit)
+      refuse("commit", then.commit, now.commit,
+             "go on with that commit, or start anew in another folder");
+    if (then.gl_renderer != now.gl_renderer || then.gl_version != now.gl_version)
+      refuse("the device", then.gl_renderer + " (" + then.gl_version + ")",
+             now.gl_renderer + " (" + now.gl_version + ")",
+             "go on with that device (--device), or start anew in another folder");
+    if (then.cpu_features != now.cpu_features)
+      refuse("the processor", then.cpu, now.cpu + ", with other features",
+             "go on with such a processor, or start anew in another folder");
   }
 }
 
@@ -63,9 +75,10 @@ Task open_task(Store& store, const Study& study, const StudiesRequest& request) 
                 fmt::format("holds {} rows of {} already", stored.rows.size(), study.name),
                 "add --resume to go on, or name another folder with --out");
   }
-  require_commit(store, stored, request.provenance.commit);
+  require_alike(store, stored, request.provenance);
   std::vector<bool> done(task.points.size());
-  for (const Row& row : stored.rows) done[row.position] = true;
+  // What could not be had then may be there now.
+  for (const Row& row : stored.rows) done[row.position] = row.measurement.left_out.empty();
   for (std::size_t i = 0; i < task.points.size(); ++i) {
     if (!done[i] && request.shard.holds(i)) task.open.push_back(i);
   }
@@ -80,7 +93,10 @@ std::string lacking(const Point& point) {
                                   [&](const BuiltinScene& scene) { return scene.name == base; });
   if (entry == known.end() || !entry->needs_meshes) return "";
   const std::string folder = mesh_folder();
-  if (std::filesystem::is_directory(folder) && !std::filesystem::is_empty(folder)) return "";
+  std::error_code code;
+  if (std::filesystem::is_directory(folder, code) && !std::filesystem::is_empty(folder, code) &&
+      !code)
+    return "";
   return "the packaged meshes are not in " + folder + "; bash experiments/meshes.sh fetches them";
 }
 

@@ -57,11 +57,11 @@ struct StudiesSummary {
 /// `violations` above 0.
 bool breaks_promise(const Measurement& measurement);
 
-/// Measures what has no row yet. An Error at a point is noted and the next point gets a new device;
-/// one of the store ends the run. Signals end the program, with a line that says how many points
-/// are kept. Throws Error for a folder that cannot be made, a store as Store and Store::declare()
-/// refuse it, one that has rows of a study where `resume` is not set, or rows by another commit of
-/// farcull.
+/// Measures what has no row yet, or one that says why nothing was measured. An Error at a point is
+/// noted and the next point gets a new device; one of the store ends the run. Signals end the
+/// program, with a line that says how many points are kept. Throws Error for a folder that cannot
+/// be made, a store as Store and Store::declare() refuse it, one that has rows of a study where
+/// `resume` is not set, or rows by another commit of farcull, another device or other CPU features.
 StudiesSummary run_studies(const StudiesRequest& request,
                            const std::function<void(const StudiesProgress&)>& progress = {});
 

@@ -69,6 +69,12 @@ Shard shard_from_environment(const std::function<const char*(const char*)>& vari
       throw Error("SLURM_ARRAY_TASK_COUNT", "the array has gaps, or does not say where it ends",
                   "submit it as --array=1-N, or give --shard K/N");
     }
+    // A part of an array that is submitted again would take itself for the whole.
+    if (least != 0 && least != 1) {
+      throw Error("SLURM_ARRAY_TASK_MIN", fmt::format("the array begins at {}", least),
+                  "submit it as --array=1-N, all of it (what is done is not measured again), or "
+                  "give --shard K/N");
+    }
     return made("SLURM_ARRAY_TASK_ID", *task - least + 1, *count);
   }
   if (ranks) return made("OMPI_COMM_WORLD_RANK", *rank + 1, *size);

@@ -19,7 +19,8 @@ struct Shard {
 /// "K/N" with 1 <= K <= N <= 100000. Throws Error naming --shard.
 Shard parse_shard(const std::string& text);
 
-/// As an array job of Slurm (SLURM_ARRAY_TASK_ID, _MIN, _MAX, _COUNT; steps of one) or a process of
+/// As an array job of Slurm (SLURM_ARRAY_TASK_ID, _MIN, _MAX, _COUNT; steps of one
+/// from 0 or 1) or a process of
 /// Open MPI (OMPI_COMM_WORLD_RANK, _SIZE) says; the whole study where neither speaks. `variable`
 /// gives an environment variable or null. Throws Error naming the variable where it is no number,
 /// the array has gaps, or both speak.

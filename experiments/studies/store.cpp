@@ -123,6 +123,11 @@ Json parsed(const std::string& path, const std::string& text) {
   return out;
 }
 
+// Numbers in full; a text that is no UTF-8 (of a driver, say) loses what is none.
+std::string text_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string grid_text(const GridChoice& choice) {
   return fmt::format("the {} grid with seed {}", choice.quick ? "quick" : "full", choice.seed);
 }
@@ -160,7 +165,9 @@ Store::Store(const std::string& path, Access access) {
   guarded(path, [&] {
     // Also for reading: what a killed program left half done is taken back first.
     const int flags = SQLite::OPEN_READWRITE | (write ? SQLite::OPEN_CREATE : 0);
-    state_ = std::make_unique<State>(State{path, SQLite::Database(path, flags)});
+    // SQLite takes "file:..." for something else than a file.
+    const std::string name = path.starts_with('/') ? path : "./" + path;
+    state_ = std::make_unique<State>(State{path, SQLite::Database(name, flags)});
     SQLite::Database& database = state_->database;
     database.exec("PRAGMA foreign_keys = ON");
     // No other program gets in, until the file is closed or the program ends, however it ends.
@@ -185,7 +192,9 @@ Store::Store(const std::string& path, Access access) {
                   "use the farcull that made it, or start anew in another folder");
     }
     if (write) database.exec("COMMIT");
-    const std::string sound = database.execAndGet("PRAGMA quick_check(1)").getString();
+    std::string sound = database.execAndGet("PRAGMA integrity_check(1)").getString();
+    if (SQLite::Statement(database, "PRAGMA foreign_key_check").executeStep())
+      sound = "rows without their point or run";
     if (sound != "ok") {
       throw Error(path, "is damaged (" + sound + ")",
                   "restore it from a copy, or start anew in another folder");
@@ -353,17 +362,26 @@ void Store::add(const std::string& study, std::int64_t run, std::size_t position
 
 void Store::add(const std::string& study, const Row& row) {
   guarded(state_->path, [&] {
-    // One statement is one transaction.
-    SQLite::Statement insert(state_->database, "INSERT INTO rows VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+    // One statement is one transaction. What says why nothing was measured gives way.
+    SQLite::Statement insert(
+        state_->database,
+        "INSERT INTO rows VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (study, position) DO UPDATE "
+        "SET run = excluded.run, measured = excluded.measured, device = excluded.device, counts = "
+        "excluded.counts, times = excluded.times, left_out = excluded.left_out WHERE rows.left_out "
+        "!= ''");
     insert.bind(1, study);
     insert.bind(2, static_cast<std::int64_t>(row.position));
     insert.bind(3, row.run);
     insert.bind(4, row.measured);
     insert.bind(5, row.measurement.device);
-    insert.bind(6, row.measurement.counts.dump());
-    insert.bind(7, row.measurement.times.dump());
+    insert.bind(6, text_of(row.measurement.counts));
+    insert.bind(7, text_of(row.measurement.times));
     insert.bind(8, row.measurement.left_out);
-    insert.exec();
+    if (insert.exec() == 0) {
+      throw Error(state_->path,
+                  fmt::format("point {} of {} has its row already", row.position, study),
+                  "let one program at a time measure into it");
+    }
   });
 }
 
@@ -390,8 +408,12 @@ StoredStudy Store::study(const std::string& name) const {
     while (select.executeStep()) {
       const auto text = [&](int column) { return select.getColumn(column).getString(); };
       const auto position = static_cast<std::size_t>(select.getColumn(0).getInt64());
+      if (position >= out.declaration.points.size()) {
+        throw Error(state_->path, "is damaged: a row of " + name + " has no point",
+                    "restore it from a copy, or start anew in another folder");
+      }
       out.rows.push_back({.position = position,
-                          .point = out.declaration.points.at(position),
+                          .point = out.declaration.points[position],
                           .measurement = {.counts = parsed(state_->path, text(4)),
                                           .times = parsed(state_->path, text(5)),
                                           .device = text(3),

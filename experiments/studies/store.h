@@ -82,8 +82,9 @@ class Store {
   void declare(const Declaration& declaration);
   /// Positions that have a row, ascending.
   std::vector<std::size_t> done(const std::string& study) const;
-  /// In one transaction, on the disk when it returns. Throws Error where the disk refuses; the file
-  /// is then as before.
+  /// In one transaction, on the disk when it returns. A row that says why nothing was measured is
+  /// replaced. Throws Error where the point has another row, is none of the grid, or the disk
+  /// refuses; the file is then as before.
   void add(const std::string& study, std::int64_t run, std::size_t position,
            const Measurement& measurement);
   /// The same for a row of another store; row.run is the number here. `point` is not looked at.

@@ -104,7 +104,7 @@ measure --out limited --resume || fail "limited file" "status $?"
 same "limited file" limited
 
 # Shards, by the option and by the variables of Slurm and Open MPI.
-SLURM_ARRAY_TASK_ID=7 SLURM_ARRAY_TASK_MIN=5 SLURM_ARRAY_TASK_MAX=8 SLURM_ARRAY_TASK_COUNT=4 \
+SLURM_ARRAY_TASK_ID=3 SLURM_ARRAY_TASK_MIN=1 SLURM_ARRAY_TASK_MAX=4 SLURM_ARRAY_TASK_COUNT=4 \
   measure --out shards || fail shards "status $?"
 expect shards "$out" '^shard 3 of 4, by SLURM_ARRAY_TASK_ID$'
 OMPI_COMM_WORLD_RANK=1 OMPI_COMM_WORLD_SIZE=4 measure --out shards || fail shards "status $?"
@@ -122,6 +122,10 @@ sqlite3 shards/results.sqlite "UPDATE rows SET counts = '{}' WHERE position = 3"
 differ "a row that was changed" shards
 sqlite3 shards/results-2-of-4.sqlite "DELETE FROM rows WHERE position = 5"
 bad "a hole" 'shards/results-2-of-4.sqlite: has no row of radius' merge shards -o new.sqlite
+
+# A folder that SQLite would take for something else than a folder.
+good "a folder with a colon" 0 experiment "$study" --quick --out 'file:x?mode=memory&q=' --shard 1/1000
+expect "a folder with a colon" <(ls 'file:x?mode=memory&q=') '^results-1-of-1000.sqlite$'
 
 # What is refused.
 bad "again without --resume" 'whole/results.sqlite: holds [0-9]+ rows of radius already' \

@@ -87,6 +87,39 @@ TEST(Merge, RefusesAPointThatTwoFilesHold) {
             std::string::npos);
 }
 
+// A run that was ended before its first row says nothing of the rows.
+TEST(Merge, TakesNoOffenceAtARunWithoutRows) {
+  const ScratchFolder folder;
+  std::vector<std::string> files;
+  for (int shard = 1; shard <= 2; ++shard)
+    files.push_back(measure_shard(folder.folder(), shard, 2));
+  { Store(files[1], Store::Access::write).begin_run(lab_provenance("decade")); }
+  EXPECT_NO_THROW(merge_stores(files, folder.path("out")));
+}
+
+TEST(Merge, DoesNotPutAFileBesideAJournalThatIsNotItsOwn) {
+  const ScratchFolder folder;
+  const std::string file = measure_shard(folder.folder(), 1, 1);
+  for (const char* beside : {"out-journal", "out-wal"}) {
+    const std::string journal = folder.write(beside, "of another file");
+    EXPECT_NE(message_of([&] { merge_stores({file}, folder.path("out")); }).find(beside),
+              std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(folder.path("out")));
+    std::filesystem::remove(journal);
+  }
+  EXPECT_NO_THROW(merge_stores({file}, folder.path("out")));
+}
+
+TEST(Merge, CountsTheMachinesThatDiffer) {
+  const ScratchFolder folder;
+  Provenance other = lab_provenance();
+  other.cpu_features = "a b c";
+  const std::vector<std::string> files = {measure_shard(folder.folder(), 1, 2),
+                                          measure_shard(folder.folder(), 2, 2, other)};
+  EXPECT_EQ(merge_stores(files, folder.path("out")).machines, 2u);
+  EXPECT_EQ(merge_stores({measure_shard(folder.folder(), 1, 1)}, folder.path("one")).machines, 1u);
+}
+
 TEST(Merge, RefusesWhatWasMeasuredOtherwise) {
   const ScratchFolder folder, second, third;
   const std::string first = measure_shard(folder.folder(), 1, 2);
@@ -133,9 +166,9 @@ Shard from(const std::map<std::string, std::string>& variables) {
 
 TEST(Shards, ComeFromSlurmOrOpenMpi) {
   EXPECT_EQ(from({}).of, 1);
-  const Shard slurm = from({{"SLURM_ARRAY_TASK_ID", "5"},
-                            {"SLURM_ARRAY_TASK_MIN", "3"},
-                            {"SLURM_ARRAY_TASK_MAX", "8"},
+  const Shard slurm = from({{"SLURM_ARRAY_TASK_ID", "3"},
+                            {"SLURM_ARRAY_TASK_MIN", "1"},
+                            {"SLURM_ARRAY_TASK_MAX", "6"},
                             {"SLURM_ARRAY_TASK_COUNT", "6"}});
   EXPECT_EQ(slurm.index, 3);
   EXPECT_EQ(slurm.of, 6);
@@ -154,6 +187,14 @@ TEST(Shards, RefuseAnEnvironmentThatDoesNotAddUp) {
                     {"SLURM_ARRAY_TASK_MAX", "7"},
                     {"SLURM_ARRAY_TASK_COUNT", "4"}});
             }).find("gaps"),
+            std::string::npos);
+  // --array=3: one task of an array, submitted again.
+  EXPECT_NE(message_of([] {
+              from({{"SLURM_ARRAY_TASK_ID", "3"},
+                    {"SLURM_ARRAY_TASK_MIN", "3"},
+                    {"SLURM_ARRAY_TASK_MAX", "3"},
+                    {"SLURM_ARRAY_TASK_COUNT", "1"}});
+            }).find("begins at 3"),
             std::string::npos);
   EXPECT_NE(message_of([] {
               from({{"SLURM_ARRAY_TASK_ID", "x"}});

@@ -1,5 +1,6 @@
 #include "experiments/studies/store.h"
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -157,6 +158,19 @@ TEST(Store, RefusesOtherProgramsDatabasesOtherVersionsAndDamage) {
             std::string::npos);
 }
 
+// Byte for byte sound, but what it says does not fit together.
+TEST(Store, RefusesARowWithoutItsPoint) {
+  const ScratchFolder folder;
+  run_studies(lab_request(folder.folder(), {counting_study(3)}));
+  const std::string path = store_path(folder.folder());
+  {
+    SQLite::Database database(path, SQLite::OPEN_READWRITE);
+    database.exec("UPDATE rows SET position = 1000 WHERE position = 2");
+  }
+  EXPECT_NE(message_of([&] { Store(path, Store::Access::read); }).find("rows without their point"),
+            std::string::npos);
+}
+
 TEST(Store, KeepsEveryOtherProgramOut) {
   const ScratchFolder folder;
   const std::string path = folder.path("s");
@@ -293,6 +307,37 @@ TEST(RunStudies, WantsResumeToGoOnAndTheSameCommit) {
   // Another study may stand beside it.
   other.studies = {counting_study(4, {}, "second")};
   EXPECT_NO_THROW(run_studies(other));
+}
+
+TEST(RunStudies, GoesOnWithTheSameDeviceAndProcessorOnly) {
+  const ScratchFolder folder;
+  const Study study = counting_study(4);
+  run_studies(lab_request(folder.folder(), {study}));
+  StudiesRequest other = lab_request(folder.folder(), {study}, true);
+  other.provenance.gl_renderer = "another";
+  EXPECT_NE(message_of([&] { run_studies(other); }).find("of the device r (4.5), and this is"),
+            std::string::npos);
+  other.provenance = lab_provenance();
+  other.provenance.cpu_features = "a";
+  EXPECT_NE(message_of([&] { run_studies(other); }).find("of the processor"), std::string::npos);
+  other.provenance = lab_provenance();
+  EXPECT_NO_THROW(run_studies(other));
+}
+
+TEST(RunStudies, TriesAgainWhatWasLeftOutAndNothingElse) {
+  const ScratchFolder folder, undisturbed;
+  const Study study = counting_study(10);
+  Study lacking = study;
+  lacking.measure = [right = study.measure](const Point& point, Lab& lab) {
+    if (point.resolution == 3) return Measurement{.device = "none", .left_out = "it is not there"};
+    return right(point, lab);
+  };
+  EXPECT_EQ(run_studies(lab_request(folder.folder(), {lacking})).studies.front().left_out, 1u);
+  const StudiesSummary again = run_studies(lab_request(folder.folder(), {study}, true));
+  EXPECT_EQ(again.studies.front().measured, 1u);
+  EXPECT_EQ(again.studies.front().left_out, 0u);
+  run_studies(lab_request(undisturbed.folder(), {study}));
+  EXPECT_EQ(difference(store_path(folder.folder()), store_path(undisturbed.folder())), "");
 }
 
 TEST(RunStudies, TriesAFailedPointAgainAndMeasuresTheOthers) {
