@@ -90,7 +90,8 @@ Truth without_neighbours(const Scene& scene, const Truth& truth) {
   return out;
 }
 
-Measurement measure_peer(const Peer& peer, Lab& lab, unsigned threads, int repeat) {
+Measurement measure_peer(const Point& point, const Peer& peer, Lab& lab, unsigned threads,
+                         int repeat) {
   Measurement out;
   out.device = "cpu";
   const Scene& scene = lab.current();
@@ -98,33 +99,42 @@ Measurement measure_peer(const Peer& peer, Lab& lab, unsigned threads, int repea
   if (!out.left_out.empty()) return out;
   const Truth truth = without_neighbours(scene, lab.truth());
   const BenchRun run = peer.set_up(threads);
-  struct Timed {
-    double ms;
-    BenchAnswer answer;
+  struct Times {
+    double total, build;
   };
-  std::vector<Timed> runs;
+  std::vector<Times> times;
+  Outcome first;
   for (int i = 0; i < repeat; ++i) {
     if (lab.progress()) lab.progress()(peer.name);
     const Stopwatch watch;
     BenchAnswer answer = run(scene);
-    runs.push_back({watch.ms(), std::move(answer)});
+    times.push_back({watch.ms(), answer.build_ms});
+    const Errors errors = errors_of(truth, answer.pairs);
+    Outcome outcome{.pairs = std::move(answer.pairs),
+                    .counts = {{"colliding", truth.pairs.size()},
+                               {"missed", errors.missed},
+                               {"wrong", errors.wrong},
+                               {"colliding_triangles", truth.triangles},
+                               {"missed_triangles", errors.missed_triangles},
+                               {"candidates", answer.candidate_pairs},
+                               {"triangles", scene.triangles.size()},
+                               {"objects", scene.objects.size()},
+                               {"library", peer.library}},
+                    .device = out.device};
+    if (i == 0) {
+      first = std::move(outcome);
+    } else {
+      require_same(point, first, outcome);
+    }
   }
-  std::sort(runs.begin(), runs.end(), [](const Timed& a, const Timed& b) { return a.ms < b.ms; });
-  const Timed& middle = runs[(runs.size() - 1) / 2];
-  const Errors errors = errors_of(truth, middle.answer.pairs);
-  out.counts = {{"colliding", truth.pairs.size()},
-                {"missed", errors.missed},
-                {"wrong", errors.wrong},
-                {"colliding_triangles", truth.triangles},
-                {"missed_triangles", errors.missed_triangles},
-                {"candidates", middle.answer.candidate_pairs},
-                {"triangles", scene.triangles.size()},
-                {"objects", scene.objects.size()},
-                {"library", peer.library}};
-  out.times = {{"build", middle.answer.build_ms},
-               {"total", middle.ms},
-               {"total_min", runs.front().ms},
-               {"total_max", runs.back().ms}};
+  std::sort(times.begin(), times.end(),
+            [](const Times& a, const Times& b) { return a.total < b.total; });
+  const Times& middle = times[(times.size() - 1) / 2];
+  out.counts = std::move(first.counts);
+  out.times = {{"build", middle.build},
+               {"total", middle.total},
+               {"total_min", times.front().total},
+               {"total_max", times.back().total}};
   return out;
 }
 
@@ -134,7 +144,7 @@ Measurement measure(const Point& point, Lab& lab) {
   const std::vector<Peer> peer = peer_named(point.method, threads);
   const int repeat = repeat_of(point.scene);
   return peer.empty() ? measure_run(point, lab, repeat)
-                      : measure_peer(peer.front(), lab, threads, repeat);
+                      : measure_peer(point, peer.front(), lab, threads, repeat);
 }
 
 }  // namespace

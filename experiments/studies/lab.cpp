@@ -1,9 +1,14 @@
 #include "experiments/studies/lab.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <set>
+#include <iterator>
+#include <stdexcept>
 #include <utility>
 
+#include "core/error.h"
+#include "core/stopwatch.h"
 #include "experiments/scene_file.h"
 #include "experiments/tables.h"
 #include "verify/contact.h"
@@ -52,6 +57,45 @@ std::uint64_t missed_penetrating(const Scene& scene, const Truth& truth,
   return count_contacts(scene, missed).penetrating;
 }
 
+Outcome outcome_of(const Scene& scene, const Truth& truth, const RunRecord& record) {
+  Outcome out;
+  out.pairs = all_pairs(record.pairs, record.neighbour_pairs);
+  out.device = record.device ? record.device->renderer : "cpu";
+  const Errors errors = errors_of(truth, out.pairs);
+  out.counts = {{"colliding", truth.pairs.size()},
+                {"missed", errors.missed},
+                {"missed_penetrating", missed_penetrating(scene, truth, out.pairs)},
+                {"colliding_triangles", truth.triangles},
+                {"missed_triangles", errors.missed_triangles},
+                {"candidates", record.candidate_pairs},
+                {"kept_triangles", record.pcs_triangles},
+                {"kept_objects", record.pcs_objects},
+                {"triangles", scene.triangles.size()},
+                {"objects", scene.objects.size()},
+                {"promises", record.promises},
+                {"scene_hash", record.scene_hash}};
+  const Method method = record.options.method;
+  if (method == Method::i_collide) out.counts["object_triangles"] = record.object_triangles;
+  if (draws(method)) {
+    Stage sum;
+    for (const Stage& stage : record.stages) {
+      sum.queries += stage.queries;
+      sum.draws += stage.draws;
+      sum.queries_saved += stage.queries_saved;
+      sum.draws_saved += stage.draws_saved;
+    }
+    out.counts["queries"] = sum.queries;
+    out.counts["draws"] = sum.draws;
+    out.counts["queries_saved"] = sum.queries_saved;
+    out.counts["draws_saved"] = sum.draws_saved;
+    if (const ViewReport* view = widest_budget(record.views)) {
+      out.counts["radius_px"] = view->radius_px;
+      out.counts["pixel_size"] = view->pixel_size;
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 Errors errors_of(const Truth& truth, const std::vector<TrianglePair>& pairs) {
@@ -60,28 +104,51 @@ Errors errors_of(const Truth& truth, const std::vector<TrianglePair>& pairs) {
           .wrong = lacking(pairs, truth.pairs)};
 }
 
+void require_same(const Point& point, const Outcome& first, const Outcome& other) {
+  std::string what;
+  const auto add = [&what](const std::string& text) { what += (what.empty() ? "" : ", ") + text; };
+  if (first.device != other.device) add("device " + first.device + " and " + other.device);
+  nlohmann::ordered_json all = first.counts;
+  all.update(other.counts);
+  for (const auto& [name, value] : all.items()) {
+    const auto of = [&name](const Outcome& outcome) {
+      return outcome.counts.contains(name) ? outcome.counts.at(name).dump() : "none";
+    };
+    if (of(first) != of(other)) add(name + " " + of(first) + " and " + of(other));
+  }
+  if (first.pairs != other.pairs) {
+    add(fmt::format("{} and {} pairs that are in one answer alone",
+                    lacking(first.pairs, other.pairs), lacking(other.pairs, first.pairs)));
+  }
+  if (what.empty()) return;
+  throw Error(describe(point), "two runs of the same point differ: " + what,
+              "run farcull doctor; the device is not deterministic");
+}
+
 Lab::Lab(std::string device, Progress progress)
     : device_(std::move(device)), progress_(std::move(progress)), session_(device_) {}
 
 const Scene& Lab::scene(const std::string& name, long frame, long frames) {
-  if (current_ != nullptr && name == name_ && frame == frame_) return *current_;
+  if (frame < 0) frames = 0;
+  const bool same = name == name_ && frames == frames_;
+  if (current_ != nullptr && same && frame == frame_) return *current_;
   if (progress_) progress_("reading " + name);
   current_ = nullptr;
   truth_.reset();
-  if (name != name_) {
+  if (!same) {
     source_.reset();
     session_.sweep().forget();
   }
+  name_ = name;
+  frame_ = frame;
+  frames_ = frames;
   if (frame < 0) {
-    source_.reset();
     scene_ = load_scene({name});
     current_ = &scene_;
   } else {
     if (!source_) source_.emplace(std::vector{name}, FrameRange{0, frames - 1}, false);
     current_ = &source_->at(frame);
   }
-  name_ = name;
-  frame_ = frame;
   return *current_;
 }
 
@@ -91,9 +158,10 @@ const Scene& Lab::scene(const std::string& name, const std::function<Scene()>& m
   truth_.reset();
   source_.reset();
   session_.sweep().forget();
-  scene_ = make();
   name_ = name;
   frame_ = -1;
+  frames_ = 0;
+  scene_ = make();
   current_ = &scene_;
   return scene_;
 }
@@ -128,53 +196,38 @@ RunOptions options_of(const Point& point, const Lab& lab) {
 }
 
 Measurement measure_run(const Point& point, Lab& lab, int repeat, RunRecord* kept) {
+  if (repeat < 1 || (point.frame >= 0 && repeat > 1))
+    throw std::logic_error("measure_run: runs of " + describe(point));
   const RunOptions options = options_of(point, lab);
   const Scene& scene = lab.current();
   const Truth& truth = lab.truth();
-  std::vector<RunRecord> records;
   double setup = 0;
+  if (options.method == Method::far_pairs) {
+    // Else the first run might go without a device, and a later one not.
+    const Stopwatch watch;
+    lab.session().pairs();
+    setup += watch.ms();
+  }
+  std::vector<RunRecord> records;
+  Outcome first;
   for (int i = 0; i < repeat; ++i) {
+    if (point.frame < 0) lab.session().sweep().forget();
     records.push_back(run_scene(scene, options, lab.session(), lab.progress()));
     setup += records.back().ms.setup;
+    Outcome outcome = outcome_of(scene, truth, records.back());
+    if (i == 0) {
+      first = std::move(outcome);
+    } else {
+      require_same(point, first, outcome);
+    }
   }
   std::sort(records.begin(), records.end(),
             [](const RunRecord& a, const RunRecord& b) { return total_of(a) < total_of(b); });
   RunRecord& record = records[(records.size() - 1) / 2];
-  const std::vector<TrianglePair> found = all_pairs(record.pairs, record.neighbour_pairs);
-  const Errors errors = errors_of(truth, found);
 
   Measurement out;
-  out.device = record.device ? record.device->renderer : "cpu";
-  out.counts = {{"colliding", truth.pairs.size()},
-                {"missed", errors.missed},
-                {"missed_penetrating", missed_penetrating(scene, truth, found)},
-                {"colliding_triangles", truth.triangles},
-                {"missed_triangles", errors.missed_triangles},
-                {"candidates", record.candidate_pairs},
-                {"kept_triangles", record.pcs_triangles},
-                {"kept_objects", record.pcs_objects},
-                {"triangles", scene.triangles.size()},
-                {"objects", scene.objects.size()},
-                {"promises", record.promises},
-                {"scene_hash", record.scene_hash}};
-  if (options.method == Method::i_collide) out.counts["object_triangles"] = record.object_triangles;
-  if (draws(options.method)) {
-    Stage sum;
-    for (const Stage& stage : record.stages) {
-      sum.queries += stage.queries;
-      sum.draws += stage.draws;
-      sum.queries_saved += stage.queries_saved;
-      sum.draws_saved += stage.draws_saved;
-    }
-    out.counts["queries"] = sum.queries;
-    out.counts["draws"] = sum.draws;
-    out.counts["queries_saved"] = sum.queries_saved;
-    out.counts["draws_saved"] = sum.draws_saved;
-    if (const ViewReport* view = widest_budget(record.views)) {
-      out.counts["radius_px"] = view->radius_px;
-      out.counts["pixel_size"] = view->pixel_size;
-    }
-  }
+  out.device = first.device;
+  out.counts = std::move(first.counts);
   out.times = {{"cull", record.ms.cull},
                {"exact", record.ms.exact},
                {"total", total_of(record)},

@@ -30,6 +30,16 @@ struct Errors {
 /// pairs: sorted.
 Errors errors_of(const Truth& truth, const std::vector<TrianglePair>& pairs);
 
+/// What one of several runs of the same point gave, without times.
+struct Outcome {
+  std::vector<TrianglePair> pairs;
+  nlohmann::ordered_json counts = nlohmann::ordered_json::object();
+  std::string device;
+};
+/// Throws Error naming what differs, each count with both values (a miss among them), where two
+/// runs of a point differ in anything: none of them then stands for the point.
+void require_same(const Point& point, const Outcome& first, const Outcome& other);
+
 class Lab {
  public:
   /// device: as --device, "" for what answers first.
@@ -40,7 +50,8 @@ class Lab {
   const Progress& progress() const { return progress_; }
 
   /// The scene of that name, read once while no other is asked for. frame < 0: without frames; else
-  /// the frame of a motion that has `frames` of them.
+  /// the frame of a motion that has `frames` of them; the same name with another number of frames
+  /// is another scene.
   const Scene& scene(const std::string& name, long frame = -1, long frames = 0);
   /// A scene that `make` gives, kept under the name as those above.
   const Scene& scene(const std::string& name, const std::function<Scene()>& make);
@@ -54,6 +65,7 @@ class Lab {
   Session session_;
   std::string name_;
   long frame_ = -1;
+  long frames_ = 0;  // 0: without frames
   std::optional<FrameSource> source_;
   Scene scene_;
   const Scene* current_ = nullptr;
@@ -65,13 +77,17 @@ class Lab {
 RunOptions options_of(const Point& point, const Lab& lab);
 
 /// Runs the point's method on the scene that the lab holds, once, or `repeat` times with the median
-/// time. counts: colliding, missed, of these missed_penetrating (verify/contact.h; the rest
-/// touches), missed_triangles, colliding_triangles (of the truth),
-/// candidates, kept_triangles, kept_objects, object_triangles (of i-collide), triangles, objects,
-/// queries, draws, queries_saved, draws_saved, radius_px, pixel_size (both of the view with the
-/// widest budget; of methods that draw), promises, scene_hash. times: cull, exact, total (their
-/// sum), setup; with several runs total_min and total_max. record: where the run with the median
-/// time goes; may be null.
+/// time. What a run is given does not depend on what the lab ran before: far-pairs has its device
+/// open, and i-collide starts without lists. Only at a point with a frame it keeps the lists of the
+/// frame before, which is I-COLLIDE's point; a second run of the same frame would find them sorted,
+/// so `repeat` is 1 there (std::logic_error otherwise). Throws Error as run_scene() and
+/// require_same() do. counts: colliding, missed, of these missed_penetrating (verify/contact.h; the
+/// rest touches), missed_triangles, colliding_triangles (of the truth), candidates, kept_triangles,
+/// kept_objects, object_triangles (of i-collide), triangles, objects, queries, draws,
+/// queries_saved, draws_saved, radius_px, pixel_size (both of the view with the widest budget; of
+/// methods that draw), promises, scene_hash. times: cull, exact, total (their sum), setup; with
+/// several runs total_min and total_max. record: where the run with the median time goes; may be
+/// null.
 Measurement measure_run(const Point& point, Lab& lab, int repeat = 1, RunRecord* record = nullptr);
 
 }  // namespace farcull

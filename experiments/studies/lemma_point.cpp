@@ -21,6 +21,11 @@ Fattener drawn_as(const Point& point) {
   return point.offset == "exact" ? exact_fattener() : obb_fattener();
 }
 
+// As promises() of run.h says of FAR's own runs.
+bool promises_of(const Point& point, const RadiusRule& rule) {
+  return point.depth_mode == "fragment" && !rule.published && rule.factor >= 1;
+}
+
 template <class Number>
 Number number(const std::string& text) {
   Number value{};
@@ -97,7 +102,8 @@ Measurement measure_lemma(const Point& point, Lab& lab) {
                 {"largest_steps", row.largest_steps},
                 {"step_px", step_px},
                 {"radius_px", radius_px},
-                {"budget_px", budget_px}};
+                {"budget_px", budget_px},
+                {"promises", promises_of(point, rule)}};
   return out;
 }
 

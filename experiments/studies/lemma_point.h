@@ -24,7 +24,8 @@ LemmaScene parse_lemma_scene(const std::string& text);
 /// depth_format: given, or with fixed depth: the samples are what a buffer of it holds
 /// (LemmaSettings::stored); not given: what the shader computes. resolution: the window's side; 0:
 /// the generator's own. counts: points, violations, no_sample, not_bounding, rounded, largest_px,
-/// largest_steps, step_px (of the depth buffer), radius_px, budget_px. times: total.
+/// largest_steps, step_px (of the depth buffer), radius_px, budget_px, promises (fragment depth at
+/// the budget radius or more: a violation breaks the guarantee). times: total.
 Measurement measure_lemma(const Point& point, Lab& lab);
 
 }  // namespace farcull
