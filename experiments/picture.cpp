@@ -15,6 +15,7 @@
 #include "experiments/builtin_scenes.h"
 #include "experiments/output.h"
 #include "experiments/scene_file.h"
+#include "experiments/shell_word.h"
 #include "experiments/tables.h"
 
 namespace farcull {
@@ -195,17 +196,6 @@ DrawnPanel panel_of(const RunOptions& options, const Scene& scene, const Window&
                             result.idle == 1 ? "" : "s"));
   }
   return panel;
-}
-
-std::string quoted(const std::string& word) {
-  const auto plain = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-           std::string_view("-_./,:@%+=").find(c) != std::string_view::npos;
-  };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
 }
 
 // "cullide", or "cullide:128" where the panel says so.
