@@ -45,10 +45,11 @@ int ReportCommand::run() {
   ReportRequest request;
   request.folder = folder_;
   request.progress = terminal.callback();
-  request.draw_picture = [&](const std::string& arguments, const std::string& path) {
+  request.draw_picture = [&](const std::string& arguments,
+                             const std::string& path) -> std::vector<PanelResult> {
     if (no_pictures_) throw Error("--no-pictures", "was given", "leave it out");
     if (!lab) lab.emplace(device_of(device_), request.progress);
-    write_picture(picture_arguments(arguments), *lab, path);
+    return write_picture(picture_arguments(arguments), *lab, path).panels;
   };
   const ReportSummary summary = write_report(request);
   terminal.clear();
@@ -58,7 +59,8 @@ int ReportCommand::run() {
                       summary.studies, summary.figures, summary.tables, summary.pictures,
                       summary.folder);
   write_output("-", text);
-  return 0;
+  for (const std::string& broken : summary.broken) complain("a promise is broken: " + broken);
+  return summary.broken.empty() ? 0 : 1;
 }
 
 }  // namespace farcull

@@ -11,7 +11,8 @@ namespace farcull {
 class ReportCommand {
  public:
   CLI::App* add_to(CLI::App& app);
-  /// The exit status. Throws Error as write_report() does.
+  /// The exit status: 1 where a row or a picture breaks a promise, else 0. Throws Error as
+  /// write_report() does.
   int run();
 
  private:

@@ -182,7 +182,14 @@ Scale linear_scale(const Axis& axis, const std::vector<double>& values, std::siz
   }
   const double span = most - least;
   const double target = std::clamp(static_cast<double>(room) / 9.0, 2.0, 6.0);
-  const double step = std::max(round_up(span / target), std::numeric_limits<double>::min());
+  double step = std::max(round_up(span / target), std::numeric_limits<double>::min());
+  // One tick gives no scale: where both ends are given, hardly a multiple of the step may be
+  // between them.
+  while (axis.from && axis.to && even_ticks(least, most, step).size() < 3) {
+    const double finer = round_down(0.9 * step);
+    if (!(finer > span / 20)) break;
+    step = finer;
+  }
   scale.from = axis.from ? least : std::floor(least / step + 1e-9) * step;
   scale.to = axis.to ? most : std::ceil(most / step - 1e-9) * step;
   // Rounding must not leave a value outside.

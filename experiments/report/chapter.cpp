@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "experiments/report/pictures.h"
+#include "experiments/report/rows.h"
 
 namespace farcull {
 namespace {
@@ -28,6 +29,7 @@ Chapter chapter_of(const StoredStudy& stored) {
                 "use the farcull that measured it");
   }
   Chapter chapter = at->second(stored);
+  put_broken_first(chapter);
   if (chapter.study == "accuracy") chapter.pictures = accuracy_pictures(stored);
   return chapter;
 }

@@ -61,11 +61,22 @@ struct DataTable {
   bool in_text = true;  // shown in the page and in LaTeX; false: long, so linked as CSV alone
 };
 
-struct Picture {
-  std::string name;  // of its PNG
-  std::string caption;
-  std::string command;  // that makes it: arguments of farcull picture, without -o
+/// What the rows say of a panel of a picture.
+struct PanelCounts {
+  std::string method;  // in words
+  std::optional<double> missed, colliding;
 };
+
+struct Picture {
+  std::string name;     // of its PNG
+  std::string caption;  // without its counts: these are of the picture that is drawn
+  std::string command;  // that makes it: arguments of farcull picture, without -o
+  std::vector<PanelCounts> panels = {};  // from the left
+};
+
+/// How a finding begins that tells of a promise that was not kept.
+inline constexpr const char* kBroken = "BROKEN:";
+inline bool is_broken(const std::string& finding) { return finding.starts_with(kBroken); }
 
 struct Chapter {
   std::string study;
@@ -79,7 +90,8 @@ struct Chapter {
   std::vector<Picture> pictures = {};
 };
 
-/// The chapter of a study from its rows, all or those that are there.
+/// The chapter of a study from its rows, all or those that are there. A finding that is_broken()
+/// stands before all others.
 using ChapterOf = Chapter (*)(const StoredStudy&);
 Chapter chapter_of(const StoredStudy& stored);
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include "experiments/report/chapter.h"
 #include "experiments/report/numbers.h"
+#include "experiments/report/rows.h"
 #include "experiments/tables.h"
 
 namespace farcull {
@@ -30,10 +30,21 @@ struct MovingRows {
     const auto row = rows->second.find(frame);
     return row == rows->second.end() ? std::nullopt : count_of(*row->second, name);
   }
-  // Over all frames; empty where there is none.
-  std::optional<double> sum(const std::string& method, const char* name) const {
+  // Frames that each of these has a row of; what has no row at all in the scene is not asked.
+  std::set<long> common(const std::vector<std::string>& methods) const {
+    std::set<long> out = frames;
+    for (const std::string& method : methods) {
+      const auto rows = of.find(method);
+      if (rows == of.end()) continue;
+      std::erase_if(out, [&](long frame) { return !rows->second.contains(frame); });
+    }
+    return out;
+  }
+  // Over these frames; empty where there is none.
+  std::optional<double> sum(const std::string& method, const char* name,
+                            const std::set<long>& over) const {
     std::optional<double> out;
-    for (const long frame : frames) {
+    for (const long frame : over) {
       if (const auto value = count(method, frame, name)) out = out.value_or(0) + *value;
     }
     return out;
@@ -191,22 +202,27 @@ std::string count_text(std::optional<double> value) {
 DataTable quick_table(const std::vector<MovingRows>& scenes) {
   DataTable out{.name = "efficiency-quick",
                 .caption =
-                    "Quick-CULLIDE against CULLIDE, summed over the frames: queries and draws "
-                    "as a part of CULLIDE's, and the colliding pairs that each misses",
-                .columns = {"scene", "queries", "draws", "colliding", "CULLIDE misses",
+                    "Quick-CULLIDE against CULLIDE, summed over the frames that all of them have: "
+                    "queries and draws as a part of CULLIDE's, and the colliding pairs that each "
+                    "misses",
+                .columns = {"scene", "frames", "queries", "draws", "colliding", "CULLIDE misses",
                             "Quick-CULLIDE misses", "FAR misses"},
-                .alignment = "lrrrrrr",
+                .alignment = "lrrrrrrr",
                 .rows = {}};
   for (const MovingRows& rows : scenes) {
     if (!rows.of.contains(kQuick)) continue;
-    const auto obb = rows.sum("FAR (OBB)", "missed"), exact = rows.sum("FAR (exact)", "missed");
+    const std::set<long> over = rows.common({kQuick, kPlain, kBoxes, "FAR (OBB)", "FAR (exact)"});
+    const auto sum = [&](const char* method, const char* name) {
+      return rows.sum(method, name, over);
+    };
+    const auto obb = sum("FAR (OBB)", "missed"), exact = sum("FAR (exact)", "missed");
     std::optional<double> far = obb ? obb : exact;
     if (obb && exact) far = *obb + *exact;
-    out.rows.push_back(
-        {rows.scene, ratio_text(rows.sum(kQuick, "queries"), rows.sum(kPlain, "queries")),
-         ratio_text(rows.sum(kQuick, "draws"), rows.sum(kPlain, "draws")),
-         count_text(rows.sum(kBoxes, "colliding")), count_text(rows.sum(kPlain, "missed")),
-         count_text(rows.sum(kQuick, "missed")), count_text(far)});
+    out.rows.push_back({rows.scene, grouped(over.size()),
+                        ratio_text(sum(kQuick, "queries"), sum(kPlain, "queries")),
+                        ratio_text(sum(kQuick, "draws"), sum(kPlain, "draws")),
+                        count_text(sum(kBoxes, "colliding")), count_text(sum(kPlain, "missed")),
+                        count_text(sum(kQuick, "missed")), count_text(far)});
   }
   return out;
 }
@@ -215,21 +231,26 @@ DataTable time_table(const std::vector<MovingRows>& scenes) {
   const std::vector<std::string> methods = {"FAR (OBB)", "FAR (exact)", kPlain,
                                             kQuick,      "FAR pairs",   kBoxes};
   DataTable out{.name = "efficiency-times",
-                .caption = "Milliseconds from moved vertices to exact pairs, median of the frames",
-                .columns = {"scene", "triangles"},
-                .alignment = "lr",
+                .caption =
+                    "Milliseconds from moved vertices to exact pairs, median of the frames that "
+                    "all methods of the scene have",
+                .columns = {"scene", "triangles", "frames"},
+                .alignment = "lrr",
                 .rows = {}};
   for (const std::string& method : methods) {
     out.columns.push_back(method);
     out.alignment += 'r';
   }
   for (const MovingRows& rows : scenes) {
+    const std::set<long> over = rows.common(methods);
     std::vector<std::string> cells = {
-        rows.scene, count_text(rows.count(kBoxes, *rows.frames.begin(), "triangles"))};
+        rows.scene, count_text(rows.count(kBoxes, *rows.frames.begin(), "triangles")),
+        grouped(over.size())};
     for (const std::string& method : methods) {
       std::vector<double> times;
       if (const auto at = rows.of.find(method); at != rows.of.end()) {
         for (const auto& [frame, row] : at->second) {
+          if (!over.contains(frame)) continue;
           if (const auto ms = time_of(*row, "total")) times.push_back(*ms);
         }
       }
@@ -314,12 +335,8 @@ void add_missed_finding(const StoredStudy& stored, Chapter& chapter) {
 }  // namespace
 
 Chapter efficiency_chapter(const StoredStudy& stored) {
-  Chapter out;
-  out.study = stored.declaration.study;
-  const Study& study = study_named(out.study);
-  out.title = study.title;
-  out.question = study.question;
-  out.command = command_of(stored.declaration);
+  Chapter out = begin_chapter(stored);
+  add_promises(stored, out);
   const std::vector<MovingRows> scenes = by_scene(stored);
   add_factor_findings(scenes, out);
   add_missed_finding(stored, out);
@@ -333,6 +350,7 @@ Chapter efficiency_chapter(const StoredStudy& stored) {
       "Boxes of triangles are our addition to I-COLLIDE; as published it ends with objects.",
       "On a software device the times of methods that draw say nothing about graphics hardware; "
       "queries and draws carry over."};
+  add_gaps(stored, out);
   if (scenes.empty()) return out;
   out.figures = {kept_figure(scenes), quick_figure(scenes)};
   out.tables = {factor_table(scenes), quick_table(scenes), time_table(scenes)};

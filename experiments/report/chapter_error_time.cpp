@@ -15,17 +15,6 @@ double error_of(const Row& row) {
   return static_cast<double>(number_of(row, "missed") + number_of(row, "wrong"));
 }
 
-// What was handed on and does not collide, over what collides; NaN where nothing does or the row
-// has no candidates.
-double false_positives(const Row& row) {
-  const auto candidates = count_of(row, "candidates"), colliding = count_of(row, "colliding");
-  if (!candidates || !colliding || *colliding == 0) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  const double found = *colliding - static_cast<double>(number_of(row, "missed"));
-  return (*candidates - found) / *colliding;
-}
-
 double ms_of(const Row& row) {
   return time_of(row, "total").value_or(std::numeric_limits<double>::quiet_NaN());
 }

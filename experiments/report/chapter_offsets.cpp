@@ -19,13 +19,6 @@ double or_gap(const std::optional<double>& value) {
   return value.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
-// Candidates that do not collide, over what collides.
-double false_positives(const Row& row) {
-  const auto candidates = count_of(row, "candidates"), colliding = count_of(row, "colliding");
-  if (!candidates || !colliding || *colliding == 0) return or_gap({});
-  return (*candidates - (*colliding - static_cast<double>(number_of(row, "missed")))) / *colliding;
-}
-
 using Value = double (*)(const Row&);
 
 struct Quantity {
@@ -174,6 +167,7 @@ Chapter offsets_chapter(const StoredStudy& stored) {
   const std::vector<SceneRows> scenes = rows_by_scene(stored);
   add_promises(stored, out);
   add_order_finding(scenes, out);
+  put_broken_first(out);
   add_comparison(scenes, kExact, kBox, out);
   add_comparison(scenes, kIntervals, kBox, out);
   out.limits = {

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <set>
 
-#include "experiments/report/chapter.h"
 #include "experiments/report/numbers.h"
+#include "experiments/report/rows.h"
 #include "experiments/tables.h"
 
 namespace farcull {
@@ -86,15 +87,54 @@ std::string exponent_text(const Exponent& e) {
   return fmt::format("{:.2f} ± {:.2f}", e.value, e.error);
 }
 
+// Missed of colliding pairs by method, over all rows of the study; what misses is a finding.
+DataTable miss_table(const StoredStudy& stored, Chapter& chapter) {
+  DataTable out{.name = "scaling-missed",
+                .caption = "Missed pairs of all that collide, over all sizes",
+                .columns = {"method", "runs", "colliding", "missed"},
+                .alignment = "lrrr",
+                .rows = {}};
+  struct Sum {
+    std::uint64_t runs = 0, colliding = 0, missed = 0;
+  };
+  std::map<std::string, Sum> sums;
+  for (const Row& row : stored.rows) {
+    if (!row.measurement.left_out.empty() || !count_of(row, "missed")) continue;
+    Sum& sum = sums[contestant(row.point)];
+    ++sum.runs;
+    sum.colliding += number_of(row, "colliding");
+    sum.missed += number_of(row, "missed");
+  }
+  for (const auto& [method, sum] : sums) {
+    out.rows.push_back({method, grouped(sum.runs), grouped(sum.colliding), grouped(sum.missed)});
+    if (method != "CULLIDE" && sum.missed == 0) continue;
+    chapter.findings.push_back(fmt::format("{} misses {} colliding pairs over all sizes.", method,
+                                           of_all(sum.missed, sum.colliding)));
+  }
+  return out;
+}
+
+// "256 px", of those that draw where pixels are not what is varied.
+std::string resolutions_of(const StoredStudy& stored) {
+  std::set<int> sides;
+  for (const Row& row : stored.rows) {
+    if (!row.measurement.left_out.empty() || row.point.resolution <= 0) continue;
+    const auto holds = [&](const Arm& arm) { return arm.holds(row.point); };
+    if (std::any_of(arms().begin(), arms().end(),
+                    [&](const Arm& arm) { return arm.name != "resolution" && holds(arm); }))
+      sides.insert(row.point.resolution);
+  }
+  std::vector<std::string> words;
+  for (const int side : sides) words.push_back(std::to_string(side));
+  return listed(words) + " px";
+}
+
 }  // namespace
 
 Chapter scaling_chapter(const StoredStudy& stored) {
-  Chapter out;
-  out.study = stored.declaration.study;
-  const Study& study = study_named(out.study);
-  out.title = study.title;
-  out.question = study.question;
-  out.command = command_of(stored.declaration);
+  Chapter out = begin_chapter(stored);
+  add_promises(stored, out);
+  DataTable misses = miss_table(stored, out);
 
   Figure figure{.name = "scaling",
                 .title = "Time against objects, triangles, resolution, density and colliding pairs",
@@ -116,7 +156,7 @@ Chapter scaling_chapter(const StoredStudy& stored) {
   for (const Arm& arm : arms()) {
     const std::map<std::string, Line> lines = lines_of(stored, arm);
     Panel panel{.title = arm.title,
-                .x = {.label = arm.axis, .logarithmic = true},
+                .x = {.label = arm.axis, .logarithmic = true, .shows_zero = true},
                 .y = {.label = "time, ms", .logarithmic = true},
                 .series = {}};
     std::vector<std::string> said;
@@ -141,11 +181,16 @@ Chapter scaling_chapter(const StoredStudy& stored) {
     }
     if (!panel.series.empty()) figure.panels.push_back(std::move(panel));
   }
+  const std::string resolutions = resolutions_of(stored);
   figure.caption =
-      "Both axes are logarithmic, so that a power of x is a straight line. Methods that draw are "
-      "measured at 256 px but for the plot of resolution, and not at the largest sizes. Density "
-      "and "
-      "colliding pairs are two views of the same rows: the same objects in ever smaller boxes.";
+      "Both axes are logarithmic, so that a power of x is a straight line. " +
+      (resolutions == " px" ? std::string()
+                            : "Methods that draw are measured at " + resolutions +
+                                  " but for the plot of resolution, and not at the largest "
+                                  "sizes. ") +
+      "Density and colliding pairs are two views of the same rows: the same objects in ever "
+      "smaller "
+      "boxes.";
   out.limits = {
       "A fitted exponent holds for its range alone: constant parts flatten small sizes, caches and "
       "the growing number of rounds steepen large ones. The standard error is of the straight "
@@ -156,8 +201,10 @@ Chapter scaling_chapter(const StoredStudy& stored) {
       "I-COLLIDE keeps its sorted ends from repeat to repeat, as it does from frame to frame.",
       "Fragment work runs on the CPU where the device is software: there, resolution costs what "
       "graphics hardware does side by side."};
+  add_gaps(stored, out);
   if (!figure.panels.empty()) out.figures.push_back(std::move(figure));
   if (!times.rows.empty()) out.tables = {std::move(exponents), std::move(times)};
+  if (!misses.rows.empty()) out.tables.push_back(std::move(misses));
   return out;
 }
 

@@ -2,17 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
+#include "experiments/report/numbers.h"
+#include "experiments/shell_word.h"
 #include "experiments/tables.h"
 
 namespace farcull {
 namespace {
-
-std::string sentence(std::string text) {
-  if (!text.empty() && std::string(".?!").find(text.back()) == std::string::npos) text += '.';
-  return text;
-}
 
 std::string bullets(const std::vector<std::string>& sentences) {
   std::string out;
@@ -34,20 +32,30 @@ std::string table_of(const DataTable& table) {
   return out + "\n";
 }
 
-// What the points that have no numbers say, each reason once.
+// Why points were left out is among the limits.
 std::string gaps_of(const StoredStudy& stored) {
-  std::map<std::string, std::size_t> reasons;
-  for (const Row& row : stored.rows) {
-    if (!row.measurement.left_out.empty()) ++reasons[row.measurement.left_out];
-  }
+  if (stored.complete()) return {};
+  return bullets({fmt::format("Incomplete: {} of {} points have a row", grouped(stored.rows.size()),
+                              grouped(stored.declaration.points.size()))});
+}
+
+// Every promise that was not kept, of all chapters.
+std::string broken_of(const Page& page) {
   std::vector<std::string> out;
-  if (!stored.complete()) {
-    out.push_back(fmt::format("Incomplete: {} of {} points have a row", grouped(stored.rows.size()),
-                              grouped(stored.declaration.points.size())));
+  for (const DrawnChapter& drawn : page.chapters) {
+    for (const std::string& finding : drawn.chapter.findings) {
+      if (is_broken(finding)) out.push_back(drawn.chapter.title + ": " + finding);
+    }
   }
-  for (const auto& [reason, count] : reasons)
-    out.push_back(fmt::format("{} points left out: {}", grouped(count), reason));
-  return bullets(out);
+  if (out.empty()) return {};
+  return "**Broken.** What must never happen has happened:\n\n" + bullets(out);
+}
+
+// JSON without backticks, which would end the code that it stands in.
+std::string json_code(std::string json) {
+  for (std::size_t at = 0; (at = json.find('`', at)) != std::string::npos;)
+    json.replace(at, 1, "\\u0060");
+  return "`" + json + "`";
 }
 
 std::string machine_of(const Page& page) {
@@ -60,7 +68,7 @@ std::string machine_of(const Page& page) {
     if (!rows.contains(number)) continue;
     out += row_of({std::to_string(number), p.started, p.commit, p.gl_renderer,
                    p.gl_vendor + ", " + p.gl_version, p.cpu, std::to_string(p.cores),
-                   "`" + p.options + "`", grouped(rows.at(number))});
+                   json_code(p.options), grouped(rows.at(number))});
   }
   if (out.empty()) return out;
   return "| run | started | commit | device | driver | CPU | cores | options | rows |\n"
@@ -90,15 +98,27 @@ std::string markdown_prose(const std::string& text) {
   return out;
 }
 
-std::string page_markdown(const Page& page, const std::string& command) {
-  std::string out = "# Results\n\n";
+std::string markdown_code(const std::string& text) {
+  std::size_t longest = 0, run = 0;
+  std::string line;
+  for (const char ch : text) {
+    run = ch == '`' ? run + 1 : 0;
+    longest = std::max(longest, run);
+    line += ch == '\n' || ch == '\r' ? ' ' : ch;
+  }
+  const std::string fence(longest + 1, '`');
+  return longest == 0 ? fence + line + fence : fence + " " + line + " " + fence;
+}
+
+std::string page_markdown(const Page& page, const std::string& folder) {
+  std::string out = "# Results\n\n" + broken_of(page);
   out += fmt::format(
-      "All of this page is made from the store of results by `{}`, figures, tables and sentences: "
+      "All of this page is made from the store of results by {}, figures, tables and sentences: "
       "no "
       "number was typed. A single study is measured again by the command that stands below it. "
       "Counts are the same, bit for bit, on the same device and CPU features; times are of the "
       "machine [at the end](#where-it-was-measured).\n\n",
-      command);
+      markdown_code("farcull report " + quoted(folder)));
   std::size_t figure = 0, table = 0, section = 0;
   for (const DrawnChapter& drawn : page.chapters) {
     const Chapter& chapter = drawn.chapter;
@@ -108,14 +128,14 @@ std::string page_markdown(const Page& page, const std::string& command) {
     out += bullets(chapter.findings);
     for (const DrawnPicture& picture : drawn.pictures) {
       if (picture.png.empty()) {
-        out += fmt::format("A picture (`farcull picture {}`) is left out: {}\n\n",
-                           picture.picture.command, markdown_prose(sentence(picture.left_out)));
+        out += fmt::format("A picture ({}) is left out: {}\n\n",
+                           markdown_code("farcull picture " + picture.picture.command),
+                           markdown_prose(sentence(picture.left_out)));
         continue;
       }
-      out +=
-          fmt::format("![{0}](pictures/{1}.png)\n\n**Figure {2}.** {0} `farcull picture {3}`\n\n",
-                      markdown_prose(sentence(picture.picture.caption)), picture.picture.name,
-                      ++figure, picture.picture.command);
+      out += fmt::format("![{0}](pictures/{1}.png)\n\n**Figure {2}.** {0} {3}\n\n",
+                         markdown_prose(sentence(picture.picture.caption)), picture.picture.name,
+                         ++figure, markdown_code("farcull picture " + picture.picture.command));
     }
     for (const Figure& f : chapter.figures) {
       out += fmt::format("![{0}](figures/{1}.svg)\n\n**Figure {2}. {3}** {4}\n\n",
@@ -129,9 +149,9 @@ std::string page_markdown(const Page& page, const std::string& command) {
     }
     if (!chapter.limits.empty()) out += "What it does not show:\n\n" + bullets(chapter.limits);
     const Declaration& d = drawn.stored.declaration;
-    out += fmt::format("Again: `{}` ({} grid, seed {}, {} points), then `farcull report`.\n\n",
-                       chapter.command, d.choice.quick ? "quick" : "full", d.choice.seed,
-                       grouped(d.points.size()));
+    out += fmt::format("Again: {} ({} grid, seed {}, {} points), then `farcull report`.\n\n",
+                       markdown_code(chapter.command), d.choice.quick ? "quick" : "full",
+                       d.choice.seed, grouped(d.points.size()));
   }
   out += "## Where it was measured\n\n" + machine_of(page);
   return out;

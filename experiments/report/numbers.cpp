@@ -48,8 +48,11 @@ double median(std::vector<double> values) {
 
 std::optional<Exponent> exponent_of(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<double> u, v;
+  Exponent out;
   for (std::size_t i = 0; i < x.size() && i < y.size(); ++i) {
     if (!(x[i] > 0) || !(y[i] > 0) || !std::isfinite(x[i]) || !std::isfinite(y[i])) continue;
+    out.from = u.empty() ? x[i] : std::min(out.from, x[i]);
+    out.to = u.empty() ? x[i] : std::max(out.to, x[i]);
     u.push_back(std::log(x[i]));
     v.push_back(std::log(y[i]));
   }
@@ -67,7 +70,6 @@ std::optional<Exponent> exponent_of(const std::vector<double>& x, const std::vec
   }
   const auto [least, most] = std::minmax_element(u.begin(), u.end());
   if (*least == *most) return {};
-  Exponent out;
   out.value = uv / uu;
   double residuals = 0;
   for (std::size_t i = 0; i < u.size(); ++i) {
@@ -75,8 +77,6 @@ std::optional<Exponent> exponent_of(const std::vector<double>& x, const std::vec
     residuals += r * r;
   }
   out.error = std::sqrt(residuals / (n - 2) / uu);
-  out.from = std::exp(*least);
-  out.to = std::exp(*most);
   out.points = u.size();
   return out;
 }
@@ -95,6 +95,11 @@ std::string rounded(double value, int digits) {
     return sign + grouped_digits(text.substr(0, dot)) + text.substr(dot);
   }
   return sign + grouped_digits(text);
+}
+
+std::string sentence(std::string text) {
+  if (!text.empty() && std::string(".?!").find(text.back()) == std::string::npos) text += '.';
+  return text;
 }
 
 std::string listed(const std::vector<std::string>& words) {

@@ -33,6 +33,9 @@ std::optional<Exponent> exponent_of(const std::vector<double>& x, const std::vec
 /// Three significant digits, all of a whole number, thousands grouped: 0.0123, 1.50, 3, 12,346.
 std::string rounded(double value, int digits = 3);
 
+/// With a point at its end where it has none.
+std::string sentence(std::string text);
+
 /// "a, b and c".
 std::string listed(const std::vector<std::string>& words);
 

@@ -20,18 +20,6 @@ std::string counted(std::size_t n, const std::string& one, const std::string& ma
   return n == 1 ? "one " + one : grouped(n) + " " + many;
 }
 
-// A sentence may end with its point or without it.
-std::string sentence(std::string text) {
-  if (!text.empty() && std::string(".?!").find(text.back()) == std::string::npos) text += '.';
-  return text;
-}
-
-std::size_t measured(const StoredStudy& stored) {
-  return static_cast<std::size_t>(
-      std::count_if(stored.rows.begin(), stored.rows.end(),
-                    [](const Row& row) { return row.measurement.left_out.empty(); }));
-}
-
 std::string grid_text(const StoredStudy& stored) {
   const Declaration& d = stored.declaration;
   return fmt::format("{} grid, seed {}, {} of {} points", d.choice.quick ? "quick" : "full",
@@ -100,6 +88,24 @@ class Writer {
     return out;
   }
 
+  // Every promise that was not kept, of all chapters, before anything else.
+  bool broken() {
+    std::string items;
+    for (const DrawnChapter& c : page_.chapters) {
+      for (const std::string& finding : c.chapter.findings) {
+        if (!is_broken(finding)) continue;
+        items += fmt::format("<li><a href=\"#{}\">{}</a>: {}</li>\n", c.chapter.study,
+                             html_text(c.chapter.title), html_prose(sentence(finding)));
+      }
+    }
+    if (items.empty()) return false;
+    out_ +=
+        "<p class=\"warning\" role=\"note\"><strong>Broken.</strong> What must never "
+        "happen has happened:</p>\n<ul class=\"broken\">\n" +
+        items + "</ul>\n";
+    return true;
+  }
+
   void summary() {
     std::size_t rows = 0, points = 0;
     bool quick = false, full = false;
@@ -121,26 +127,29 @@ class Writer {
           html_text(listed(incomplete)));
     }
     add("<section id=\"summary\">\n<h2>Summary</h2>");
-    add("<p>FAR culls with graphics hardware and never misses a pair that collides; CULLIDE, from "
-        "which it comes, can. This page reports {} on {}: {} rows, {}. All its numbers come from "
+    // The claim of the rows, or none.
+    const char* claim =
+        broken() ? "FAR and CULLIDE cull with graphics hardware."
+                 : "FAR culls with graphics hardware and never misses a pair that collides; "
+                   "CULLIDE, from which it comes, can.";
+    add("<p>{} This page reports {} on {}: {} rows, {}. All its numbers come from "
         "<code>{}</code>. Counts are the same, bit for bit, on the same device and CPU features; "
         "times are of this machine.</p>",
-        counted(page_.chapters.size(), "study", "studies"), html_text(listed(machines(runs))),
-        grouped(rows),
+        claim, counted(page_.chapters.size(), "study", "studies"),
+        html_text(listed(machines(runs))), grouped(rows),
         quick && full ? "quick grids and full ones"
         : quick       ? "of quick grids, which are made for a first look"
                       : "of full grids",
         html_text(page_.store));
-    if (std::any_of(page_.chapters.begin(), page_.chapters.end(),
-                    [](const DrawnChapter& c) { return !c.chapter.findings.empty(); })) {
-      out_ += "<ul class=\"findings\">\n";
-      for (const DrawnChapter& c : page_.chapters) {
-        if (c.chapter.findings.empty()) continue;
-        add("<li><a href=\"#{}\">{}</a>: {}</li>", c.chapter.study, html_text(c.chapter.title),
-            html_prose(sentence(c.chapter.findings.front())));
-      }
-      out_ += "</ul>\n";
+    std::string items;
+    for (const DrawnChapter& c : page_.chapters) {
+      const auto& findings = c.chapter.findings;
+      const auto first = std::find_if_not(findings.begin(), findings.end(), is_broken);
+      if (first == findings.end()) continue;
+      items += fmt::format("<li><a href=\"#{}\">{}</a>: {}</li>\n", c.chapter.study,
+                           html_text(c.chapter.title), html_prose(sentence(*first)));
     }
+    if (!items.empty()) out_ += "<ul class=\"findings\">\n" + items + "</ul>\n";
     out_ += "</section>\n";
   }
 
@@ -181,7 +190,7 @@ class Writer {
         html_text(chapter.command), grid_text(drawn.stored), chapter.study, chapter.study);
   }
 
-  // What is missing, before anything is claimed.
+  // What is missing, before anything is claimed; why points were left out is among the limits.
   void state(const StoredStudy& stored) {
     const std::size_t points = stored.declaration.points.size();
     if (!stored.complete()) {
@@ -189,18 +198,6 @@ class Writer {
           "row; findings, figures and tables are of these.</p>",
           grouped(stored.rows.size()), grouped(points));
     }
-    if (stored.rows.empty()) return;
-    std::map<std::string, std::size_t> reasons;
-    for (const Row& row : stored.rows) {
-      if (!row.measurement.left_out.empty()) ++reasons[row.measurement.left_out];
-    }
-    if (reasons.empty()) return;
-    add("<p class=\"note\" role=\"note\">{} of {} points were left out:</p>\n<ul class=\"note\">",
-        grouped(stored.rows.size() - measured(stored)), grouped(stored.rows.size()));
-    for (const auto& [reason, count] : reasons) {
-      add("<li>{}: {}</li>", counted(count, "point", "points"), html_text(reason));
-    }
-    out_ += "</ul>\n";
   }
 
   void show(const Figure& figure, const std::string& svg) {

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "experiments/report/numbers.h"
+#include "experiments/report/rows.h"
+#include "experiments/shell_word.h"
 #include "experiments/tables.h"
 
 namespace farcull {
@@ -48,22 +51,49 @@ std::vector<Picture> accuracy_pictures(const StoredStudy& stored) {
     far = partner;
   }
   if (cullide == nullptr) return {};
-  const auto number = [](const Row& row, const char* name) {
-    return grouped(static_cast<std::uint64_t>(count_of(row, name).value_or(0)));
-  };
   Picture out;
   out.name = "accuracy-compare";
   out.caption = fmt::format(
-      "CULLIDE and FAR on {} at {} px. CULLIDE misses {} of {} colliding pairs, drawn in the "
-      "colour "
-      "that nothing else has; FAR misses {}. What collides and was found is coloured, what was "
-      "kept "
-      "and does not collide is faint",
-      cullide->point.scene, cullide->point.resolution, number(*cullide, "missed"),
-      number(*cullide, "colliding"), number(*far, "missed"));
-  out.command = fmt::format("{} --compare cullide,far --resolution {}", cullide->point.scene,
-                            cullide->point.resolution);
+      "CULLIDE and FAR on {} at {} px. Missed pairs are drawn in the colour that nothing else has. "
+      "What collides and was found is coloured, what was kept and does not collide is faint.",
+      cullide->point.scene, cullide->point.resolution);
+  out.command = fmt::format("{} --compare cullide,far --resolution {}",
+                            quoted(cullide->point.scene), cullide->point.resolution);
+  out.panels = {{"CULLIDE", count_of(*cullide, "missed"), count_of(*cullide, "colliding")},
+                {"FAR", count_of(*far, "missed"), count_of(*far, "colliding")}};
   return {std::move(out)};
+}
+
+std::vector<std::string> add_counts(Picture& picture, const std::vector<PanelResult>& drawn) {
+  if (drawn.size() != picture.panels.size())
+    throw std::logic_error("add_counts: panels of another picture");
+  std::vector<std::string> said, stored, broken;
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const PanelCounts& rows = picture.panels[i];
+    const PanelResult& panel = drawn[i];
+    said.push_back(fmt::format("{} misses {} colliding pairs", rows.method,
+                               of_all(panel.missed, panel.colliding)));
+    if (rows.missed != static_cast<double>(panel.missed) ||
+        rows.colliding != static_cast<double>(panel.colliding)) {
+      const auto words = [](std::optional<double> n) {
+        return n ? grouped(static_cast<std::uint64_t>(*n)) : std::string("an unknown number");
+      };
+      stored.push_back(
+          fmt::format("{} of {} by {}", words(rows.missed), words(rows.colliding), rows.method));
+    }
+    if (panel.broken) {
+      broken.push_back(
+          fmt::format("{} in the picture {}, {} misses {} colliding pairs, and promises to miss "
+                      "none.",
+                      kBroken, picture.name, rows.method, of_all(panel.missed, panel.colliding)));
+    }
+  }
+  picture.caption = sentence(picture.caption) + " Here " + listed(said) + ".";
+  if (!stored.empty()) {
+    picture.caption +=
+        " The rows of the study, measured before, say otherwise: " + listed(stored) + " missed.";
+  }
+  return broken;
 }
 
 }  // namespace farcull

@@ -23,7 +23,10 @@
 #include "experiments/report/figures.h"
 #include "experiments/report/gnuplot.h"
 #include "experiments/report/markdown.h"
+#include "experiments/report/pictures.h"
+#include "experiments/report/rows.h"
 #include "experiments/report/tables.h"
+#include "experiments/studies/run_studies.h"
 
 namespace farcull {
 namespace {
@@ -167,6 +170,10 @@ class Reporter {
   void add(StoredStudy stored) {
     DrawnChapter drawn;
     drawn.chapter = chapter_of(stored);
+    for (const Row& row : stored.rows) {
+      if (breaks_promise(row.measurement))
+        summary_.broken.push_back(drawn.chapter.study + ": " + describe(row.point));
+    }
     if (!stored.complete()) {
       summary_.notes.push_back(fmt::format("{}: {} of {} points have a row", drawn.chapter.study,
                                            stored.rows.size(), stored.declaration.points.size()));
@@ -185,7 +192,9 @@ class Reporter {
       ++summary_.tables;
     }
     write_output(tables_ + "/" + drawn.chapter.study + "-rows.csv", rows_csv(stored));
-    for (const Picture& picture : drawn.chapter.pictures) drawn.pictures.push_back(draw(picture));
+    for (const Picture& picture : drawn.chapter.pictures)
+      drawn.pictures.push_back(draw(picture, drawn.chapter));
+    put_broken_first(drawn.chapter);
     drawn.stored = std::move(stored);
     page.chapters.push_back(std::move(drawn));
     ++summary_.studies;
@@ -193,7 +202,7 @@ class Reporter {
 
   ReportSummary finish() {
     write_output(root_ + "/index.html", page_html(page));
-    write_output(root_ + "/results.md", page_markdown(page, "farcull report " + request_.folder));
+    write_output(root_ + "/results.md", page_markdown(page, request_.folder));
     return std::move(summary_);
   }
 
@@ -209,7 +218,8 @@ class Reporter {
     if (!taken.insert(name).second) throw std::logic_error("two are named " + name);
   }
 
-  DrawnPicture draw(const Picture& picture) {
+  // Promises that the picture breaks become findings of the chapter.
+  DrawnPicture draw(const Picture& picture, Chapter& chapter) {
     say("picture " + picture.name);
     DrawnPicture out{.picture = picture, .png = {}, .left_out = {}};
     const std::string folder = root_ + "/pictures";
@@ -218,8 +228,12 @@ class Reporter {
     const std::string path = folder + "/" + picture.name + ".png";
     try {
       if (!request_.draw_picture) throw Error("picture", "no device was asked", "");
-      request_.draw_picture(picture.command, path);
+      const std::vector<PanelResult> panels = request_.draw_picture(picture.command, path);
       out.png = content_of(path);
+      for (const std::string& finding : add_counts(out.picture, panels)) {
+        chapter.findings.push_back(finding);
+        summary_.broken.push_back(finding);
+      }
       ++summary_.pictures;
     } catch (const Error& error) {
       Signals::check();

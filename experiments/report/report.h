@@ -5,14 +5,17 @@
 #include <string>
 #include <vector>
 
+#include "experiments/picture.h"
 #include "experiments/report/page.h"
 #include "experiments/run.h"
 
 namespace farcull {
 
-/// Draws the picture of these arguments of farcull picture into a PNG at the path. Throws Error
-/// where it cannot (no device, no meshes): the page then says why it is left out.
-using PictureMaker = std::function<void(const std::string& arguments, const std::string& path)>;
+/// Draws the picture of these arguments of farcull picture into a PNG at the path, and says what
+/// its panels show, in their order. Throws Error where it cannot (no device, no meshes): the page
+/// then says why it is left out.
+using PictureMaker =
+    std::function<std::vector<PanelResult>(const std::string& arguments, const std::string& path)>;
 
 struct ReportRequest {
   std::string folder;  // of the store
@@ -24,6 +27,9 @@ struct ReportSummary {
   std::string folder;  // of the report
   std::size_t studies = 0, figures = 0, tables = 0, pictures = 0;
   std::vector<std::string> notes;  // studies that are incomplete, pictures that are left out
+  /// Rows of methods that promise and missed, and findings that tell of a promise that was not
+  /// kept. Empty, or the worst has happened; the report is written all the same and says so.
+  std::vector<std::string> broken;
 };
 
 /// The path of the store in the folder. Throws Error where there is none: with what to do where

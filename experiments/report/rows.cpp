@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "experiments/report/numbers.h"
@@ -60,31 +61,77 @@ std::string of_all(std::uint64_t part, std::uint64_t all) {
   return grouped(part) + " of " + grouped(all);
 }
 
+double false_positives(const Row& row) {
+  const auto candidates = count_of(row, "candidates"), colliding = count_of(row, "colliding");
+  if (!candidates || !colliding || *colliding == 0) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const double found = *colliding - static_cast<double>(number_of(row, "missed"));
+  return (*candidates - found) / *colliding;
+}
+
 bool promises(const Row& row) {
   const auto it = row.measurement.counts.find("promises");
   return it != row.measurement.counts.end() && it->is_boolean() && it->get<bool>();
 }
 
+bool is_lemma(const Row& row) { return row.point.method.starts_with("lemma"); }
+
+std::optional<double> failures_of(const Row& row) {
+  return count_of(row, is_lemma(row) ? "violations" : "missed");
+}
+
+bool breaks(const Row& row) {
+  return row.measurement.left_out.empty() && promises(row) && failures_of(row).value_or(0) > 0;
+}
+
 void add_promises(const StoredStudy& stored, Chapter& chapter) {
-  std::uint64_t rows = 0, colliding = 0, broken = 0;
-  std::vector<std::string> names;
+  // Of those that say what they missed.
+  struct Kept {
+    std::uint64_t rows = 0, of = 0;
+    bool broken = false;
+    std::vector<std::string> names;
+  } pairs, points;
+  std::uint64_t silent = 0;
   for (const Row& row : stored.rows) {
     if (!row.measurement.left_out.empty() || !promises(row)) continue;
-    ++rows;
-    colliding += number_of(row, "colliding");
+    const std::optional<double> failed = failures_of(row);
+    if (!failed) {
+      ++silent;
+      continue;
+    }
+    const bool lemma = is_lemma(row);
+    Kept& kept = lemma ? points : pairs;
+    const std::uint64_t of = number_of(row, lemma ? "points" : "colliding");
+    ++kept.rows;
+    kept.of += of;
     const std::string name = contestant(row.point);
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-    const std::uint64_t missed = number_of(row, "missed");
-    if (missed == 0) continue;
-    ++broken;
+    if (std::find(kept.names.begin(), kept.names.end(), name) == kept.names.end())
+      kept.names.push_back(name);
+    if (!breaks(row)) continue;
+    kept.broken = true;
+    const std::string part = of_all(static_cast<std::uint64_t>(*failed), of);
     chapter.findings.push_back(
-        fmt::format("BROKEN: {} misses {} colliding pairs, and promises to miss none.",
-                    describe(row.point), of_all(missed, number_of(row, "colliding"))));
+        lemma ? fmt::format("{} {}: {} points are violated, and the lemmas promise none.", kBroken,
+                            describe(row.point), part)
+              : fmt::format("{} {} misses {} colliding pairs, and promises to miss none.", kBroken,
+                            describe(row.point), part));
   }
-  if (rows == 0 || broken > 0) return;
-  chapter.findings.push_back(
-      fmt::format("What promises keeps its promise: {} miss 0 of {} colliding pairs in {} runs.",
-                  listed(names), grouped(colliding), grouped(rows)));
+  if (pairs.rows > 0 && !pairs.broken) {
+    chapter.findings.push_back(
+        fmt::format("What promises keeps its promise: {} miss 0 of {} colliding pairs in {} runs.",
+                    listed(pairs.names), grouped(pairs.of), grouped(pairs.rows)));
+  }
+  if (points.rows > 0 && !points.broken) {
+    chapter.findings.push_back(
+        fmt::format("What the lemmas promise holds: 0 of {} points are violated in {} runs.",
+                    grouped(points.of), grouped(points.rows)));
+  }
+  if (silent > 0) {
+    chapter.findings.push_back(fmt::format(
+        "{} of methods that promise {} not say what they missed.",
+        silent == 1 ? "One row" : grouped(silent) + " rows", silent == 1 ? "does" : "do"));
+  }
 }
 
 void add_gaps(const StoredStudy& stored, Chapter& chapter) {
@@ -101,6 +148,10 @@ void add_gaps(const StoredStudy& stored, Chapter& chapter) {
         fmt::format("Not finished: {} points are measured.",
                     of_all(stored.rows.size(), stored.declaration.points.size())));
   }
+}
+
+void put_broken_first(Chapter& chapter) {
+  std::stable_partition(chapter.findings.begin(), chapter.findings.end(), is_broken);
 }
 
 Chapter begin_chapter(const StoredStudy& stored) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,14 +31,31 @@ std::string time_cell(const Row& row, const std::string& name);
 /// "4 of 3,857".
 std::string of_all(std::uint64_t part, std::uint64_t all);
 
+/// Candidates that do not collide, over what collides; NaN where nothing does or the row has no
+/// candidates.
+double false_positives(const Row& row);
+
 /// Whether the method promises to miss nothing, by its own word.
 bool promises(const Row& row);
 
-/// What a reader must hear first, whatever else a chapter finds: a finding that begins with BROKEN
-/// for each row of a method that promises and missed, or one that says how many such rows there
-/// are and that none did. Then how many points have no row, and why points were left out.
+/// Whether the row is of the lemma experiment: it promises for points that may be violated, not
+/// for pairs that may be missed.
+bool is_lemma(const Row& row);
+/// What the promise of the row is about: `violations` of a lemma, `missed` of others; empty where
+/// the row does not say.
+std::optional<double> failures_of(const Row& row);
+/// Whether the row promises and did not keep it.
+bool breaks(const Row& row);
+
+/// What a reader must hear first, whatever else a chapter finds: a finding that begins with
+/// kBroken for each row that promises and missed or violated something, or where none did, how
+/// many pairs and points those were that could have been. Rows that promise and do not say what
+/// they missed are counted apart.
 void add_promises(const StoredStudy& stored, Chapter& chapter);
+/// How many points have no row, and why points were left out.
 void add_gaps(const StoredStudy& stored, Chapter& chapter);
+/// Findings that begin with kBroken before all others, each kind in its order.
+void put_broken_first(Chapter& chapter);
 
 /// A chapter with the names and the command of its study.
 Chapter begin_chapter(const StoredStudy& stored);

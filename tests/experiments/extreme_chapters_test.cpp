@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "experiments/report/chapter.h"
+#include "experiments/report/rows.h"
 #include "experiments/studies/lemma_point.h"
 
 namespace farcull {
@@ -259,6 +260,159 @@ TEST(StabilityChapter, ShoutsAMissOfWhatPromises) {
   ASSERT_FALSE(chapter.findings.empty());
   EXPECT_TRUE(chapter.findings[0].starts_with("BROKEN: slivers:200:1e12, far, obb"));
   EXPECT_FALSE(says(chapter.findings, "keeps its promise"));
+}
+
+struct Promising {
+  const char* study;
+  ChapterOf of;
+  Point point;
+};
+
+std::vector<Promising> promising() {
+  const auto on = [](const char* scene, long frame = -1) {
+    Point out = stability_point(scene, "far", frame);
+    out.resolution = 64;
+    return out;
+  };
+  Point stored = precision_point("budget", "fragment", "float32");
+  return {{"accuracy", accuracy_chapter, on("s")},
+          {"error-time", error_time_chapter, on("s")},
+          {"radius", radius_chapter, far_point("budget")},
+          {"radius", radius_chapter, lemma_point("needles", "budget")},
+          {"radius", radius_chapter, lemma_point("needles", "1.1", "fragment", "lemma-worst")},
+          {"offsets", offsets_chapter, on("s")},
+          {"precision", precision_chapter, stored},
+          {"stability", stability_chapter, on("slivers:200:1e2")},
+          {"efficiency", efficiency_chapter, on("cloth:450", 3)},
+          {"scaling", scaling_chapter, on("crowd:100")}};
+}
+
+// One row of what promises; `failed` of its pairs or points.
+Chapter with_one_row(const Promising& p, std::uint64_t failed) {
+  const bool lemma = p.point.method.starts_with("lemma");
+  Json counts = lemma ? lemma_counts(failed, 0, 0.71) : run_counts(failed, true);
+  counts["promises"] = true;
+  Rows rows(p.study);
+  if (!lemma) rows.add(stability_point("s", "exact", p.point.frame), run_counts(0, false));
+  if (std::string(p.study) == "stability") {
+    rows.stored.rows.clear();
+    rows.stored.declaration.points.clear();
+  }
+  rows.add(p.point, counts);
+  return p.of(rows.stored);
+}
+
+TEST(EveryChapter, BeginsWithThePromiseThatWasNotKept) {
+  for (const Promising& p : promising()) {
+    const Chapter chapter = with_one_row(p, 1);
+    ASSERT_FALSE(chapter.findings.empty()) << p.study;
+    EXPECT_TRUE(chapter.findings[0].starts_with("BROKEN:")) << p.study << chapter.findings[0];
+    EXPECT_EQ(std::count_if(chapter.findings.begin(), chapter.findings.end(), is_broken), 1)
+        << p.study << ": a row is said once";
+    EXPECT_FALSE(says(chapter.findings, "keeps its promise")) << p.study;
+    EXPECT_FALSE(says(chapter.findings, "promise holds")) << p.study;
+  }
+}
+
+// The twin: without a miss nobody shouts, and what was kept is said in its own unit.
+TEST(EveryChapter, DoesNotShoutWherePromisesAreKept) {
+  for (const Promising& p : promising()) {
+    const Chapter chapter = with_one_row(p, 0);
+    EXPECT_FALSE(says(chapter.findings, "BROKEN")) << p.study;
+    const bool lemma = p.point.method.starts_with("lemma");
+    EXPECT_TRUE(says(chapter.findings, lemma ? "0 of 100 points are violated in 1 runs"
+                                             : "miss 0 of 20 colliding pairs in 1 runs"))
+        << p.study;
+    EXPECT_FALSE(says(chapter.findings, "of 0 colliding pairs in")) << p.study;
+    EXPECT_FALSE(says(chapter.findings, "do not say") || says(chapter.findings, "does not say"));
+  }
+}
+
+TEST(EveryChapter, SaysOfWhichRowsNobodyKnowsWhatTheyMissed) {
+  for (const Promising& p : promising()) {
+    Json counts = p.point.method == "far" ? run_counts(0, true) : lemma_counts(0, 0, 0.71);
+    counts["promises"] = true;
+    counts.erase("missed");
+    counts.erase("violations");
+    Rows rows(p.study);
+    rows.add(p.point, counts);
+    const Chapter chapter = p.of(rows.stored);
+    EXPECT_TRUE(says(chapter.findings, "One row of methods that promise does not say")) << p.study;
+    EXPECT_FALSE(says(chapter.findings, "keeps its promise")) << p.study;
+    EXPECT_FALSE(says(chapter.findings, "promise holds")) << p.study;
+  }
+}
+
+TEST(EfficiencyChapter, SumsFramesThatAllOfThemHave) {
+  const auto rows_of = [](bool partial) {
+    Rows rows("efficiency");
+    for (const long frame : {0, 1}) {
+      for (const char* method : {"i-collide", "far", "cullide", "quick-cullide"}) {
+        if (partial && frame == 1 && std::string(method) == "quick-cullide") continue;
+        Json counts = run_counts(std::string(method) == "cullide" ? 3 : 0, false);
+        counts["queries"] = std::string(method) == "cullide" ? 10 : 5;
+        counts["draws"] = 100;
+        rows.add(stability_point("s", method, frame), counts);
+        rows.stored.rows.back().measurement.times["total"] = frame == 0 ? 2.0 : 4.0;
+      }
+    }
+    return rows;
+  };
+  const auto table_of = [](const Chapter& chapter, const char* name) {
+    return std::find_if(chapter.tables.begin(), chapter.tables.end(),
+                        [&](const DataTable& table) { return table.name == name; })
+        ->rows.at(0);
+  };
+  const Chapter half = efficiency_chapter(rows_of(true).stored);
+  EXPECT_EQ(table_of(half, "efficiency-quick"),
+            (std::vector<std::string>{"s", "1", "0.500", "1", "20", "3", "0", "0"}));
+  EXPECT_EQ(table_of(half, "efficiency-times").at(3), "2") << "FAR, as fast as in frame 0";
+  // The twin: with all rows both frames count.
+  const Chapter whole = efficiency_chapter(rows_of(false).stored);
+  EXPECT_EQ(table_of(whole, "efficiency-quick"),
+            (std::vector<std::string>{"s", "2", "0.500", "1", "40", "6", "0", "0"}));
+  EXPECT_EQ(table_of(whole, "efficiency-times").at(3), "3");
+}
+
+TEST(ScalingChapter, SaysWhatIsMissed) {
+  Rows rows("scaling");
+  for (const int side : {128, 512}) {
+    Point cullide = stability_point("crowd:100", "cullide");
+    cullide.resolution = side;
+    rows.add(cullide, run_counts(side == 128 ? 4 : 1, false));
+    rows.stored.rows.back().measurement.counts["objects"] = 100;
+  }
+  const Chapter chapter = scaling_chapter(rows.stored);
+  EXPECT_TRUE(says(chapter.findings, "CULLIDE misses 5 of 40 colliding pairs over all sizes."));
+  EXPECT_EQ(chapter.tables.back().rows.at(0),
+            (std::vector<std::string>{"CULLIDE", "2", "40", "5"}));
+  ASSERT_FALSE(chapter.figures.empty());
+  EXPECT_NE(chapter.figures[0].caption.find("at 128 and 512 px"), std::string::npos);
+}
+
+TEST(PrecisionChapter, DrawsNoZeroWhereThereIsNoSample) {
+  Rows rows("precision");
+  rows.add(precision_point("published", "fixed", "float32"), lemma_counts(10, 0, 0.7071));
+  const Chapter chapter = precision_chapter(rows.stored);
+  EXPECT_TRUE(std::isnan(chapter.figures.at(0).panels.at(0).series.at(0).y.at(0)));
+  EXPECT_NE(chapter.figures[0].caption.find(
+                "fixed-function, published radius, 32-bit float 10 of 100 (depth 256 px)"),
+            std::string::npos)
+      << chapter.figures[0].caption;
+  // Twins: with a sample there is a zero; what is no number is named.
+  Rows good("precision");
+  good.add(precision_point("published", "fixed", "float32"), lemma_counts(0, 0, 0.7071));
+  const Chapter zero = precision_chapter(good.stored);
+  EXPECT_EQ(zero.figures.at(0).panels.at(0).series.at(0).y.at(0), 0);
+  EXPECT_EQ(zero.figures[0].caption.find("no distance"), std::string::npos);
+  Rows endless("precision");
+  Json counts = lemma_counts(0, 1, 0.7071);
+  counts["largest_steps"] = nullptr;
+  endless.add(precision_point("published", "fixed", "float32"), counts);
+  EXPECT_NE(precision_chapter(endless.stored)
+                .figures.at(0)
+                .caption.find("Farther outside than a number says"),
+            std::string::npos);
 }
 
 TEST(ExtremeChapters, CopeWithMissingRowsAndSaySo) {

@@ -15,9 +15,12 @@
 #include "experiments/report/figures.h"
 #include "experiments/report/gnuplot.h"
 #include "experiments/report/html.h"
+#include "experiments/report/markdown.h"
 #include "experiments/report/numbers.h"
+#include "experiments/report/pictures.h"
 #include "experiments/report/style.h"
 #include "experiments/report/tables.h"
+#include "experiments/shell_word.h"
 
 namespace farcull {
 namespace {
@@ -107,6 +110,18 @@ TEST(ReportAxis, LabelsAreForPeople) {
   EXPECT_EQ(characters("10⁻¹²"), 5u);
 }
 
+TEST(ReportAxis, ANarrowRangeHasTicksAsWell) {
+  Axis axis;
+  axis.from = 0.96;
+  axis.to = 1.04;
+  EXPECT_GE(labels_of(scale_of(axis, {0.5, 1, 1.1}, 20)).size(), 3u);
+  // The twin: no more than fit, and none added where there are enough.
+  EXPECT_LT(labels_of(scale_of(axis, {0.5, 1, 1.1}, 8)).size(), 4u);
+  axis.from = 0;
+  EXPECT_EQ(labels_of(scale_of(axis, {0.5, 1, 1.1}, 20)),
+            (std::vector<std::string>{"0", "0.5", "1"}));
+}
+
 TEST(ReportStyle, AMethodLooksTheSameInEveryFigure) {
   const auto alone = styles_of({"CULLIDE"});
   const auto among = styles_of({"FAR (OBB)", "FAR pairs", "Quick-CULLIDE", "CULLIDE"});
@@ -140,6 +155,8 @@ TEST(ReportNumbers, ExponentOfAPowerIsThePower) {
   EXPECT_NEAR(e->value, 1.5, 1e-13);
   EXPECT_NEAR(e->error, 0, 1e-13);
   EXPECT_EQ(e->points, 4u);
+  EXPECT_EQ(e->from, 2);
+  EXPECT_EQ(e->to, 128);
 }
 
 TEST(ReportNumbers, StandardErrorIsThatOfTheTextbook) {
@@ -202,6 +219,73 @@ TEST(ReportFigures, IdsOfTwoDrawingsDiffer) {
       "<?xml version=\"1.0\"?>\n<svg><g id=\"a\"><use xlink:href='#p' clip=\"url(#q)\"/></g></svg>";
   EXPECT_EQ(inline_svg(svg, "x-"),
             "<svg><g id=\"x-a\"><use xlink:href='#x-p' clip=\"url(#x-q)\"/></g></svg>");
+}
+
+TEST(ReportText, CodeOfMarkdownEndsWhereItEnds) {
+  EXPECT_EQ(markdown_code("farcull report results"), "`farcull report results`");
+  EXPECT_EQ(markdown_code("a `b` ``c``"), "``` a `b` ``c`` ```");
+  EXPECT_EQ(markdown_code("a\nb"), "`a b`");
+  EXPECT_EQ(quoted("my results; rm `x`"), "'my results; rm `x`'");
+  EXPECT_EQ(quoted("it's"), "'it'\\''s'");
+  EXPECT_EQ(quoted("results/a-1"), "results/a-1");
+}
+
+Page page_with(const std::vector<std::string>& findings) {
+  Page page;
+  DrawnChapter drawn;
+  drawn.chapter.study = "accuracy";
+  drawn.chapter.title = "Accuracy";
+  drawn.chapter.findings = findings;
+  drawn.stored.declaration.study = "accuracy";
+  page.chapters = {drawn};
+  return page;
+}
+
+TEST(ReportPage, ClaimsNothingThatItsChaptersDeny) {
+  const Page broken = page_with({"BROKEN: first", "BROKEN: second", "fine"});
+  const std::string html = page_html(broken);
+  EXPECT_EQ(html.find("never misses"), std::string::npos);
+  const std::string summary = html.substr(0, html.find("<nav"));
+  for (const char* part : {"BROKEN: first", "BROKEN: second", "fine"})
+    EXPECT_NE(summary.find(part), std::string::npos) << part;
+  const std::string text = page_markdown(broken, "my results");
+  EXPECT_LT(text.find("BROKEN: second"), text.find("All of this page"));
+  EXPECT_NE(text.find("`farcull report 'my results'`"), std::string::npos);
+  // The twin.
+  const Page good = page_with({"fine"});
+  EXPECT_NE(page_html(good).find("never misses"), std::string::npos);
+  EXPECT_EQ(page_html(good).find("Broken."), std::string::npos);
+  EXPECT_EQ(page_markdown(good, "r").find("Broken."), std::string::npos);
+}
+
+TEST(ReportPictures, SayWhatTheyShowThemselves) {
+  Picture picture;
+  picture.name = "p";
+  picture.caption = "Two panels";
+  picture.panels = {{"CULLIDE", 12, 40}, {"FAR", 0, 40}};
+  std::vector<PanelResult> drawn(2);
+  drawn[0].missed = 12;
+  drawn[0].colliding = drawn[1].colliding = 40;
+  Picture same = picture;
+  EXPECT_TRUE(add_counts(same, drawn).empty());
+  EXPECT_EQ(same.caption,
+            "Two panels. Here CULLIDE misses 12 of 40 colliding pairs and FAR misses 0 of 40 "
+            "colliding pairs.");
+  // The twin: another device, other counts, a promise that was not kept.
+  drawn[0].missed = 13;
+  drawn[1].missed = 1;
+  drawn[1].broken = true;
+  Picture other = picture;
+  const std::vector<std::string> broken = add_counts(other, drawn);
+  ASSERT_EQ(broken.size(), 1u);
+  EXPECT_EQ(broken[0],
+            "BROKEN: in the picture p, FAR misses 1 of 40 colliding pairs, and promises to miss "
+            "none.");
+  EXPECT_NE(other.caption.find("CULLIDE misses 13 of 40"), std::string::npos);
+  EXPECT_NE(other.caption.find("say otherwise: 12 of 40 by CULLIDE and 0 of 40 by FAR missed."),
+            std::string::npos);
+  drawn.pop_back();
+  EXPECT_THROW(add_counts(other, drawn), std::logic_error);
 }
 
 class Folder {

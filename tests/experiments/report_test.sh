@@ -228,6 +228,23 @@ wrong=$(check_links "$work/some/report/index.html")
 [[ -z $wrong ]] || fail "the page of some rows: $wrong"
 if grep -q 'class="warning".*Incomplete' "$page"; then fail "a complete page says that it is not"; fi
 
+# ---- a promise that was not kept ----
+
+"$fixture" "$work/liar" broken
+status=0
+"$farcull" report --no-pictures "$work/liar" >"$work/liar.out" 2>"$work/liar.err" || status=$?
+((status == 1)) || fail "a broken promise: status $status"
+grep -q 'a promise is broken: accuracy: ' "$work/liar.err" || fail "a broken promise is not told of"
+liar=$work/liar/report
+sed '/<nav/,$d' "$liar/index.html" >"$work/liar.summary"
+for study in accuracy error-time radius offsets precision stability efficiency scaling; do
+  grep -q "<li><a href=\"#$study\">.*BROKEN:" "$work/liar.summary" || fail "the summary hides what $study broke"
+done
+if grep -q 'never misses' "$liar/index.html"; then fail "the page claims what its rows deny"; fi
+sed '/^All of this page/,$d' "$liar/results.md" | grep -q 'BROKEN:' || fail "results.md hides a broken promise"
+# The twin: the store of before keeps its promises.
+grep -q 'never misses' "$page" || fail "the page of kept promises claims nothing"
+
 # refuses WHAT PATTERN COMMAND...: status 2 and one line that fits.
 refuses() {
   local what=$1 pattern=$2 status=0 said
