@@ -120,7 +120,7 @@ TEST(ErrorTimeChapter, HasTheFrontOfWhatNothingBeats) {
   EXPECT_EQ(series_of(chapter, 0, "Pareto front")->x, (std::vector<double>{1, 4, 4, 9}));
   EXPECT_EQ(series_of(chapter, 0, "Pareto front")->y, (std::vector<double>{5, 5, 0, 0}));
   EXPECT_TRUE(says(chapter.findings, "fcl-float misses 2 of 20 colliding pairs and reports 3"));
-  EXPECT_TRUE(says(chapter.findings, "that of FAR pairs in 4.00 ms"));
+  EXPECT_TRUE(says(chapter.findings, "that of FAR pairs in 4 ms"));
 }
 
 // The twin: the front follows the rows, whoever they favour.
