@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "experiments/studies/lemma_point.h"
+#include "experiments/studies/run_studies.h"
 #include "offsets/obb.h"
 #include "verify/exact_point.h"
 #include "verify/worst_canvas.h"
@@ -205,6 +206,35 @@ TEST(Lemma, BuffersOfTheWorstCanvasBoundAtTheBudgetInDeepAndWideWindows) {
       EXPECT_GT(lemma_total(lemma_experiment(canvas, fattener, settings)).violations(), 200u);
     }
   }
+}
+
+TEST(LemmaPoint, PromisesAtTheBudgetAndAViolationThereBreaksIt) {
+  Lab lab("cpu");
+  Point point;
+  point.scene = LemmaScene{"pixel corners", 100}.name();
+  point.method = "lemma-worst";
+  point.offset = "obb";
+  point.depth_mode = "fragment";
+  point.seed = 1;
+  const auto at = [&](const char* radius, const char* mode = "fragment") {
+    point.radius = radius;
+    point.depth_mode = mode;
+    return measure_lemma(point, lab);
+  };
+  Measurement kept = at("budget");
+  EXPECT_EQ(kept.counts["promises"], true);
+  EXPECT_EQ(kept.counts["violations"], 0);
+  EXPECT_FALSE(breaks_promise(kept));
+  kept.counts["violations"] = 1;
+  EXPECT_TRUE(breaks_promise(kept));
+  EXPECT_EQ(at("1.1").counts["promises"], true);
+  // The twin: nothing is promised below it, and what is violated breaks nothing.
+  const Measurement half = at("0.5");
+  EXPECT_EQ(half.counts["promises"], false);
+  EXPECT_GT(half.counts["violations"], 0);
+  EXPECT_FALSE(breaks_promise(half));
+  EXPECT_EQ(at("published").counts["promises"], false);
+  EXPECT_EQ(at("budget", "fixed").counts["promises"], false);
 }
 
 TEST(LemmaScene, IsReadAsItWasWritten) {

@@ -106,16 +106,53 @@ TEST_F(NarrowPeers, LeaveNeighboursOutInsideAnObject) {
   EXPECT_EQ(found("fcl-float", scene), truth_of(scene));
 }
 
+// Empty, or what no answer of a library may be, whatever it misses.
+std::string fault_of(const Scene& scene, const std::vector<TrianglePair>& pairs) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const TrianglePair& pair = pairs[i];
+    if (pair.b >= owner.size() || pair.a >= pair.b) return "no pair of triangles";
+    if (owner[pair.a] == owner[pair.b]) return "of one object";
+    if (i > 0 && !(pairs[i - 1] < pair)) return "not sorted, or twice";
+  }
+  return "";
+}
+
 TEST_F(NarrowPeers, EndOnDegenerateTrianglesAndWhatOnlyFloatsMakeDegenerate) {
   for (const char* name : {"degenerate", "needles", "crowd@far", "crowd@tiny", "crowd@huge"}) {
     const Scene scene = make_builtin_scene(name);
     const Truth truth{truth_of(scene), 0, 0};
     for (const char* peer : {"fcl-float", "fcl-double"}) {
       const std::vector<TrianglePair> pairs = found(peer, scene);
+      EXPECT_EQ(fault_of(scene, pairs), "") << peer << " on " << name;
       const Errors errors = errors_of(truth, pairs);
-      EXPECT_EQ(truth.pairs.size() - errors.missed, pairs.size() - errors.wrong) << peer;
+      const bool exact = std::string(peer) == "fcl-double" && std::string(name) != "degenerate";
+      // Coordinates that are doubles lose nothing; those far away lose all as floats, and no type
+      // makes FCL exact where triangles are degenerate.
+      if (exact) {
+        EXPECT_EQ(errors.missed + errors.wrong, 0u) << peer << " on " << name;
+      }
+      if (std::string(name) == "degenerate") {
+        EXPECT_GT(errors.missed + errors.wrong, 0u) << peer;
+      }
+      if (std::string(name) == "crowd@far" && !exact) {
+        EXPECT_GT(errors.missed, truth.pairs.size() / 2) << peer;
+      }
     }
   }
+}
+
+// The twin: each fault is seen.
+TEST(NarrowAnswers, AreRefusedWithAFault) {
+  const Scene scene =
+      scene_of({{{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}}, {{{9, 9, 9}, {9, 8, 9}, {8, 9, 9}}}},
+                {{{{1, 1, -1}, {1, 1, 1}, {2, 2, 1}}}}});
+  EXPECT_EQ(fault_of(scene, {{0, 2}, {1, 2}}), "");
+  EXPECT_EQ(fault_of(scene, {{0, 3}}), "no pair of triangles");
+  EXPECT_EQ(fault_of(scene, {{2, 0}}), "no pair of triangles");
+  EXPECT_EQ(fault_of(scene, {{0, 1}}), "of one object");
+  EXPECT_EQ(fault_of(scene, {{1, 2}, {0, 2}}), "not sorted, or twice");
+  EXPECT_EQ(fault_of(scene, {{0, 2}, {0, 2}}), "not sorted, or twice");
 }
 
 }  // namespace
