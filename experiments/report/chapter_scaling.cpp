@@ -198,7 +198,8 @@ Chapter scaling_chapter(const StoredStudy& stored) {
       "not of the machine, whose times swing.",
       "More objects in `crowd:N` stand at the same density, more triangles in `torii:N` are of the "
       "same six objects, so that what collides grows with both.",
-      "I-COLLIDE keeps its sorted ends from repeat to repeat, as it does from frame to frame.",
+      "I-COLLIDE sorts anew in each run here; from frame to frame it would mend what it has "
+      "sorted.",
       "Fragment work runs on the CPU where the device is software: there, resolution costs what "
       "graphics hardware does side by side."};
   add_gaps(stored, out);
