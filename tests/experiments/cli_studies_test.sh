@@ -55,7 +55,8 @@ for _ in {1..10}; do
   sleep "$(awk -v r=$RANDOM -v t="$took_ms" 'BEGIN { printf "%.3f", r / 32768 * t / 5000 }')"
   kill -KILL "$child" 2>/dev/null
   wait "$child" 2>/dev/null
-  (($? == 137)) && ((kills += 1))
+  status=$?
+  ((status == 137)) && ((kills += 1))
 done
 ((cases += 1))
 ((kills >= 5)) || fail killed "only $kills of 10 kills met a run that was going on (seed $SEED)"
@@ -73,8 +74,9 @@ for _ in {1..100}; do
 done
 kill -INT "$child"
 wait "$child"
+status=$?
 ((cases += 1))
-(($? == 130)) || fail interrupted "not ended by the signal"
+((status == 130)) || fail interrupted "status $status, not ended by the signal"
 expect interrupted "$err" "^farcull: interrupted: after [0-9]+ of $points points; .*--resume"
 measure --out interrupted --resume || fail interrupted "status $?"
 same interrupted interrupted
