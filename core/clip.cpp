@@ -70,7 +70,7 @@ Patch clip_to_region(const Window& window, const std::array<Vec3, 3>& corners) {
   }
   // Each cut displaces its new corners by at most 16 * 2^-53 * largest in each axis: t carries
   // three roundings, times |to - from| <= 2 * largest, then the difference, the product and the sum
-  // round once more (docs/budget.md, "double").
+  // round once more (docs/budget.md, "Clipping and the fan").
   patch.error += patch.cuts * 16 * kUnit * largest;
   return patch;
 }

@@ -10,10 +10,10 @@
 
 namespace farcull {
 
-/// A convex polygon in pixel space: a triangle clipped by up to six planes. Its convex hull, grown
-/// by `error` px in each axis, contains every point of the exact triangle's image in the region
-/// without its margin of one pixel. (A point that deep inside stays inside every plane when it is
-/// moved by the errors of the cuts before; docs/budget.md, "double".)
+/// A polygon in pixel space: a triangle clipped by up to six planes, convex and flat up to
+/// rounding. For every point of the exact triangle's image in the region without its margin of one
+/// pixel, a triangle of the fan about the first corner has a point within `error` px in each axis
+/// (docs/budget.md, "Clipping and the fan").
 struct Patch {
   std::array<Vec3, 9> corners;
   int count = 0;     // 0: the triangle has no point in the region

@@ -12,3 +12,20 @@ if(commit MATCHES "-dirty$")
   string(APPEND commit "-${hash}")
 endif()
 file(CONFIGURE OUTPUT ${OUT} CONTENT "#pragma once\n#define FARCULL_COMMIT \"${commit}\"\n")
+
+# Beside it PROBED, with a hash of all that a verdict about a device rests on: kernels, probes, and what runs them.
+if(PROBED)
+  file(GLOB probed ${SOURCE}/core/*.glsl ${SOURCE}/core/shaders/* ${SOURCE}/core/gl_* ${SOURCE}/core/glsl_* ${SOURCE}/core/budget.*
+       ${SOURCE}/core/canvas.* ${SOURCE}/core/pair* ${SOURCE}/offsets/* ${SOURCE}/verify/kernel_* ${SOURCE}/verify/*_line.h
+       ${SOURCE}/verify/*_cases.h ${SOURCE}/verify/rational.h ${SOURCE}/experiments/*kernel_probes* ${SOURCE}/experiments/device_verdict*)
+  list(SORT probed)
+  set(hashes "")
+  foreach(file IN LISTS probed)
+    file(SHA256 ${file} hash)
+    get_filename_component(name ${file} NAME)
+    string(APPEND hashes "${name} ${hash}\n")
+  endforeach()
+  string(SHA256 hash "${hashes}")
+  string(SUBSTRING ${hash} 0 16 hash)
+  file(CONFIGURE OUTPUT ${PROBED} CONTENT "#pragma once\n#define FARCULL_PROBED \"${hash}\"\n")
+endif()

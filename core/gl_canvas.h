@@ -4,7 +4,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +20,7 @@ enum class DepthFormat { float32, fixed24 };
 enum class QueryMode { flags, occlusion };
 
 /// Faults for tests and `farcull doctor`, each applied to the next pass; a pass must notice every
-/// one (assumption A7).
+/// one (assumption A7), and begin() come again after it.
 enum class Fault {
   none,
   lost_draw,              // the draw call of a step never runs
@@ -42,7 +41,10 @@ struct GlCanvasOptions {
 class GlCanvas final : public Canvas {
  public:
   /// `mode` and `solid` as in the fattener whose drawables will come. Throws Error where the
-  /// options do not go together or the device refuses. The context must outlive the canvas.
+  /// options do not go together or the device refuses. The context must outlive the canvas, which
+  /// makes it current for each of its calls. After any exception of begin(), run(), samples() or
+  /// depths() all that lies on the device is dropped; the next begin() makes it anew, and the
+  /// others throw std::logic_error before it.
   GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram& solid,
            const GlCanvasOptions& options = {});
   ~GlCanvas() override;
@@ -58,7 +60,18 @@ class GlCanvas final : public Canvas {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  void forget();
+  void require_begun(const char* function) const;
+  template <class Work>
+  auto guarded(const Work& work);
+
+  const GlContext& context_;
+  DepthMode mode_;
+  std::string solid_;  // GLSL
+  GlCanvasOptions options_;
+  RasterLimits limits_;
+  Fault fault_ = Fault::none;
+  std::unique_ptr<State> state_;  // null after a failure
 };
 
 }  // namespace farcull

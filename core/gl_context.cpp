@@ -2,13 +2,16 @@
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cstring>
 #include <optional>
+#include <thread>
 
 #include "core/error.h"
+#include "core/floating_point.h"
 
 namespace farcull {
 namespace {
@@ -24,9 +27,33 @@ bool has_word(const std::string& list, const std::string& word) {
   return (" " + list + " ").find(" " + word + " ") != std::string::npos;
 }
 
+// Address space that Mesa's software device takes: its libraries with LLVM, and a stack and a heap
+// for each of up to 16 threads. With less, loading it fails in many ways, which look as if it were
+// not installed, or it crashes.
+std::size_t driver_bytes() {
+  const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
+  return (std::size_t{256} + std::size_t{64} * threads) << 20;
+}
+
+// Asks for it and gives it back: a limit of the process (ulimit -v) refuses. Nothing is touched.
+void require_memory() {
+  const std::size_t bytes = driver_bytes();
+  void* const room = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
+                            MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED) {
+    throw Error(
+        "EGL",
+        "a device may take " + std::to_string(bytes >> 20) + " MB of memory, and less is left",
+        "raise the limit (ulimit -v), use --method far-pairs --device cpu, or a machine with "
+        "more memory");
+  }
+  ::munmap(room, bytes);
+}
+
 // EGL itself, without a display: extensions of the client library. libepoxy aborts the process
 // where libEGL is missing, so its presence is asked for first.
 void require_egl() {
+  require_memory();
   if (!epoxy_has_egl()) throw Error("EGL", "libEGL.so.1 cannot be loaded", kInstall);
   const std::string client = text(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS));
   if (!has_word(client, "EGL_EXT_device_enumeration") && !has_word(client, "EGL_EXT_device_base")) {
@@ -52,7 +79,8 @@ struct EglContext {
     // The display stays initialized: EGL has one per device, and another context of this process
     // may be using it.
     if (context == EGL_NO_CONTEXT) return;
-    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    if (eglGetCurrentContext() == context)
+      eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display, context);
   }
 };
@@ -77,11 +105,18 @@ GlDevice describe(EGLDeviceEXT device, int index) {
   return out;
 }
 
+constexpr const char* kNoMemory = "there is not enough memory for it (EGL_BAD_ALLOC)";
+
+// The reason, unless EGL's error says that memory is missing.
+std::string with_cause(const char* reason) {
+  return eglGetError() == EGL_BAD_ALLOC ? kNoMemory : reason;
+}
+
 // Makes a current context on the device, or says why not.
 std::string open(EGLDeviceEXT device, EglContext& out) {
   const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr))
-    return "its display cannot be initialized";
+    return with_cause("its display cannot be initialized");
   out.display = display;
   if (!eglBindAPI(EGL_OPENGL_API)) return "it has no desktop OpenGL";
   const std::string extensions = text(eglQueryString(display, EGL_EXTENSIONS));
@@ -109,11 +144,12 @@ std::string open(EGLDeviceEXT device, EglContext& out) {
   out.context = create(true);
   if (out.context == EGL_NO_CONTEXT) out.context = create(false);
   if (out.context == EGL_NO_CONTEXT) {
+    if (eglGetError() == EGL_BAD_ALLOC) return kNoMemory;
     return "its OpenGL is older than " + std::to_string(kMajor) + "." + std::to_string(kMinor) +
            " core";
   }
   if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, out.context))
-    return "its context cannot be made current";
+    return with_cause("its context cannot be made current");
   GLint strategy = GL_NO_RESET_NOTIFICATION;
   if (epoxy_has_gl_extension("GL_KHR_robustness") || epoxy_gl_version() >= 45) {
     glGetIntegerv(GL_RESET_NOTIFICATION_STRATEGY, &strategy);
@@ -136,8 +172,57 @@ struct GlContext::Handles {
   GlInfo info;
 };
 
+// EGL's current context belongs to a thread, and so does the rendering API that is bound.
+struct GlCurrent::Before {
+  EGLenum api = eglQueryAPI();
+  EGLDisplay display = eglGetCurrentDisplay();
+  EGLContext context = eglGetCurrentContext();
+  EGLSurface draw = eglGetCurrentSurface(EGL_DRAW), read = eglGetCurrentSurface(EGL_READ);
+  EGLDisplay ours = EGL_NO_DISPLAY;
+
+  ~Before() {
+    const EGLDisplay now = eglGetCurrentDisplay();
+    if (context != EGL_NO_CONTEXT) {
+      eglBindAPI(api);
+      if (eglMakeCurrent(display, draw, read, context)) return;
+      // It was destroyed meanwhile: then nothing is current.
+    }
+    if (ours != EGL_NO_DISPLAY || now != EGL_NO_DISPLAY) {
+      eglBindAPI(EGL_OPENGL_API);
+      eglMakeCurrent(ours != EGL_NO_DISPLAY ? ours : now, EGL_NO_SURFACE, EGL_NO_SURFACE,
+                     EGL_NO_CONTEXT);
+    }
+    eglBindAPI(api);
+  }
+};
+
+GlCurrent::GlCurrent() : before_(std::make_unique<Before>()) {}
+
+GlCurrent::GlCurrent(const GlContext& context) {
+  const EglContext& egl = context.handles_->egl;
+  if (eglGetCurrentContext() == egl.context) return;
+  auto before = std::make_unique<Before>();
+  before->ours = egl.display;
+  eglBindAPI(EGL_OPENGL_API);
+  const bool made = eglMakeCurrent(egl.display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl.context);
+  const bool taken = !made && eglGetError() == EGL_BAD_ACCESS;
+  if (!made || eglGetCurrentContext() != egl.context) {
+    throw Error("GL context",
+                taken ? "it cannot be made current: another thread is using it, or a context of "
+                        "another interface than EGL (GLX) is current in this thread"
+                      : "it cannot be made current",
+                taken ? "use it from one thread at a time, and release a GLX context first"
+                      : "run again, or with another --device");
+  }
+  before_ = std::move(before);
+}
+
+GlCurrent::~GlCurrent() = default;
+
 GlContext::GlContext(const std::string& device) {
+  const FloatingPointGuard guard;  // drivers are loaded here, perhaps built with -ffast-math
   require_egl();
+  const GlCurrent before;
   const std::vector<EGLDeviceEXT> list = devices();
   if (list.empty()) throw Error("EGL", "there is no EGL device", kInstall);
   const std::optional<int> wanted = number(device);
@@ -182,7 +267,10 @@ GlContext::GlContext(const std::string& device) {
       handles_.reset();
     }
   }
-  throw Error("EGL", problems.empty() ? "there is no " + device + " device" : problems, kInstall);
+  throw Error("EGL", problems.empty() ? "there is no " + device + " device" : problems,
+              problems.find(kNoMemory) == std::string::npos
+                  ? kInstall
+                  : "use a machine with more memory, or --method far-pairs --device cpu");
 }
 
 GlContext::~GlContext() = default;
@@ -190,6 +278,7 @@ GlContext::~GlContext() = default;
 const GlInfo& GlContext::info() const { return handles_->info; }
 
 bool GlContext::hardware_listed() {
+  const FloatingPointGuard guard;  // as above
   require_egl();
   for (EGLDeviceEXT device : devices()) {
     if (describe(device, 0).kind == "hardware") return true;
@@ -198,7 +287,9 @@ bool GlContext::hardware_listed() {
 }
 
 std::vector<GlDevice> GlContext::list_devices() {
+  const FloatingPointGuard guard;  // as above
   require_egl();
+  const GlCurrent before;
   std::vector<GlDevice> out;
   const std::vector<EGLDeviceEXT> list = devices();
   for (int i = 0; i < static_cast<int>(list.size()); ++i) {
@@ -232,7 +323,7 @@ void check_gl(const std::string& stage) {
   if (!errors.empty()) {
     throw Error("GL " + stage, errors,
                 errors.find("MEMORY") != std::string::npos
-                    ? "choose a smaller resolution or another --device"
+                    ? "memory is missing: choose a smaller resolution or another --device"
                     : "this is a fault of the driver or of farcull: report it with the output of "
                       "`farcull doctor`");
   }
@@ -243,6 +334,7 @@ void check_gl(const std::string& stage) {
       throw Error("GL " + stage, "the graphics context was reset",
                   "run again, or with another --device");
   }
+  require_proved("GL " + stage);
 }
 
 }  // namespace farcull

@@ -30,12 +30,14 @@ struct GlInfo {
   bool reset_detection = false;
 };
 
-/// A current context of OpenGL 4.3 core or later, released with the object. One at a time per
-/// thread.
+/// A context of OpenGL 4.3 core or later, destroyed with the object. It is current only while a
+/// GlCurrent of it lives: any number of contexts can be used in turn in one thread, beside contexts
+/// of the caller's own, and one context by several threads, one at a time.
 class GlContext {
  public:
   /// device: "" (hardware first, then software), "hardware", "software" or a number of
   /// list_devices(). Throws Error where there is no EGL, no such device, or its OpenGL is too old.
+  /// What was current in the calling thread is current again afterwards.
   explicit GlContext(const std::string& device = "");
   ~GlContext();
   GlContext(const GlContext&) = delete;
@@ -50,12 +52,33 @@ class GlContext {
   static bool hardware_listed();
 
  private:
+  friend class GlCurrent;
   struct Handles;
   std::unique_ptr<Handles> handles_;
 };
 
+/// Makes a context current in this thread for as long as the object lives; then what was current
+/// before is current again: nothing, another GlContext, or a context of the caller's own with its
+/// surfaces and its rendering API. Nests. Whatever calls GL holds one.
+class GlCurrent {
+ public:
+  /// Throws Error where the context cannot be made current: another thread is using it, or a
+  /// context of another window-system interface (GLX) is current in this thread.
+  explicit GlCurrent(const GlContext& context);
+  ~GlCurrent();
+  GlCurrent(const GlCurrent&) = delete;
+  GlCurrent& operator=(const GlCurrent&) = delete;
+
+ private:
+  friend class GlContext;
+  struct Before;
+  GlCurrent();                      // remembers what is current, and changes nothing
+  std::unique_ptr<Before> before_;  // null: the context was current already
+};
+
 /// Reads GL's error flags and the reset status; throws Error naming `stage` unless both are clean
-/// (assumption A7).
+/// (assumption A7), or where the driver has left this thread with another floating-point
+/// environment than the proofs are about.
 void check_gl(const std::string& stage);
 
 }  // namespace farcull

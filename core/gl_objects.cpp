@@ -1,6 +1,7 @@
 #include "core/gl_objects.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "core/error.h"
 #include "core/gl_context.h"
@@ -8,6 +9,7 @@
 namespace farcull {
 namespace {
 
+constexpr const char* kLost = "a command was lost: run again, or with another --device";
 constexpr const char* kReport = "report this driver's log with the output of `farcull doctor`";
 
 // Shaders write out and inout parameters through these names, so that kernels compile as C++ too
@@ -26,7 +28,84 @@ std::string log_of(GLuint object, Get get, Log log) {
   return text;
 }
 
+// Every update goes through this binding. Whether it took effect is asked of GL: the contents that
+// follow would otherwise end in the buffer that was bound before.
+void bind_storage(GLuint name) {
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
+  GLint bound = 0;
+  glGetIntegerv(GL_SHADER_STORAGE_BUFFER_BINDING, &bound);
+  if (static_cast<GLuint>(bound) != name || name == 0)
+    throw Error("GL buffer", "a buffer was not bound", kLost);
+}
+
 }  // namespace
+
+// Numbers that look random, so that no few of them cancel in a sum; each step is a bijection, so no
+// two are equal before 2^32 of them.
+std::uint32_t gl_number() {
+  static std::atomic<std::uint32_t> last{0};
+  std::uint32_t tag = last += 1;
+  tag = (tag ^ tag >> 16) * 0x85ebca6bu;
+  tag = (tag ^ tag >> 13) * 0xc2b2ae35u;
+  return tag ^ tag >> 16;
+}
+
+bool GlStore::reserve(std::size_t wanted, std::size_t most) {
+  wanted = std::max<std::size_t>(wanted, 16);
+  if (name_ != 0 && wanted <= bytes_) return false;
+  const std::size_t room = std::max(wanted, std::min(most, bytes_ + bytes_ / 2));
+  const std::size_t bytes = (room + 15) / 16 * 16;
+  const auto size = static_cast<GLsizeiptr>(kTagBytes + bytes);
+  GlBuffer grown = gl_make<GlBuffer>(glGenBuffers);
+  bind_storage(grown);
+  glBufferData(GL_SHADER_STORAGE_BUFFER, size, nullptr, GL_DYNAMIC_COPY);
+  GLint64 given = 0;
+  glGetBufferParameteri64v(GL_SHADER_STORAGE_BUFFER, GL_BUFFER_SIZE, &given);
+  check_gl("buffer of " + std::to_string(size) + " bytes");
+  if (given != size)
+    throw Error("GL buffer", "a buffer has not the size that was asked for", kLost);
+  const std::uint32_t head[4] = {gl_number(), 0, 0, 0};
+  glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof head, head);
+  std::swap(name_, grown);
+  tag_ = head[0];
+  bytes_ = bytes;
+  return true;
+}
+
+void GlStore::write(std::size_t at, const void* data, std::size_t bytes) {
+  if (bytes == 0) return;
+  bind_storage(name_);
+  glBufferSubData(GL_SHADER_STORAGE_BUFFER, static_cast<GLintptr>(kTagBytes + at),
+                  static_cast<GLsizeiptr>(bytes), data);
+}
+
+void GlStore::clear(std::size_t bytes) {
+  bind_storage(name_);
+  glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, kTagBytes,
+                       static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+}
+
+void GlStore::read(std::size_t at, void* out, std::size_t bytes) const {
+  if (bytes == 0) return;
+  bind_storage(name_);
+  glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, static_cast<GLintptr>(kTagBytes + at),
+                     static_cast<GLsizeiptr>(bytes), out);
+}
+
+void gl_wait(const std::string& stage) {
+  const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  GLenum answer = GL_TIMEOUT_EXPIRED;
+  for (int second = 0; second < kLongestWait && answer == GL_TIMEOUT_EXPIRED; ++second)
+    answer = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, 1'000'000'000);
+  glDeleteSync(fence);
+  if (answer == GL_ALREADY_SIGNALED || answer == GL_CONDITION_SATISFIED) return;
+  check_gl(stage);
+  throw Error("GL " + stage,
+              answer == GL_TIMEOUT_EXPIRED
+                  ? "the device did not finish within " + std::to_string(kLongestWait) + " s"
+                  : "the device does not say whether it has finished",
+              "choose a smaller resolution, or another --device");
+}
 
 GlProgram gl_program(const std::string& name, const std::vector<std::string>& defines,
                      const std::vector<ShaderText>& stages) {
@@ -46,6 +125,10 @@ GlProgram gl_program(const std::string& name, const std::vector<std::string>& de
     glDeleteShader(shader);
     if (!ok) throw Error("GL shader " + name, "it does not compile: " + log, kReport);
   }
+  GLint attached = 0;
+  glGetProgramiv(program, GL_ATTACHED_SHADERS, &attached);
+  if (attached != static_cast<GLint>(stages.size()))
+    throw Error("GL shader " + name, "it lacks a stage", kLost);
   glLinkProgram(program);
   GLint ok = GL_FALSE;
   glGetProgramiv(program, GL_LINK_STATUS, &ok);

@@ -3,6 +3,8 @@
 
 #include <epoxy/gl.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,5 +63,41 @@ GlProgram gl_program(const std::string& name, const std::vector<std::string>& de
 /// Replaces the contents of a shader storage buffer (at least 16 bytes long, so that it can always
 /// be bound).
 void gl_fill(GLuint buffer, const void* data, std::size_t bytes);
+
+/// A number that no other call in the process has returned, before the first 2^32 of them.
+std::uint32_t gl_number();
+
+/// Bytes of a storage buffer that stand before its data: its tag and three words 0.
+constexpr std::size_t kTagBytes = 16;
+
+/// A shader storage buffer that grows and never shrinks. It begins with a tag, a number that no
+/// other buffer of the process has: a program that reads it knows that this buffer is bound.
+/// Programs declare it as { uvec4 tag; T data[]; }; offsets here count from the data. Every
+/// function asks GL whether the buffer is bound before it touches contents, so that a lost binding
+/// cannot spoil another buffer. Each throws Error where GL fails.
+class GlStore {
+ public:
+  /// Makes room for `wanted` bytes of data, up to half as much again within `most`. True where the
+  /// contents are lost: they are undefined then. The store is as before where it throws.
+  bool reserve(std::size_t wanted, std::size_t most);
+  void write(std::size_t at, const void* data, std::size_t bytes);
+  /// Zeros, from the beginning; a multiple of 4.
+  void clear(std::size_t bytes);
+  void read(std::size_t at, void* out, std::size_t bytes) const;
+
+  GLuint name() const { return name_; }
+  std::uint32_t tag() const { return tag_; }
+  std::size_t bytes() const { return bytes_; }  // of data
+
+ private:
+  GlBuffer name_;
+  std::uint32_t tag_ = 0;
+  std::size_t bytes_ = 0;
+};
+
+/// Waits until the device has done all that it was told. Throws Error naming `stage` where that
+/// takes longer than kLongestWait, or the device cannot say.
+void gl_wait(const std::string& stage);
+constexpr int kLongestWait = 600;  // s
 
 }  // namespace farcull

@@ -14,6 +14,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// Pairs that are held although they may repeat: this part of the memory, or so many, or as many as
+// are distinct.
+constexpr std::size_t kBufferPart = 8;
+constexpr std::size_t kLeastBuffer = 4096;
+
 constexpr std::size_t kSentBytes = 3 * kVec4;  // of a triangle that is sent by itself
 
 }  // namespace
@@ -32,7 +37,8 @@ bool PairRoom::take(std::size_t bytes) {
 // What all parts of the window share.
 void GlPairs::State::begin(const PairTask& t) {
   task = &t;
-  found.clear();
+  // An emission, up to a quarter of the memory, may come on top of it.
+  found.emplace(1, std::max(options.memory / kBufferPart / sizeof(TrianglePair), kLeastBuffer));
   counts = {};
   counts.bands = 0;
   sent = 0;
@@ -68,12 +74,19 @@ void GlPairs::State::begin(const PairTask& t) {
              t.owners.size_bytes() > block || t.active.size_bytes() > block ||
              object_words.size() * kWord > block;
   if (gathered) return;
-  sent += vertices.update(as_bytes(t.vertices));
-  sent += triangles.update(as_bytes(t.triangles));
-  sent += owners.update(as_bytes(t.owners));
-  sent += active.update(as_bytes(t.active));
-  sent += objects.update(as_bytes(object_words));
-  check_gl("pairs upload");
+  send(vertices, as_bytes(t.vertices));
+  send(triangles, as_bytes(t.triangles));
+  send(owners, as_bytes(t.owners));
+  send(active, as_bytes(t.active));
+  send(objects, as_bytes(object_words));
+  if (sent > 0) device.read("pairs upload");
+}
+
+// Brings a buffer up to date; what it then holds is compared with the data when totals are read.
+void GlPairs::State::send(PairMirror& mirror, std::span<const std::byte> data) {
+  const std::size_t bytes = mirror.update(data);
+  if (bytes > 0) device.expect(mirror.store(), data);
+  sent += bytes;
 }
 
 void GlPairs::State::check(const std::array<std::uint32_t, kTotals>& totals) const {
@@ -125,11 +138,11 @@ void GlPairs::State::send(const std::function<void(std::size_t, std::size_t)>& l
       }
       own.push_back(static_cast<std::uint32_t>(own_words.size() / 8 - 1));
     }
-    sent += vertices.update(std::as_bytes(std::span(corners)));
-    sent += triangles.update(std::as_bytes(std::span(numbers)));
-    sent += owners.update(std::as_bytes(std::span(own)));
-    sent += active.update(std::as_bytes(task->active.subspan(begin, n)));
-    sent += objects.update(std::as_bytes(std::span(own_words)));
+    send(vertices, std::as_bytes(std::span(corners)));
+    send(triangles, std::as_bytes(std::span(numbers)));
+    send(owners, std::as_bytes(std::span(own)));
+    send(active, std::as_bytes(task->active.subspan(begin, n)));
+    send(objects, std::as_bytes(std::span(own_words)));
     launch(begin, n);
   }
 }
@@ -139,19 +152,19 @@ bool GlPairs::State::make_items(PairRoom& room) {
   PairUniforms u = common;
   u.extra[1] = gathered;
   u.numbers[0] = std::max<float>(kLargePixels, 0.125f * static_cast<float>(task->active.size()));
-  for (PairStore* store : {&heads, &records, &record_heads, &listed, &shown}) {
+  for (GlStore* store : {&heads, &records, &record_heads, &listed, &shown}) {
     store->reserve(kVec4, kVec4);
   }
-  for (;;) {
-    const std::size_t whole_capacity = heads.bytes / kVec4;
+  for (int attempt = 0;; ++attempt) {
+    const std::size_t whole_capacity = heads.bytes() / kVec4;
     const std::size_t capacity =
-        std::min({records.bytes / kRecord, record_heads.bytes / kVec4, listed.bytes / kWord});
+        std::min({records.bytes() / kRecord, record_heads.bytes() / kVec4, listed.bytes() / kWord});
     u.capacity = static_cast<std::uint32_t>(capacity);
     u.extra[2] = static_cast<std::uint32_t>(whole_capacity);
-    device.reset(kTotalWholes, kTotalOverflow);
+    device.reset(kItemTotals);
     send([&](std::size_t first, std::size_t count) {
       u.extra[0] = static_cast<std::uint32_t>(first);
-      device.run(PairProgram::items, count, u, with_scene({{8, heads.name}, {9, listed.name}}));
+      device.run(PairProgram::items, count, u, with_scene({{8, &heads}, {9, &listed}}));
     });
     const auto totals = device.read("pair items");
     wholes = totals[kTotalWholes];
@@ -159,6 +172,10 @@ bool GlPairs::State::make_items(PairRoom& room) {
     large_ones = totals[kTotalLarge];
     row_items = two_words(totals, kTotalRows);
     if (wholes <= whole_capacity && items <= capacity) break;
+    if (attempt > 0) {
+      throw Error("GL pairs", "the same triangles were counted twice with different results",
+                  "a command was lost: run again, or with another --device");
+    }
     PairRoom trial = room;
     if (!trial.take(wholes * kVec4) || !trial.take(items * kRecord)) return false;
     heads.reserve(wholes * kVec4, room.block);
@@ -199,6 +216,7 @@ bool GlPairs::State::run(const PairPart& tile) {
   counts.list_ms += since(listing) - (counts.mark_ms - marked);
 
   const auto pairing = Clock::now();
+  settle(room);
   std::size_t crowded = counts.crowded;
   for (std::size_t l = 0;; ++l) {
     std::size_t crowded_below = 0;
@@ -225,6 +243,8 @@ void GlPairs::State::split(const PairPart& tile) {
     ++counts.bands;
     return;
   }
+  // What was sent to be used by the part is believed by the next ones, so it is checked first.
+  device.read("pairs");
   counts = before;
   for (PairLevel& level : levels) level.dirty = true;
   PairPart low = tile, high = tile;
@@ -240,41 +260,63 @@ void GlPairs::State::split(const PairPart& tile) {
 }
 
 GlPairs::GlPairs(const GlContext& context, const GlPairOptions& options)
-    : state_(std::make_unique<State>(context, options)) {}
+    : context_(context), options_(options) {
+  const GlCurrent current(context);
+  state_ = std::make_unique<State>(context, options);
+}
 
-GlPairs::~GlPairs() = default;
+GlPairs::~GlPairs() { forget(); }
 
-std::string GlPairs::name() const { return state_->context.info().renderer; }
+// Everything on the device is deleted, or where the context cannot be had, left to go with it.
+void GlPairs::forget() {
+  try {
+    const GlCurrent current(context_);
+    state_.reset();
+    // What the flags say concerns nobody any more. A lost context may report errors without end.
+    for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; ++i) {
+    }
+  } catch (const Error&) {
+    static_cast<void>(state_.release());
+  }
+}
+
+std::string GlPairs::name() const { return context_.info().renderer; }
 
 std::vector<TrianglePair> GlPairs::raw_pairs(const PairTask& task, PairCounts& counts) {
-  State& s = *state_;
   if (task.width < 1 || task.height < 1 || task.width > 65536 || task.height > 65536) {
     throw std::logic_error("GlPairs: a window of no pixels, or of more than 65536 along a side");
   }
+  const GlCurrent current(context_);
   try {
+    if (!state_) state_ = std::make_unique<State>(context_, options_);
+    State& s = *state_;
     const auto start = Clock::now();
     s.begin(task);
     s.counts.mark_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     if (!task.active.empty()) s.split({0, task.width - 1, 0, task.height - 1});
-  } catch (...) {
-    for (PairLevel& level : s.levels) level.dirty = true;
     s.device.fault = PairFault::none;
-    while (glGetError() != GL_NO_ERROR) {
-    }
+    counts = s.counts;
+    std::vector<TrianglePair> pairs = s.found->take(0);
+    s.found.reset();
+    return pairs;
+  } catch (...) {
+    // After a failure nothing that lies on the device is believed.
+    forget();
     throw;
   }
-  s.device.fault = PairFault::none;
-  counts = s.counts;
-  return sorted_unique(std::span(&s.found, 1), 0);
 }
 
 void GlPairs::inject(PairFault fault, std::size_t at) {
+  if (!state_) {
+    const GlCurrent current(context_);
+    state_ = std::make_unique<State>(context_, options_);
+  }
   state_->device.fault = fault;
   state_->device.fault_at = at;
 }
 
-std::size_t GlPairs::dispatches() const { return state_->device.dispatches; }
-std::size_t GlPairs::uploaded_bytes() const { return state_->sent; }
+std::size_t GlPairs::dispatches() const { return state_ ? state_->device.dispatches : 0; }
+std::size_t GlPairs::uploaded_bytes() const { return state_ ? state_->sent : 0; }
 
 std::unique_ptr<PairBackend> gl_pair_backend(const GlContext& context, std::size_t memory) {
   return std::make_unique<GlPairs>(context, GlPairOptions{.memory = memory});

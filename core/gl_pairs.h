@@ -25,18 +25,21 @@ enum class PairFault {
   oversized_dispatch,  // a dispatch is beyond the device's limit
   unfinished_item,     // a work item of a dispatch gives up
   corrupted_count,     // the count of a list changes before the list is filled in
+  stale_bits,  // bits of settled pairs are not cleared: the only one that nothing notices, for a
+               // test that pairs are lost by it
 };
 
 class GlPairs final : public PairBackend {
  public:
   /// Compiles its programs. Throws Error where the device has too few storage bindings or refuses a
-  /// program. The context must outlive the backend and be current whenever it is used.
+  /// program. The context must outlive the backend, which makes it current for each of its calls.
   explicit GlPairs(const GlContext& context, const GlPairOptions& options = {});
   ~GlPairs() override;
 
   std::string name() const override;
   /// Also throws Error where the entries of a single pixel are beyond a storage block of the
-  /// device.
+  /// device. After any exception all that lies on the device is dropped; the next call makes it
+  /// anew.
   std::vector<TrianglePair> raw_pairs(const PairTask& task, PairCounts& counts) override;
 
   /// `at`: which dispatch of the next raw_pairs, or which of the first part's lists, is at fault.
@@ -47,7 +50,10 @@ class GlPairs final : public PairBackend {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  void forget();
+  const GlContext& context_;
+  GlPairOptions options_;
+  std::unique_ptr<State> state_;  // null after a failure
 };
 
 /// The same behind the interface; memory as in GlPairOptions.

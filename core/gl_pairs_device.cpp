@@ -5,14 +5,18 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "core/gl_echo.h"
+#include "embedded/echo_glsl.h"
 #include "embedded/interval_glsl.h"
 #include "embedded/pair_check_comp.h"
 #include "embedded/pair_common_glsl.h"
 #include "embedded/pair_conflicts_comp.h"
+#include "embedded/pair_copy_comp.h"
 #include "embedded/pair_cut_comp.h"
 #include "embedded/pair_items_comp.h"
 #include "embedded/pair_large_comp.h"
 #include "embedded/pair_lists_comp.h"
+#include "embedded/pair_main_glsl.h"
 #include "embedded/pair_rows_glsl.h"
 #include "embedded/pair_scan_comp.h"
 #include "embedded/pair_source_glsl.h"
@@ -77,11 +81,28 @@ const std::array<Source, kPairPrograms>& sources() {
       {"pair subdivision, filling", 1, pair_cut_comp, 3, pair_rows_glsl},
       {"pair large ones", 16, pair_large_comp, 0},
       {"pair comparison with large ones", 1, pair_large_comp, 1, pair_source_glsl},
+      {"pair sum of what was sent", 64, pair_copy_comp, 0, "", {"FAR_SUM FAR_SENT"}},
+      {"pair copy", 64, pair_copy_comp, 1},
+      {"pair zeros", 64, pair_copy_comp, 2},
+      {"pair tests, settled", 4, pair_tests_comp, 0, "", {"FAR_SUM FAR_TESTS", "FAR_SETTLED"}},
+      {"pair tests left, settled", 4, pair_tests_comp, 1, "", {"FAR_SUM FAR_TESTS", "FAR_SETTLED"}},
+      {"pair tests of uncut cells, settled",
+       4,
+       pair_tests_comp,
+       0,
+       "",
+       {"FAR_SUM FAR_TESTS", "FAR_SOME_CROWDED", "FAR_SETTLED"}},
+      {"pair tests left of uncut cells, settled",
+       4,
+       pair_tests_comp,
+       1,
+       "",
+       {"FAR_SUM FAR_TESTS", "FAR_SOME_CROWDED", "FAR_SETTLED"}},
   }};
   return all;
 }
 
-std::vector<std::string> defines_of(const Source& source) {
+std::vector<std::string> defines_of(const Source& source, std::uint32_t index) {
   const auto number = [](const char* name, std::uint32_t value) {
     return std::string(name) + " " + std::to_string(value) + "u";
   };
@@ -100,6 +121,8 @@ std::vector<std::string> defines_of(const Source& source) {
            number("FAR_PAIRS", kTotalPairs),
            number("FAR_TESTS", kTotalTests),
            number("FAR_MORE", kTotalMore),
+           number("FAR_SENT", kTotalSent),
+           number("FAR_PROGRAM", index + 1),
            number("FAR_CROWDED", kCrowded),
            number("FAR_SUBDIVISION", kSubdivision),
            number("FAR_SPAN", kSpan),
@@ -113,6 +136,11 @@ std::vector<std::string> defines_of(const Source& source) {
   return out;
 }
 
+constexpr std::array kSerials = {kSerialStart, kSerialItems, kSerialCut, kSerialPairs};
+
+// Where core/shaders/pair_main.glsl adds the tags of buffers to the echo.
+constexpr std::uint32_t kTagPlace = 32;
+
 GLint limit_of(GLenum name) {
   GLint value = 0;
   glGetIntegerv(name, &value);
@@ -120,23 +148,6 @@ GLint limit_of(GLenum name) {
 }
 
 }  // namespace
-
-bool PairStore::reserve(std::size_t wanted, std::size_t most, std::size_t keep) {
-  wanted = std::max<std::size_t>(wanted, 16);
-  if (name != 0 && wanted <= bytes) return false;
-  GlBuffer grown = gl_make<GlBuffer>(glGenBuffers);
-  const std::size_t size = (std::max(wanted, std::min(most, bytes + bytes / 2)) + 15) / 16 * 16;
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, grown);
-  glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(size), nullptr, GL_DYNAMIC_COPY);
-  if (keep > 0) {
-    glBindBuffer(GL_COPY_READ_BUFFER, name);
-    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_SHADER_STORAGE_BUFFER, 0, 0,
-                        static_cast<GLsizeiptr>(keep));
-  }
-  name = std::move(grown);
-  bytes = size;
-  return true;
-}
 
 std::size_t PairMirror::update(std::span<const std::byte> data) {
   const bool lost = store_.reserve(data.size(), data.size());
@@ -146,11 +157,9 @@ std::size_t PairMirror::update(std::span<const std::byte> data) {
   const auto send = [&](std::size_t begin, std::size_t end) {
     if (begin == end) return;
     std::memcpy(sent_.data() + begin, data.data() + begin, end - begin);
-    glBufferSubData(GL_SHADER_STORAGE_BUFFER, static_cast<GLintptr>(begin),
-                    static_cast<GLsizeiptr>(end - begin), data.data() + begin);
+    store_.write(begin, data.data() + begin, end - begin);
     sent += end - begin;
   };
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, store_.name);
   std::size_t from = 0;  // the first byte of the blocks that changed up to here
   for (std::size_t at = 0; at < known; at += kMirrorBlock) {
     const std::size_t end = std::min(at + kMirrorBlock, known);
@@ -167,6 +176,7 @@ PairDevice::PairDevice(const GlContext& context, const GlPairOptions& options)
   if (options.storage_limit > 0) {
     block_ = std::min(block_, static_cast<std::size_t>(options.storage_limit));
   }
+  block_ -= kTagBytes;
   const GLint bindings = std::min(limit_of(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS),
                                   limit_of(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS));
   if (bindings < kBindings) {
@@ -177,36 +187,50 @@ PairDevice::PairDevice(const GlContext& context, const GlPairOptions& options)
   }
   // Those that every scene needs.
   for (std::size_t p = 0; p <= static_cast<std::size_t>(PairProgram::tests); ++p) program(p);
-  counters_ = gl_make<GlBuffer>(glGenBuffers);
-  words_.assign(kTotals + kDispatches, 0);
+  words_.assign(kTotals + 2 * kDispatches, 0);
+  counters_.reserve(words_.size() * sizeof(std::uint32_t), block_);
   start(true);
   check_gl("pairs");
 }
 
-GLuint PairDevice::program(std::size_t which) {
-  GlProgram& out = programs_[which];
-  if (out == 0) {
-    const Source& source = sources()[which];
-    out = gl_program(
-        source.name, defines_of(source),
-        {{GL_COMPUTE_SHADER,
-          {embedded::interval_glsl, embedded::pair_common_glsl, source.before, source.text}}});
+const PairDevice::Program& PairDevice::program(std::size_t which) {
+  Program& out = programs_[which];
+  if (out.name != 0) return out;
+  const Source& source = sources()[which];
+  GlProgram made =
+      gl_program(source.name, defines_of(source, static_cast<std::uint32_t>(which)),
+                 {{GL_COMPUTE_SHADER,
+                   {embedded::interval_glsl, embedded::pair_common_glsl, embedded::echo_glsl,
+                    source.before, source.text, embedded::pair_main_glsl}}});
+  GLint blocks = 0;
+  glGetProgramInterfaceiv(made, GL_SHADER_STORAGE_BLOCK, GL_ACTIVE_RESOURCES, &blocks);
+  std::uint32_t bindings = 0;
+  for (GLint b = 0; b < blocks; ++b) {
+    const GLenum wanted = GL_BUFFER_BINDING;
+    GLint binding = 0;
+    glGetProgramResourceiv(made, GL_SHADER_STORAGE_BLOCK, static_cast<GLuint>(b), 1, &wanted, 1,
+                           nullptr, &binding);
+    bindings |= 1u << binding;
   }
+  out.bindings = bindings;
+  std::swap(out.name, made);
   return out;
 }
 
 void PairDevice::start(bool fresh) {
   if (fresh) dispatches = 0;
   expected_.clear();
+  expected_sum_ = 0;
   std::fill(words_.begin(), words_.end(), 0);
-  gl_fill(counters_, words_.data(), words_.size() * sizeof(std::uint32_t));
+  for (const PairTotal place : kSerials) words_[place] = serials_[place] = ++serial_;
+  counters_.write(0, words_.data(), words_.size() * sizeof(std::uint32_t));
 }
 
-void PairDevice::reset(PairTotal first, std::uint32_t words) {
-  const std::array<std::uint32_t, kTotals> zero{};
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, counters_);
-  glBufferSubData(GL_SHADER_STORAGE_BUFFER, first * sizeof(std::uint32_t),
-                  static_cast<GLsizeiptr>(words * sizeof(std::uint32_t)), zero.data());
+void PairDevice::reset(PairTotals totals) {
+  std::array<std::uint32_t, kTotals> words{};
+  words[0] = serials_[totals.serial] = ++serial_;
+  counters_.write(totals.serial * sizeof(std::uint32_t), words.data(),
+                  totals.words * sizeof(std::uint32_t));
 }
 
 void PairDevice::run(PairProgram which, std::uint64_t count, const PairUniforms& u,
@@ -217,10 +241,13 @@ void PairDevice::run(PairProgram which, std::uint64_t count, const PairUniforms&
   const auto index = static_cast<std::size_t>(which);
   const bool at_fault = fault != PairFault::none && dispatches == fault_at;
   const auto n = static_cast<std::uint32_t>(count);
-  glUseProgram(program(index));
+  const Program& used = program(index);
+  const auto finished = kTotals + 2 * static_cast<std::uint32_t>(expected_.size());
+  glUseProgram(used.name);
   glUniform1ui(0, n);
-  glUniform1ui(1, kTotals + static_cast<std::uint32_t>(expected_.size()));
-  glUniform1ui(2, at_fault && fault == PairFault::unfinished_item ? n / 2 : n);
+  glUniform1ui(1, finished);
+  const std::uint32_t unfinished = at_fault && fault == PairFault::unfinished_item ? n / 2 : n;
+  glUniform1ui(2, unfinished);
   glUniform4fv(3, 1, u.widen.data());
   glUniform4iv(4, 1, u.tile.data());
   glUniform2iv(5, 1, u.window.data());
@@ -232,10 +259,22 @@ void PairDevice::run(PairProgram which, std::uint64_t count, const PairUniforms&
   glUniform1ui(11, u.items);
   glUniform4uiv(12, 1, u.extra.data());
   glUniform4fv(13, 1, u.numbers.data());
-  for (const PairBinding& b : bindings) {
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, b.index, b.buffer);
-  }
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kCounters, counters_);
+  GlEcho echo;
+  echo.add({static_cast<std::uint32_t>(index) + 1, n, finished, unfinished});
+  echo.add(u.widen);
+  echo.add(u.tile);
+  echo.add(u.window);
+  echo.add(u.depth);
+  echo.add(u.bins);
+  echo.add({u.cells, u.masked, u.capacity, u.items});
+  echo.add(u.extra);
+  echo.add(u.numbers);
+  const auto bind = [&](GLuint at, const GlStore& store) {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, at, store.name());
+    if ((used.bindings >> at & 1) != 0) echo.add_at(kTagPlace + at, store.tag());
+  };
+  for (const PairBinding& b : bindings) bind(b.index, *b.store);
+  bind(kCounters, counters_);
   const std::uint32_t per_group = kGroup * sources()[index].batch;
   const std::uint32_t groups = (n + per_group - 1) / per_group;
   const std::uint32_t most = static_cast<std::uint32_t>(context_.info().max_compute_groups);
@@ -246,11 +285,26 @@ void PairDevice::run(PairProgram which, std::uint64_t count, const PairUniforms&
                       1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   }
-  expected_.push_back(n);
+  expected_.push_back({n, echo.sum});
   ++dispatches;
 }
 
-void PairDevice::scan(GLuint numbers, GLuint before, std::size_t count) {
+void PairDevice::expect(const GlStore& store, std::span<const std::byte> data) {
+  const std::size_t count = data.size() / sizeof(std::uint32_t);
+  expected_sum_ += gl_sum(data);
+  run(PairProgram::sum, count, {}, {{0, &store}});
+}
+
+void PairDevice::grow(GlStore& store, std::size_t wanted, std::size_t keep) {
+  if (wanted <= store.bytes()) return;
+  GlStore grown;
+  grown.reserve(wanted, block_);
+  if (keep > 0)
+    run(PairProgram::copy, keep / sizeof(std::uint32_t), {}, {{0, &store}, {1, &grown}});
+  std::swap(store, grown);
+}
+
+void PairDevice::scan(const GlStore& numbers, const GlStore& before, std::size_t count) {
   // Where each level of sums begins, and how long it is.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> levels;
   std::uint32_t at = 0;
@@ -265,8 +319,7 @@ void PairDevice::scan(GLuint numbers, GLuint before, std::size_t count) {
                         std::uint32_t to) {
     PairUniforms u;
     u.extra = {from, static_cast<std::uint32_t>(length), to, kTotalScanned};
-    run(program, (length + kScanned - 1) / kScanned, u,
-        {{0, numbers}, {1, before}, {2, sums_.name}});
+    run(program, (length + kScanned - 1) / kScanned, u, {{0, &numbers}, {1, &before}, {2, &sums_}});
   };
   step(PairProgram::sum_numbers, 0, count, levels[0].first);
   for (std::size_t l = 1; l < levels.size(); ++l) {
@@ -280,21 +333,30 @@ void PairDevice::scan(GLuint numbers, GLuint before, std::size_t count) {
 }
 
 void PairDevice::check_finished(const std::string& stage) {
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, counters_);
-  const std::size_t words = kTotals + expected_.size();
-  glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0,
-                     static_cast<GLsizeiptr>(words * sizeof(std::uint32_t)), words_.data());
+  gl_wait(stage);
+  const std::size_t words = kTotals + 2 * expected_.size();
+  // Where nothing is read, no serial number is found.
+  std::fill(words_.begin(), words_.end(), 0xffffffff);
+  counters_.read(0, words_.data(), words * sizeof(std::uint32_t));
   check_gl(stage);
-  for (std::size_t d = 0; d < expected_.size(); ++d) {
-    if (words_[kTotals + d] == expected_[d]) continue;
-    throw Error("GL " + stage,
-                std::to_string(words_[kTotals + d]) + " of " + std::to_string(expected_[d]) +
-                    " work items finished",
-                "a compute invocation was lost: run again, or with another --device");
+  const auto lost = [&](const std::string& reason) {
+    throw Error("GL " + stage, reason, "a command was lost: run again, or with another --device");
+  };
+  for (const PairTotal place : kSerials) {
+    if (words_[place] != serials_[place]) lost("counts were not set to zero, or not read");
   }
-  const std::vector<std::uint32_t> zero(expected_.size(), 0);
-  glBufferSubData(GL_SHADER_STORAGE_BUFFER, kTotals * sizeof(std::uint32_t),
-                  static_cast<GLsizeiptr>(zero.size() * sizeof(std::uint32_t)), zero.data());
+  for (std::size_t d = 0; d < expected_.size(); ++d) {
+    const std::uint32_t finished = words_[kTotals + 2 * d];
+    if (finished != expected_[d].items) {
+      lost(std::to_string(finished) + " of " + std::to_string(expected_[d].items) +
+           " work items finished");
+    }
+    if (words_[kTotals + 2 * d + 1] != expected_[d].echo)
+      lost("a program ran with other numbers or other buffers than were meant");
+  }
+  const std::vector<std::uint32_t> zero(2 * expected_.size(), 0);
+  counters_.write(kTotals * sizeof(std::uint32_t), zero.data(),
+                  zero.size() * sizeof(std::uint32_t));
   expected_.clear();
 }
 
@@ -302,6 +364,10 @@ std::array<std::uint32_t, kTotals> PairDevice::read(const std::string& stage) {
   check_finished(stage);
   std::array<std::uint32_t, kTotals> totals;
   std::copy_n(words_.begin(), kTotals, totals.begin());
+  if (totals[kTotalSent] != expected_sum_) {
+    throw Error("GL " + stage, "the device holds other data than were sent",
+                "a command was lost: run again, or with another --device");
+  }
   return totals;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -15,43 +16,49 @@
 namespace farcull {
 
 /// Totals that programs count, as words of the counter buffer; two words, low first, where noted.
-/// The same names with FAR_ are macros of the shaders.
+/// The same names with FAR_ are macros of the shaders. Totals that are set to 0 together follow a
+/// serial number, which is sent with the zeros: where it comes back, they have arrived.
 enum PairTotal : std::uint32_t {
-  kTotalWholes,  // the first five belong to the items
-  kTotalItems,
-  kTotalLarge,
-  kTotalRows,  // two words
-  kTotalOverflow = kTotalRows + 2,
+  kSerialStart,
+  kTotalOverflow,
   kTotalScanned,
-  kTotalCrowded,
   kTotalMismatches,
   kTotalListed,
   kTotalListedRows,
+  kTotalSent,  // two words
+  kSerialItems = kTotalSent + 2,
+  kTotalWholes,
+  kTotalItems,
+  kTotalLarge,
+  kTotalRows,  // two words
+  kSerialCut = kTotalRows + 2,
+  kTotalCrowded,
   kTotalParents,
-  kTotalPairs,  // the last four belong together: an emission starts with all of them 0
+  kSerialPairs,
+  kTotalPairs,
   kTotalTests,  // two words
   kTotalMore = kTotalTests + 2,
   kTotals,
 };
 
-/// A storage buffer that grows and never shrinks.
-struct PairStore {
-  GlBuffer name;
-  std::size_t bytes = 0;
-  /// Makes room for `wanted` bytes, up to half as much again within `most`; the first `keep` bytes
-  /// survive. True where the others are lost.
-  bool reserve(std::size_t wanted, std::size_t most, std::size_t keep = 0);
+/// Totals that are set to 0 together, by the place of their serial number.
+struct PairTotals {
+  PairTotal serial;
+  std::uint32_t words;  // with it
 };
+constexpr PairTotals kItemTotals{kSerialItems, kSerialCut - kSerialItems};
+constexpr PairTotals kCutTotals{kSerialCut, kSerialPairs - kSerialCut};
+constexpr PairTotals kPairTotals{kSerialPairs, kTotals - kSerialPairs};
 
 /// A storage buffer with the contents of an array, of which only what changed is sent.
 class PairMirror {
  public:
   /// The bytes that were sent.
   std::size_t update(std::span<const std::byte> bytes);
-  GLuint name() const { return store_.name; }
+  const GlStore& store() const { return store_; }
 
  private:
-  PairStore store_;
+  GlStore store_;
   std::vector<std::byte> sent_;
 };
 
@@ -99,8 +106,15 @@ enum class PairProgram {
   cut_fill,
   find_large,
   large,
+  sum,
+  copy,
+  zero,
+  settled_tests,
+  more_settled_tests,
+  uncut_settled_tests,
+  more_uncut_settled_tests,
 };
-constexpr std::size_t kPairPrograms = 27;
+constexpr std::size_t kPairPrograms = 34;
 
 // Work of one invocation, bounded far below the 65,535 iterations after which llvmpipe stops.
 constexpr std::uint32_t kSpan = 1024;      // pixels of a row
@@ -109,24 +123,34 @@ constexpr std::uint32_t kLargeBatch = 64;  // large triangles
 
 struct PairBinding {
   GLuint index;
-  GLuint buffer;
+  const GlStore* store;
 };
 
 class PairDevice {
  public:
   PairDevice(const GlContext& context, const GlPairOptions& options);
 
-  std::size_t block() const { return block_; }  // bytes of a storage block
+  std::size_t block() const { return block_; }  // bytes of data in a storage block
   /// Forgets all counts; counts dispatches from 0 where `fresh`.
   void start(bool fresh);
-  void reset(PairTotal first, std::uint32_t words);
+  void reset(PairTotals totals);
   /// Runs work(w) for 0 <= w < count < 2^31; every binding that the program reads must be given.
   void run(PairProgram program, std::uint64_t count, const PairUniforms& uniforms,
            const std::vector<PairBinding>& bindings);
   /// The sums before each of `count` numbers; their total becomes kTotalScanned.
-  void scan(GLuint numbers, GLuint before, std::size_t count);
+  void scan(const GlStore& numbers, const GlStore& before, std::size_t count);
+  /// Lets the device sum what the store holds; read() compares the sum with that of `data`, of a
+  /// whole number of words.
+  void expect(const GlStore& store, std::span<const std::byte> data);
+  /// Makes room for `wanted` bytes of data, of which the first `keep` survive.
+  void grow(GlStore& store, std::size_t wanted, std::size_t keep);
+  /// Sets the first `words` words of data to 0, by a dispatch, so that it cannot be lost unnoticed.
+  void zero(const GlStore& store, std::size_t words) {
+    run(PairProgram::zero, words, {}, {{1, &store}});
+  }
   /// Waits, reads the totals and throws Error naming `stage` unless every work item of every
-  /// dispatch since the start finished and GL has no error.
+  /// dispatch since the start finished, each read the uniforms and the buffers that were meant,
+  /// what was sent and what was set to 0 has arrived, and GL has no error.
   std::array<std::uint32_t, kTotals> read(const std::string& stage);
 
   PairFault fault = PairFault::none;
@@ -134,15 +158,26 @@ class PairDevice {
   std::size_t dispatches = 0;
 
  private:
-  GLuint program(std::size_t which);
+  struct Program {
+    GlProgram name;
+    std::uint32_t bindings = 0;  // a bit for each that it reads
+  };
+  struct Dispatch {
+    std::uint32_t items;
+    std::uint32_t echo;  // as in core/shaders/pair_main.glsl
+  };
+  const Program& program(std::size_t which);
   void check_finished(const std::string& stage);
 
   const GlContext& context_;
   std::size_t block_;
-  std::array<GlProgram, kPairPrograms> programs_;  // compiled when first used
-  GlBuffer counters_;
-  PairStore sums_;
-  std::vector<std::uint32_t> expected_;  // finished work items of each dispatch since the last read
+  std::array<Program, kPairPrograms> programs_;  // compiled when first used
+  GlStore counters_;
+  GlStore sums_;
+  std::vector<Dispatch> expected_;                // of each dispatch since the last read
+  std::uint32_t expected_sum_ = 0;                // of what was sent since the start
+  std::array<std::uint32_t, kTotals> serials_{};  // those that were sent, at their places
+  std::uint32_t serial_ = 0;                      // the last one
   std::vector<std::uint32_t> words_;
 };
 

@@ -4,12 +4,16 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/gl_pairs.h"
 #include "core/gl_pairs_device.h"
+#include "core/pair_sort.h"
 
 namespace farcull {
 
@@ -40,7 +44,7 @@ struct PairRoom {
 
 // Lists of the cells of one level: pixels, then parts of crowded ones.
 struct PairLevel {
-  PairStore counts, first, entries, places, state, parents;
+  GlStore counts, first, entries, places, state, parents;
   std::size_t cells = 0;
   std::size_t listed = 0;                         // entries
   std::array<std::uint32_t, 4> bins{1, 6, 1, 0};  // as u_bins
@@ -68,8 +72,8 @@ struct GlPairs::State {
   GlPairOptions options;
   PairDevice device;
   PairMirror vertices, triangles, owners, active, objects;
-  PairStore heads, records, record_heads, listed, shown, rows, rows_before, masks, large, pairs,
-      units, units_before;
+  GlStore heads, records, record_heads, listed, shown, rows, rows_before, masks, large, pairs,
+      units, units_before, settled;
   std::array<PairLevel, kMaxLevel + 1> levels;
   bool gathered = false;  // triangles are sent one by one, since an array is beyond a block
   std::size_t sent = 0;
@@ -82,7 +86,8 @@ struct GlPairs::State {
   std::vector<std::uint32_t> object_words;  // as in pair_source.glsl
   std::size_t wholes = 0, items = 0, large_ones = 0, shown_ones = 0;  // of the part
   std::uint64_t row_items = 0;
-  std::vector<TrianglePair> found;
+  std::size_t settled_words = 0;  // bits of pairs that the part has emitted; 0: it keeps none
+  std::optional<PairPool> found;
   PairCounts counts;
 
   State(const GlContext& c, const GlPairOptions& o) : context(c), options(o), device(c, o) {}
@@ -90,13 +95,14 @@ struct GlPairs::State {
   /// The buffers that every program about triangles reads, and `more`.
   std::vector<PairBinding> with_scene(std::initializer_list<PairBinding> more) const {
     std::vector<PairBinding> all = {
-        {0, vertices.name()}, {1, triangles.name()}, {2, owners.name()},    {3, active.name()},
-        {4, objects.name()},  {5, records.name},     {6, record_heads.name}};
+        {0, &vertices.store()}, {1, &triangles.store()}, {2, &owners.store()}, {3, &active.store()},
+        {4, &objects.store()},  {5, &records},           {6, &record_heads}};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
 
   void begin(const PairTask& t);
+  void send(PairMirror& mirror, std::span<const std::byte> data);
   void split(const PairPart& tile);
   bool run(const PairPart& tile);
   void send(const std::function<void(std::size_t, std::size_t)>& launch);
@@ -105,6 +111,7 @@ struct GlPairs::State {
   void visit(PairProgram wholes_program, PairProgram rows_program, std::size_t capacity);
   bool make_records(PairRoom& room);
   bool cut(std::size_t l, std::size_t crowded, PairRoom& room, std::size_t& crowded_below);
+  void settle(PairRoom& room);
   bool test(std::size_t l, bool some_cut, PairRoom& room);
   void compare_large(const PairRoom& room);
   std::uint32_t emit(std::uint64_t count, const PairRoom& room, const PairLaunch& launch);

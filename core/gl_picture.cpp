@@ -193,6 +193,7 @@ Image draw_picture(const GlContext& context, const Scene& scene, const Window& w
   const int width = window.width * settings.samples, height = window.height * settings.samples;
   const std::string size = std::to_string(width) + " x " + std::to_string(height) + " samples";
   if (settings.samples < 1) throw std::logic_error("draw_picture: no samples");
+  const GlCurrent current(context);
   if (std::max(width, height) >
       std::min(context.info().max_texture_size, context.info().max_viewport)) {
     throw Error("GL picture", "the device has no room for " + size,

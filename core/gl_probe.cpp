@@ -53,7 +53,8 @@ ProbeResult result(const std::string& assumption, const std::string& name, const
 }
 
 ProbeResult broken(const std::string& assumption, const std::string& name, const Error& error) {
-  return {assumption, name, 0, 0, "", 0, false, error.what()};
+  return {
+      .assumption = assumption, .name = name, .unit = "", .note = error.what(), .broke_off = true};
 }
 
 Proxy quad(const std::array<double, 8>& corners) {
@@ -240,16 +241,25 @@ std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions
   struct Group {
     std::vector<std::string> assumptions;
     std::vector<ProbeResult> (*run)(const GlContext&, const ProbeOptions&);
+    bool drawing = true, pairs = false;  // who relies on it; of A4, pairs on a part alone
   };
-  const Group groups[] = {{{"A1", "A2"}, probe::edges}, {{"A3"}, probe::coverage},
-                          {{"A4"}, probe::arithmetic},  {{"A5"}, probe::depth_tests},
-                          {{"A6"}, probe::queries},     {{"A7"}, probe::commands}};
+  const Group groups[] = {{{"A1", "A2"}, probe::edges},
+                          {{"A3"}, probe::coverage},
+                          {{"A4"}, probe::arithmetic, true, true},
+                          {{"A5"}, probe::depth_tests},
+                          {{"A6"}, probe::queries},
+                          {{"A7"}, probe::commands},
+                          {{"A7"}, probe::pair_commands, false, true},
+                          {{"A8"}, probe::memory, true, true}};
+  const GlCurrent current(context);
   std::vector<ProbeResult> out;
   for (const Group& group : groups) {
     const auto wanted = [&](const std::string& a) {
       return options.only.empty() || options.only == a;
     };
     if (std::none_of(group.assumptions.begin(), group.assumptions.end(), wanted)) continue;
+    if (options.use == ProbeUse::pairs && !group.pairs) continue;
+    if (options.use == ProbeUse::drawing && !group.drawing) continue;
     if (started) started(group.assumptions.front());
     std::vector<ProbeResult> results;
     try {
@@ -259,6 +269,8 @@ std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions
         results.push_back(probe::broken(assumption, "broke off", error));
     }
     for (ProbeResult& r : results) {
+      r.drawing = group.drawing;
+      r.pairs = r.pairs || (group.pairs && (r.assumption != "A4" || r.broke_off));
       if (wanted(r.assumption)) out.push_back(std::move(r));
     }
   }

@@ -1,4 +1,4 @@
-// Probes of the device assumptions A1 .. A7: each tries to catch this device breaking one, and
+// Probes of the device assumptions A1 .. A8: each tries to catch this device breaking one, and
 // gives the worst that it measured beside the bound that the proofs rely on (docs/budget.md). A
 // probe can refute an assumption, never prove it.
 #pragma once
@@ -12,8 +12,12 @@
 
 namespace farcull {
 
+/// What relies on an assumption. drawing: the canvas, A1 to A8. pairs: FAR pairs, which rasterizes
+/// nothing: A4 in compute shaders, A7 and A8.
+enum class ProbeUse { all, drawing, pairs };
+
 struct ProbeResult {
-  std::string assumption;  // "A1" .. "A7"
+  std::string assumption;  // "A1" .. "A8"
   std::string name;
   double measured = 0;  // the worst seen, in `unit`
   double bound = 0;     // in `unit`
@@ -21,13 +25,18 @@ struct ProbeResult {
   std::uint64_t samples = 0;  // edges, pixels, results, ... that were compared
   bool pass = false;          // measured <= bound, and something was compared
   std::string note;  // what was tried and seen besides; the error's text where the probe broke off
+  bool drawing = true;     // drawing relies on it
+  bool pairs = false;      // FAR pairs relies on it
+  bool broke_off = false;  // an Error ended it: nothing was found out
 };
 
-/// All but `seed` and `only` are deliberate defects, one for each probe, so that tests can see
+/// All but the first four are deliberate defects, one for each probe, so that tests can see
 /// every probe fail.
 struct ProbeOptions {
   std::uint64_t seed = 1;
-  std::string only;  // an assumption, as in "A3"; empty: all of them
+  std::string only = {};         // an assumption, as in "A3"; empty: all of them
+  bool brief = false;            // about a third of the samples
+  ProbeUse use = ProbeUse::all;  // probes that something else relies on are left out
 
   int snap_bits = 0;                 // A2: demand 2^-snap_bits px instead of what the device says
   bool no_vertex_term = false;       // A1: vertex arithmetic may not err at all
@@ -40,12 +49,15 @@ struct ProbeOptions {
   bool reversed_depth_map = false;   // A4: farther is mapped nearer
   bool reversed_depth_test = false;  // A5: the farthest is kept
   bool blind_queries = false;        // A6: queries end before their draws or ask in front of all
+  bool damaged_texel = false;        // A5: one bit of one texel changes on its way
   bool skipped_faults = false;       // A7: no fault happens
+  bool plain_atomics = false;        // A8: a read and a write instead of an atomic
+  bool unordered_reads = false;      // A8: what is read may not have been written yet
 };
 
 /// Runs the probes in the order of the assumptions; `started`, where given, is called with the
 /// assumption before each group. The same device and options give the same results. A probe that
-/// breaks off by an Error fails; others go on. The context must be current; GL state is not kept.
+/// breaks off by an Error fails; others go on. GL state is not kept.
 std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions& options = {},
                                     const std::function<void(const std::string&)>& started = {});
 

@@ -151,7 +151,7 @@ void operations(const GlContext&, const ProbeOptions& options, bool compute,
   GlBuffer input = gl_make<GlBuffer>(glGenBuffers), results;
   Arithmetic found;
   Random random(options.seed + 4);
-  for (int round = 0; round < 2; ++round) {
+  for (int round = 0; round < rounds(options, 2); ++round) {
     const std::vector<Operands> operands = make_operands(random);
     std::vector<Operands> sent = operands;
     if (options.damaged_operand) damage(sent[kCases / 2 + 1][0]);
@@ -271,8 +271,10 @@ ProbeResult depth_map(const ProbeOptions& options, DepthBuffer format) {
 
 std::vector<ProbeResult> arithmetic(const GlContext& context, const ProbeOptions& options) {
   std::vector<ProbeResult> out;
-  operations(context, options, false, out);
   operations(context, options, true, out);
+  for (ProbeResult& r : out) r.pairs = true;
+  if (options.use == ProbeUse::pairs) return out;
+  operations(context, options, false, out);
   out.push_back(transport(options));
   out.push_back(depth_map(options, DepthBuffer::float32));
   out.push_back(depth_map(options, DepthBuffer::fixed24));

@@ -328,7 +328,6 @@ ProbeResult faults(const std::string& name, const GlContext& context, const Prob
   pass.draws = {{0, 0}, {1, 0}, {2, 1}};
   pass.steps = {{Verb::store, 0, 1}, {Verb::ask, 1, 2}};
   const std::vector<std::uint8_t> right = {1, 0};
-  canvas.begin(window(64, 64), drawables);
   const bool flags = configuration.query == QueryMode::flags;
   const std::vector<Fault> injected =
       flags ? std::vector{Fault::lost_draw, Fault::oversized_dispatch, Fault::unfinished_invocation}
@@ -336,6 +335,7 @@ ProbeResult faults(const std::string& name, const GlContext& context, const Prob
   Worst unnoticed;
   std::string note, refusal;
   for (const Fault fault : injected) {
+    canvas.begin(window(64, 64), drawables);
     if (!options.skipped_faults) canvas.inject(fault);
     bool noticed = false;
     try {
@@ -346,6 +346,7 @@ ProbeResult faults(const std::string& name, const GlContext& context, const Prob
     // The pass after it must neither fail nor answer with what the fault left behind.
     bool recovered = false;
     try {
+      canvas.begin(window(64, 64), drawables);
       recovered = canvas.run(pass) == right;
     } catch (const Error& error) {
       refusal = std::string("; ") + error.what();
@@ -363,7 +364,7 @@ ProbeResult faults(const std::string& name, const GlContext& context, const Prob
 
 std::vector<ProbeResult> depth_tests(const GlContext& context, const ProbeOptions& options) {
   std::vector<ProbeResult> out = {raw_depth_test(options, DepthBuffer::float32),
-                                  raw_depth_test(options, DepthBuffer::fixed24)};
+                                  raw_depth_test(options, DepthBuffer::fixed24), texels(options)};
   for (const Configuration& c : kConfigurations)
     out.push_back(on_canvas("A5", "canvas", canvas_depth_test, context, options, c));
   return out;

@@ -90,6 +90,7 @@ class Target {
   void upload(const std::vector<Proxy>& proxies);
   void draw(std::size_t first, std::size_t count) const;
 
+  GLuint depth_texture() const { return depth_; }
   std::vector<std::uint32_t> colour() const;
   /// Depths as bits: of a float, or the buffer's integer scaled to 32 bits. Both keep the order.
   std::vector<std::uint32_t> depths() const;
@@ -123,6 +124,14 @@ std::vector<ProbeResult> arithmetic(const GlContext& context, const ProbeOptions
 std::vector<ProbeResult> depth_tests(const GlContext& context, const ProbeOptions& options);  // A5
 std::vector<ProbeResult> queries(const GlContext& context, const ProbeOptions& options);      // A6
 std::vector<ProbeResult> commands(const GlContext& context, const ProbeOptions& options);     // A7
+std::vector<ProbeResult> pair_commands(const GlContext& context,
+                                       const ProbeOptions& options);                     // A7
+std::vector<ProbeResult> memory(const GlContext& context, const ProbeOptions& options);  // A8
+/// One of A5.
+ProbeResult texels(const ProbeOptions& options);
+
+/// How often what is repeated `n` times is done.
+inline int rounds(const ProbeOptions& options, int n) { return options.brief ? (n + 2) / 3 : n; }
 
 /// Largest target side (px) that a canvas on this device could have.
 int largest_side(const GlContext& context);

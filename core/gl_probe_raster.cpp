@@ -188,11 +188,11 @@ std::string size(int width, int height) {
 
 // Quadrilaterals in cells of their own: each pixel that is inside by more than the displacement is
 // covered once, whichever of the two triangles it falls to and where it falls on the diagonal.
-Worst split_quads(Coverage& coverage, Random& random, double margin) {
-  constexpr int kCell = 32, kRounds = 10;
+Worst split_quads(Coverage& coverage, Random& random, double margin, int rounds) {
+  constexpr int kCell = 32;
   const int side = coverage.target().width();
   Worst wrong;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     std::vector<Proxy> proxies;
     for (int cell = 0; cell < (side / kCell) * (side / kCell); ++cell) {
       const int column = cell % (side / kCell), row = cell / (side / kCell);
@@ -311,7 +311,7 @@ std::vector<ProbeResult> edges(const GlContext& context, const ProbeOptions& opt
     Coverage coverage(256, 256, options);
     for (std::size_t d = 0; d < 4; ++d) {
       Worst worst;
-      for (int round = 0; round < 12; ++round)
+      for (int round = 0; round < rounds(options, 12); ++round)
         short_edges(coverage, random, kDirections[d], reach, worst);
       near_of[d] = worst.value;
       near.value = std::max(near.value, worst.value);
@@ -331,7 +331,8 @@ std::vector<ProbeResult> edges(const GlContext& context, const ProbeOptions& opt
     Worst edge, whole;
     for (const Direction direction : kDirections)
       short_edges(coverage, random, direction, reach + 2 * vertex_bound({}, viewport), edge);
-    for (int round = 0; round < 4; ++round) large_quad(coverage, random, 0, &whole, nullptr);
+    for (int round = 0; round < rounds(options, 4); ++round)
+      large_quad(coverage, random, 0, &whole, nullptr);
     displacement = std::max(displacement, edge.value);
     // What is beyond the snapping seen near the centre is the vertex arithmetic's.
     edge.value = std::max(0.0, edge.value - near.value);
@@ -357,15 +358,16 @@ std::vector<ProbeResult> coverage(const GlContext& context, const ProbeOptions& 
   Coverage small(1024, 1024, options);
   const double margin = snap + vertex_bound({}, 1024);
   std::vector<ProbeResult> out;
-  out.push_back(result(
-      "A3", "split quadrilaterals cover once", split_quads(small, random, margin), 0, "pixels",
-      "two triangles a proxy, any direction, down to slivers, centres on diagonals; "
-      "pixels inside that were not covered once"));
+  out.push_back(
+      result("A3", "split quadrilaterals cover once",
+             split_quads(small, random, margin, rounds(options, 10)), 0, "pixels",
+             "two triangles a proxy, any direction, down to slivers, centres on diagonals; "
+             "pixels inside that were not covered once"));
   Worst wrong, misplaced;
   const int side = largest_side(context);
   for (const auto& [width, height] : {std::pair{1024, 1024}, {side, 64}, {64, side}}) {
     Coverage large(width, height, options);
-    for (int round = 0; round < 4; ++round)
+    for (int round = 0; round < rounds(options, 4); ++round)
       large_quad(large, random, snap + vertex_bound({}, large.target().viewport()), nullptr,
                  &wrong);
     large.draw({box(-0.5 * width, -0.5 * height, 0.5 * width, 0.5 * height)});

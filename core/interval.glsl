@@ -147,6 +147,14 @@ FAR_KERNEL int far_slice(float z, float near, float slices_per_px) {
   return int(clamp(s, 0.0f, 63.0f));
 }
 
+// The part of a cell, 0 .. last, that holds p; from: the cell's lower border (px), parts_per_px: a power of two. Exact for any
+// rounding: where p is inside the cell the subtraction is exact, elsewhere its sign or its excess is, and the product always is
+// (docs/budget.md, "Parts of a pixel"). A division by the side would be none of this.
+FAR_KERNEL int far_part(float p, float from, float parts_per_px, float last) {
+  FAR_PRECISE float part = (p - from) * parts_per_px;
+  return int(clamp(part, 0.0f, last));
+}
+
 // How many pixels the triangle meets, on average over its position: the area of its image, grown by a pixel. For choices
 // alone; nothing depends on its accuracy.
 FAR_KERNEL float far_footprint(vec4 a, vec4 b, vec4 c, float width, float height) {

@@ -1,7 +1,10 @@
 #include "core/pair_sort.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
+#include <iterator>
+#include <utility>
 
 #include "core/parallel.h"
 
@@ -9,6 +12,37 @@ namespace farcull {
 namespace {
 
 using Parts = std::span<const std::vector<TrianglePair>>;
+
+// So many partners of one triangle may be marked instead of sorted.
+constexpr std::size_t kMarkFrom = 64;
+
+// Sorts the partners of one triangle and appends its pairs, each once. Many partners among few
+// triangles are marked in `bits` instead, whose words are 0 before and after.
+void append_partners(std::uint32_t a, std::span<std::uint32_t> partners,
+                     std::vector<std::uint64_t>& bits, std::vector<TrianglePair>& out) {
+  if (partners.size() >= kMarkFrom) {
+    const auto [least, most] = std::minmax_element(partners.begin(), partners.end());
+    const std::uint32_t from = *least;
+    const std::size_t words = (*most - from) / 64 + 1;
+    if (words <= partners.size()) {
+      if (bits.size() < words) bits.resize(words, 0);
+      for (const std::uint32_t b : partners) {
+        bits[(b - from) / 64] |= std::uint64_t{1} << ((b - from) % 64);
+      }
+      for (std::size_t w = 0; w < words; ++w) {
+        for (std::uint64_t rest = std::exchange(bits[w], 0); rest != 0; rest &= rest - 1) {
+          out.push_back({a, from + static_cast<std::uint32_t>(64 * w) +
+                                static_cast<std::uint32_t>(std::countr_zero(rest))});
+        }
+      }
+      return;
+    }
+  }
+  if (partners.size() > 1) std::sort(partners.begin(), partners.end());
+  for (std::size_t k = 0; k < partners.size(); ++k) {
+    if (k == 0 || partners[k] != partners[k - 1]) out.push_back({a, partners[k]});
+  }
+}
 
 // The pairs with from <= a < to: counted by a, so that only the few partners of each triangle are
 // left to sort.
@@ -29,14 +63,11 @@ std::vector<TrianglePair> sorted_range(Parts parts, std::uint64_t from, std::uin
   }
   std::vector<TrianglePair> out;
   out.reserve(partners.size());
+  std::vector<std::uint64_t> bits;
   for (std::size_t a = 0; a < to - from; ++a) {
-    std::uint32_t* const begin = partners.data() + first[a + 1];
-    std::uint32_t* const end =
-        partners.data() + (a + 2 < first.size() ? first[a + 2] : partners.size());
-    if (end - begin > 1) std::sort(begin, end);
-    for (std::uint32_t* b = begin; b != end; ++b) {
-      if (b == begin || *b != *(b - 1)) out.push_back({static_cast<std::uint32_t>(from + a), *b});
-    }
+    const std::size_t end = a + 2 < first.size() ? first[a + 2] : partners.size();
+    append_partners(static_cast<std::uint32_t>(from + a),
+                    std::span(partners).subspan(first[a + 1], end - first[a + 1]), bits, out);
   }
   return out;
 }
@@ -74,6 +105,43 @@ std::vector<TrianglePair> sorted_unique(Parts parts, unsigned threads) {
     out.insert(out.end(), sorted[k].begin(), sorted[k].end());
   }
   return out;
+}
+
+PairPool::PairPool(std::size_t lists, std::size_t buffer)
+    : buffer_(buffer), limit_(std::max<std::size_t>(buffer / lists, 1)), lists_(lists) {}
+
+std::span<TrianglePair> PairPool::append(std::size_t list, std::size_t count,
+                                         const TrianglePair& value) {
+  std::vector<TrianglePair>& pairs = lists_[list].pairs;
+  const std::size_t before = pairs.size();
+  pairs.resize(before + count, value);
+  return std::span(pairs).subspan(before);
+}
+
+std::size_t PairPool::held() const {
+  std::size_t count = distinct_.size();
+  for (const List& list : lists_) count += list.pairs.size();
+  return count;
+}
+
+void PairPool::shrink(std::size_t list) {
+  const std::vector<TrianglePair> sorted = sorted_unique(std::span(&lists_[list].pairs, 1), 1);
+  lists_[list].pairs.clear();
+  const std::lock_guard lock(mutex_);
+  std::vector<TrianglePair> all;
+  all.reserve(distinct_.size() + sorted.size());
+  std::set_union(distinct_.begin(), distinct_.end(), sorted.begin(), sorted.end(),
+                 std::back_inserter(all));
+  distinct_ = std::move(all);
+  limit_ = std::max<std::size_t>(std::max(buffer_, distinct_.size()) / lists_.size(), 1);
+}
+
+std::vector<TrianglePair> PairPool::take(unsigned threads) {
+  std::vector<std::vector<TrianglePair>> parts;
+  for (List& list : lists_) parts.push_back(std::move(list.pairs));
+  lists_.clear();
+  if (!distinct_.empty()) parts.push_back(std::exchange(distinct_, {}));
+  return sorted_unique(parts, threads);
 }
 
 }  // namespace farcull

@@ -2,6 +2,7 @@
 #include "core/stopwatch.h"
 
 #include <array>
+#include <bit>
 #include <cmath>
 
 namespace farcull {
@@ -11,6 +12,13 @@ using interval::FarStrip;
 
 // Longer lists are sorted by near depth and swept.
 constexpr std::size_t kSweepFrom = 64;
+// Pairs of lists this long are looked up in the table of settled ones.
+constexpr std::size_t kSettleFrom = 128;
+// They are where a list is crowded, or where so many pairs were added for each listed triangle that
+// most of them must be the same ones again: what the table costs is little then.
+constexpr std::size_t kRepeatedFrom = 32;
+// The part of a worker's memory that the table may take.
+constexpr std::size_t kSettledPart = 8;
 // Triangles are fetched this far ahead, since their corners may lie anywhere.
 constexpr std::size_t kAhead = 8;
 
@@ -232,6 +240,8 @@ void PairTileWorker::sweep(std::span<Entry> entries, const Emit& emit) {
   }
   std::sort(entries.begin(), entries.end(),
             [](const Entry& x, const Entry& y) { return x.near < y.near; });
+  const bool repeats = n > kCrowded || added_ > kRepeatedFrom * listed_;
+  if (n >= kSettleFrom && repeats && sweep_unsettled(entries)) return;
   for (std::size_t x = 0; x + 1 < n; ++x) {
     const Entry a = entries[x];
     const bool self = task.self[a.owner] != 0;
@@ -243,20 +253,104 @@ void PairTileWorker::sweep(std::span<Entry> entries, const Emit& emit) {
   }
 }
 
+// The same for a long list, in order by near depth: a pair that is settled is passed over, and one
+// that is looked at becomes settled. False: too long.
+//
+// The partners of an entry are those behind it up to its far depth. Reading a row of the table
+// costs about an eighth of a test for each word, so the row is read only where it is much shorter
+// than the partners, and used only where it leaves fewer of them: never much slower than without
+// the table.
+//
+// Nothing is lost: a pair is looked at where its intervals overlap. It is kept there, or no pixel
+// will ever keep it, because of its owners, because nobody asks for neighbours, or because the
+// bounds in the image, which are the same in all pixels, are apart. A pair whose intervals do not
+// overlap here is not settled. The pool holds kept pairs until the whole window is done, and the
+// bits are forgotten before the next one. The rule of whole triangles is not needed here, since the
+// bits say the same.
+bool PairTileWorker::sweep_unsettled(std::span<const Entry> entries) {
+  const std::size_t n = entries.size();
+  if (!settled_.make_room(n)) return false;
+  numbers_.resize(n);
+  for (std::size_t x = 0; x < n; ++x) {
+    Shown& item = shown(entries[x]);
+    if (item.round != settled_.round()) {
+      item.number = settled_.number(item.triangle);
+      item.round = settled_.round();
+    }
+    numbers_[x] = item.number;
+  }
+  const std::size_t words = settled_.words();
+  places_.resize(64 * words);
+  to_come_.assign(words, 0);
+  for (std::size_t x = 0; x < n; ++x) {
+    places_[numbers_[x]] = static_cast<std::uint32_t>(x);
+    to_come_[numbers_[x] / 64] |= std::uint64_t{1} << (numbers_[x] % 64);
+  }
+  const PairTask& task = grid_->task();
+  for (std::size_t x = 0; x + 1 < n; ++x) {
+    const Entry a = entries[x];
+    const std::uint32_t number = numbers_[x];
+    to_come_[number / 64] &= ~(std::uint64_t{1} << (number % 64));
+    const std::size_t end = static_cast<std::size_t>(
+        std::upper_bound(entries.begin() + static_cast<std::ptrdiff_t>(x) + 1, entries.end(), a.far,
+                         [](float far, const Entry& y) { return far < y.near; }) -
+        entries.begin());
+    const bool self = task.self[a.owner] != 0;
+    const auto look = [&](std::size_t y) {
+      const Entry& b = entries[y];
+      settled_.settle(number, numbers_[y]);
+      if ((self || b.owner != a.owner) && meet(a, b)) keep(a, b);
+    };
+    if (fault == TileFault::settled_apart) {
+      for (std::size_t y = end; y < n; ++y) settled_.settle(number, numbers_[y]);
+    }
+    const std::span<const std::uint64_t> row = settled_.row(number);
+    std::size_t left = end - x - 1;
+    if (left > 2 * words) {
+      std::size_t unsettled = 0;
+      for (std::size_t w = 0; w < words; ++w) {
+        unsettled += static_cast<std::size_t>(std::popcount(to_come_[w] & ~row[w]));
+      }
+      if (unsettled < left) {
+        counts_->tests += unsettled;
+        for (std::size_t w = 0; w < words; ++w) {
+          for (std::uint64_t rest = to_come_[w] & ~row[w]; rest != 0; rest &= rest - 1) {
+            const std::size_t y =
+                places_[64 * w + static_cast<std::size_t>(std::countr_zero(rest))];
+            if (y < end) look(y);
+          }
+        }
+        continue;
+      }
+    }
+    counts_->tests += left;
+    for (std::size_t y = x + 1; y < end; ++y) {
+      if (!settled_.settled(number, numbers_[y])) look(y);
+    }
+  }
+  return true;
+}
+
 void PairTileWorker::pair_pixel(std::span<Entry> entries, int i, int j) {
   if (entries.size() > kCrowded) {
     ++counts_->crowded;
     pair_cell(entries, static_cast<float>(i), static_cast<float>(j), 1, 0);
     return;
   }
-  // Two whole triangles overlap in all their common pixels or in none: the first of these reports
-  // them, unless it lies in another tile or is crowded, where their intervals are finer.
+  // Two whole triangles overlap in all their common pixels or in none: the first of these alone, in
+  // the lower left corner of the common rectangle, reports them. Both are listed there if they are
+  // here: a list leaves an entry out by its slices alone, which are the same in all pixels of a
+  // whole triangle, and two that overlap in depth have a common slice, which is in conflict in
+  // every pixel that both meet. Bounds are cut to the limits before, so the limits are the same
+  // everywhere. Where that pixel lies in another tile (of another band or part of the window) this
+  // one reports them too, and where it is crowded, since their intervals may be finer there.
   const auto elsewhere = [&](const Entry& a, const Entry& b) {
     const auto first = [](float p, int count) {
       return static_cast<int>(interval::clamp(p, 0, static_cast<float>(count - 1)));
     };
-    const int ri = first(std::max(a.x0, b.x0), grid_->task().width);
-    const int rj = first(std::max(a.y0, b.y0), grid_->task().height);
+    const bool right = fault != TileFault::wrong_pixel;
+    const int ri = first(right ? std::max(a.x0, b.x0) : std::min(a.x0, b.x0), grid_->task().width);
+    const int rj = first(right ? std::max(a.y0, b.y0) : std::min(a.y0, b.y0), grid_->task().height);
     if ((ri == i && rj == j) || ri < tile_.i0 || rj < tile_.j0) return false;
     const std::size_t c = static_cast<std::size_t>(rj - tile_.j0) * tile_.width() + (ri - tile_.i0);
     return first_[c + 2] - first_[c + 1] <= kCrowded;
@@ -269,7 +363,8 @@ void PairTileWorker::pair_pixel(std::span<Entry> entries, int i, int j) {
 void PairTileWorker::keep(const Entry& a, const Entry& b) {
   const Shown &s = shown(a), &t = shown(b);
   if (left_out(s, t)) return;
-  pairs_->push_back({std::min(s.triangle, t.triangle), std::max(s.triangle, t.triangle)});
+  ++added_;
+  pool_->add(pool_list_, {std::min(s.triangle, t.triangle), std::max(s.triangle, t.triangle)});
 }
 
 void PairTileWorker::pair_cell(std::span<Entry> entries, float x, float y, float size, int level) {
@@ -285,8 +380,8 @@ bool PairTileWorker::subdivide(std::span<Entry> entries, float x, float y, float
   const float part = size / kSubdivision;
   std::vector<RawEntry> raw;
   std::array<std::uint32_t, kCells + 1> first{};
-  const auto index = [part](float p, float from) {
-    return static_cast<int>(interval::clamp((p - from) / part, 0, kSubdivision - 1));
+  const auto index = [parts_per_px = 1 / part](float p, float from) {
+    return interval::far_part(p, from, parts_per_px, kSubdivision - 1);
   };
   for (const Entry& entry : entries) {
     const Shown& item = shown(entry);
@@ -341,28 +436,36 @@ bool PairTileWorker::subdivide(std::span<Entry> entries, float x, float y, float
   return true;
 }
 
-void PairTileWorker::run(const PairGrid& grid, const PairTile& tile,
-                         std::span<const PairItem> items, bool masked, std::size_t memory,
-                         std::vector<TrianglePair>& pairs, PairCounts& counts) {
+void PairTileWorker::begin(const PairGrid& grid, bool masked, std::size_t memory, PairPool& pool,
+                           std::size_t list) {
   grid_ = &grid;
+  masked_ = masked;
+  memory_ = memory;
+  pool_ = &pool;
+  pool_list_ = list;
+  settled_.start(memory / kSettledPart);
+  added_ = listed_ = 0;
+}
+
+void PairTileWorker::run(const PairTile& tile, std::span<const PairItem> items,
+                         PairCounts& counts) {
   tile_ = tile;
-  pairs_ = &pairs;
   counts_ = &counts;
   const std::size_t cells = static_cast<std::size_t>(tile.width()) * tile.height();
   const std::size_t fixed = cells * (2 * sizeof(std::uint64_t) + sizeof(std::uint32_t));
   // Lists grow by doubling; a triangle has at least one entry.
   const std::size_t entry_bytes = 2 * (sizeof(RawEntry) + sizeof(Shown)) + sizeof(Entry);
   // A single pixel is done whatever it takes.
-  const std::size_t limit = cells == 1       ? SIZE_MAX
-                            : memory > fixed ? (memory - fixed) / entry_bytes
-                                             : 0;
+  const std::size_t limit = cells == 1        ? SIZE_MAX
+                            : memory_ > fixed ? (memory_ - fixed) / entry_bytes
+                                              : 0;
   const Stopwatch start;
   bool fits = limit > 0;
   if (fits) {
-    const std::size_t last = masked ? mark(items) : 0;
+    const std::size_t last = masked_ ? mark(items) : 0;
     counts.mark_ms += start.ms();
     const Stopwatch listing;
-    fits = list(items, last, masked, std::min<std::size_t>(limit, UINT32_MAX));
+    fits = list(items, last, masked_, std::min<std::size_t>(limit, UINT32_MAX));
     counts.list_ms += listing.ms();
   }
   if (!fits) {
@@ -375,10 +478,11 @@ void PairTileWorker::run(const PairGrid& grid, const PairTile& tile,
       high.i0 = low.i1 + 1;
     }
     ++counts.bands;
-    run(grid, low, items, masked, memory, pairs, counts);
-    run(grid, high, items, masked, memory, pairs, counts);
+    run(low, items, counts);
+    run(high, items, counts);
     return;
   }
+  listed_ += shown_.size();
   counts.listed += shown_.size();
   counts.entries += entries_.size();
   const Stopwatch pairing;

@@ -10,6 +10,8 @@
 
 #include "core/interval.h"
 #include "core/pair_backend.h"
+#include "core/pair_settled.h"
+#include "core/pair_sort.h"
 
 namespace farcull {
 
@@ -70,14 +72,25 @@ struct PairTile {
   int height() const { return j1 - j0 + 1; }
 };
 
+/// Faults for tests: with each of them pairs are lost.
+enum class TileFault {
+  none,
+  settled_apart,  // a pair is settled also where its intervals do not overlap
+  wrong_pixel,    // a pair of whole triangles is left to the first pixel of either of them
+};
+
 /// Works on tiles one after the other; keeps its buffers.
 class PairTileWorker {
  public:
-  /// Appends the pairs of the tile, which may repeat. `items`: those that may meet it, ascending by
-  /// triangle. `masked`: leave out entries whose slices no other owner touches. More entries than
-  /// `memory` holds split the tile.
-  void run(const PairGrid& grid, const PairTile& tile, std::span<const PairItem> items, bool masked,
-           std::size_t memory, std::vector<TrianglePair>& pairs, PairCounts& counts);
+  TileFault fault = TileFault::none;
+
+  /// Begins a window, whose pairs go to a list of the pool. More entries than `memory` holds
+  /// (bytes) split a tile.
+  void begin(const PairGrid& grid, bool masked, std::size_t memory, PairPool& pool,
+             std::size_t list);
+  /// Adds the pairs of a tile, which may repeat. `items`: those that may meet it, ascending by
+  /// triangle. `masked`: leave out entries whose slices no other owner touches.
+  void run(const PairTile& tile, std::span<const PairItem> items, PairCounts& counts);
 
  private:
   /// A triangle with an entry.
@@ -87,6 +100,8 @@ class PairTileWorker {
     std::array<std::uint32_t, 3> vertices;
     PairBounds bounds;
     bool whole;
+    std::uint32_t number = 0;  // in settled_, where its round is
+    std::uint32_t round = 0;   // this one
   };
   /// A triangle in a pixel, with all that comparing two of them takes.
   static constexpr std::uint32_t kWholeBit = 0x80000000;
@@ -103,6 +118,7 @@ class PairTileWorker {
   };
   static bool meet(const Entry& a, const Entry& b);
   const Shown& shown(const Entry& e) const { return shown_[e.shown & ~kWholeBit]; }
+  Shown& shown(const Entry& e) { return shown_[e.shown & ~kWholeBit]; }
   bool left_out(const Shown& a, const Shown& b) const;
   void keep(const Entry& a, const Entry& b);
   Entry entry(std::uint32_t index, float near, float far) const;
@@ -116,10 +132,14 @@ class PairTileWorker {
   bool subdivide(std::span<Entry> entries, float x, float y, float size, int level);
   template <class Emit>
   void sweep(std::span<Entry> entries, const Emit& emit);
+  bool sweep_unsettled(std::span<const Entry> entries);
 
   const PairGrid* grid_ = nullptr;
+  bool masked_ = false;
+  std::size_t memory_ = 0;
+  PairPool* pool_ = nullptr;
+  std::size_t pool_list_ = 0;
   PairTile tile_{};
-  std::vector<TrianglePair>* pairs_ = nullptr;
   PairCounts* counts_ = nullptr;
   std::vector<std::uint64_t> any_;       // per pixel: slices that some owner touches
   std::vector<std::uint64_t> conflict_;  // per pixel: slices that two owners touch
@@ -127,6 +147,11 @@ class PairTileWorker {
   std::vector<RawEntry> raw_;
   std::vector<std::uint32_t> first_;  // per pixel: into entries_
   std::vector<Entry> entries_;
+  SettledPairs settled_;
+  std::size_t added_ = 0, listed_ = 0;  // pairs and triangles of the window up to now
+  // Of one list: the number of each entry, the entry of each number, and numbers of those to come.
+  std::vector<std::uint32_t> numbers_, places_;
+  std::vector<std::uint64_t> to_come_;
 };
 
 inline PairItem PairGrid::item(std::uint32_t triangle, const PairBounds& b) const {

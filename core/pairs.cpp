@@ -7,6 +7,7 @@
 #include "core/box_join.h"
 #include "core/error.h"
 #include "core/pair_view.h"
+#include "core/pairs_cpu.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 
@@ -106,16 +107,44 @@ std::vector<TrianglePair> merged(const std::vector<TrianglePair>& a,
   return out;
 }
 
-std::vector<std::uint32_t> members(const std::vector<TrianglePair>& pairs) {
+std::vector<std::uint32_t> members(const Scene& scene, const std::vector<TrianglePair>& pairs) {
+  std::vector<std::uint8_t> in(scene.triangles.size(), 0);
+  for (const TrianglePair& pair : pairs) in[pair.a] = in[pair.b] = 1;
   std::vector<std::uint32_t> out;
-  out.reserve(2 * pairs.size());
-  for (const TrianglePair& pair : pairs) {
-    out.push_back(pair.a);
-    out.push_back(pair.b);
+  for (std::uint32_t t = 0; t < in.size(); ++t) {
+    if (in[t] != 0) out.push_back(t);
   }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
+}
+
+// Pairs that a further view is tried on, before it looks at all of them.
+constexpr std::size_t kTried = 256;
+
+// Whether a further view would keep every one of some candidates, evenly chosen: it then takes next
+// to nothing away from the others. That is so where triangles lie on each other. A choice alone:
+// no pair is lost either way.
+bool keeps_sample(const Scene& scene, const PairRegions& regions, const PairChoice& choice,
+                  double clearance, const std::vector<TrianglePair>& candidates,
+                  std::size_t triangles) {
+  std::vector<TrianglePair> sample;
+  const std::size_t count = std::min(kTried, candidates.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    sample.push_back(candidates[candidates.size() * k / count]);
+  }
+  PairScene seen;
+  if (!look(scene, regions, members(scene, sample), choice.view, choice.resolution, clearance, 1,
+            seen)) {
+    return true;
+  }
+  PairCounts counts;
+  const std::vector<TrianglePair> kept =
+      cpu_sample_backend(triangles)->raw_pairs(seen.task, counts);
+  const auto& bad = seen.undrawable;
+  return std::all_of(sample.begin(), sample.end(), [&](const TrianglePair& pair) {
+    return std::binary_search(kept.begin(), kept.end(), pair) ||
+           std::binary_search(bad.begin(), bad.end(), pair.a) ||
+           std::binary_search(bad.begin(), bad.end(), pair.b);
+  });
 }
 
 }  // namespace
@@ -190,11 +219,19 @@ PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBack
                               .unit = "pairs"});
         break;
       }
+      if (keeps_sample(scene, regions, choice, settings.clearance, out.candidates,
+                       regions.triangles.size())) {
+        out.stages.push_back({.name = "view " + choice.view.name,
+                              .reason = "it keeps all of a sample of the candidates",
+                              .unit = "pairs"});
+        ++looked;
+        continue;
+      }
     }
     const Stopwatch start;
     if (progress) progress("view " + choice.view.name);
     const std::vector<std::uint32_t> left =
-        first ? std::vector<std::uint32_t>() : members(out.candidates);
+        first ? std::vector<std::uint32_t>() : members(scene, out.candidates);
     const std::span<const std::uint32_t> triangles =
         first ? std::span<const std::uint32_t>(regions.triangles) : left;
     PairView view{.name = choice.view.name, .reason = choice.reason};

@@ -22,6 +22,11 @@ constexpr int kMostPixels = 32767;
 constexpr int kBandsPerThread = 8;
 constexpr int kLeastShift = 2;
 
+// Pairs that are held although they may repeat: this part of a thread's memory, in all threads
+// together, or so many, or as many as are distinct.
+constexpr std::size_t kBufferPart = 8;
+constexpr std::size_t kLeastBuffer = 4096;
+
 struct Bands {
   int shift;  // of 2^shift rows each, but the last
   int count;
@@ -62,9 +67,10 @@ bool meets_over(const PairGrid& grid, const Large& large, const PairBounds& box)
 
 class CpuPairs : public PairBackend {
  public:
-  CpuPairs(unsigned threads, std::size_t memory)
+  CpuPairs(unsigned threads, std::size_t memory, std::size_t sample_of = 0)
       : threads_(threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency())),
         memory_(memory),
+        sample_of_(sample_of),
         workers_(threads_) {}
 
   std::string name() const override { return "cpu"; }
@@ -79,7 +85,7 @@ class CpuPairs : public PairBackend {
     const std::size_t chunks = std::clamp<std::size_t>(task.active.size() / 1024, 1, threads_);
     sort_into_bands(grid, bands, chunks);
 
-    std::vector<std::vector<TrianglePair>> found(bands.count + chunks);
+    PairPool found(threads_, std::max(memory_ / kBufferPart / sizeof(TrianglePair), kLeastBuffer));
     std::vector<PairCounts> parts(threads_);
     compare_large(grid, chunks, found);
     const bool masked = std::any_of(task.self.begin(), task.self.end(),
@@ -87,6 +93,7 @@ class CpuPairs : public PairBackend {
     std::atomic<int> next = 0;
     for_chunks(threads_, threads_, [&](std::size_t thread, std::size_t, std::size_t) {
       std::vector<PairItem> items;
+      workers_[thread].begin(grid, masked, memory_, found, thread);
       for (int band = next++; band < bands.count; band = next++) {
         items.clear();
         for (const auto& chunk : items_) {
@@ -94,11 +101,11 @@ class CpuPairs : public PairBackend {
         }
         const PairTile tile{0, task.width - 1, band * bands.rows(),
                             std::min(task.height, (band + 1) * bands.rows()) - 1};
-        workers_[thread].run(grid, tile, items, masked, memory_, found[band], parts[thread]);
+        workers_[thread].run(tile, items, parts[thread]);
       }
     });
 
-    std::vector<TrianglePair> pairs = sorted_unique(found, threads_);
+    std::vector<TrianglePair> pairs = found.take(threads_);
     counts = {};
     counts.bands = bands.count;
     for (const PairCounts& part : parts) {
@@ -119,8 +126,8 @@ class CpuPairs : public PairBackend {
   // Bounds of all active triangles: the small ones as items of the bands that they meet.
   void sort_into_bands(const PairGrid& grid, const Bands& bands, std::size_t chunks) {
     const PairTask& task = grid.task();
-    const float large =
-        std::max<float>(kLargePixels, 0.125f * static_cast<float>(task.active.size()));
+    const float large = std::max<float>(
+        kLargePixels, 0.125f * static_cast<float>(std::max(task.active.size(), sample_of_)));
     items_.resize(chunks);
     std::vector<std::vector<Large>> large_of(chunks);
     for_chunks(
@@ -150,13 +157,11 @@ class CpuPairs : public PairBackend {
   }
 
   // Large triangles with each active one, in the rectangle of that one's bounds.
-  void compare_large(const PairGrid& grid, std::size_t chunks,
-                     std::vector<std::vector<TrianglePair>>& found) {
+  void compare_large(const PairGrid& grid, std::size_t chunks, PairPool& found) {
     if (large_.empty()) return;
     const PairTask& task = grid.task();
     for_chunks(task.active.size(), chunks,
                [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-                 std::vector<TrianglePair>& pairs = found[found.size() - chunks + chunk];
                  for (std::size_t k = begin; k < end; ++k) {
                    const std::uint32_t t = task.active[k];
                    const PairBounds bounds = grid.bounds(t);
@@ -165,7 +170,7 @@ class CpuPairs : public PairBackend {
                    for (const Large& l : large_) {
                      if (l.triangle == t || (l.owner == owner && !task.self[owner])) continue;
                      if (meet(l.bounds, bounds) && meets_over(grid, l, bounds)) {
-                       pairs.push_back({std::min(t, l.triangle), std::max(t, l.triangle)});
+                       found.add(chunk, {std::min(t, l.triangle), std::max(t, l.triangle)});
                      }
                    }
                  }
@@ -174,6 +179,7 @@ class CpuPairs : public PairBackend {
 
   unsigned threads_;
   std::size_t memory_;
+  std::size_t sample_of_;
   std::vector<PairTileWorker> workers_;
   std::vector<std::vector<std::vector<PairItem>>> items_;  // per chunk and band
   std::vector<Large> large_;
@@ -183,6 +189,10 @@ class CpuPairs : public PairBackend {
 
 std::unique_ptr<PairBackend> cpu_pair_backend(unsigned threads, std::size_t memory) {
   return std::make_unique<CpuPairs>(threads, memory);
+}
+
+std::unique_ptr<PairBackend> cpu_sample_backend(std::size_t count) {
+  return std::make_unique<CpuPairs>(1, std::size_t{256} << 20, count);
 }
 
 }  // namespace farcull

@@ -1,4 +1,5 @@
-// Work on all cores in contiguous chunks, so that results can be joined in order.
+// Work on all cores in contiguous chunks, so that results can be joined in order. All threads of
+// farcull start here, so each computes as the proofs say (core/floating_point.h).
 #pragma once
 
 #include <algorithm>
@@ -7,15 +8,19 @@
 #include <thread>
 #include <vector>
 
+#include "core/floating_point.h"
+
 namespace farcull {
 
 /// Calls work(chunk, begin, end) for `chunks` contiguous parts of 0 .. count - 1, each in a thread
-/// of its own. The first exception of the lowest chunk is thrown again here.
+/// of its own, rounding to nearest with subnormals kept whatever the caller does. The first
+/// exception of the lowest chunk is thrown again here.
 template <class Work>
 void for_chunks(std::size_t count, std::size_t chunks, const Work& work) {
   std::vector<std::exception_ptr> failures(chunks);
   const auto part = [&](std::size_t chunk) {
     try {
+      const FloatingPointGuard guard;
       work(chunk, count * chunk / chunks, count * (chunk + 1) / chunks);
     } catch (...) {
       failures[chunk] = std::current_exception();

@@ -1,7 +1,8 @@
 // Stores or asks one fragment. FAR_VALUE: its depth in px is written out as well.
 // FAR_PROXY: depth from the solid's own data (its function stands before this text); entry
-// when storing, exit when asking. FAR_ASK: ask. FAR_FLAGS: an asked fragment raises its slot's flag: of a proxy, after
-// comparing with the stored depth itself; of a triangle, after the depth test. Otherwise an occlusion query counts.
+// when storing, exit when asking. FAR_ASK: ask. FAR_FLAGS: an asked fragment raises its slot's flag, which is to write this
+// pass's serial number there: of a proxy, after comparing with the stored depth itself; of a triangle, after the depth test.
+// Otherwise an occlusion query counts.
 uniform ivec4 u_window;  // first pixel and size of the window inside the render target
 uniform vec2 u_centre;   // pixel-space origin inside the render target, an integer
 uniform float u_scale;   // of the depth map
@@ -15,9 +16,10 @@ flat in vec4 v_solid0, v_solid1, v_solid2, v_solid3, v_solid4;
 out float o_value;
 #endif
 #ifdef FAR_FLAGS
-layout(std430, binding = 2) buffer Flags { uint flags[]; };
+layout(std430, binding = 2) buffer Flags { uvec4 flags_tag; uint flags[]; };
+uniform uint u_serial;
 #ifdef FAR_PROXY
-uniform sampler2D u_depth;
+layout(binding = 0) uniform sampler2D u_depth;
 uniform bool u_touching;  // Pass::touching
 #else
 layout(early_fragment_tests) in;
@@ -58,9 +60,9 @@ void main() {
 #endif
 #if defined(FAR_FLAGS) && defined(FAR_PROXY)
   float stored = texelFetch(u_depth, pixel, 0).r;
-  if (depth > stored || (u_touching && depth == stored)) flags[v_slot] = 1u;
+  if (depth > stored || (u_touching && depth == stored)) flags[v_slot] = u_serial;
 #elif defined(FAR_FLAGS)
-  flags[v_slot] = 1u;
+  flags[v_slot] = u_serial;
 #elif defined(FAR_PROXY)
   gl_FragDepth = depth;
 #endif

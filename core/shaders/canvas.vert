@@ -1,7 +1,25 @@
-// Fetches an element for each draw of a run and places it. FAR_PROXY: a quadrilateral of two triangles that share the
-// corners of a diagonal, seven vec4 an element. Otherwise: a triangle, three vec4 an element.
+// Fetches an element for each draw of a batch (those of one step that read one element buffer) and places it. FAR_PROXY:
+// a quadrilateral of two triangles that share the corners of a diagonal, seven vec4 an element. Otherwise: a triangle,
+// three vec4 an element.
+// FAR_ECHO: the buffers have tags, the draws of a batch follow its head (this pass's serial number; the word of the report
+// that is this batch's), and the first vertex of the batch writes there what the program reads, with FAR_FLAGS for the
+// fragment stage as well.
+#ifdef FAR_ECHO
+layout(std430, binding = 0) readonly buffer Elements { uvec4 elements_tag; vec4 elements[]; };
+layout(std430, binding = 1) readonly buffer Draws { uvec2 head; uvec2 draws[]; };
+layout(std430, binding = 3) buffer Report { uvec4 report_tag; uint report[]; };
+uniform uint u_program;  // a number that no other program of the process has
+uniform ivec4 u_window;  // from here on: of the fragment stage
+uniform vec2 u_centre;
+#ifdef FAR_FLAGS
+layout(std430, binding = 2) buffer Flags { uvec4 flags_tag; uint flags[]; };
+uniform uint u_serial;
+uniform bool u_touching;
+#endif
+#else
 layout(std430, binding = 0) readonly buffer Elements { vec4 elements[]; };
 layout(std430, binding = 1) readonly buffer Draws { uvec2 draws[]; };  // element, slot
+#endif
 
 uniform vec2 u_to_ndc;   // 2 / viewport side: powers of two, so the product is exact
 uniform float u_scale;   // of the depth map
@@ -10,6 +28,31 @@ flat out uint v_slot;
 flat out uint v_fixed;  // 1: an element of the canvas's own, at a fixed depth, drawn outside the window as well
 #ifdef FAR_PROXY
 flat out vec4 v_solid0, v_solid1, v_solid2, v_solid3, v_solid4;
+#endif
+// A control item is asked at the very depth that another program stored.
+invariant gl_Position;
+
+#ifdef FAR_ECHO
+uint far_echo() {
+  uint sum = 0u;
+  uvec2 to_ndc = floatBitsToUint(u_to_ndc);
+  uvec2 centre = floatBitsToUint(u_centre);
+  uvec4 window = uvec4(u_window);
+  FAR_ADD(0u, u_program)
+  FAR_ADD(1u, head.x)
+  FAR_ADD(2u, to_ndc.x) FAR_ADD(3u, to_ndc.y)
+  FAR_ADD(4u, floatBitsToUint(u_scale))
+  FAR_ADD(5u, window.x) FAR_ADD(6u, window.y) FAR_ADD(7u, window.z) FAR_ADD(8u, window.w)
+  FAR_ADD(9u, centre.x) FAR_ADD(10u, centre.y)
+  FAR_ADD(11u, elements_tag.x)
+  FAR_ADD(12u, report_tag.x)
+#ifdef FAR_FLAGS
+  FAR_ADD(13u, flags_tag.x)
+  FAR_ADD(14u, u_serial)
+  FAR_ADD(15u, uint(u_touching))
+#endif
+  return sum;
+}
 #endif
 
 void main() {
@@ -36,4 +79,9 @@ void main() {
   gl_Position = vec4(p, ndc, 1.0);
 #endif
   v_slot = item.y;
+#ifdef FAR_ECHO
+  // Outside the condition, where llvmpipe reads once for all vertices that it works on together.
+  uint word = head.y, echo = far_echo();
+  if (gl_VertexID == 0) report[word] = echo;
+#endif
 }

@@ -1,6 +1,8 @@
 // Step 0, after counting: how many cells are crowded. Step 1, after filling in: counts that are not used up.
-layout(std430, binding = 3) readonly buffer Counts { uint counts[]; };
-layout(std430, binding = 4) readonly buffer First { uint first[]; };
+layout(std430, binding = 3) buffer Counts { uvec4 tag_3; readonly uint counts[]; };
+#define FAR_TAG_3 tag_3.x
+layout(std430, binding = 4) buffer First { uvec4 tag_4; readonly uint first[]; };
+#define FAR_TAG_4 tag_4.x
 
 void work(uint w) {
 #if FAR_STEP == 0

@@ -16,7 +16,8 @@ const uint kWhole = 1u;
 const uint kSelf = 2u;
 const uint kLarge = 4u;
 
-layout(std430, binding = 7) buffer Counters { uint counters[]; };  // totals, then finished work items of each dispatch
+layout(std430, binding = 7) buffer Counters { uvec4 tag_7; uint counters[]; };  // totals, then finished work items of each dispatch
+#define FAR_TAG_7 tag_7.x
 
 layout(location = 0) uniform uint u_count;       // work items of this dispatch
 layout(location = 1) uniform uint u_finished;    // index of the counter of those that finished
@@ -71,18 +72,3 @@ void work(uint w);
 #ifdef FAR_SUM
 uint far_sum_of_batch = 0u;  // added to the total FAR_SUM by main
 #endif
-
-void main() {
-  uint base = far_group() * (64u * FAR_BATCH) + gl_LocalInvocationID.x;
-  uint done = 0u;
-  for (uint k = 0u; k < FAR_BATCH; ++k) {
-    uint w = base + k * 64u;
-    if (w >= u_count || w == u_unfinished) break;
-    work(w);
-    ++done;
-  }
-#ifdef FAR_SUM
-  if (far_sum_of_batch > 0u) far_add(FAR_SUM, far_sum_of_batch);
-#endif
-  if (done > 0u) atomicAdd(counters[u_finished], done);
-}

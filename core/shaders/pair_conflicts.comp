@@ -1,6 +1,7 @@
 // Slices of a pixel that two owners touch: they differ in some bit of their numbers, so one of them touches the region of that
 // bit's 0 and the other that of its 1.
-layout(std430, binding = 2) buffer Masks { uint masks[]; };  // as in pair_lists.comp
+layout(std430, binding = 2) buffer Masks { uvec4 tag_2; uint masks[]; };  // as in pair_lists.comp
+#define FAR_TAG_2 tag_2.x
 
 // u_extra.x: bits of an owner's number.
 

@@ -1,20 +1,31 @@
 // Crowded cells, cut into FAR_SUBDIVISION^2 smaller ones wherever that leaves at most half of the tests: the function subdivide
 // of core/pair_tile.cpp. Parents are the crowded cells of a level, u_bins those of the level below. Steps: 0 lists the parents, 1 counts
 // entries of smaller cells, 2 decides, 3 fills the entries in.
-layout(std430, binding = 0) readonly buffer Records { vec4 records[]; };
-layout(std430, binding = 1) readonly buffer Above { uvec4 above[]; };  // the parents of the level before, where there is one
-layout(std430, binding = 2) buffer Parents { uvec4 parents[]; };  // cell, entries, bits of the lower left corner x, y (px)
-layout(std430, binding = 3) buffer Counts { uint counts[]; };
-layout(std430, binding = 4) readonly buffer First { uint first[]; };  // step 0: of the level itself; else of the level below
-layout(std430, binding = 5) readonly buffer Entries { uvec4 entries[]; };
-layout(std430, binding = 6) readonly buffer Places { uvec2 places[]; };
-layout(std430, binding = 8) buffer State { uint state[]; };  // of a cell: its number as a parent + 1, 0 where it is not cut
-layout(std430, binding = 9) writeonly buffer SubEntries { uvec4 sub_entries[]; };
-layout(std430, binding = 10) writeonly buffer SubPlaces { uvec2 sub_places[]; };
+layout(std430, binding = 0) buffer Records { uvec4 tag_0; readonly vec4 records[]; };
+#define FAR_TAG_0 tag_0.x
+layout(std430, binding = 1) buffer Above { uvec4 tag_1; readonly uvec4 above[]; };  // the parents of the level before, where there is one
+#define FAR_TAG_1 tag_1.x
+layout(std430, binding = 2) buffer Parents { uvec4 tag_2; uvec4 parents[]; };  // cell, entries, bits of the lower left corner x, y (px)
+#define FAR_TAG_2 tag_2.x
+layout(std430, binding = 3) buffer Counts { uvec4 tag_3; uint counts[]; };
+#define FAR_TAG_3 tag_3.x
+layout(std430, binding = 4) buffer First { uvec4 tag_4; readonly uint first[]; };  // step 0: of the level itself; else of the level below
+#define FAR_TAG_4 tag_4.x
+layout(std430, binding = 5) buffer Entries { uvec4 tag_5; readonly uvec4 entries[]; };
+#define FAR_TAG_5 tag_5.x
+layout(std430, binding = 6) buffer Places { uvec4 tag_6; readonly uvec2 places[]; };
+#define FAR_TAG_6 tag_6.x
+layout(std430, binding = 8) buffer State { uvec4 tag_8; uint state[]; };  // of a cell: its number as a parent + 1, 0 where it is not cut
+#define FAR_TAG_8 tag_8.x
+layout(std430, binding = 9) buffer SubEntries { uvec4 tag_9; writeonly uvec4 sub_entries[]; };
+#define FAR_TAG_9 tag_9.x
+layout(std430, binding = 10) buffer SubPlaces { uvec4 tag_10; writeonly uvec2 sub_places[]; };
+#define FAR_TAG_10 tag_10.x
 
 const uint kSubCells = FAR_SUBDIVISION * FAR_SUBDIVISION;
 
-// u_extra: x level, y bins of a cell of the level. u_numbers.x: side of a smaller cell (px).
+// u_extra: x level, y bins of a cell of the level. u_numbers: x side of a smaller cell (px), y how many of them are a px; powers
+// of two.
 
 #if FAR_STEP == 0
 void work(uint cell) {
@@ -84,10 +95,7 @@ void far_add_entry(uint cell, uvec4 lo, uvec4 hi, uint record, float near, float
 #endif
 }
 
-int far_part(float p, float from) {
-  precise float part = (p - from) / u_numbers.x;
-  return int(clamp(part, 0.0f, float(FAR_SUBDIVISION - 1u)));
-}
+int far_index(float p, float from) { return far_part(p, from, u_numbers.y, float(FAR_SUBDIVISION - 1u)); }
 
 void work(uint e) {
   uvec2 place = places[e];
@@ -105,10 +113,10 @@ void work(uint e) {
   FarRows r;
   r.lo = records[kRecordSize * record + 3u];
   r.hi = records[kRecordSize * record + 4u];
-  int i0 = far_part(r.lo.x, x);
-  int i1 = far_part(r.hi.x, x);
-  int j0 = far_part(r.lo.y, y);
-  int j1 = far_part(r.hi.y, y);
+  int i0 = far_index(r.lo.x, x);
+  int i1 = far_index(r.hi.x, x);
+  int j0 = far_index(r.lo.y, y);
+  int j1 = far_index(r.hi.y, y);
   if ((i1 - i0 + 1) * (j1 - j0 + 1) <= FAR_WHOLE_PIXELS) {
     for (int j = j0; j <= j1; ++j) {
       for (int i = i0; i <= i1; ++i) far_add_entry(p * kSubCells + uint(j) * FAR_SUBDIVISION + uint(i), lo_bits, hi_bits, record, near, far);
@@ -124,8 +132,8 @@ void work(uint e) {
     precise float y0 = y + float(j) * u_numbers.x;
     precise float y1 = y0 + u_numbers.x;
     if (!far_row(r, y0, y1, lo, hi)) continue;
-    int last = far_part(hi, x);
-    for (int i = far_part(lo, x); i <= last; ++i) {
+    int last = far_index(hi, x);
+    for (int i = far_index(lo, x); i <= last; ++i) {
       precise float x0 = x + float(i) * u_numbers.x;
       precise float x1 = x0 + u_numbers.x;
       float sub_near;

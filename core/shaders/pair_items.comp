@@ -1,14 +1,19 @@
 // Step 0: the active triangles that meet the tile become items, in any order. Step 1: the whole ones that are listed become
 // records.
-layout(std430, binding = 5) writeonly buffer Records { vec4 records[]; };
-layout(std430, binding = 6) writeonly buffer RecordHeads { uvec4 record_heads[]; };
-layout(std430, binding = 8) buffer Heads { uvec4 heads[]; };  // of whole items
+layout(std430, binding = 5) buffer Records { uvec4 tag_5; writeonly vec4 records[]; };
+#define FAR_TAG_5 tag_5.x
+layout(std430, binding = 6) buffer RecordHeads { uvec4 tag_6; writeonly uvec4 record_heads[]; };
+#define FAR_TAG_6 tag_6.x
+layout(std430, binding = 8) buffer Heads { uvec4 tag_8; uvec4 heads[]; };  // of whole items
+#define FAR_TAG_8 tag_8.x
 
 #if FAR_STEP == 0
-layout(std430, binding = 9) writeonly buffer Listed { uint listed[]; };  // of the records
+layout(std430, binding = 9) buffer Listed { uvec4 tag_9; writeonly uint listed[]; };  // of the records
+#define FAR_TAG_9 tag_9.x
 // u_capacity: records; u_extra.z: whole items. u_numbers.x: pixels that a large triangle meets at least.
 #else
-layout(std430, binding = 9) readonly buffer Shown { uint shown[]; };  // the whole items that are listed
+layout(std430, binding = 9) buffer Shown { uvec4 tag_9; readonly uint shown[]; };  // the whole items that are listed
+#define FAR_TAG_9 tag_9.x
 // u_extra.z: active triangles that were sent.
 #endif
 

@@ -1,8 +1,11 @@
 // Large triangles with each active one, in the rectangle of that one's bounds: compare_large of core/pairs_cpu.cpp. Step 0 lists
 // the large ones among the records; step 1 compares FAR_LARGE_BATCH of them with each triangle that was sent.
-layout(std430, binding = 5) readonly buffer Records { vec4 records[]; };
-layout(std430, binding = 6) readonly buffer RecordHeads { uvec4 record_heads[]; };
-layout(std430, binding = 8) buffer Large { uint large[]; };  // records
+layout(std430, binding = 5) buffer Records { uvec4 tag_5; readonly vec4 records[]; };
+#define FAR_TAG_5 tag_5.x
+layout(std430, binding = 6) buffer RecordHeads { uvec4 tag_6; readonly uvec4 record_heads[]; };
+#define FAR_TAG_6 tag_6.x
+layout(std430, binding = 8) buffer Large { uvec4 tag_8; uint large[]; };  // records
+#define FAR_TAG_8 tag_8.x
 #if FAR_STEP == 0
 void work(uint w) {
   if ((record_heads[w].y & kLarge) == 0u) return;
@@ -10,7 +13,8 @@ void work(uint w) {
   if (at < u_capacity) large[at] = w;
 }
 #else
-layout(std430, binding = 9) writeonly buffer Pairs { uvec2 pairs[]; };
+layout(std430, binding = 9) buffer Pairs { uvec4 tag_9; writeonly uvec2 pairs[]; };
+#define FAR_TAG_9 tag_9.x
 
 // u_extra: z the first large triangle, w how many there are in all. u_items: the first triangle of this dispatch among those that
 // were sent.

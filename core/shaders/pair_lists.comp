@@ -7,27 +7,37 @@
 #if FAR_STEP != FAR_FILL || defined(FAR_ROWS)
 // Two words a pixel (64 slices) and region. Region 0: slices that two owners touch, or one that collides with itself; 1 + 2 k + b:
 // those that an owner touches whose number has b as bit k.
-layout(std430, binding = 2) buffer Masks { uint masks[]; };
+layout(std430, binding = 2) buffer Masks { uvec4 tag_2; uint masks[]; };
+#define FAR_TAG_2 tag_2.x
 #else
-layout(std430, binding = 2) readonly buffer Masks { uint masks[]; };
+layout(std430, binding = 2) buffer Masks { uvec4 tag_2; readonly uint masks[]; };
+#define FAR_TAG_2 tag_2.x
 #endif
 #if FAR_STEP != FAR_MARK
-layout(std430, binding = 3) buffer Counts { uint counts[]; };  // of each bin; what is filled in is taken away
+layout(std430, binding = 3) buffer Counts { uvec4 tag_3; uint counts[]; };  // of each bin; what is filled in is taken away
+#define FAR_TAG_3 tag_3.x
 #endif
 #if FAR_STEP == FAR_FILL
-layout(std430, binding = 4) readonly buffer First { uint first[]; };
-layout(std430, binding = 9) writeonly buffer Entries { uvec4 entries[]; };
-layout(std430, binding = 10) writeonly buffer Places { uvec2 places[]; };
+layout(std430, binding = 4) buffer First { uvec4 tag_4; readonly uint first[]; };
+#define FAR_TAG_4 tag_4.x
+layout(std430, binding = 9) buffer Entries { uvec4 tag_9; writeonly uvec4 entries[]; };
+#define FAR_TAG_9 tag_9.x
+layout(std430, binding = 10) buffer Places { uvec4 tag_10; writeonly uvec2 places[]; };
+#define FAR_TAG_10 tag_10.x
 #endif
 #if FAR_STEP == FAR_FILL || defined(FAR_ROWS)
-layout(std430, binding = 0) readonly buffer Records { vec4 records[]; };
+layout(std430, binding = 0) buffer Records { uvec4 tag_0; readonly vec4 records[]; };
+#define FAR_TAG_0 tag_0.x
 #endif
-layout(std430, binding = 6) readonly buffer Heads { uvec4 heads[]; };
+layout(std430, binding = 6) buffer Heads { uvec4 tag_6; readonly uvec4 heads[]; };
+#define FAR_TAG_6 tag_6.x
 #if FAR_STEP == FAR_COUNT
-layout(std430, binding = 8) buffer Listed { uint listed[]; };  // FAR_ROWS: not 0: has an entry; else the whole items that have one
+layout(std430, binding = 8) buffer Listed { uvec4 tag_8; uint listed[]; };  // FAR_ROWS: not 0: has an entry; else the whole items that have one
+#define FAR_TAG_8 tag_8.x
 #endif
 #ifdef FAR_ROWS
-layout(std430, binding = 1) readonly buffer Rows { uint rows[]; };  // of the records before each
+layout(std430, binding = 1) buffer Rows { uvec4 tag_1; readonly uint rows[]; };  // of the records before each
+#define FAR_TAG_1 tag_1.x
 FAR_LAST_AT_MOST(far_record_of_row, rows)
 #endif
 

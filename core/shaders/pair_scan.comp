@@ -1,8 +1,11 @@
 // Sums of all numbers before each: 64 at a time are summed, their sums in the same way, and the sums of what precedes handed
 // down again. A sum beyond 32 bits raises FAR_OVERFLOW.
-layout(std430, binding = 0) readonly buffer Numbers { uint numbers[]; };
-layout(std430, binding = 1) writeonly buffer Before { uint before[]; };
-layout(std430, binding = 2) buffer Sums { uint sums[]; };  // the levels one after the other
+layout(std430, binding = 0) buffer Numbers { uvec4 tag_0; readonly uint numbers[]; };
+#define FAR_TAG_0 tag_0.x
+layout(std430, binding = 1) buffer Before { uvec4 tag_1; writeonly uint before[]; };
+#define FAR_TAG_1 tag_1.x
+layout(std430, binding = 2) buffer Sums { uvec4 tag_2; uint sums[]; };  // the levels one after the other
+#define FAR_TAG_2 tag_2.x
 
 // u_extra: x where the level below begins in sums, y how many numbers it has, z where this level begins, w counter of the total.
 

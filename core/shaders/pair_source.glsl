@@ -1,10 +1,15 @@
 // The active triangles as they were sent, and their bounds.
-layout(std430, binding = 0) readonly buffer Vertices { vec4 vertices[]; };
-layout(std430, binding = 1) readonly buffer Triangles { uint triangles[]; };  // three vertices each
-layout(std430, binding = 2) readonly buffer Owners { uint owners[]; };        // object of each triangle
-layout(std430, binding = 3) readonly buffer Active { uint active_ones[]; };   // triangles
+layout(std430, binding = 0) buffer Vertices { uvec4 tag_0; readonly vec4 vertices[]; };
+#define FAR_TAG_0 tag_0.x
+layout(std430, binding = 1) buffer Triangles { uvec4 tag_1; readonly uint triangles[]; };  // three vertices each
+#define FAR_TAG_1 tag_1.x
+layout(std430, binding = 2) buffer Owners { uvec4 tag_2; readonly uint owners[]; };        // object of each triangle
+#define FAR_TAG_2 tag_2.x
+layout(std430, binding = 3) buffer Active { uvec4 tag_3; readonly uint active_ones[]; };   // triangles
+#define FAR_TAG_3 tag_3.x
 // Eight words an object: bits of its limits lo.xyz and hi.xyz, its number << 3 | kSelf, -.
-layout(std430, binding = 4) readonly buffer Objects { uint objects[]; };
+layout(std430, binding = 4) buffer Objects { uvec4 tag_4; readonly uint objects[]; };
+#define FAR_TAG_4 tag_4.x
 
 // u_extra.x: position of the first active triangle that was sent. u_extra.y: not 0 where triangles and owners are those of the
 // active ones, in their order.

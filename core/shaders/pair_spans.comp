@@ -1,6 +1,8 @@
 // How many work items the rows of each record are: none where it is large.
-layout(std430, binding = 6) readonly buffer RecordHeads { uvec4 record_heads[]; };
-layout(std430, binding = 3) writeonly buffer Rows { uint rows[]; };
+layout(std430, binding = 6) buffer RecordHeads { uvec4 tag_6; readonly uvec4 record_heads[]; };
+#define FAR_TAG_6 tag_6.x
+layout(std430, binding = 3) buffer Rows { uvec4 tag_3; writeonly uint rows[]; };
+#define FAR_TAG_3 tag_3.x
 
 void work(uint w) {
   uvec4 head = record_heads[w];

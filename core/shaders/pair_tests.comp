@@ -2,18 +2,30 @@
 // there by the slice of their near depth, so the partners of an entry are two ranges: of the other group those with a near slice
 // within the entry's slices (for the second group: after its first), and of its own group those after it up to its far slice.
 // Step 0: each entry with up to FAR_UNIT partners. Step 1: with the partners left, FAR_UNIT a work item.
-layout(std430, binding = 2) writeonly buffer Pairs { uvec2 pairs[]; };
+layout(std430, binding = 2) buffer Pairs { uvec4 tag_2; writeonly uvec2 pairs[]; };
+#define FAR_TAG_2 tag_2.x
 #if FAR_STEP == 0
-layout(std430, binding = 3) writeonly buffer Units { uint units[]; };  // work items of step 1 of each entry
+layout(std430, binding = 3) buffer Units { uvec4 tag_3; writeonly uint units[]; };  // work items of step 1 of each entry
+#define FAR_TAG_3 tag_3.x
 #else
-layout(std430, binding = 3) readonly buffer Units { uint units[]; };  // of the entries before each
+layout(std430, binding = 3) buffer Units { uvec4 tag_3; readonly uint units[]; };  // of the entries before each
+#define FAR_TAG_3 tag_3.x
 FAR_LAST_AT_MOST(far_entry_of_unit, units)
 #endif
-layout(std430, binding = 4) readonly buffer First { uint first[]; };
-layout(std430, binding = 9) readonly buffer Entries { uvec4 entries[]; };
-layout(std430, binding = 10) readonly buffer Places { uvec2 places[]; };
+layout(std430, binding = 4) buffer First { uvec4 tag_4; readonly uint first[]; };
+#define FAR_TAG_4 tag_4.x
+layout(std430, binding = 9) buffer Entries { uvec4 tag_9; readonly uvec4 entries[]; };
+#define FAR_TAG_9 tag_9.x
+layout(std430, binding = 10) buffer Places { uvec4 tag_10; readonly uvec2 places[]; };
+#define FAR_TAG_10 tag_10.x
 #ifdef FAR_SOME_CROWDED
-layout(std430, binding = 8) readonly buffer State { uint state[]; };  // not 0: the cell is cut into smaller ones
+layout(std430, binding = 8) buffer State { uvec4 tag_8; readonly uint state[]; };  // not 0: the cell is cut into smaller ones
+#define FAR_TAG_8 tag_8.x
+#endif
+#ifdef FAR_SETTLED
+// Bit r u_items + s, r < s: the records r and s are a pair that was emitted, in this cell or another one of the part.
+layout(std430, binding = 1) buffer Settled { uvec4 tag_1; uint settled[]; };
+#define FAR_TAG_1 tag_1.x
 #endif
 
 // u_extra: x not 0 where the level is that of pixels, y not 0 where entries of one group may collide, z entries, w the first work
@@ -82,6 +94,16 @@ void work(uint index) {
     if (elsewhere) elsewhere = first[(at + 1u) * u_bins.x] - first[at * u_bins.x] <= FAR_CROWDED;
 #endif
     bool emit = hit && !elsewhere;
+#ifdef FAR_SETTLED
+    // Whoever sets the bit emits the pair. If that does not fit the output, all bits are cleared before it is done again.
+    if (emit) {
+      uint r = places[e].y;
+      uint s = places[p].y;
+      uint number = min(r, s) * u_items + max(r, s);
+      uint bit = 1u << (number & 31u);
+      emit = (settled[number >> 5] & bit) == 0u && (atomicOr(settled[number >> 5], bit) & bit) == 0u;
+    }
+#endif
     if (emit) {
       uint to = atomicAdd(counters[FAR_PAIRS], 1u);
       if (to < u_capacity) pairs[to] = uvec2(min(lo_bits.w, lo2_bits.w), max(lo_bits.w, lo2_bits.w));
