@@ -7,7 +7,9 @@
 // contact with each part is found in plain float arithmetic; what that is good for is a normal. Any normal n bounds the
 // solid by the halfspace n . p <= max n . v_i + r |n|, so the bound that is returned does not depend on how well the
 // contact was computed; where it was computed well, the halfspace touches the solid there (docs/budget.md, "The exact
-// offset").
+// offset"). But it must be one n: the same bits in its extent, in its length and in the halfspace. In GLSL a variable that is
+// not `precise` may be computed anew, and otherwise, at each use; so every variable that holds a normal is precise, and so are
+// the parameters through which a function gives one back (docs/budget.md, "One normal").
 
 // An upper bound of the solid's extent along n, from the origin m.
 float far_extent(vec4 n, vec4 v0, vec4 v1, vec4 v2) {
@@ -23,7 +25,8 @@ float far_extent(vec4 n, vec4 v0, vec4 v1, vec4 v2) {
   FAR_PRECISE float length = (0.5f + 0.5f * squared) * kUp * kUp;
   FAR_PRECISE float ball = v0.w * length * kUp;
   FAR_PRECISE float sum = max(max(q0, q1), q2) + e + ball;
-  return sum + abs(sum) * kEightU;
+  FAR_PRECISE float extent = sum + abs(sum) * kEightU;  // not in the return statement, where nothing is precise
+  return extent;
 }
 
 // Cuts [lo, hi] with the solid's halfspace of normal n; false: the line misses it. Normals far from unit length say nothing.
@@ -38,7 +41,7 @@ bool far_touch(vec2 d, float mz, vec4 n, vec4 v0, vec4 v1, vec4 v2, float reach,
 
 // The contact of the line with the capsule about the edge a, a + e, first (sign -1) or last (sign 1). Keeps the normal there
 // in n (w: its z) where sign * z is beyond that of the contacts so far.
-void far_edge(vec2 d, vec4 a, vec4 b, float r, float sign, FAR_INOUT(vec4) n) {
+void far_edge(vec2 d, vec4 a, vec4 b, float r, float sign, FAR_PRECISE FAR_INOUT(vec4) n) {
   float fx = b.x - a.x;
   float fy = b.y - a.y;
   float fz = b.z - a.z;
@@ -70,7 +73,7 @@ void far_edge(vec2 d, vec4 a, vec4 b, float r, float sign, FAR_INOUT(vec4) n) {
 }
 
 // Keeps in n the direction in the image from the edge a, b to the pixel centre, where that is nearer (w: distance squared).
-void far_outward(vec2 d, vec4 a, vec4 b, FAR_INOUT(vec4) n) {
+void far_outward(vec2 d, vec4 a, vec4 b, FAR_PRECISE FAR_INOUT(vec4) n) {
   float fx = b.x - a.x;
   float fy = b.y - a.y;
   float px = a.x - d.x;
@@ -108,7 +111,7 @@ bool solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT
   float vx = s3.x - s1.x;
   float vy = s3.y - s1.y;
   float vz = s3.z - s1.z;
-  vec4 plane = s4;
+  FAR_PRECISE vec4 plane = s4;
   plane.x = uy * vz - uz * vy;
   plane.y = uz * vx - ux * vz;
   plane.z = ux * vy - uy * vx;
@@ -127,7 +130,7 @@ bool solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT
   if (!far_touch(d, mz, plane, s1, s2, s3, reach, entry, exit)) return false;
 
   // Aside of the triangle's image.
-  vec4 aside = s4;
+  FAR_PRECISE vec4 aside = s4;
   aside.x = 0.0f;
   aside.y = 0.0f;
   aside.z = 0.0f;
@@ -140,7 +143,7 @@ bool solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT
   if (!far_touch(d, mz, aside, s1, s2, s3, reach, entry, exit)) return false;
 
   // The spheres and cylinders, first and last contact.
-  vec4 first = s4;
+  FAR_PRECISE vec4 first = s4;
   first.x = 0.0f;
   first.y = 0.0f;
   first.z = 0.0f;
@@ -148,7 +151,7 @@ bool solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT
   far_edge(d, s1, s2, r, -1.0f, first);
   far_edge(d, s2, s3, r, -1.0f, first);
   far_edge(d, s3, s1, r, -1.0f, first);
-  vec4 last = s4;
+  FAR_PRECISE vec4 last = s4;
   last.x = 0.0f;
   last.y = 0.0f;
   last.z = 0.0f;

@@ -29,8 +29,8 @@ struct Accounting {
   std::vector<TrianglePair> examples;         // the first missed pairs in sorted order
   double ms = 0;                              // wall clock of the whole accounting
 
-  /// True iff the classes sum to pairs_total. Not so by construction: the classes are counted, the
-  /// total is computed.
+  /// True iff the classes sum to pairs_total. Not so by construction: each class is counted where
+  /// its pairs are decided, the total is computed.
   bool adds_up() const;
 };
 
@@ -42,7 +42,10 @@ struct AccountOptions {
 /// kept: what culling left to the exact tests; sorted, each pair once, a < b, pairs of the scene
 /// that count. Breaking that is a programmer's mistake that would be miscounted in silence, hence
 /// std::logic_error; so is a scene whose ranges are not those of validate(), and a clearance that
-/// is negative or not finite. Memory O(triangles + kept).
+/// is negative or not finite. std::logic_error as well where the accounting itself fails: a pair is
+/// left undecided, the classes do not sum to pairs_total, or the pairs whose boxes overlap are not
+/// those that the certificate's own enumeration (verify/box_pairs) finds. Memory O(triangles +
+/// kept).
 Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
                    const AccountOptions& options = {});
 

@@ -5,7 +5,7 @@
 
 namespace farcull {
 
-BoxPairs::BoxPairs(const Scene& scene) : scene_(scene) {
+BoxPairs::BoxPairs(const Scene& scene, double clearance) : scene_(scene), clearance_(clearance) {
   const auto count = static_cast<std::uint32_t>(scene.triangles.size());
   bounds_.reserve(count);
   for (std::uint32_t t = 0; t < count; ++t) {
@@ -22,9 +22,14 @@ BoxPairs::BoxPairs(const Scene& scene) : scene_(scene) {
   if (count > 0) build(0, count);
 }
 
-bool BoxPairs::meet(const Bounds& x, const Bounds& y) {
+// Rounding is monotone: no two boxes inside x and y have a smaller rounded difference.
+bool BoxPairs::meet(const Bounds& x, const Bounds& y) const {
   for (int k = 0; k < 3; ++k) {
-    if (x.hi[k] < y.lo[k] || y.hi[k] < x.lo[k]) return false;
+    if (clearance_ == 0) {
+      if (x.hi[k] < y.lo[k] || y.hi[k] < x.lo[k]) return false;
+    } else if (y.lo[k] - x.hi[k] > clearance_ || x.lo[k] - y.hi[k] > clearance_) {
+      return false;
+    }
   }
   return true;
 }

@@ -17,10 +17,12 @@ namespace farcull {
 /// All pairs of triangles that count (of different objects, and of one object where it is `self`)
 /// whose closed boxes share a point (touching counts), sorted by (a, b), a < b, each once. Boxes
 /// are minima and maxima of the coordinates as given and are only compared, so nothing is rounded.
-/// Memory O(triangles). Precondition: validate() accepts the scene. It must outlive the object.
+/// With a clearance > 0 (world units, finite): the pairs whose boxes are not farther apart than
+/// that along an axis, by differences in double. Memory O(triangles). Precondition: validate()
+/// accepts the scene. It must outlive the object.
 class BoxPairs {
  public:
-  explicit BoxPairs(const Scene& scene);
+  explicit BoxPairs(const Scene& scene, double clearance = 0);
 
   /// Replaces `pairs` by the next ones: all partners of the next triangles, until there are at
   /// least `enough` or the scene ends. False, with none, after the last.
@@ -39,10 +41,11 @@ class BoxPairs {
     std::uint32_t after = 0;  // the first node that is not below it
   };
 
-  static bool meet(const Bounds& x, const Bounds& y);
+  bool meet(const Bounds& x, const Bounds& y) const;
   void build(std::uint32_t first, std::uint32_t count);
 
   const Scene& scene_;
+  double clearance_;
   std::vector<Bounds> bounds_;  // per triangle
   std::vector<std::uint32_t> order_;
   std::vector<Node> nodes_;

@@ -7,9 +7,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/floating_point.h"
 #include "core/parallel.h"
 #include "verify/box_pairs.h"
 #include "verify/integer_pair.h"
+#include "verify/not_asked.h"
+#include "verify/pair_list.h"
 
 namespace farcull {
 namespace {
@@ -111,10 +114,13 @@ class Marked {
 
 Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> kept,
                              std::span<const TrianglePair> colliding, Certificate::Run run) {
+  const FloatingPointGuard guard;
   constexpr std::size_t kBlock = 1 << 16;   // pairs decided at a time
   constexpr std::size_t kPerThread = 1024;  // enough work to pay for a thread
   Certificate out;
   out.scene = {scene.name, scene.objects.size(), scene.triangles.size(), scene_hash(scene)};
+  const NotAsked unasked = not_asked(scene);
+  out.not_asked = {unasked.objects, unasked.pairs};
   out.run = std::move(run);
 
   Marked kept_pairs(kept, "kept");
@@ -143,6 +149,7 @@ Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> k
   }
   kept_pairs.finish();
   colliding_pairs.finish();
+  out.list_sha256 = pair_list_hash(scene, colliding);
 
   out.claims.box_pairs = out.evidence.size();
   for (const std::uint8_t byte : out.evidence) {

@@ -2,12 +2,14 @@
 // of evidence a pair, so that a stranger can prove or refute it without any of the code that
 // culled. docs/certificate.md is the format and the proof that 38 directions suffice.
 //
-// What is attested: for the scene with this hash, the pairs of triangles that count (of different
-// objects, and of one object where it is `self`) and whose boxes overlap, which of them meet, and
-// that no pair that the method culled meets. Neighbours (verify/exact.h) meet iff they share more
-// than their shared part. Pairs whose boxes are disjoint need no evidence. How the method came to
-// its answer (Run) is beyond any check. There are no certificates for a clearance above 0: the
-// evidence is about triangles that meet.
+// What is proved, where a check says so, is about the scene alone: of the pairs of triangles that
+// count (of different objects, and of one object where it is `self`), these meet and no others. The
+// certificate names the list of these pairs by its hash, so that a written list is proved with it.
+// Neighbours (verify/exact.h) meet iff they share more than their shared part. Pairs whose boxes
+// are disjoint need no evidence. Nothing is proved about the run: neither how it came to its answer
+// (Run) nor which pairs it kept. A certificate that calls a pair culled which meets is refuted; one
+// that calls it kept instead says something true of the scene, whatever the run did. There are no
+// certificates for a clearance above 0: the evidence is about triangles that meet.
 #pragma once
 
 #include <cstdint>
@@ -30,11 +32,18 @@ struct Certificate {
     bool operator==(const SceneKey&) const = default;
   };
 
+  /// What the scene does not ask (verify/not_asked.h), and so is no part of the claims.
+  struct Unasked {
+    std::uint64_t objects = 0;
+    std::uint64_t pairs = 0;
+    bool operator==(const Unasked&) const = default;
+  };
+
   /// Counts of pairs that count whose closed boxes overlap: separated + neighbours + meeting, and
   /// kept + culled.
   struct Claims {
     std::uint64_t box_pairs = 0;
-    std::uint64_t kept = 0;        // left to the exact tests by the method
+    std::uint64_t kept = 0;        // called kept: left to the exact tests by the method
     std::uint64_t culled = 0;      // the others
     std::uint64_t separated = 0;   // disjoint
     std::uint64_t neighbours = 0;  // neighbours that share only their shared part
@@ -67,10 +76,12 @@ struct Certificate {
   };
 
   SceneKey scene;
+  Unasked not_asked;
   Claims claims;
+  std::string list_sha256;  // pair_list_hash() of the pairs that the run found to meet
   Run run;
   /// One byte per pair in the order of BoxPairs. Bits 0 .. 5: a direction (integer_pair.h) that
-  /// separates the pair, or kMeets, or kNeighbours; kKept: the method kept the pair; bit 7 is 0.
+  /// separates the pair, or kMeets, or kNeighbours; kKept: the pair is called kept; bit 7 is 0.
   std::vector<std::uint8_t> evidence;
 
   bool operator==(const Certificate&) const = default;
@@ -85,7 +96,8 @@ constexpr std::uint8_t kKept = 0x40;
 /// boxes; colliding a part of kept; anything else is a std::logic_error. What the run got wrong is
 /// written as the run had it, so that the check refutes it: a kept pair meets iff it is in
 /// `colliding`, and a pair for which no direction is found though the run calls it disjoint carries
-/// direction 0 (neighbours: kNeighbours) where it was kept, kMeets where it was culled.
+/// direction 0 (neighbours: kNeighbours) where it was kept, kMeets where it was culled. The list's
+/// hash is that of `colliding`.
 Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> kept,
                              std::span<const TrianglePair> colliding, Certificate::Run run);
 
@@ -107,6 +119,8 @@ struct CheckResult {
   std::string reason;                   // empty where proved
   std::optional<TrianglePair> pair;     // that refutes, or for which the evidence fails
   Certificate::Claims found;            // counted by the checker, whatever was claimed
+  std::vector<TrianglePair> meeting;    // the pairs that meet, sorted; decided by the checker
+  std::string list_sha256;              // pair_list_hash() of them; empty where nothing was decided
   std::uint64_t culled_meeting = 0;     // pairs that the certificate calls culled and that meet
   std::vector<std::string> unattested;  // what the check cannot speak about, one line each
   double ms = 0;                        // wall clock of the check: hash, enumeration and decisions
@@ -119,8 +133,9 @@ struct CheckResult {
 ///   it does not, and the contrary is true. The first such pair in order is named.
 /// - not_proved: no such pair, but the scene is another, the evidence is too short or too long, a
 ///   byte is no evidence or names a direction that does not separate its disjoint pair, or does not
-///   say what neighbours are, or a count is wrong.
-/// - proved: neither.
+///   say what neighbours are, or a count or the hash of the list is wrong.
+/// - proved: neither. So the pairs of the list meet, and no others that count. What the certificate
+///   calls kept and the whole of its Run stay what they were, unattested.
 /// For another scene or a wrong length nothing is decided: bytes and pairs do not belong together.
 /// Precondition: validate() accepts the scene.
 CheckResult check_certificate(const Certificate& certificate, const Scene& scene);

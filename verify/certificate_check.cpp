@@ -1,13 +1,16 @@
-// The checker: box_pairs, integer_pair and this file are all that has to be right.
+// The checker: box_pairs, integer_pair, pair_list and this file are all that has to be right.
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
 
+#include "core/floating_point.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "verify/box_pairs.h"
 #include "verify/certificate.h"
 #include "verify/integer_pair.h"
+#include "verify/not_asked.h"
+#include "verify/pair_list.h"
 
 namespace farcull {
 namespace {
@@ -97,7 +100,8 @@ std::string sentence(Finding finding, int byte) {
 
 std::vector<std::string> unattested_of(const Certificate::Run& run) {
   std::vector<std::string> out;
-  out.push_back("that the method was " + run.method + ", and which of the separated pairs it kept");
+  out.push_back("that the method was " + run.method);
+  out.push_back("which pairs the run kept: bit 6 of a byte says so, and nothing proves it");
   out.push_back("that the resolution was " + std::to_string(run.resolution) + " px");
   out.push_back("the views, " + std::to_string(run.views.size()) + " of them");
   out.push_back("the offset and its radius");
@@ -123,8 +127,15 @@ std::string other_scene(const Certificate::SceneKey& key, const Scene& scene) {
                           : differ("hash (coordinates, or which objects are self)", key.hash, hash);
 }
 
-std::string wrong_count(const Certificate::Claims& claimed, const Certificate::Claims& found) {
+std::string wrong_count(const Certificate& certificate, const Scene& scene,
+                        const Certificate::Claims& found) {
   using Claims = Certificate::Claims;
+  const Claims& claimed = certificate.claims;
+  const NotAsked unasked = not_asked(scene);
+  if (certificate.not_asked != Certificate::Unasked{unasked.objects, unasked.pairs}) {
+    return "not_asked is not what the scene leaves out: " + std::to_string(unasked.pairs) +
+           " pairs inside " + std::to_string(unasked.objects) + " objects";
+  }
   constexpr std::pair<const char*, std::uint64_t Claims::*> kCounts[] = {
       {"box_pairs", &Claims::box_pairs},   {"kept", &Claims::kept},
       {"culled", &Claims::culled},         {"separated", &Claims::separated},
@@ -138,6 +149,12 @@ std::string wrong_count(const Certificate::Claims& claimed, const Certificate::C
   return "";
 }
 
+std::string wrong_list(const std::string& claimed, const std::string& found) {
+  return claimed == found ? ""
+                          : "the certificate is of another list of pairs: list_sha256 is " +
+                                claimed + ", and that of the pairs that meet is " + found;
+}
+
 /// What the pairs so far came to.
 class Tally {
  public:
@@ -149,6 +166,7 @@ class Tally {
     ++(meets                               ? result_.found.meeting
        : decision.kind == Kind::neighbours ? result_.found.neighbours
                                            : result_.found.separated);
+    if (meets) result_.meeting.push_back(pair);
     if (meets && !kept) ++result_.culled_meeting;
     if (decision.finding == Finding::as_claimed) return;
     // The first pair that refutes; before there is one, the first that is not proved.
@@ -160,10 +178,13 @@ class Tally {
   }
 
   /// The verdict, once every pair is in.
-  CheckResult finish(const Certificate::Claims& claimed, double decide_ms) {
+  CheckResult finish(const Certificate& certificate, const Scene& scene, double decide_ms) {
     result_.decide_ms = decide_ms;
+    result_.list_sha256 = pair_list_hash(scene, result_.meeting);
     if (!result_.pair) {
-      result_.reason = wrong_count(claimed, result_.found);
+      result_.reason = wrong_count(certificate, scene, result_.found);
+      if (result_.reason.empty())
+        result_.reason = wrong_list(certificate.list_sha256, result_.list_sha256);
       result_.verdict = result_.reason.empty() ? Verdict::proved : Verdict::not_proved;
     }
     return std::move(result_);
@@ -212,7 +233,7 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene) {
     return not_proved("the evidence is too long: " + std::to_string(certificate.evidence.size()) +
                       " bytes for " + std::to_string(done) + " pairs with overlapping boxes");
   }
-  return tally.finish(certificate.claims, decide_ms);
+  return tally.finish(certificate, scene, decide_ms);
 }
 
 }  // namespace
@@ -230,6 +251,7 @@ std::string to_string(Verdict verdict) {
 }
 
 CheckResult check_certificate(const Certificate& certificate, const Scene& scene) {
+  const FloatingPointGuard guard;
   const Stopwatch start;
   std::string other = other_scene(certificate.scene, scene);
   CheckResult result =

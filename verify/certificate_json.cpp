@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "farcull-certificate";
-constexpr std::uint64_t kVersion = 2;
+constexpr std::uint64_t kVersion = 3;
 constexpr const char* kRemedy =
     "give a file that `farcull run ... --certificate` wrote; docs/certificate.md is the format";
 
@@ -167,6 +167,10 @@ class Reader {
     if (!value.is_number_unsigned()) fail(place + " is no whole number from 0 to 2^64 - 1");
     return value.get<std::uint64_t>();
   }
+  void digits(const std::string& text, std::size_t size, const std::string& place) const {
+    if (text.size() != size || text.find_first_not_of("0123456789abcdef") != text.npos)
+      fail(place + " is not " + std::to_string(size) + " lower-case hexadecimal digits");
+  }
   double length(const Json& value, const std::string& place) const {
     const double x = value.is_number() ? value.get<double>() : -1;
     if (!(x >= 0) || !std::isfinite(x)) fail(place + " is no finite number of 0 or more");
@@ -183,10 +187,14 @@ Certificate::SceneKey read_scene(const Reader& reader, const Json& value) {
                               reader.count(value["objects"], "scene.objects"),
                               reader.count(value["triangles"], "scene.triangles"),
                               reader.text(value["hash"], "scene.hash")};
-  if (scene.hash.size() != 16 ||
-      scene.hash.find_first_not_of("0123456789abcdef") != scene.hash.npos)
-    reader.fail("scene.hash is not 16 lower-case hexadecimal digits");
+  reader.digits(scene.hash, 16, "scene.hash");
   return scene;
+}
+
+Certificate::Unasked read_not_asked(const Reader& reader, const Json& value) {
+  reader.object(value, "not_asked", {"objects", "pairs"});
+  return {reader.count(value["objects"], "not_asked.objects"),
+          reader.count(value["pairs"], "not_asked.pairs")};
 }
 
 Certificate::Claims read_claims(const Reader& reader, const Json& value) {
@@ -254,29 +262,33 @@ std::string to_text(const Certificate& certificate) {
               {"version", run.device->version},
               {"glsl", run.device->glsl}};
   }
-  const Json json = {{"format", kFormat},
-                     {"version", kVersion},
-                     {"scene",
-                      {{"name", certificate.scene.name},
-                       {"objects", certificate.scene.objects},
-                       {"triangles", certificate.scene.triangles},
-                       {"hash", certificate.scene.hash}}},
-                     {"claims",
-                      {{"box_pairs", certificate.claims.box_pairs},
-                       {"kept", certificate.claims.kept},
-                       {"culled", certificate.claims.culled},
-                       {"separated", certificate.claims.separated},
-                       {"neighbours", certificate.claims.neighbours},
-                       {"meeting", certificate.claims.meeting}}},
-                     {"unattested",
-                      {{"method", run.method},
-                       {"resolution", run.resolution},
-                       {"radius_px", finite(run.radius_px)},
-                       {"offset", run.offset},
-                       {"views", std::move(views)},
-                       {"device", std::move(device)},
-                       {"assumptions", Json(run.assumptions)}}},
-                     {"evidence", encode(certificate.evidence)}};
+  const Json json = {
+      {"format", kFormat},
+      {"version", kVersion},
+      {"scene",
+       {{"name", certificate.scene.name},
+        {"objects", certificate.scene.objects},
+        {"triangles", certificate.scene.triangles},
+        {"hash", certificate.scene.hash}}},
+      {"not_asked",
+       {{"objects", certificate.not_asked.objects}, {"pairs", certificate.not_asked.pairs}}},
+      {"claims",
+       {{"box_pairs", certificate.claims.box_pairs},
+        {"kept", certificate.claims.kept},
+        {"culled", certificate.claims.culled},
+        {"separated", certificate.claims.separated},
+        {"neighbours", certificate.claims.neighbours},
+        {"meeting", certificate.claims.meeting}}},
+      {"list_sha256", certificate.list_sha256},
+      {"unattested",
+       {{"method", run.method},
+        {"resolution", run.resolution},
+        {"radius_px", finite(run.radius_px)},
+        {"offset", run.offset},
+        {"views", std::move(views)},
+        {"device", std::move(device)},
+        {"assumptions", Json(run.assumptions)}}},
+      {"evidence", encode(certificate.evidence)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -285,13 +297,21 @@ Certificate parse_certificate(std::string_view text, const std::string& name) {
   Syntax syntax;
   if (!Json::sax_parse(text.begin(), text.end(), &syntax)) reader.fail(syntax.reason);
   const Json root = Json::parse(text.begin(), text.end());
-  reader.object(root, "", {"format", "version", "scene", "claims", "unattested", "evidence"});
-  if (root["format"] != kFormat) reader.fail(std::string("format is not ") + kFormat);
-  if (!root["version"].is_number_unsigned() || root["version"] != kVersion)
+  // Before the keys, which another version has others of.
+  if (!root.is_object()) reader.fail("the certificate is no object");
+  if (root.value("format", Json()) != kFormat) reader.fail(std::string("format is not ") + kFormat);
+  const Json version = root.value("version", Json());
+  if (!version.is_number_unsigned() || version != kVersion)
     reader.fail("version is not " + std::to_string(kVersion));
+  reader.object(root, "",
+                {"format", "version", "scene", "not_asked", "claims", "list_sha256", "unattested",
+                 "evidence"});
   Certificate certificate;
   certificate.scene = read_scene(reader, root["scene"]);
+  certificate.not_asked = read_not_asked(reader, root["not_asked"]);
   certificate.claims = read_claims(reader, root["claims"]);
+  certificate.list_sha256 = reader.text(root["list_sha256"], "list_sha256");
+  reader.digits(certificate.list_sha256, 64, "list_sha256");
   certificate.run = read_run(reader, root["unattested"]);
   if (!decode(reader.text(root["evidence"], "evidence"), certificate.evidence))
     reader.fail("evidence is not base64 (padded, without line breaks)");

@@ -22,13 +22,15 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <future>
 #include <limits>
 #include <stdexcept>
 #include <tuple>
 #include <variant>
 
+#include "core/floating_point.h"
+#include "core/parallel.h"
 #include "core/stopwatch.h"
+#include "verify/answers.h"
 #include "verify/distance.h"
 #include "verify/filter.h"
 
@@ -207,8 +209,6 @@ bool is_within(const Corners& a, const Corners& b, double clearance) {
   return clearance > 0 && disjoint_within(a, b, clearance);
 }
 
-enum class Answer : std::uint8_t { apart, colliding, neighbours_apart, neighbours_colliding };
-
 /// Which corners of two triangles are at equal positions: bit 3 i + j for corner i of a and j of b.
 /// Equal indices are known to be, without a look at the positions.
 unsigned equal_corners(const std::array<std::uint32_t, 3>& a_index, const Corners& a,
@@ -258,20 +258,21 @@ struct Gathered {
   }
 };
 
-Answer answer(const Scene& scene, const Gathered& a, const Gathered& b, bool one_object,
-              const ExactQuestion& question) {
+PairAnswer answer(const Scene& scene, const Gathered& a, const Gathered& b, bool one_object,
+                  const ExactQuestion& question) {
   if (one_object) {
     const unsigned equal = equal_corners(scene.triangles[a.triangle], a.corners,
                                          scene.triangles[b.triangle], b.corners);
     if (equal != 0) {
-      if (!question.neighbours) return Answer::neighbours_apart;
+      if (!question.neighbours) return PairAnswer::neighbours_unasked;
       const Triage triage = filter_neighbours(equal, a.corners, b.corners);
       const bool beyond = triage == Triage::unknown ? intersects_beyond_shared(a.corners, b.corners)
                                                     : triage == Triage::yes;
-      return beyond ? Answer::neighbours_colliding : Answer::neighbours_apart;
+      return beyond ? PairAnswer::neighbours_colliding : PairAnswer::neighbours_apart;
     }
   }
-  return is_within(a.corners, b.corners, question.clearance) ? Answer::colliding : Answer::apart;
+  return is_within(a.corners, b.corners, question.clearance) ? PairAnswer::colliding
+                                                             : PairAnswer::apart;
 }
 
 /// Which object triangles are of, for pairs whose first members mostly ascend.
@@ -349,6 +350,7 @@ bool intersects_beyond_shared(const std::array<Vec3, 3>& a, const std::array<Vec
 }
 
 std::uint64_t degenerate_triangles(const Scene& scene) {
+  const FloatingPointGuard guard;
   std::uint64_t count = 0;
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
     if (shape(scene.corners(t)) != Shape::triangle) ++count;
@@ -358,6 +360,7 @@ std::uint64_t degenerate_triangles(const Scene& scene) {
 
 Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
                   const ExactQuestion& question) {
+  const FloatingPointGuard guard;
   check_clearance("decide", question.clearance);
   for (const TrianglePair& pair : candidates) {
     if (std::max(pair.a, pair.b) >= scene.triangles.size()) {
@@ -367,9 +370,9 @@ Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
   }
   constexpr std::size_t kBlock =
       1024;  // enough work to pay for the shared counter, small enough to balance
-  std::vector<Answer> answers(candidates.size());
+  std::vector<PairAnswer> answers(candidates.size(), PairAnswer::undecided);
   std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
+  const auto work = [&](std::size_t, std::size_t, std::size_t) {
     SameObject same_object(scene);
     for (;;) {
       const std::size_t begin = next.fetch_add(kBlock);
@@ -387,24 +390,15 @@ Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
     }
   };
   const std::size_t blocks = (candidates.size() + kBlock - 1) / kBlock;
-  std::vector<std::future<void>> helpers;  // futures, so that what a thread throws is thrown here
-  for (std::size_t i = 1; i < std::min<std::size_t>(question.threads, blocks); ++i) {
-    helpers.push_back(std::async(std::launch::async, work));
-  }
-  work();
-  for (auto& helper : helpers) helper.get();
+  const std::size_t threads =
+      std::clamp<std::size_t>(question.threads, 1, std::max<std::size_t>(blocks, 1));
+  for_chunks(threads, threads, work);
 
-  Collisions result;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Answer found = answers[i];
-    if (found == Answer::colliding) result.pairs.push_back(candidates[i]);
-    if (found == Answer::neighbours_colliding) result.neighbour_pairs.push_back(candidates[i]);
-    result.neighbours += found >= Answer::neighbours_apart;
-  }
-  return result;
+  return count_answers(candidates, answers);
 }
 
 ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& question) {
+  const FloatingPointGuard guard;
   check_clearance("all_colliding_pairs", question.clearance);
   constexpr std::size_t kChunk =
       1 << 18;  // pairs decided at a time: tens of millions of candidates are never stored

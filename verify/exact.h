@@ -17,8 +17,8 @@
 // most D. Neighbours have distance 0: D does not matter to them.
 //
 // Preconditions everywhere: coordinates finite (any finite double: subnormal, 1e308 and -0.0, which
-// equals 0.0, are fine); the calling thread rounds to nearest and does not flush subnormals to
-// zero; scenes satisfy validate().
+// equals 0.0, are fine); scenes satisfy validate(). Functions of two triangles need a thread that
+// rounds to nearest and keeps subnormals (core/floating_point.h); functions of a scene see to that.
 #pragma once
 
 #include <array>
@@ -65,12 +65,15 @@ struct Collisions {
   std::vector<TrianglePair> pairs;            // that collide and are not neighbours
   std::vector<TrianglePair> neighbour_pairs;  // neighbours that collide
   std::uint64_t neighbours = 0;               // candidates that are neighbours, colliding or not
+  std::uint64_t apart = 0;                    // candidates that do not collide, no neighbours
+  std::uint64_t neighbours_apart = 0;         // neighbours that were decided and do not collide
 };
 
 /// The candidates that collide, in the order given (duplicates and all). Candidates may be of any
-/// two different triangles, of one object as well, whatever its `self`. Throws std::logic_error if
-/// a candidate names a triangle that the scene does not have or one triangle twice, or if the
-/// clearance is negative or not finite.
+/// two different triangles, of one object as well, whatever its `self`. Every candidate begins
+/// undecided, and each class is counted where a candidate was decided to be in it. Throws
+/// std::logic_error if a candidate names a triangle that the scene does not have or one triangle
+/// twice, if one was left undecided, or if the clearance is negative or not finite.
 Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
                   const ExactQuestion& question = {});
 

@@ -1,0 +1,231 @@
+// A line along z and a triangle fattened by a ball, as the floats of a Solid say it
+// (offsets/exact.glsl). Notation: v0, v1, v2 the solid's corners relative to its centre m; d = c -
+// m in the image; p a point of the triangle. The ball about p cuts the line in the chord m.z + p.z
+// -+ sqrt(r^2 - |d - p.xy|^2), and the solid's interval is the hull of all chords, so any p is a
+// test of a kernel: decided with rationals wherever long doubles leave a doubt.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/kernel_case.h"
+#include "verify/rational.h"
+
+namespace farcull::exact_line {
+
+using rational::Q;
+using Real = long double;
+using Real3 = std::array<Real, 3>;
+// The bounds below are for 2^-64.
+static_assert(std::numeric_limits<Real>::digits >= 64);
+using Kernel = bool (*)(float cx, float cy, const Solid& solid, float& entry, float& exit);
+
+/// p = v0 + w1 (v1 - v0) + w2 (v2 - v0). Multiples of 2^-62 with w1, w2 >= 0 and w1 + w2 <= 1, all
+/// exactly: the point is in the triangle.
+struct Weights {
+  Real w1, w2;
+};
+
+inline Weights weights(Real w1, Real w2) {
+  const auto grid = [](Real w) { return std::floor(w * 0x1p62L) * 0x1p-62L; };
+  const Real first = grid(std::clamp<Real>(w1, 0, 1));
+  return {first, grid(std::clamp<Real>(w2, 0, 1 - first))};
+}
+
+/// The point t of the way along an edge.
+inline Weights on_edge(int edge, Real t) {
+  t = weights(t, 0).w1;
+  return edge == 0 ? Weights{t, 0} : edge == 1 ? Weights{1 - t, t} : Weights{0, 1 - t};
+}
+
+/// The part of the line in the ball about one point.
+struct Chord {
+  Real square;    // of its half-length; negative: the line misses the ball
+  Real lo, hi;    // depths, where square >= 0
+  Real doubt;     // bounds the error of lo and hi
+  Real no_chord;  // below -no_chord the ball is missed for certain
+};
+
+class Line {
+ public:
+  Line(const Solid& s, float cx, float cy)
+      : dx_(Real(cx) - s[0][0]), dy_(Real(cy) - s[0][1]), mz_(s[0][2]), r_(s[1][3]) {
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        v_[i][k] = s[1 + i][k];
+        (k < 2 ? flat_ : deep_) = std::max(k < 2 ? flat_ : deep_, std::abs(v_[i][k]));
+      }
+    }
+    flat_ += std::abs(dx_) + std::abs(dy_) + r_;
+    deep_ += std::abs(mz_) + r_;
+  }
+
+  /// p, its difference from the line and the squares are a dozen operations of 2^-64 each, relative
+  /// to the largest coordinates (flat: in the image, deep: along the depth); 2^-56 is beyond them.
+  Chord chord(const Weights& w) const {
+    Real3 p;
+    for (int k = 0; k < 3; ++k)
+      p[k] = v_[0][k] + w.w1 * (v_[1][k] - v_[0][k]) + w.w2 * (v_[2][k] - v_[0][k]);
+    const Real x = p[0] - dx_, y = p[1] - dy_;
+    Chord out{};
+    out.square = r_ * r_ - x * x - y * y;
+    // |x| and |y| are at most r near a chord's ends, and their own errors 2^-56 flat.
+    const Real e = 0x1p-56L * flat_;
+    out.no_chord = 8 * e * (r_ + e) + 0x1p-56L * r_ * r_ + 0x1p-300L;
+    const Real root = std::sqrt(std::max<Real>(out.square, 0));
+    out.lo = mz_ + p[2] - root;
+    out.hi = mz_ + p[2] + root;
+    // |sqrt(a) - sqrt(b)| <= min(sqrt|a - b|, |a - b| / sqrt(a)).
+    const Real step = std::sqrt(2 * out.no_chord);
+    out.doubt = 0x1p-56L * deep_ + (root > 0 ? std::min(step, 2 * out.no_chord / root) : step);
+    return out;
+  }
+
+  /// Where the solid is entered (sign -1) or left (sign 1): the best point of the three corners,
+  /// the contacts with the three edges' cylinders, and the contact with the face.
+  /// `deepest` receives the depth; false: the line misses.
+  bool contact(int sign, Weights& best, Real& depth) const {
+    bool found = false;
+    const auto offer = [&](const Weights& w) {
+      const Chord c = chord(w);
+      if (c.square < 0) return;
+      const Real z = sign < 0 ? c.lo : c.hi;
+      if (found && sign * z <= sign * depth) return;
+      found = true;
+      depth = z;
+      best = w;
+    };
+    for (int edge = 0; edge < 3; ++edge) {
+      offer(on_edge(edge, 0));
+      const Real3 &a = v_[edge], &b = v_[(edge + 1) % 3];
+      const Real fx = b[0] - a[0], fy = b[1] - a[1], fz = b[2] - a[2];
+      const Real px = a[0] - dx_, py = a[1] - dy_, along2 = fx * fx + fy * fy;
+      if (along2 == 0) continue;
+      const Real cross = px * fy - py * fx, rho2 = r_ * r_ - cross * cross / along2;
+      const Real foot = -(px * fx + py * fy) / along2;
+      offer(on_edge(edge, foot));
+      if (rho2 < 0) continue;
+      offer(on_edge(edge,
+                    foot + sign * fz * std::sqrt(rho2 / (along2 + fz * fz)) / std::sqrt(along2)));
+    }
+    Real3 u, v, n, q;
+    for (int k = 0; k < 3; ++k) {
+      u[k] = v_[1][k] - v_[0][k];
+      v[k] = v_[2][k] - v_[0][k];
+    }
+    const auto cross_of = [](const Real3& a, const Real3& b) {
+      return Real3{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    };
+    const auto dot_of = [](const Real3& a, const Real3& b) {
+      return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    };
+    n = cross_of(u, v);
+    const Real size2 = dot_of(n, n);
+    if (size2 == 0 || n[2] == 0) return found;
+    const Real scale = sign * (n[2] > 0 ? 1 : -1) / std::sqrt(size2);
+    const Real qx = dx_ - v_[0][0], qy = dy_ - v_[0][1];
+    const Real qz = (r_ / scale - n[0] * qx - n[1] * qy) / n[2];
+    q = {qx - r_ * scale * n[0], qy - r_ * scale * n[1], qz - r_ * scale * n[2]};
+    offer(weights(dot_of(cross_of(q, v), n) / size2, dot_of(cross_of(u, q), n) / size2));
+    return found;
+  }
+
+  /// The distance in the image from the line to the triangle (0 inside).
+  Real distance() const {
+    Real nearest = HUGE_VALL;
+    int turns[3];
+    for (int edge = 0; edge < 3; ++edge) {
+      const Real3 &a = v_[edge], &b = v_[(edge + 1) % 3];
+      const Real fx = b[0] - a[0], fy = b[1] - a[1], px = a[0] - dx_, py = a[1] - dy_;
+      const Real along2 = fx * fx + fy * fy, turn = px * fy - py * fx;
+      turns[edge] = turn > 0 ? 1 : turn < 0 ? -1 : 0;
+      const Real t = along2 > 0 ? std::clamp<Real>(-(px * fx + py * fy) / along2, 0, 1) : 0;
+      nearest = std::min(nearest, std::hypot(px + t * fx, py + t * fy));
+    }
+    return turns[0] != 0 && turns[0] == turns[1] && turns[1] == turns[2] ? 0 : nearest;
+  }
+
+  Real radius() const { return r_; }
+
+ private:
+  Real dx_, dy_, mz_, r_;
+  std::array<Real3, 3> v_;
+  Real flat_ = 0, deep_ = 0;
+};
+
+using Answer = SolidAnswer;
+
+inline Answer answer(Kernel kernel, float cx, float cy, const Solid& solid) {
+  Answer a{};
+  a.hit = kernel(cx, cy, solid, a.entry, a.exit);
+  return a;
+}
+
+/// Without rounding: whether the chord of p, cut by zlo and zhi, leaves the answer.
+inline bool violates(const Solid& s, float cx, float cy, const Weights& w, const Answer& answer) {
+  const auto rational = [](Real x) {
+    const double high = static_cast<double>(x);
+    return Q(Q(high) + Q(static_cast<double>(x - high)));
+  };
+  const Q w1 = rational(w.w1), w2 = rational(w.w2), zlo(s[0][3]), zhi(s[2][3]), r(s[1][3]);
+  Q p[3];
+  for (int k = 0; k < 3; ++k) {
+    const Q v0(s[1][k]);
+    p[k] = Q(s[0][k]) + v0 + w1 * (Q(s[2][k]) - v0) + w2 * (Q(s[3][k]) - v0);
+  }
+  const Q x = Q(cx) - p[0], y = Q(cy) - p[1], square = r * r - x * x - y * y;
+  if (square < 0) return false;
+  // Depths of the solid: the chord's middle, and the cuts where they are in the chord.
+  const Q* const depths[] = {&p[2], &zlo, &zhi};
+  for (const Q* z : depths) {
+    const Q off = *z - p[2];
+    if (*z < zlo || *z > zhi || off * off > square) continue;
+    if (!answer.hit || *z < Q(answer.entry) || *z > Q(answer.exit)) return true;
+  }
+  if (!answer.hit) return false;
+  // Inside the chord and the cuts there is room for a depth beyond the answer.
+  const auto strictly_inside = [&](const Q& z) {
+    const Q off = z - p[2];
+    return off * off < square;
+  };
+  const Q entry(answer.entry), exit(answer.exit);
+  return (entry > zlo && entry <= zhi && strictly_inside(entry)) ||
+         (exit < zhi && exit >= zlo && strictly_inside(exit));
+}
+
+/// Whether long doubles leave a doubt that the chord is held. False is certain.
+inline bool doubtful(const Solid& s, const Chord& c, const Answer& answer) {
+  if (c.square < -c.no_chord) return false;
+  if (c.hi + c.doubt < s[0][3] || c.lo - c.doubt > s[2][3]) return false;
+  if (!answer.hit) return true;
+  const bool entry_held = answer.entry <= s[0][3] || answer.entry <= c.lo - c.doubt;
+  const bool exit_held = answer.exit >= s[2][3] || answer.exit >= c.hi + c.doubt;
+  return !entry_held || !exit_held;
+}
+
+struct Tally {
+  long checks = 0, rationals = 0, violations = 0;
+};
+
+/// Checks an answer against the chord of one point.
+inline void check(const Line& line, const Solid& s, float cx, float cy, const Weights& w,
+                  const Answer& a, Tally& tally) {
+  ++tally.checks;
+  if (!doubtful(s, line.chord(w), a)) return;
+  ++tally.rationals;
+  tally.violations += violates(s, cx, cy, w, a);
+}
+
+/// Checks an answer where it is most likely to fail: at the contacts.
+inline void check_contacts(const Line& line, const Solid& s, float cx, float cy, const Answer& a,
+                           Tally& tally) {
+  for (const int sign : {-1, 1}) {
+    Weights w{};
+    Real depth = 0;
+    if (line.contact(sign, w, depth)) check(line, s, cx, cy, w, a, tally);
+  }
+}
+
+}  // namespace farcull::exact_line

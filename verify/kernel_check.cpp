@@ -1,0 +1,188 @@
+// Draws cases by seed and index, and counts what an answer loses: of a box the exact interval, of
+// an exact offset points of its solid, of FAR pairs the corners of the part over the pixel.
+#include "verify/kernel_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "verify/box_line.h"
+#include "verify/exact_cases.h"
+#include "verify/exact_line.h"
+#include "verify/interval_cases.h"
+
+namespace farcull {
+namespace {
+
+using rational::Draws;
+using rational::Q;
+using rational::Q3;
+
+// An engine for each index, so that a case does not depend on the ones before.
+Draws draws_of(std::uint64_t seed, std::uint64_t index) {
+  return Draws(seed * 0x9e3779b97f4a7c15u + index);
+}
+
+void count(bool held, KernelTally& tally) {
+  ++tally.checked;
+  tally.lost += !held;
+}
+
+// A bound that is not a number is infinitely far off, on whichever side it harms.
+bool usable(const SolidAnswer& a) {
+  return !a.hit || (std::isfinite(a.entry) && std::isfinite(a.exit));
+}
+
+void count_excess(double excess, KernelTally& tally) {
+  ++tally.ordinary;
+  tally.loose += !(excess <= kLoose);
+  tally.excess = std::max(tally.excess, excess);
+}
+
+}  // namespace
+
+void check_box(const SolidCase& c, const SolidAnswer& answer, bool ordinary, KernelTally& tally) {
+  if (!usable(answer)) return count(false, tally);
+  // In doubles a little too large: it decides nearly always, since the kernel widens by 2^-20.
+  const auto outer = box_line::outer_interval(c.cx, c.cy, c.solid);
+  bool held = !outer || (answer.hit && answer.entry <= outer->lo && answer.exit >= outer->hi);
+  if (!held) {
+    const auto truth = box_line::exact_interval(c.cx, c.cy, c.solid);
+    held = !truth || (answer.hit && Q(answer.entry) <= truth->lo && Q(answer.exit) >= truth->hi);
+  }
+  count(held, tally);
+  if (ordinary && outer && answer.hit)
+    count_excess(std::max(outer->lo - answer.entry, answer.exit - outer->hi), tally);
+}
+
+void check_minkowski(const SolidCase& c, const SolidAnswer& answer, bool ordinary,
+                     KernelTally& tally) {
+  if (!usable(answer)) return count(false, tally);
+  const exact_line::Line line(c.solid, c.cx, c.cy);
+  exact_line::Tally points;
+  exact_line::check_contacts(line, c.solid, c.cx, c.cy, answer, points);
+  exact_line::check(line, c.solid, c.cx, c.cy, exact_line::weights(1.0L / 3, 1.0L / 3), answer,
+                    points);
+  tally.checked += static_cast<std::uint64_t>(points.checks);
+  tally.lost += static_cast<std::uint64_t>(points.violations);
+  if (!ordinary || !answer.hit) return;
+  exact_line::Weights at{};
+  exact_line::Real first = 0, last = 0;
+  if (!line.contact(-1, at, first) || !line.contact(1, at, last)) return;
+  const exact_line::Real lo = std::max<exact_line::Real>(first, c.solid[0][3]);
+  const exact_line::Real hi = std::min<exact_line::Real>(last, c.solid[2][3]);
+  count_excess(static_cast<double>(std::max(lo - answer.entry, answer.exit - hi)), tally);
+}
+
+void check_interval(const IntervalCase& c, const IntervalAnswer& answer, KernelTally& tally) {
+  const auto finite = [](const auto&... x) { return (std::isfinite(x) && ...); };
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!finite(answer.lo[axis], answer.hi[axis])) return count(false, tally);
+  }
+  if (answer.hit && !finite(answer.row_lo, answer.row_hi, answer.near, answer.far))
+    return count(false, tally);
+  const std::vector<Q3> real = interval_cases::real_triangle(c);
+  for (const Q3& p : real) {
+    for (int axis = 0; axis < 3; ++axis)
+      count(Q(answer.lo[axis]) <= p[axis] && p[axis] <= Q(answer.hi[axis]), tally);
+  }
+  const std::vector<Q3> part =
+      interval_cases::part_in(real, Q(c.i), Q(c.i + 1), Q(c.j), Q(c.j + 1));
+  for (const Q3& p : part) {
+    count(answer.hit && Q(answer.row_lo) <= p[0] && p[0] <= Q(answer.row_hi) &&
+              Q(answer.near) <= p[2] && p[2] <= Q(answer.far),
+          tally);
+  }
+  // No wider than the depths over the pixel grown by what the budget names: three times the margin,
+  // once for each rounding of a border (docs/budget.md, "Interval pairs").
+  if (part.empty() || !answer.hit) return;
+  float most = 0;
+  for (const auto& corner : c.corners) {
+    for (const float x : corner) most = std::max(most, std::abs(x));
+  }
+  if (most > 4096) return;
+  const Q grown(3 * (c.widening + 0x1p-17 * (1.0 + most)));
+  std::vector<Q3> exact(3);
+  for (int k = 0; k < 3; ++k)
+    exact[k] = {Q(c.corners[k][0]), Q(c.corners[k][1]), Q(c.corners[k][2])};
+  const std::vector<Q3> around =
+      interval_cases::part_in(exact, c.i - grown, c.i + 1 + grown, c.j - grown, c.j + 1 + grown);
+  if (around.empty()) return;
+  Q near = around[0][2], far = around[0][2];
+  for (const Q3& p : around) {
+    near = std::min(near, p[2]);
+    far = std::max(far, p[2]);
+  }
+  const Q before = near - grown - Q(answer.near), behind = Q(answer.far) - far - grown;
+  count_excess(std::max(0.0, std::max(before.get_d(), behind.get_d())), tally);
+}
+
+void check_slices(const std::vector<SliceCase>& cases, const std::vector<SliceAnswer>& answers,
+                  KernelTally& tally) {
+  for (std::size_t n = 0; n < cases.size(); ++n) {
+    const SliceCase& c = cases[n];
+    const SliceAnswer& a = answers[n];
+    const Q exact = (Q(c.z) - Q(c.near)) * Q(c.slices_per_px);
+    // Two roundings move a slice's border by less than a slice: 2.01 * 2^-23 of 64.
+    count(a.slice >= 0 && a.slice <= 63 && (a.slice == 63 || exact < a.slice + 2) &&
+              (a.slice == 0 || exact > a.slice - 1),
+          tally);
+    if (n > 0) count(a.slice >= answers[n - 1].slice, tally);
+    // The integer part of a float below 2^24 is exact.
+    const float x = std::clamp(c.x, 0.0f, 65536.0f);
+    count(a.pixel == static_cast<std::int32_t>(x), tally);
+  }
+}
+
+KernelTriangle kernel_triangle(std::uint64_t seed, std::uint64_t index, float cx, float cy) {
+  Draws random = draws_of(seed, index);
+  const int kind = static_cast<int>(index % exact_cases::kKindCount);
+  const exact_cases::Case c = exact_cases::random_case_at(random, kind, cx, cy);
+  return {c.triangle, c.radius, kind == 0};
+}
+
+Solid adversarial_box(std::uint64_t seed, std::uint64_t index, float cx, float cy) {
+  Draws random = draws_of(seed, index);
+  return box_line::adversarial_at(random, cx, cy);
+}
+
+Solid adversarial_minkowski(std::uint64_t seed, std::uint64_t index, float cx, float cy) {
+  Draws random = draws_of(seed, index);
+  return exact_cases::adversarial_at(random, cx, cy);
+}
+
+std::vector<IntervalCase> interval_kernel_cases(std::uint64_t seed, std::size_t count) {
+  std::vector<IntervalCase> out;
+  for (std::size_t n = 0; n < count; ++n) {
+    Draws random = draws_of(seed, n);
+    out.push_back(interval_cases::random_case(random));
+  }
+  return out;
+}
+
+std::vector<SliceCase> slice_kernel_cases(std::uint64_t seed, std::size_t count) {
+  Draws random(seed);
+  std::vector<SliceCase> out;
+  const auto near = static_cast<float>(random.scaled(-4, 12));
+  const auto depth = std::exp2(random.uniform(-4, 14));
+  const auto scale = static_cast<float>(64 / depth);
+  while (out.size() < count) {
+    // Borders of slices and their neighbours, and depths inside and beyond the window.
+    auto z = static_cast<float>(near + random.uniform(-0.1, 1.1) * depth);
+    if (random.coin()) z = static_cast<float>(near + random.below(65) * depth / 64);
+    if (random.below(16) == 0) z = static_cast<float>(random.scaled(-10, 20));
+    auto x = static_cast<float>(random.scaled(-20, 18));
+    if (random.coin()) x = static_cast<float>(random.below(65537));
+    for (const float side : {-HUGE_VALF, HUGE_VALF}) {
+      out.push_back({z, near, scale, x});
+      z = std::nextafter(z, side);
+      x = std::nextafter(x, side);
+    }
+    out.push_back({z, near, scale, x});
+  }
+  out.resize(count);
+  std::sort(out.begin(), out.end(),
+            [](const SliceCase& a, const SliceCase& b) { return a.z < b.z; });
+  return out;
+}
+
+}  // namespace farcull

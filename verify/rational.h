@@ -1,0 +1,66 @@
+// Exact arithmetic for checks of rounded geometry: a double or float converts to a rational
+// exactly, so a claimed bound is decided, not estimated. And draws of random numbers that are the
+// same on every machine.
+#pragma once
+
+#include <gmpxx.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "core/scene.h"
+
+namespace farcull::rational {
+
+using Q = mpq_class;
+using Q3 = std::array<Q, 3>;
+
+inline Q3 exact(const Vec3& p) { return {Q(p[0]), Q(p[1]), Q(p[2])}; }
+inline Q3 minus(const Q3& a, const Q3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+inline Q dot(const Q3& a, const Q3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+/// a + t (b - a)
+inline Q3 between(const Q3& a, const Q3& b, const Q& t) {
+  Q3 out;
+  for (int i = 0; i < 3; ++i) out[i] = a[i] + t * (b[i] - a[i]);
+  return out;
+}
+
+/// The part of a convex polygon where sign * p[axis] <= sign * bound.
+inline std::vector<Q3> clipped(const std::vector<Q3>& polygon, int axis, int sign, const Q& bound) {
+  std::vector<Q3> out;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Q3 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
+    const Q dp = sign * (p[axis] - bound), dq = sign * (q[axis] - bound);
+    if (dp <= 0) out.push_back(p);
+    if ((dp < 0 && dq > 0) || (dp > 0 && dq < 0)) out.push_back(between(p, q, dp / (dp - dq)));
+  }
+  return out;
+}
+
+/// Standard distributions differ between libraries, engines do not.
+class Draws {
+ public:
+  explicit Draws(std::uint64_t seed) : engine_(seed) {}
+
+  std::uint64_t bits() { return engine_(); }
+  int below(int n) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(n)); }
+  bool coin() { return (engine_() >> 33) & 1; }
+  double uniform(double lo, double hi) {
+    return lo + (hi - lo) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
+  }
+  double sign() { return coin() ? 1 : -1; }
+  /// A random sign and magnitude 2^lo .. 2^hi, the exponent uniform.
+  double scaled(double lo, double hi) { return sign() * std::exp2(uniform(lo, hi)); }
+  Vec3 cube(double half) {
+    return {uniform(-half, half), uniform(-half, half), uniform(-half, half)};
+  }
+  Vec3 scaled3(double lo, double hi) { return {scaled(lo, hi), scaled(lo, hi), scaled(lo, hi)}; }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+}  // namespace farcull::rational
