@@ -6,6 +6,7 @@
 #include "commit.h"
 #include "experiments/bench.h"
 #include "experiments/bench_machine.h"
+#include "experiments/output.h"
 #include "experiments/tables.h"
 
 namespace farcull {
@@ -105,6 +106,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const BenchOptions& options,
           {"disagreement", disagreement_json(result.disagreement)},
           {"objects", scene.objects.size()},
           {"triangles", scene.triangles.size()},
+          {"self_not_asked", not_asked_json(scene)},
           {"hash", scene_hash(scene)},
           {"seed", or_null(options.seed)},
           {"options",
@@ -123,6 +125,8 @@ std::string bench_table(const Scene& scene, const BenchOptions& options,
   std::string out = fmt::format("{}: {} objects, {} triangles; {} thread{}, {}\n\n", scene.name,
                                 grouped(scene.objects.size()), grouped(scene.triangles.size()),
                                 options.threads, options.threads == 1 ? "" : "s", cpu_model());
+  if (const std::string line = not_asked_line(scene); !line.empty())
+    out.insert(out.size() - 1, line);
   const BenchRow* best = best_far_pairs(result);
   Table table("llrrrrrrrrrrrrr");
   table.add({"", "device", "ms", "min", "max", "cold", "setup", "build", "find", "exact",

@@ -6,9 +6,12 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "core/floating_point.h"
 #include "experiments/mesh_text.h"
 #include "experiments/output.h"
 #include "experiments/scene_file.h"
+#include "experiments/tables.h"
+#include "verify/pair_list.h"
 
 namespace farcull {
 namespace {
@@ -29,7 +32,9 @@ const std::vector<std::string>& assumptions() {
       "A4: fragment and compute arithmetic as GLSL 4.50, 4.7.1 promises; the depth map is monotone",
       "A5: the depth buffer and its test are monotone",
       "A6: a query is zero only if no sample passed",
-      "A7: every command ran, or the failure is seen"};
+      "A7: every command ran, or the failure is seen",
+      "A8: what a dispatch or a draw wrote is seen after the barrier; atomics neither lose nor "
+      "double"};
   return lines;
 }
 
@@ -66,21 +71,60 @@ double ns_per_pair(const CheckResult& result) {
              : result.decide_ms * 1e6 / static_cast<double>(result.found.box_pairs);
 }
 
+// What a proof is about: the scene, not the run.
+std::string proved_text(const CheckResult& result) {
+  const std::size_t pairs = result.meeting.size();
+  if (pairs == 0) return "no pair of the scene meets";
+  return pairs == 1 ? "this pair of the scene meets, and no other"
+                    : "these " + grouped(pairs) + " pairs of the scene meet, and no others";
+}
+
+// The first line in which a list that was given differs from that of the pairs that meet, for a
+// message; empty where they are the same.
+std::string difference(std::string_view given, std::string_view proved) {
+  if (given == proved) return {};
+  const auto [at, other] = std::mismatch(given.begin(), given.end(), proved.begin(), proved.end());
+  const auto same = static_cast<std::size_t>(at - given.begin());
+  const std::size_t begin = same == 0 ? 0 : given.rfind('\n', same - 1) + 1;
+  const auto line = [&](std::string_view text) {
+    const std::string_view rest = text.substr(begin);
+    return rest.empty() ? "nothing" : quote_token(rest.substr(0, rest.find('\n')));
+  };
+  const auto number =
+      1 + std::count(given.begin(), given.begin() + static_cast<std::ptrdiff_t>(begin), '\n');
+  std::string is = line(given);
+  std::string should = line(proved);
+  if (is == should) is += " and other bytes";  // the end of the line, or what a message cannot hold
+  return fmt::format("line {} is {}, and of the pairs that meet it is {}", number, is, should);
+}
+
 Json result_json(const CheckArguments& arguments, const Certificate& certificate,
-                 const Scene& scene, const CheckResult& result) {
+                 const Scene& scene, const CheckResult& result,
+                 const std::optional<std::string>& given) {
   Json pair = nullptr;
   if (result.pair) {
     pair = {{"a", place_json(scene, result.pair->a)}, {"b", place_json(scene, result.pair->b)}};
   }
+  const bool decided = !result.list_sha256.empty();
   return {{"certificate", clean_name(arguments.certificate)},
-          {"scene", {{"name", scene.name}, {"hash", scene_hash(scene)}}},
+          {"scene",
+           {{"name", scene.name},
+            {"hash", scene_hash(scene)},
+            {"self_not_asked", not_asked_json(scene)}}},
           {"verdict", to_string(result.verdict)},
+          {"proves", result.verdict == Verdict::proved ? Json(proved_text(result)) : Json(nullptr)},
           {"reason", result.reason.empty() ? Json(nullptr) : Json(result.reason)},
           {"pair", pair},
+          {"list",
+           {{"claimed_sha256", certificate.list_sha256},
+            {"found_sha256", decided ? Json(result.list_sha256) : Json(nullptr)},
+            {"given", arguments.pairs.empty() ? Json(nullptr) : Json(clean_name(arguments.pairs))},
+            {"given_is_found", given ? Json(given->empty()) : Json(nullptr)}}},
           {"claimed", claims_json(certificate.claims)},
           {"found", claims_json(result.found)},
           {"culled_meeting", result.culled_meeting},
           {"unattested", result.unattested},
+          {"floating_point", floating_point_json(callers_floating_point(), floating_point())},
           {"ms", result.ms},
           {"decide_ms", result.decide_ms},
           {"ns_per_pair", ns_per_pair(result)}};
@@ -91,24 +135,34 @@ std::string place_text(const Scene& scene, std::uint32_t triangle) {
   return fmt::format("{} triangle {}", scene.objects[place.object].name, place.triangle);
 }
 
-std::string result_text(const Scene& scene, const CheckResult& result) {
-  std::string out = to_string(result.verdict);
-  if (!result.reason.empty()) out += ": " + clean_name(result.reason);
-  out += "\n";
+std::string result_text(const CheckArguments& arguments, const Scene& scene,
+                        const CheckResult& result, const std::optional<std::string>& given) {
+  std::string out =
+      to_string(result.verdict) + ": " +
+      (result.verdict == Verdict::proved ? proved_text(result) : clean_name(result.reason)) + "\n";
   if (result.pair) {
     out += fmt::format("  pair: {} and {}\n", place_text(scene, result.pair->a),
                        place_text(scene, result.pair->b));
   }
-  const Certificate::Claims& found = result.found;
-  if (found.box_pairs > 0 || result.verdict == Verdict::proved) {
+  if (const Certificate::Claims& found = result.found; !result.list_sha256.empty()) {
+    out += fmt::format("list       SHA-256 of the pairs that meet: {}\n", result.list_sha256);
+    if (given) {
+      out += fmt::format("           {} is {}this list\n", clean_name(arguments.pairs),
+                         given->empty() ? "" : "not ");
+    }
+    out += not_asked_line(scene);
     out += fmt::format(
-        "pairs with overlapping boxes: {}; {} separated, {} neighbours, {} meet\n"
-        "called kept: {}; called culled: {}, of which {} meet\n",
+        "boxes      {} pairs overlap: {} separated, {} neighbours, {} meet\n"
+        "called     kept: {}; culled: {}, of which {} meet\n",
         found.box_pairs, found.separated, found.neighbours, found.meeting, found.kept, found.culled,
         result.culled_meeting);
   }
-  out += "unattested:\n";
+  out += "unattested, since the evidence is about the scene and not about the run:\n";
   for (const std::string& line : result.unattested) out += "  " + clean_name(line) + "\n";
+  if (callers_floating_point() != kProved) {
+    out += fmt::format("arithmetic: {}; the caller {}\n", to_string(floating_point()),
+                       to_string(callers_floating_point()));
+  }
   out += fmt::format("time: {:.1f} ms; {:.1f} of them for the decisions, {:.0f} ns per pair\n",
                      result.ms, result.decide_ms, ns_per_pair(result));
   return out;
@@ -117,17 +171,29 @@ std::string result_text(const Scene& scene, const CheckResult& result) {
 }  // namespace
 
 int check_command(const CheckArguments& arguments) {
+  const FloatingPointGuard guard;
   const Certificate certificate = parse_certificate(
       read_file(arguments.certificate, kMaxCertificateBytes), clean_name(arguments.certificate));
   Scene scene = load_scene(arguments.scene);
   if (arguments.self) {
     for (Object& object : scene.objects) object.self = true;
   }
-  const CheckResult result = check_certificate(certificate, scene);
-  if (!arguments.json.empty()) {
-    write_output(arguments.json, result_json(arguments, certificate, scene, result).dump(2) + "\n");
+  std::string list;
+  if (!arguments.pairs.empty()) list = read_file(arguments.pairs, kMaxCertificateBytes);
+  CheckResult result = check_certificate(certificate, scene);
+  std::optional<std::string> given;  // difference() of the list
+  if (!arguments.pairs.empty() && !result.list_sha256.empty()) {
+    given = difference(list, pair_list(scene, result.meeting));
+    if (result.verdict == Verdict::proved && !given->empty()) {
+      result.verdict = Verdict::not_proved;
+      result.reason = clean_name(arguments.pairs) + " is another list: " + *given;
+    }
   }
-  if (arguments.json != "-") write_output("-", result_text(scene, result));
+  if (!arguments.json.empty()) {
+    write_output(arguments.json,
+                 result_json(arguments, certificate, scene, result, given).dump(2) + "\n");
+  }
+  if (arguments.json != "-") write_output("-", result_text(arguments, scene, result, given));
   return result.verdict == Verdict::proved ? 0 : 1;
 }
 

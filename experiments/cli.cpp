@@ -7,10 +7,12 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include "commit.h"
 #include "core/error.h"
+#include "core/floating_point.h"
 #include "experiments/check.h"
 #include "experiments/cli_bench.h"
 #include "experiments/cli_experiment.h"
@@ -31,6 +33,15 @@ namespace {
 
 constexpr int kDone = 0, kBroken = 1, kBad = 2;
 
+constexpr const char* kOutOfMemory =
+    "memory: there is not enough; use a smaller scene or resolution, a higher limit (ulimit -v) or "
+    "a machine with more memory";
+
+std::string fault(const std::exception& error) {
+  return std::string("a fault of farcull itself: ") + error.what() +
+         "; report it with the command line";
+}
+
 struct CompareCommand {
   CompareArguments arguments;
   Text device, views, clearance;
@@ -49,7 +60,7 @@ int compare_command(const CompareCommand& command) {
   if (command.clearance) arguments.options.clearance = parse_clearance(*command.clearance);
   validate(arguments);
   check_scene(arguments.scene);
-  const Outputs outputs = checked(command.outputs);
+  const Outputs outputs = checked(command.outputs, scene_files(arguments.scene));
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
@@ -185,16 +196,20 @@ int command_line(int argc, char** argv) {
 
   DoctorArguments doctor;
   CLI::App* doctor_app =
-      app.add_subcommand("doctor", "the devices, and what each assumption A1-A7 finds there");
+      app.add_subcommand("doctor", "the devices, and what each assumption A1-A8 finds there");
   Text doctor_device, doctor_json;
   doctor_app->add_option("--device", doctor_device, kDeviceHelp)->type_name("DEVICE");
   doctor_app->add_option("--json", doctor_json, kJsonHelp)->type_name("FILE");
   doctor_app->footer(
       "Examples:\n  farcull doctor\n  farcull doctor --device software --json -\n\n"
-      "Exit status 1: the device breaks an assumption, so no promise holds on it.");
+      "What the probes find is kept for later runs, in $XDG_CACHE_HOME/farcull or\n"
+      "~/.cache/farcull: far on OpenGL promises where all of A1 to A8 pass, far-pairs where\n"
+      "A4, A7 and A8 do. A run without such a verdict on its device, driver and build makes\n"
+      "one itself.\n\n"
+      "Exit status 1: the device breaks an assumption: what relies on it promises nothing.");
 
   CheckArguments certificate;
-  Text check_json;
+  Text check_json, check_pairs;
   CLI::App* check_app = app.add_subcommand("check", "prove or refute a certificate of a run");
   check_app->add_option("CERTIFICATE", certificate.certificate, "as written by run --certificate")
       ->required()
@@ -204,12 +219,17 @@ int command_line(int argc, char** argv) {
       ->add_flag("--self", certificate.self,
                  "every object was tested against itself, as by\nfarcull run --self")
       ->disable_flag_override();
+  check_app
+      ->add_option("--pairs", check_pairs,
+                   "the list that farcull run --pairs wrote: is it the\none that is proved?")
+      ->type_name("FILE");
   check_app->add_option("--json", check_json, kJsonHelp)->type_name("FILE");
   check_app->footer(
       "Examples:\n"
-      "  farcull run two-spheres --certificate c.json\n"
-      "  farcull check c.json two-spheres\n\n"
-      "Exit status 0: proved; 1: refuted, or not proved.");
+      "  farcull run two-spheres --certificate c.json --pairs pairs.csv\n"
+      "  farcull check c.json two-spheres --pairs pairs.csv\n\n"
+      "Exit status 0: proved: these pairs of the scene meet, and no others; 1: refuted, or not\n"
+      "proved. Nothing is proved about the run: neither its method nor which pairs it kept.");
 
   ExperimentCommands experiments;
   CLI::App* experiment_app = experiments.add_to(app);
@@ -227,6 +247,9 @@ int command_line(int argc, char** argv) {
   CLI::App* scenes_app = scenes.add_to(app);
 
   try {
+    // For all that this thread does; core/parallel sets those that it starts. oneTBB's threads take
+    // theirs from the thread that first uses it, which is this one.
+    const FloatingPointGuard guard;
     try {
       app.parse(argc, argv);
     } catch (const CLI::Success& wanted) {  // --help, --version
@@ -244,8 +267,12 @@ int command_line(int argc, char** argv) {
     if (*bench_app) return bench.run();
     if (*check_app) {
       check_scene(certificate.scene);
-      certificate.json = checked({.json = check_json, .pairs = {}, .certificate = {}, .csv = {}})
-                             .json.value_or("");
+      if (check_pairs == "") throw Error("--pairs", "the path is empty", "name the list");
+      certificate.pairs = check_pairs.value_or("");
+      std::vector<NamedFile> inputs = scene_files(certificate.scene);
+      inputs.push_back({"CERTIFICATE", certificate.certificate});
+      if (check_pairs) inputs.push_back({"--pairs", *check_pairs});
+      certificate.json = checked({.json = check_json}, inputs).json.value_or("");
       return check_command(certificate);
     }
     if (*experiment_app) return experiments.run();
@@ -255,8 +282,7 @@ int command_line(int argc, char** argv) {
     if (*scenes_app) return scenes.run();
     if (*doctor_app) {
       doctor.device = device_of(doctor_device);
-      doctor.json = checked({.json = doctor_json, .pairs = {}, .certificate = {}, .csv = {}})
-                        .json.value_or("");
+      doctor.json = checked({.json = doctor_json}, {}).json.value_or("");
       return doctor_command(doctor);
     }
     std::fputs(app.help().c_str(), stderr);
@@ -264,10 +290,14 @@ int command_line(int argc, char** argv) {
   } catch (const Error& error) {
     complain(error.what());
   } catch (const std::bad_alloc&) {
-    complain("out of memory; use a smaller scene or resolution, or a machine with more memory");
+    complain(kOutOfMemory);
+  } catch (const std::system_error& error) {
+    // Threads that cannot be started: each takes memory for its stack.
+    const bool memory = error.code() == std::errc::resource_unavailable_try_again ||
+                        error.code() == std::errc::not_enough_memory;
+    complain(memory ? kOutOfMemory : fault(error));
   } catch (const std::exception& error) {
-    complain(std::string("a fault of farcull itself: ") + error.what() +
-             "; report it with the command line");
+    complain(fault(error));
   }
   return kBad;
 }

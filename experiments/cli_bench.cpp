@@ -110,7 +110,7 @@ int BenchCommand::run() {
   const BenchOptions options = parse();
   if (std::find(scene_.begin(), scene_.end(), "") != scene_.end())
     throw Error("SCENE", "a name is empty", "name mesh files, a scene file or a built-in scene");
-  const Outputs outputs = checked(outputs_);
+  const Outputs outputs = checked(outputs_, scene_files(scene_));
   confine_to_cores(options.threads);
   TerminalProgress terminal;
   const Progress progress = terminal.callback();

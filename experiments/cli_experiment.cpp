@@ -69,7 +69,7 @@ int ExperimentCommands::run_oracles() {
   if (pairs_ < 1 || pairs_ > 1'000'000'000) {
     throw Error("--pairs", std::to_string(pairs_) + " is no number of pairs", "give 1 to 1e9");
   }
-  const Outputs outputs = checked(oracle_outputs_);
+  const Outputs outputs = checked(oracle_outputs_, {});
   TerminalProgress terminal;
   const std::vector<OracleRow> rows = compare_oracles(pairs_, seed_, terminal.callback());
   terminal.clear();
@@ -92,7 +92,7 @@ int ExperimentCommands::run() {
     throw Error("experiment", "no study is named",
                 "name one: " + known + ", lemma, oracles, family, savings");
   }
-  const Outputs outputs = checked(lemma_outputs_);
+  const Outputs outputs = checked(lemma_outputs_, {});
   arguments_.device = device_of(device_);
   arguments_.json = outputs.json.value_or("");
   arguments_.csv = outputs.csv.value_or("");

@@ -53,7 +53,7 @@ int FamilyCommand::run() {
   options.verify = !no_verify_;
   if (views_) options.views = parse_views_option(*views_, false);
   if (query_) options.query = parse_query(*query_);
-  const Outputs outputs = checked(outputs_);
+  const Outputs outputs = checked(outputs_, scene_files(arguments_.scenes, arguments_.range));
   TerminalProgress terminal;
   const std::vector<FamilyCell> cells = run_family(arguments_, terminal.callback());
   terminal.clear();
@@ -95,7 +95,7 @@ int SavingsCommand::run() {
   RunOptions& options = arguments_.options;
   options.resolution = resolution_option(resolution_);
   options.device = farcull::device_of(device_);
-  const Outputs outputs = checked(outputs_);
+  const Outputs outputs = checked(outputs_, scene_files(arguments_.scenes));
   TerminalProgress terminal;
   const std::vector<SavingsRow> rows = run_savings(arguments_, terminal.callback());
   terminal.clear();

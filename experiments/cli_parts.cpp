@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -49,39 +50,37 @@ void TerminalProgress::show(std::string line) {
   shown_ = true;
 }
 
-Outputs checked(Outputs outputs) {
-  // By its other name, standard output would be written at two places at once.
-  for (Text* path : {&outputs.json, &outputs.pairs, &outputs.certificate, &outputs.csv}) {
-    if (*path == "/dev/stdout") *path = "-";
-  }
-  std::vector<std::string> seen;
-  for (const auto& [option, path] :
-       {std::pair("--json", outputs.json), std::pair("--pairs", outputs.pairs),
-        std::pair("--certificate", outputs.certificate), std::pair("--csv", outputs.csv)}) {
-    if (!path) continue;
-    if (path->empty())
+bool Outputs::to_stdout() const {
+  return json == "-" || pairs == "-" || certificate == "-" || csv == "-" || picture == "-";
+}
+
+Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs) {
+  std::vector<NamedFile> files;
+  for (const auto& [option, path, example] :
+       {std::tuple("--json", &outputs.json, "result.json"),
+        std::tuple("--pairs", &outputs.pairs, "result.csv"),
+        std::tuple("--certificate", &outputs.certificate, "result.json"),
+        std::tuple("--csv", &outputs.csv, "result.csv"),
+        std::tuple("-o", &outputs.picture, "picture.png")}) {
+    if (!*path) continue;
+    // By its other name, standard output would be written at two places at once.
+    if (**path == "/dev/stdout") *path = "-";
+    if ((*path)->empty())
       throw Error(option, "the path is empty", "name a file, or - for standard output");
     // `run a.off --json --pairs b.csv`: CLI11 takes what follows for the value.
-    if (path->starts_with("-") && path != "-") {
-      throw Error(option, "its value is missing before '" + *path + "'",
+    if ((*path)->starts_with("-") && **path != "-") {
+      throw Error(option, "its value is missing before '" + **path + "'",
                   "name a file, with ./ before a name that begins with -");
     }
     // `run --json a.off b.off`: the mesh would be gone.
-    if (has_mesh_extension(*path)) {
-      throw Error(
-          option, *path + " is named like a mesh and would be overwritten",
-          std::string("name the file to write first, as in ") + option + " result" +
-              (option == std::string("--pairs") || option == std::string("--csv") ? ".csv"
-                                                                                  : ".json"));
+    if (has_mesh_extension(**path)) {
+      throw Error(option, **path + " is named like a mesh and would be overwritten",
+                  std::string("name the file to write first, as in ") + option + " " + example);
     }
-    for (const std::string& other : seen) {
-      if (*path == other)
-        throw Error(option, "goes to the same place as another output",
-                    "give each a place of its own");
-    }
-    seen.push_back(*path);
-    check_output(*path);
+    files.push_back({option, **path});
   }
+  require_apart(inputs, files);
+  for (const NamedFile& file : files) check_output(file.path);
   if (!outputs.to_stdout()) check_output("-");
   return outputs;
 }

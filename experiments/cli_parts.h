@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/cull.h"
+#include "experiments/files.h"
 #include "experiments/run.h"
 
 namespace farcull {
@@ -35,17 +36,19 @@ class TerminalProgress {
 
 /// Where results go besides the table.
 struct Outputs {
-  Text json;
-  Text pairs;
-  Text certificate;
-  Text csv;
+  Text json = {};
+  Text pairs = {};
+  Text certificate = {};
+  Text csv = {};
+  Text picture = {};  // -o
 
-  bool to_stdout() const { return json == "-" || pairs == "-" || certificate == "-" || csv == "-"; }
+  bool to_stdout() const;
 };
 
-/// The outputs, or an Error for what can be known to go wrong with them before anything is read or
-/// run.
-Outputs checked(Outputs outputs);
+/// The outputs of a command that reads these files, or an Error for what can be known to go wrong
+/// with them before anything is run: paths that are none, outputs that are inputs or one another
+/// (require_apart()), what check_output() refuses.
+Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs);
 
 /// Throws Error where a name of the scene is empty.
 void check_scene(const std::vector<std::string>& scene);

@@ -56,24 +56,16 @@ RunOptions parse_panel(const std::string& text, const RunOptions& usual) {
   return options;
 }
 
-std::string checked_output(const Text& output) {
+// Where the picture goes, from a command that reads these files.
+std::string checked_output(const Text& output, const std::vector<NamedFile>& inputs) {
   if (!output || output->empty())
     throw Error("-o", "it does not say where the picture goes",
                 "give -o FILE.png, or -o - for standard output");
-  const std::string path = *output == "/dev/stdout" ? "-" : *output;
-  if (path.starts_with("-") && path != "-") {
-    throw Error("-o", "its value is missing before '" + path + "'",
-                "name a file, with ./ before a name that begins with -");
-  }
-  if (has_mesh_extension(path)) {
-    throw Error("-o", path + " is named like a mesh and would be overwritten",
-                "name the picture first, as in -o picture.png");
-  }
+  const std::string path = *checked({.picture = output}, inputs).picture;
   if (path == "-" && ::isatty(STDOUT_FILENO)) {
     throw Error("-o", "standard output is a terminal, which shows no PNG",
                 "let it go somewhere, or give -o FILE.png");
   }
-  check_output(path);
   return path;
 }
 
@@ -195,7 +187,9 @@ PictureArguments PictureCommand::arguments() const {
 int PictureCommand::run() const {
   const PictureArguments arguments = this->arguments();
   check_scene(arguments.scene);
-  const std::string path = checked_output(output_);
+  std::optional<FrameRange> range = arguments.frames;
+  if (arguments.frame && !range) range = FrameRange{*arguments.frame, *arguments.frame};
+  const std::string path = checked_output(output_, scene_files(arguments.scene, range));
   TerminalProgress terminal;
   Lab lab(arguments.panels.front().device, terminal.callback());
   const PictureResult result = write_picture(arguments, lab, path);
@@ -208,7 +202,8 @@ int PictureCommand::run() const {
     status = kBroken;
     complain(fmt::format("{} culled pairs that collide: {}", panel.title, grouped(panel.missed)));
   }
-  if (path != "-") write_output("-", lines + "The picture is in " + clean_name(path) + "\n");
+  if (path != "-")
+    write_output("-", lines + result.not_asked + "The picture is in " + clean_name(path) + "\n");
   return status;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <optional>
 
 #include "core/error.h"
@@ -40,6 +41,16 @@ CLI::App* ReportCommand::add_to(CLI::App& app) {
 int ReportCommand::run() {
   if (folder_.empty()) throw Error("DIR", "the folder is empty", "name one");
   while (folder_.size() > 1 && folder_.back() == '/') folder_.pop_back();
+  // An earlier report is taken away whole, and what it holds with it.
+  std::error_code error;
+  const auto place = [&](const std::string& path) {
+    return std::filesystem::weakly_canonical(path, error).string();
+  };
+  const std::string report = place(folder_ + "/report");
+  if (!error && place(store_path(folder_)).starts_with(report + "/")) {
+    throw Error(store_path(folder_), "leads into DIR/report, which the report replaces",
+                "move the results out of it");
+  }
   TerminalProgress terminal;
   std::optional<Lab> lab;
   ReportRequest request;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -111,7 +112,7 @@ int ScenesCommand::run() const {
       throw Error("--frames", "nothing is written",
                   "give a scene and --write DIR, or see farcull run --frames");
     }
-    list(checked(outputs_));
+    list(checked(outputs_, {}));
     return 0;
   }
   parse_scene_name(*name_);
@@ -124,6 +125,12 @@ int ScenesCommand::run() const {
     throw Error("--json", "is for the list of scenes", "leave --json or the scene's name out");
   }
   check_output("-");
+  // Files of the folder may be replaced, the meshes that the scene is made of may not.
+  std::vector<NamedFile> there;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(*folder_, error))
+    there.push_back({"--write", entry.path().string()});
+  require_not_read(scene_files({*name_}), there);
   write();
   return 0;
 }

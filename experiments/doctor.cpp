@@ -12,6 +12,7 @@
 
 #include "commit.h"
 #include "core/error.h"
+#include "core/floating_point.h"
 #include "core/gl_canvas.h"
 #include "core/gl_pairs.h"
 #include "core/gl_probe.h"
@@ -19,6 +20,8 @@
 #include "core/pairs_cpu.h"
 #include "core/stopwatch.h"
 #include "experiments/builtin_scenes.h"
+#include "experiments/device_verdict.h"
+#include "experiments/kernel_probes.h"
 #include "experiments/output.h"
 
 namespace farcull {
@@ -82,7 +85,14 @@ std::string limits_table(const GlInfo& gl, int resolution) {
       "  reset detection   {}\n",
       gl.renderer, gl.vendor, gl.version, gl.glsl, gl.subpixel_bits, gl.max_texture_size,
       gl.max_viewport, resolution, gl.max_compute_groups, gl.max_storage_block,
-      gl.reset_detection ? "yes" : "no");
+      gl.reset_detection ? "yes" : "no: a reset is seen by lost commands alone (A7)");
+}
+
+// The floating-point environment, found out by arithmetic: the caller's, and the one in force.
+std::string arithmetic_line(const FloatingPoint& callers) {
+  return fmt::format("\narithmetic of the host: {}; the caller's: {}\n",
+                     to_string(floating_point()),
+                     callers == kProved ? "the same" : to_string(callers) + " (set aside)");
 }
 
 std::string probes_table(const std::vector<ProbeResult>& probes) {
@@ -96,10 +106,38 @@ std::string probes_table(const std::vector<ProbeResult>& probes) {
     if (!p.note.empty()) out += fmt::format("      {}\n", p.note);
     failed += !p.pass;
   }
-  out += failed == 0 ? fmt::format("\nall {} probes pass\n", probes.size())
-                     : fmt::format("\n{} of {} probes FAIL: no promise holds on this device\n",
-                                   failed, probes.size());
+  out += failed == 0
+             ? fmt::format("\nall {} probes pass\n", probes.size())
+             : fmt::format(
+                   "\n{} of {} probes FAIL: what relies on them promises nothing on this device\n",
+                   failed, probes.size());
   return out;
+}
+
+// Both verdicts rest on results of one run of the probes.
+struct Verdicts {
+  DeviceVerdict drawing, pairs;
+};
+
+Verdicts keep(const GlInfo& device, const std::vector<ProbeResult>& probes, double ms) {
+  std::vector<ProbeResult> drawing, pairs;
+  for (const ProbeResult& p : probes) {
+    if (p.drawing) drawing.push_back(p);
+    if (p.pairs) pairs.push_back(p);
+  }
+  return {keep_verdict(device, Reliance::drawing, drawing, ms),
+          keep_verdict(device, Reliance::pairs, pairs, ms)};
+}
+
+std::string verdicts_text(const Verdicts& verdicts) {
+  const auto line = [](const char* who, const DeviceVerdict& v, Reliance reliance) {
+    return fmt::format("{}: {}; {}\n", who, to_string(v, reliance),
+                       !v.file.empty()  ? "kept in " + v.file
+                       : v.note.empty() ? "not kept"
+                                        : "not kept: " + v.note);
+  };
+  return "\n" + line("far", verdicts.drawing, Reliance::drawing) +
+         line("far-pairs", verdicts.pairs, Reliance::pairs);
 }
 
 Json probes_json(const std::vector<ProbeResult>& probes) {
@@ -181,6 +219,7 @@ Json advice_json(const PairAdvice& advice) {
 }  // namespace
 
 int doctor_command(const DoctorArguments& arguments) {
+  const FloatingPointGuard guard;
   if (!arguments.json.empty()) check_output(arguments.json);
   const std::vector<GlDevice> devices = GlContext::list_devices();
   const std::optional<int> chosen = choose(devices, arguments.device);
@@ -190,42 +229,51 @@ int doctor_command(const DoctorArguments& arguments) {
   const int resolution = GlCanvas(context, DepthMode::fixed, {}).limits().max_resolution;
   const bool people = arguments.json != "-";
   if (people)
-    write_output("-", devices_table(devices, chosen.value_or(-1)) + limits_table(gl, resolution));
+    write_output("-", devices_table(devices, chosen.value_or(-1)) + limits_table(gl, resolution) +
+                          arithmetic_line(callers_floating_point()));
 
   const bool terminal = isatty(STDERR_FILENO) != 0;
+  const Stopwatch probing;
   const std::vector<ProbeResult> probes =
-      run_probes(context, {}, [terminal](const std::string& assumption) {
-        if (terminal) std::fprintf(stderr, "\rprobing %s ...", assumption.c_str());
+      all_probes(context, [terminal](const std::string& assumption) {
+        if (terminal) std::fprintf(stderr, "\r\033[Kprobing %s ...", assumption.c_str());
       });
-  if (terminal) std::fprintf(stderr, "\r%20s\r", "");
+  if (terminal) std::fprintf(stderr, "\r\033[K");
+  const Verdicts verdicts = keep(gl, probes, probing.ms());
 
   const PairAdvice advice = advise(context);
 
   bool pass = true;
   for (const ProbeResult& p : probes) pass = pass && p.pass;
   if (!arguments.json.empty()) {
-    const Json report = {{"devices", devices_json(devices)},
-                         {"chosen", chosen ? Json(*chosen) : Json(nullptr)},
-                         {"gl",
-                          {{"vendor", gl.vendor},
-                           {"renderer", gl.renderer},
-                           {"version", gl.version},
-                           {"glsl", gl.glsl}}},
-                         {"limits",
-                          {{"subpixel_bits", gl.subpixel_bits},
-                           {"max_texture_size", gl.max_texture_size},
-                           {"max_viewport", gl.max_viewport},
-                           {"max_resolution", resolution},
-                           {"max_compute_groups", gl.max_compute_groups},
-                           {"max_storage_block", gl.max_storage_block},
-                           {"reset_detection", gl.reset_detection}}},
-                         {"probes", probes_json(probes)},
-                         {"far_pairs", advice_json(advice)},
-                         {"pass", pass},
-                         {"commit", FARCULL_COMMIT}};
+    const Json arithmetic = floating_point_json(callers_floating_point(), floating_point());
+    const Json report = {
+        {"devices", devices_json(devices)},
+        {"chosen", chosen ? Json(*chosen) : Json(nullptr)},
+        {"gl",
+         {{"vendor", gl.vendor},
+          {"renderer", gl.renderer},
+          {"version", gl.version},
+          {"glsl", gl.glsl}}},
+        {"limits",
+         {{"subpixel_bits", gl.subpixel_bits},
+          {"max_texture_size", gl.max_texture_size},
+          {"max_viewport", gl.max_viewport},
+          {"max_resolution", resolution},
+          {"max_compute_groups", gl.max_compute_groups},
+          {"max_storage_block", gl.max_storage_block},
+          {"reset_detection", gl.reset_detection}}},
+        {"floating_point", arithmetic},
+        {"probes", probes_json(probes)},
+        {"verdict_files", {{"drawing", verdicts.drawing.file}, {"pairs", verdicts.pairs.file}}},
+        {"far_pairs", advice_json(advice)},
+        {"pass", pass},
+        {"commit", FARCULL_COMMIT}};
     write_output(arguments.json, report.dump(2) + "\n");
   }
-  if (people) write_output("-", probes_table(probes) + advice_text(advice, gl.renderer));
+  if (people)
+    write_output("-",
+                 probes_table(probes) + verdicts_text(verdicts) + advice_text(advice, gl.renderer));
   return pass ? 0 : 1;
 }
 

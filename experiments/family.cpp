@@ -11,6 +11,7 @@
 #include "experiments/builtin_motion.h"
 #include "experiments/scene_file.h"
 #include "experiments/tables.h"
+#include "verify/not_asked.h"
 
 namespace farcull {
 namespace {
@@ -60,12 +61,11 @@ FamilyFrame frame_of(const RunRecord& record, long frame) {
                   .neighbours = record.neighbour_pairs.size(),
                   .missed = {},
                   .missed_contacts = record.missed};
-  for (const Stage& stage : record.stages) {
-    out.queries += stage.queries;
-    out.draws += stage.draws;
-    out.queries_saved += stage.queries_saved;
-    out.draws_saved += stage.draws_saved;
-  }
+  const Stage work = work_of(record.stages);
+  out.queries = work.queries;
+  out.draws = work.draws;
+  out.queries_saved = work.queries_saved;
+  out.draws_saved = work.draws_saved;
   if (record.verification) out.missed = record.verification->false_negatives;
   return out;
 }
@@ -93,8 +93,10 @@ class Frames {
     const auto index = static_cast<std::size_t>(frame - range.first);
     if (index < kept_.size()) return kept_[index];
     // Every method starts at the first frame.
-    if (!source_ || frame == range.first)
+    if (!source_ || frame == range.first) {
       source_.emplace(std::vector{scene_}, range, arguments_.self);
+      if (const std::optional<Error> missing = source_->missing()) throw *missing;
+    }
     const Scene& scene = source_->at(frame);
     const std::size_t bytes =
         scene.vertices.size() * sizeof(Vec3) +
@@ -150,6 +152,7 @@ std::optional<FamilyCell> run_cell(const std::string& scene, const Contestant& c
     if (cell.frames.empty()) {
       cell.objects = moved.objects.size();
       cell.triangles = moved.triangles.size();
+      cell.pairs_not_asked = not_asked(strip ? unmarked : moved).pairs;
     }
     cell.promises = record.promises;
     if (cell.device.empty() || record.device) cell.device = device_of(record);
@@ -254,7 +257,11 @@ std::string family_table(const std::vector<FamilyCell>& cells) {
          "\nfps: frames per second from moved vertices to exact pairs, median and at the 95th "
          "percentile of\n"
          "the times; paper: as published, on its hardware. objects, triangles, pairs: kept for the "
-         "exact\ntests, queries, draws: of a frame, medians; missed: in all frames together.\n";
+         "exact\ntests, queries, draws: of a frame, medians; missed: in all frames together.\n" +
+         (std::any_of(cells.begin(), cells.end(),
+                      [](const FamilyCell& cell) { return cell.pairs_not_asked > 0; })
+              ? "not asked: whether an object meets itself (--self, by the methods that can).\n"
+              : "");
 }
 
 std::string family_csv(const std::vector<FamilyCell>& cells) {
@@ -324,6 +331,7 @@ nlohmann::ordered_json family_json(const std::vector<FamilyCell>& cells,
                     {"offset", cell.offset.empty() ? Json(nullptr) : Json(cell.offset)},
                     {"device", cell.device},
                     {"promises", cell.promises},
+                    {"pairs_not_asked", cell.pairs_not_asked},
                     {"ms", {{"median", times.median}, {"p95", times.p95}, {"max", times.max}}},
                     {"setup_ms", cell.setup_ms},
                     {"paper", paper.fps > 0 ? Json{{"fps", paper.fps}, {"source", paper.source}}

@@ -41,6 +41,8 @@ struct FamilyCell {
   std::string offset;  // of far
   std::string device;  // what answered
   bool promises = false;
+  std::uint64_t pairs_not_asked = 0;  // in the first frame: of triangles inside objects that the
+                                      // method did not test against themselves
   double setup_ms = 0;
   std::vector<FamilyFrame> frames;
 

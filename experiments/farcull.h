@@ -1,9 +1,10 @@
 // The library: all pairs of triangles that collide, between objects and inside them, exactly.
 //
-// Candidates come from FAR pairs (docs/library.md), which never misses a pair that collides; exact
-// predicates on the doubles as given decide them. Triangles are closed sets, so touching counts,
-// and a degenerate triangle is the segment or the point that it is. The answer is the same on every
-// device, for any number of threads, views and pixels: these matter to time alone.
+// Candidates come from FAR pairs (docs/library.md), which misses no pair that collides where
+// ColliderReport::promises is true; exact predicates on the doubles as given decide them. Triangles
+// are closed sets, so touching counts, and a degenerate triangle is the segment or the point that
+// it is. Where `promises` is true, the answer is the same on every device, for any number of
+// threads, views and pixels: these matter to time alone.
 //
 // Link farcull::farcull (CMake: find_package(farcull)) or `pkg-config farcull`. C++20.
 #pragma once
@@ -78,14 +79,22 @@ struct ColliderReport {
     int width = 0, height = 0;  // px
   };
 
-  std::string device;         // "cpu", or the renderer
-  std::string device_reason;  // why this one
-  double candidates_ms = 0;   // wall clock, from the input to the candidates
-  double exact_ms = 0;        // wall clock of the exact tests
+  std::string device;           // "cpu", or the renderer
+  std::string device_reason;    // why this one
+  bool promises = false;        // a pair that collides is never left out; false where a probe of an
+                                // assumption fails on the device, or broke off
+  std::string promises_reason;  // why, or why not
+  double candidates_ms = 0;     // wall clock, from the input to the candidates
+  double exact_ms = 0;          // wall clock of the exact tests
   std::uint64_t candidates = 0;
   std::uint64_t neighbours = 0;  // candidates that are neighbours, colliding or not
   std::vector<View> views;
   std::vector<Stage> stages;
+
+  /// How the calling thread computes outside the call ("rounds upward, keeps subnormals"), where
+  /// that is not to nearest with subnormals kept; else empty. The call itself always rounds to
+  /// nearest and keeps them.
+  std::string callers_arithmetic;
 };
 
 struct ColliderResult {
@@ -99,12 +108,13 @@ struct ColliderResult {
 };
 
 /// Finds colliding pairs again and again: buffers, threads' memory, the GL context and its programs
-/// stay from call to call. An object is used by one thread at a time; with a GL device always by
-/// the thread that made it, which must not make another context current meanwhile.
+/// stay from call to call. An object is used by one thread at a time. The EGL context that the
+/// caller has made current is current again after each call.
 class Collider {
  public:
-  /// Opens the device. Throws ColliderError naming the option that is bad, or where the device does
-  /// not answer.
+  /// Opens the device. A GL device that no verdict is kept of is probed, which takes about a second
+  /// on Mesa llvmpipe, several where Mesa's cache of shaders is empty (docs/library.md). Throws
+  /// ColliderError naming the option that is bad, or where the device does not answer.
   explicit Collider(const ColliderOptions& options);
   Collider();  // default options
   ~Collider();
@@ -112,8 +122,9 @@ class Collider {
   Collider& operator=(Collider&&) noexcept;
 
   /// Throws ColliderError for input that is not as ColliderInput says, for self_objects of another
-  /// number, where the thread does not round to nearest or flushes subnormals to zero, and for any
-  /// fault of the device; std::bad_alloc without memory. The object can be used again after each.
+  /// number, and for any fault of the device; std::bad_alloc without memory. The object can be used
+  /// again after each. The calling thread may round in any direction and flush subnormals: the call
+  /// sets its floating-point environment (rounding, flushing, traps) and restores it at the end.
   ColliderResult find(const ColliderInput& input);
 
  private:

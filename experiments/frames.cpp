@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numeric>
+#include <utility>
 
 #include "core/error.h"
 #include "experiments/interrupt.h"
@@ -29,16 +30,6 @@ constexpr std::array kOfFrame = {
     "views",           "stages",          "pcs",        "object_triangles", "candidate_pairs",
     "colliding_pairs", "neighbour_pairs", "neighbours", "verification",     "time_ms"};
 
-std::uint64_t draws_of(const RunRecord& record) {
-  return std::accumulate(record.stages.begin(), record.stages.end(), std::uint64_t{0},
-                         [](std::uint64_t sum, const Stage& stage) { return sum + stage.draws; });
-}
-
-std::uint64_t queries_of(const RunRecord& record) {
-  return std::accumulate(record.stages.begin(), record.stages.end(), std::uint64_t{0},
-                         [](std::uint64_t sum, const Stage& stage) { return sum + stage.queries; });
-}
-
 Json rate_json(double ms) {
   const std::optional<double> rate = per_second(ms);
   return rate ? Json(*rate) : Json(nullptr);
@@ -55,8 +46,9 @@ Json frame_json(const Scene& scene, const RunRecord& record, long frame, double 
   for (const char* key : kOfFrame) out[key] = run[key];
   out["time_ms"]["read"] = read_ms;
   out["fps"] = rate_json(record.ms.cull + record.ms.exact);
-  out["draws"] = draws_of(record);
-  out["queries"] = queries_of(record);
+  const Stage work = work_of(record.stages);
+  out["draws"] = work.draws;
+  out["queries"] = work.queries;
   out["motion"] = Json::object();
   const FrameNotes notes = source.notes();
   // Null where it is not finite.
@@ -65,39 +57,59 @@ Json frame_json(const Scene& scene, const RunRecord& record, long frame, double 
   return out;
 }
 
-// A line for each frame. Columns appear where a frame has something for them.
+// A line for each frame, made as it comes. Columns appear where a frame has something for them;
+// the names are written again where one appears, or where a cell does not fit any more.
 class FrameTable {
  public:
+  /// `width` of the first column, if that is more than its name takes.
+  explicit FrameTable(std::size_t width) : first_width_(width) {}
+
   void add(const std::string& column, const std::string& cell) {
     auto found = std::find_if(columns_.begin(), columns_.end(),
                               [&](const Column& known) { return known.name == column; });
-    if (found == columns_.end()) found = columns_.insert(found, Column{column, {}});
-    found->cells.resize(row_);
-    found->cells.push_back(cell);
-  }
-  void next() { ++row_; }
-
-  std::string text() const {
-    Table table(std::string(columns_.size(), 'r'));
-    std::vector<std::string> line;
-    for (const Column& column : columns_) line.push_back(column.name);
-    table.add(line);
-    for (std::size_t row = 0; row < row_; ++row) {
-      line.clear();
-      for (const Column& column : columns_)
-        line.push_back(row < column.cells.size() ? column.cells[row] : "");
-      table.add(line);
+    if (found == columns_.end()) {
+      const std::size_t least = columns_.empty() ? first_width_ : cell.size() + 1;
+      found = columns_.insert(found, Column{column, std::max(least, column.size()), ""});
+      renamed_ = true;
     }
-    return table.text();
+    if (cell.size() > found->width) {
+      found->width = cell.size() + 1;
+      renamed_ = true;
+    }
+    found->cell = cell;
+  }
+
+  /// The row, with a line of names before it where it needs one.
+  std::string row() {
+    std::string out;
+    if (std::exchange(renamed_, false)) {
+      if (std::exchange(begun_, true)) out += "\n";
+      out += line([](const Column& column) { return column.name; });
+    }
+    out += line([](const Column& column) { return column.cell; });
+    for (Column& column : columns_) column.cell.clear();
+    return out;
   }
 
  private:
   struct Column {
     std::string name;
-    std::vector<std::string> cells;
+    std::size_t width;
+    std::string cell;  // of the row that is being made
   };
+
+  template <class Text>
+  std::string line(const Text& text) const {
+    std::string out;
+    for (const Column& column : columns_) {
+      out += fmt::format("{}{:>{}}", out.empty() ? "" : "  ", text(column), column.width);
+    }
+    return out + "\n";
+  }
+
+  std::size_t first_width_;
   std::vector<Column> columns_;
-  std::size_t row_ = 0;
+  bool renamed_ = false, begun_ = false;
 };
 
 void add_row(const Scene& scene, const RunRecord& record, long frame, const FrameNotes& notes,
@@ -113,10 +125,10 @@ void add_row(const Scene& scene, const RunRecord& record, long frame, const Fram
   table.add("fps", rate ? fmt::format("{:.1f}", *rate) : "-");
   table.add("PCS objects", grouped(record.pcs_objects));
   table.add("PCS triangles", grouped(record.pcs_triangles));
-  if (const std::uint64_t queries = queries_of(record)) table.add("queries", grouped(queries));
-  if (const std::uint64_t draws = draws_of(record)) table.add("draws", grouped(draws));
+  const Stage work = work_of(record.stages);
+  if (work.queries > 0) table.add("queries", grouped(work.queries));
+  if (work.draws > 0) table.add("draws", grouped(work.draws));
   for (const auto& [name, value] : notes.values) table.add(name, fmt::format("{:.6g}", value));
-  table.next();
 }
 
 // Each warning once, with the frames that had it.
@@ -147,6 +159,57 @@ class Warnings {
     long frames = 0;
   };
   std::vector<Line> lines_;
+};
+
+Error missing_file(const std::string& file, FrameRange range) {
+  return Error(file, "the file does not exist",
+               fmt::format("give the numbers that there are: --frames FIRST:LAST instead of {}:{}",
+                           range.first, range.last));
+}
+
+FrameTimes summary_of_sorted(const std::vector<double>& ms) {
+  if (ms.empty()) return {};
+  const std::size_t n = ms.size();
+  const auto rank = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(n)));
+  return {.median = 0.5 * (ms[(n - 1) / 2] + ms[n / 2]), .p95 = ms[rank - 1], .max = ms[n - 1]};
+}
+
+// Of the frames up to now.
+struct Totals {
+  std::vector<double> ms;  // ascending
+  double setup_ms = 0;
+  std::uint64_t missed = 0;
+  long topologies = 0;
+
+  void add(const RunRecord& record, bool topology_changed) {
+    const double time = record.ms.cull + record.ms.exact;
+    ms.insert(std::upper_bound(ms.begin(), ms.end(), time), time);
+    setup_ms += record.ms.setup;
+    topologies += topology_changed;
+    if (record.verification) missed += record.verification->false_negatives;
+  }
+
+  Json json(const FramesQuestion& question) const {
+    const FrameTimes times = summary_of_sorted(ms);
+    return {{"frames", ms.size()},
+            {"wanted", question.range.count()},
+            {"ms", {{"median", times.median}, {"p95", times.p95}, {"max", times.max}}},
+            {"fps", {{"median", rate_json(times.median)}, {"p95", rate_json(times.p95)}}},
+            {"setup_ms", setup_ms},
+            {"topology_changes", topologies},
+            {"missed", question.options.verify ? Json(missed) : Json(nullptr)}};
+  }
+
+  std::string text() const {
+    const FrameTimes times = summary_of_sorted(ms);
+    std::string out = fmt::format(
+        "\nper frame  median {:.1f} ms, 95% within {:.1f} ms, at most {:.1f} ms (cull + exact; "
+        "setup {:.1f} ms besides)\n",
+        times.median, times.p95, times.max, setup_ms);
+    if (topologies > 0)
+      out += fmt::format("topology  changed {} times between frames\n", topologies);
+    return out;
+  }
 };
 
 bool same_objects(const std::vector<Object>& a, const std::vector<Object>& b) {
@@ -183,7 +246,7 @@ FrameRange parse_frames(const std::string& text) {
 }
 
 FrameSource::FrameSource(std::vector<std::string> arguments, FrameRange range, bool self)
-    : arguments_(std::move(arguments)), self_(self), meshes_(range.first) {
+    : arguments_(std::move(arguments)), range_(range), self_(self), meshes_(range.first) {
   const bool built_in = arguments_.size() == 1 && is_builtin_scene(arguments_[0]);
   if (built_in && has_motion(arguments_[0])) {
     built_in_.emplace(arguments_[0], range.count(), range.first, self);
@@ -196,19 +259,6 @@ FrameSource::FrameSource(std::vector<std::string> arguments, FrameRange range, b
                 "put %d or %04d in place of the number in the name of a mesh, or name one of " +
                     moving_names());
   }
-  // All before the first frame is run, not after an hour of frames.
-  for (const std::string& path : paths) {
-    for (long frame = range.first; frame <= range.last; ++frame) {
-      const std::string file = numbered(path, frame);
-      std::error_code error;
-      if (!std::filesystem::exists(file, error)) {
-        throw Error(file, "the file does not exist",
-                    fmt::format("give the numbers that there are: --frames FIRST:LAST instead of "
-                                "{}:{}",
-                                range.first, range.last));
-      }
-    }
-  }
 }
 
 FrameSource::FrameSource(MovingScene moving) : built_in_(std::move(moving)) {}
@@ -216,6 +266,11 @@ FrameSource::FrameSource(MovingScene moving) : built_in_(std::move(moving)) {}
 const Scene& FrameSource::at(long frame) {
   if (!built_in_) {
     meshes_.set_frame(frame);
+    for (const std::string& path : meshes_.numbered_paths()) {
+      const std::string file = numbered(path, frame);
+      std::error_code error;
+      if (!std::filesystem::exists(file, error)) throw missing_file(file, range_);
+    }
     Scene now = load_scene(arguments_, meshes_);
     if (now.triangles == scene_.triangles) now.triangles.swap(scene_.triangles);
     scene_ = std::move(now);
@@ -234,6 +289,18 @@ const Scene& FrameSource::at(long frame) {
   return scene;
 }
 
+std::optional<Error> FrameSource::missing() const {
+  const std::vector<std::string> paths = meshes_.numbered_paths();
+  for (long frame = range_.first; frame <= range_.last && !paths.empty(); ++frame) {
+    for (const std::string& path : paths) {
+      const std::string file = numbered(path, frame);
+      std::error_code error;
+      if (!std::filesystem::exists(file, error)) return missing_file(file, range_);
+    }
+  }
+  return std::nullopt;
+}
+
 FrameNotes FrameSource::notes() const {
   if (!built_in_) return {};
   return {.values = built_in_->notes(), .warning = built_in_->warning()};
@@ -245,83 +312,88 @@ std::optional<double> per_second(double ms) {
 }
 
 FrameTimes summary_of(std::vector<double> ms) {
-  if (ms.empty()) return {};
   std::sort(ms.begin(), ms.end());
-  const std::size_t n = ms.size();
-  const auto rank = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(n)));
-  return {.median = 0.5 * (ms[(n - 1) / 2] + ms[n / 2]), .p95 = ms[rank - 1], .max = ms[n - 1]};
+  return summary_of_sorted(ms);
+}
+
+// The text is that of Json::dump(2) of the whole record.
+void FrameRecord::add(const FrameReport& report) {
+  const auto indented = [](const Json& json, const std::string& by) {
+    std::string out;
+    for (const char c : json.dump(2)) {
+      out += c;
+      if (c == '\n') out += by;
+    }
+    return out;
+  };
+  std::string text = ",\n    ";
+  if (!std::exchange(begun_, true)) {
+    text = report.head.dump(2);
+    text.erase(text.rfind("\n}"));
+    text += ",\n  \"frames\": [\n    ";
+  }
+  output_.add(text + indented(report.frame, "    "),
+              "\n  ],\n  \"summary\": " + indented(report.summary, "  ") + "\n}\n");
 }
 
 FramesResult run_frames(const std::vector<std::string>& arguments, const FramesQuestion& question,
-                        const Progress& progress) {
+                        const Progress& progress, const FrameSink& sink) {
   if (progress) progress("reading the scene");
   FrameSource source(arguments, question.range, question.self);
-  return run_frames(source, question, progress);
+  return run_frames(source, question, progress, sink);
 }
 
 FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
-                        const Progress& progress) {
+                        const Progress& progress, const FrameSink& sink) {
   Session session(question.options.device);
   FramesResult out;
-  std::vector<double> times;
   Json frames = Json::array();
-  FrameTable table;
+  Totals totals;
+  FrameTable table(std::to_string(question.range.last).size());
   Warnings warnings;
-  std::string heading;
-  double setup_ms = 0;
-  std::uint64_t missed = 0;
-  long topologies = 0;
-  {
-    Interruptible interruptible(question.range.count(), "frames", "nothing was written",
-                                static_cast<bool>(progress));
-    for (long frame = question.range.first; frame <= question.range.last; ++frame) {
-      const std::string name =
-          fmt::format("frame {} of {}", times.size() + 1, question.range.count());
-      const Progress named =
-          progress ? [&](const std::string& stage) { progress(name + ": " + stage); } : Progress{};
-      if (named) named("reading");
-      const Stopwatch reading;
-      const Scene& scene = source.at(frame);
-      const double read_ms = reading.ms();
-      const RunRecord record = run_scene(scene, question.options, session, named);
-      times.push_back(record.ms.cull + record.ms.exact);
-      setup_ms += record.ms.setup;
-      topologies += source.topology_changed();
-      frames.push_back(frame_json(scene, record, frame, read_ms, source));
-      if (frame == question.range.first) {
-        if (question.pairs) out.pairs_csv = "frame," + pairs_header(scene);
-        out.json = to_json(scene, record);
-        for (const char* key : kOfFrame) out.json.erase(key);
-        heading = run_heading(scene, record);
-      }
-      if (record.verification) missed += record.verification->false_negatives;
-      add_row(scene, record, frame, source.notes(), table);
-      warnings.add(frame, source.notes().warning);
-      if (question.pairs) out.pairs_csv += pairs_rows(scene, record, std::to_string(frame) + ",");
-      if (out.broken.empty() && broken(record, question.strict)) {
-        out.broken =
-            fmt::format("frame {}: {} culled pairs that collide: {}", frame,
-                        describe(record.options), grouped(record.verification->false_negatives));
-      }
-      interruptible.done(static_cast<long>(times.size()));
+  Interruptible interruptible(question.range.count(), "frames",
+                              sink ? "what they gave is written" : "nothing was written",
+                              static_cast<bool>(progress));
+  for (long frame = question.range.first; frame <= question.range.last; ++frame) {
+    const std::string name =
+        fmt::format("frame {} of {}", totals.ms.size() + 1, question.range.count());
+    const Progress named =
+        progress ? [&](const std::string& stage) { progress(name + ": " + stage); } : Progress{};
+    if (named) named("reading");
+    const Stopwatch reading;
+    const Scene& scene = source.at(frame);
+    const double read_ms = reading.ms();
+    const RunRecord record = run_scene(scene, question.options, session, named);
+    totals.add(record, source.topology_changed());
+    add_row(scene, record, frame, source.notes(), table);
+    warnings.add(frame, source.notes().warning);
+    std::string rows = table.row(), csv;
+    if (question.pairs) csv = pairs_rows(scene, record, std::to_string(frame) + ",");
+    if (frame == question.range.first) {
+      out.json = to_json(scene, record);
+      for (const char* key : kOfFrame) out.json.erase(key);
+      rows.insert(0, run_heading(scene, record) + "\n");
+      if (question.pairs) csv.insert(0, "frame," + pairs_header(scene));
     }
+    Json one = frame_json(scene, record, frame, read_ms, source);
+    if (sink) {
+      sink({out.json, one, totals.json(question), std::move(rows), std::move(csv)});
+    } else {
+      frames.push_back(std::move(one));
+      out.table += rows;
+      out.pairs_csv += csv;
+    }
+    if (out.broken.empty() && broken(record, question.strict)) {
+      out.broken =
+          fmt::format("frame {}: {} culled pairs that collide: {}", frame, describe(record.options),
+                      grouped(record.verification->false_negatives));
+    }
+    interruptible.done(static_cast<long>(totals.ms.size()));
   }
 
-  const FrameTimes ms = summary_of(times);
-  out.json["frames"] = std::move(frames);
-  out.json["summary"] = {{"frames", times.size()},
-                         {"ms", {{"median", ms.median}, {"p95", ms.p95}, {"max", ms.max}}},
-                         {"fps", {{"median", rate_json(ms.median)}, {"p95", rate_json(ms.p95)}}},
-                         {"setup_ms", setup_ms},
-                         {"topology_changes", topologies},
-                         {"missed", question.options.verify ? Json(missed) : Json(nullptr)}};
-  out.table = heading + "\n" + table.text() +
-              fmt::format(
-                  "\nper frame  median {:.1f} ms, 95% within {:.1f} ms, at most {:.1f} ms (cull + "
-                  "exact; setup {:.1f} ms besides)\n",
-                  ms.median, ms.p95, ms.max, setup_ms);
-  if (topologies > 0)
-    out.table += fmt::format("topology  changed {} times between frames\n", topologies);
+  if (!sink) out.json["frames"] = std::move(frames);
+  out.json["summary"] = totals.json(question);
+  out.table += totals.text();
   if (!question.options.verify) out.table += "accounted  not at all (--no-verify)\n";
   out.table += warnings.text();
   return out;

@@ -7,12 +7,15 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "experiments/builtin_motion.h"
+#include "experiments/growing_output.h"
 #include "experiments/mesh_cache.h"
 #include "experiments/run.h"
 
@@ -33,8 +36,8 @@ class FrameSource {
  public:
   /// The arguments of load_scene(): a built-in scene that moves (builtin_motion.h), or meshes some
   /// of whose names hold %d or %04d, on the command line or in a scene file. self: every object is
-  /// tested against itself. Throws Error where nothing moves, where a file of some frame does not
-  /// exist, or as load_scene() does.
+  /// tested against itself. Throws Error where nothing moves, or as load_scene() does for the first
+  /// frame.
   FrameSource(std::vector<std::string> arguments, FrameRange range, bool self);
   /// A scene that is not named, whose frames the range has to be.
   explicit FrameSource(MovingScene moving);
@@ -44,6 +47,9 @@ class FrameSource {
   /// cannot be read, or as MovingScene does.
   const Scene& at(long frame);
 
+  /// What at() will throw of the first frame of the range one of whose files does not exist now.
+  std::optional<Error> missing() const;
+
   /// Whether the triangles, by their indices, the number of vertices or the objects were others in
   /// the call of at() before the last one. False after the first call.
   bool topology_changed() const { return changed_; }
@@ -52,6 +58,7 @@ class FrameSource {
 
  private:
   std::vector<std::string> arguments_;
+  FrameRange range_;
   bool self_ = false;
   std::optional<MovingScene> built_in_;
   MeshCache meshes_;
@@ -80,20 +87,44 @@ struct FrameTimes {
 std::optional<double> per_second(double ms);
 FrameTimes summary_of(std::vector<double> ms);
 
+/// What a frame that is done adds.
+struct FrameReport {
+  const nlohmann::ordered_json& head;     // of all frames: the record without the next two
+  const nlohmann::ordered_json& frame;    // an element of `frames`
+  const nlohmann::ordered_json& summary;  // of the frames up to this one
+  std::string rows;                       // for people; before the first frame's what was run
+  std::string pairs_csv;  // as pairs_rows(), a column `frame` before; the header before the first
+};
+using FrameSink = std::function<void(const FrameReport&)>;
+
+/// The record of docs/record.md, written frame by frame.
+class FrameRecord {
+ public:
+  explicit FrameRecord(std::string path) : output_(std::move(path)) {}
+  /// Throws Error as GrowingOutput.
+  void add(const FrameReport& report);
+  void finish() { output_.finish(); }
+
+ private:
+  GrowingOutput output_;
+  bool begun_ = false;
+};
+
 struct FramesResult {
-  nlohmann::ordered_json json;  // docs/record.md
-  std::string table;            // for people
-  std::string pairs_csv;        // as pairs_csv(), a column `frame` before
+  nlohmann::ordered_json json;  // docs/record.md; of a run with a sink without `frames`
+  std::string table;            // for people; of a run with a sink what follows the rows
+  std::string pairs_csv;        // of a run without a sink
   std::string broken;           // the first guarantee that was broken; empty: none
 };
 
-/// Runs every frame of the scene. SIGINT, SIGTERM and SIGHUP end the program at once, with a line
-/// on standard error that says how many frames were done; nothing is written before the last frame.
-/// Throws Error as FrameSource and run_scene() do.
+/// Runs every frame of the scene; `sink` gets each one as soon as it is done. SIGINT, SIGTERM and
+/// SIGHUP end the program at once, with a line on standard error that says how many frames were
+/// done. Throws Error as FrameSource, run_scene() and the sink do: what the sink has got is all
+/// that there is then.
 FramesResult run_frames(const std::vector<std::string>& scene, const FramesQuestion& question,
-                        const Progress& progress = {});
+                        const Progress& progress = {}, const FrameSink& sink = {});
 /// The same of a source; question.self is not looked at.
 FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
-                        const Progress& progress = {});
+                        const Progress& progress = {}, const FrameSink& sink = {});
 
 }  // namespace farcull

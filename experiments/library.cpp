@@ -1,14 +1,16 @@
 #include <algorithm>
-#include <cfenv>
 #include <cmath>
 #include <limits>
 #include <thread>
 #include <utility>
 
 #include "core/error.h"
+#include "core/floating_point.h"
+#include "core/gl_probe.h"
 #include "core/pairs.h"
 #include "core/stopwatch.h"
 #include "core/view.h"
+#include "experiments/device_verdict.h"
 #include "experiments/farcull.h"
 #include "experiments/pair_device.h"
 #include "verify/exact.h"
@@ -18,10 +20,12 @@ namespace {
 
 constexpr int kMostResolution = 16384;
 
-// Every Error that `call` throws, as the one of the library.
+// The call with the floating-point environment of the proofs, the caller's restored afterwards.
+// Every Error that it throws becomes the one of the library.
 template <class Call>
 auto translated(const Call& call) {
   try {
+    const FloatingPointGuard guard;
     return call();
   } catch (const Error& error) {
     throw ColliderError(error.what(), error.where, error.reason, error.remedy);
@@ -46,15 +50,6 @@ std::vector<View> views_of(const ColliderOptions& options) {
   } catch (const Error& error) {
     throw Error("views", error.reason, error.remedy);
   }
-}
-
-// The proofs are about round to nearest with subnormals; threads inherit both from this one.
-void require_arithmetic() {
-  volatile double smallest = std::numeric_limits<double>::min();
-  volatile double half = smallest / 2;
-  if (std::fegetround() == FE_TONEAREST && half != 0 && half * 2 == smallest) return;
-  throw Error("arithmetic", "this thread does not round to nearest, or flushes subnormals to zero",
-              "reset the rounding mode, and the FTZ and DAZ bits of MXCSR, before the call");
 }
 
 // Into the scene of the last call, whose memory is used again.
@@ -132,12 +127,18 @@ struct Collider::State {
   ColliderOptions options;
   std::vector<View> views;
   std::unique_ptr<GlContext> context;
-  PairDevice device;  // goes before its context
-  Scene scene;        // of the last call
+  bool promises = false;        // of the device that is open
+  std::string promises_reason;  // of that device as well
+  PairDevice device;            // goes before its context
+  Scene scene;                  // of the last call
 
   explicit State(const ColliderOptions& given) : options(given) {
     check(options);
     views = views_of(options);
+    open_device();
+  }
+
+  void open_device() {
     const auto open = [&]() -> const GlContext& {
       context = std::make_unique<GlContext>();
       return *context;
@@ -153,6 +154,34 @@ struct Collider::State {
         device = open_pair_device("", options.threads, open);
         break;
     }
+    // Of the device that is open now, whatever an earlier one promised.
+    promises = !device.gl;
+    promises_reason =
+        device.gl ? "its probes have not run" : "on the CPU nothing rests on a device";
+    if (device.gl) judge_device();
+  }
+
+  // Whether the device keeps what the promise rests on.
+  void judge_device() {
+    const DeviceVerdict verdict =
+        device_verdict(*device.gl, Reliance::pairs, [&] { return pair_probes(*context); });
+    promises = verdict.holds;
+    promises_reason = to_string(verdict, Reliance::pairs);
+  }
+
+  // After a failure nothing that lies on a device is believed, the context included: the next call
+  // opens it anew.
+  PairResult candidates() {
+    try {
+      if (!device.backend) open_device();
+      return find_pairs(
+          scene, {.views = views, .resolution = options.resolution, .clearance = options.clearance},
+          *device.backend);
+    } catch (...) {
+      device = {};
+      context.reset();
+      throw;
+    }
   }
 };
 
@@ -167,13 +196,8 @@ ColliderResult Collider::find(const ColliderInput& input) {
   return translated([&] {
     State& state = *state_;
     const Stopwatch start;
-    require_arithmetic();
     take(input, state.options, state.scene);
-    PairResult found = find_pairs(state.scene,
-                                  {.views = state.views,
-                                   .resolution = state.options.resolution,
-                                   .clearance = state.options.clearance},
-                                  *state.device.backend);
+    const PairResult found = state.candidates();
     ColliderResult out;
     ColliderReport& report = out.report;
     report.candidates_ms = start.ms();
@@ -191,8 +215,13 @@ ColliderResult Collider::find(const ColliderInput& input) {
     report.neighbours = decided.neighbours;
     report.exact_ms = deciding.ms();
 
+    require_proved("arithmetic");  // the driver's code ran in this thread too
+    const FloatingPoint callers = callers_floating_point();
+    if (callers != kProved) report.callers_arithmetic = to_string(callers);
     report.device = state.device.backend->name();
     report.device_reason = state.device.reason;
+    report.promises = state.promises;
+    report.promises_reason = state.promises_reason;
     for (const Stage& s : found.stages)
       report.stages.push_back({s.name, s.ran, s.reason, s.ms, s.in, s.out, s.unit});
     report.stages.push_back({"exact", true, "exact predicates on the candidates", report.exact_ms,

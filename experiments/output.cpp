@@ -1,7 +1,6 @@
 #include "experiments/output.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,10 +12,14 @@
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "commit.h"
 #include "core/error.h"
+#include "experiments/growing_output.h"
 #include "experiments/tables.h"
+#include "verify/not_asked.h"
+#include "verify/pair_list.h"
 
 namespace farcull {
 namespace {
@@ -75,6 +78,25 @@ Json device_json(const RunRecord& record) {
     out["reason"] = record.device_note;
   }
   return out;
+}
+
+Json environment_json(const FloatingPoint& floating_point) {
+  return {{"rounding", to_string(floating_point.rounding)},
+          {"flushes_results", floating_point.flushes_results},
+          {"flushes_operands", floating_point.flushes_operands}};
+}
+
+Json verdict_json(const RunRecord& record) {
+  if (!record.verdict) return nullptr;
+  const DeviceVerdict& v = *record.verdict;
+  const auto or_null = [](const std::string& text) {
+    return text.empty() ? Json(nullptr) : Json(text);
+  };
+  return {{"holds", v.holds},           {"probes", v.probes},
+          {"failed", v.failed},         {"made", v.made},
+          {"remembered", v.remembered}, {"ms", v.ms},
+          {"file", or_null(v.file)},    {"problem", or_null(v.problem)},
+          {"note", or_null(v.note)}};
 }
 
 std::uint64_t self_objects(const Scene& scene) {
@@ -210,7 +232,31 @@ int write_and_close(std::FILE* file, const std::string& text, bool to_disk) {
   return failure;
 }
 
+// Writes all of the text, at a place of a file where `at` is not negative; 0 or the errno of the
+// first failure.
+int write_all(int file, const std::string& text, long long at) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t n = at < 0 ? ::write(file, text.data() + done, text.size() - done)
+                             : ::pwrite(file, text.data() + done, text.size() - done,
+                                        at + static_cast<long long>(done));
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return n < 0 ? errno : EIO;
+    done += static_cast<std::size_t>(n);
+  }
+  return 0;
+}
+
 }  // namespace
+
+nlohmann::ordered_json floating_point_json(const FloatingPoint& callers,
+                                           const FloatingPoint& used) {
+  return {{"callers", environment_json(callers)}, {"used", environment_json(used)}};
+}
+
+Json not_asked_json(const Scene& scene) {
+  const NotAsked unasked = not_asked(scene);
+  return {{"objects", unasked.objects}, {"pairs", unasked.pairs}, {"which", unasked.ranges}};
+}
 
 nlohmann::ordered_json to_json(const Scene& scene, const RunRecord& record) {
   const RunOptions& o = record.options;
@@ -239,6 +285,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const RunRecord& record) {
            {{"name", scene.name},
             {"objects", scene.objects.size()},
             {"self_objects", self_objects(scene)},
+            {"self_not_asked", not_asked_json(scene)},
             {"triangles", scene.triangles.size()},
             {"degenerate_triangles", record.degenerate_triangles},
             {"hash", record.scene_hash}}},
@@ -255,9 +302,12 @@ nlohmann::ordered_json to_json(const Scene& scene, const RunRecord& record) {
           {"clearance", takes_clearance(o.method) ? Json(o.clearance) : Json(nullptr)},
           {"full", o.full},
           {"promises", record.promises},
+          {"promise_reason", record.promise_reason},
+          {"verdict", verdict_json(record)},
           {"views", views},
           {"budget", budget_json(record.views)},
           {"device", device_json(record)},
+          {"floating_point", floating_point_json(record.callers, record.used)},
           {"stages", stages},
           {"pcs", {{"objects", record.pcs_objects}, {"triangles", record.pcs_triangles}}},
           {"object_triangles",
@@ -276,27 +326,22 @@ nlohmann::ordered_json to_json(const Scene& scene, const RunRecord& record) {
           {"commit", FARCULL_COMMIT}};
 }
 
-std::string pairs_header(const Scene& scene) {
-  return std::string("object_a,triangle_a,object_b,triangle_b") +
-         (has_self(scene) ? ",neighbours\n" : "\n");
-}
+std::string pairs_header(const Scene& scene) { return pair_list_header(scene); }
 
 std::string pairs_rows(const Scene& scene, const RunRecord& record, const std::string& before) {
-  const std::vector<std::uint32_t> owner = owners(scene);
-  const bool self = has_self(scene);
-  fmt::memory_buffer out;
-  const auto add = [&](const TrianglePair& p, const char* neighbours) {
-    fmt::format_to(std::back_inserter(out), "{}{},{},{},{}{}\n", before, owner[p.a],
-                   p.a - scene.objects[owner[p.a]].first_triangle, owner[p.b],
-                   p.b - scene.objects[owner[p.b]].first_triangle, self ? neighbours : "");
+  const PairListRows rows(scene);
+  std::string out;
+  const auto add = [&](const TrianglePair& pair) {
+    out += before;
+    rows.append(pair, out);
   };
   auto next = record.neighbour_pairs.begin();
   for (const TrianglePair& p : record.pairs) {
-    for (; next != record.neighbour_pairs.end() && *next < p; ++next) add(*next, ",1");
-    add(p, ",0");
+    for (; next != record.neighbour_pairs.end() && *next < p; ++next) add(*next);
+    add(p);
   }
-  for (; next != record.neighbour_pairs.end(); ++next) add(*next, ",1");
-  return fmt::to_string(out);
+  for (; next != record.neighbour_pairs.end(); ++next) add(*next);
+  return out;
 }
 
 std::string pairs_csv(const Scene& scene, const RunRecord& record) {
@@ -337,6 +382,62 @@ void write_output(const std::string& path, const std::string& text) {
   if (target.exists) ::fchmod(::fileno(file), target.mode & 07777);
   if (const int failure = write_and_close(file, text, true)) refuse(path, failure);
   if (!part.put(target.path)) refuse(path, errno);
+}
+
+GrowingOutput::~GrowingOutput() {
+  try {
+    finish();
+  } catch (const Error&) {
+    // Another error is on its way, and the text is whole without the end's last state.
+  }
+  if (file_ >= 0) ::close(file_);
+}
+
+void GrowingOutput::add(const std::string& text, const std::string& end) {
+  if (!begun_) {
+    check_output(path_);
+    streamed_ = path_ == "-" || target_of(path_).direct;
+    if (!streamed_) write_output(path_, text + end);
+    if (path_ != "-") {
+      file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+      if (file_ < 0) refuse(path_, errno);
+    }
+    begun_ = true;
+    if (!streamed_) {
+      kept_ = static_cast<long long>(text.size());
+      end_ = end;
+      return;
+    }
+  }
+  if (streamed_) {
+    end_ = end;
+    if (path_ == "-") {
+      write_output(path_, text);
+    } else if (const int failure = write_all(file_, text, -1)) {
+      refuse(path_, failure);
+    }
+    return;
+  }
+  if (const int failure = write_all(file_, text + end, kept_)) {
+    // The bytes of the end before are the file's own already, so a full disk takes them.
+    (void)write_all(file_, end_, kept_);
+    (void)!::ftruncate(file_, kept_ + static_cast<long long>(end_.size()));
+    refuse(path_, failure);
+  }
+  kept_ += static_cast<long long>(text.size());
+  end_ = end;
+  if (::ftruncate(file_, kept_ + static_cast<long long>(end_.size())) != 0) refuse(path_, errno);
+}
+
+void GrowingOutput::finish() {
+  if (!begun_ || std::exchange(finished_, true)) return;
+  if (!streamed_) {
+    if (::fsync(file_) != 0) refuse(path_, errno);
+  } else if (path_ == "-") {
+    write_output(path_, end_);
+  } else if (const int failure = write_all(file_, end_, -1)) {
+    refuse(path_, failure);
+  }
 }
 
 void prepare_output() {

@@ -12,9 +12,15 @@ namespace farcull {
 /// Keys keep their order, so that the same run gives the same text.
 nlohmann::ordered_json to_json(const Scene& scene, const RunRecord& record);
 
-/// object_a,triangle_a,object_b,triangle_b: 0-based, triangles within their object, one colliding
-/// pair a line, sorted. Where an object of the scene is tested against itself, colliding neighbours
-/// are among them and a fifth column `neighbours` tells them: 1, else 0.
+/// The floating-point environment of the caller and the one in force.
+nlohmann::ordered_json floating_point_json(const FloatingPoint& callers, const FloatingPoint& used);
+
+/// What the scene does not ask (verify/not_asked.h): objects, pairs, and which objects, as the
+/// first and the last of each run of them.
+nlohmann::ordered_json not_asked_json(const Scene& scene);
+
+/// The colliding pairs as verify/pair_list.h writes them, sorted, each once; neighbours among them
+/// where an object of the scene is tested against itself.
 std::string pairs_csv(const Scene& scene, const RunRecord& record);
 /// Its parts, `before` at the start of each row.
 std::string pairs_header(const Scene& scene);

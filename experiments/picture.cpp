@@ -135,7 +135,8 @@ DrawnPanel panel_of(const RunOptions& options, const Scene& scene, const Window&
   result.missed = missed.size();
   result.kept = record.pcs.size();
   result.idle = static_cast<std::uint64_t>(std::count(kind.begin(), kind.end(), kKept));
-  result.broken = record.promises && !missed.empty();
+  // As in run: whatever the probes of the device say.
+  result.broken = promises(record.options) && !missed.empty();
   result.device = device_of(record);
 
   if (lab.progress()) lab.progress()("drawing " + result.title);
@@ -326,15 +327,6 @@ Image painted(const GlContext& context, const Scene& scene, const Window& window
                                                    : 2});
 }
 
-std::vector<std::uint32_t> members_of(const std::vector<TrianglePair>& pairs) {
-  std::vector<std::uint32_t> out;
-  out.reserve(2 * pairs.size());
-  for (const TrianglePair& pair : pairs) out.insert(out.end(), {pair.a, pair.b});
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
-
 std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Window& window,
                           const std::vector<std::uint32_t>& missed, Image& image) {
   if (missed.empty()) return 0;
@@ -484,6 +476,7 @@ PictureResult make_picture(const PictureArguments& arguments, Lab& lab) {
   result.scene_hash = scene_hash(scene);
   result.objects = scene.objects.size();
   result.triangles = scene.triangles.size();
+  result.not_asked = not_asked_line(scene);
   std::vector<SheetPanel> sheets;
   for (RunOptions options : arguments.panels) {
     options.verify = false;

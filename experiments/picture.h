@@ -60,6 +60,7 @@ struct PictureResult {
   std::string scene, scene_hash;
   std::uint64_t objects = 0, triangles = 0;
   std::vector<PanelResult> panels;
+  std::string not_asked;  // not_asked_line() of the scene (tables.h)
 };
 
 /// What is drawn for a missed pair, with full opacity and unshaded, and for nothing else.
@@ -95,7 +96,6 @@ DrawnPanel depth_panel(const RunOptions& options, const PictureArguments& argume
 /// Parts of both kinds of panels.
 Image painted(const GlContext& context, const Scene& scene, const Window& window,
               const std::vector<PictureTriangle>& triangles);
-std::vector<std::uint32_t> members_of(const std::vector<TrianglePair>& pairs);
 /// Draws the missed triangles over the image, with rings where they are too small to be seen, and
 /// says how many rings.
 std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Window& window,

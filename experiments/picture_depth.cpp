@@ -98,6 +98,7 @@ DrawnPanel depth_panel(const RunOptions& options, const PictureArguments& argume
                        const Scene& scene, const Truth& truth, Session& session,
                        const GlContext& context) {
   const View view = parse_view(*arguments.depth_view);
+  const bool promised = promises(options) && session.verdict(Reliance::drawing).holds;
   const ViewRun run = look(options, view, scene, session);
   const std::vector<std::uint8_t>& bits = run.culled.bits;
 
@@ -141,7 +142,7 @@ DrawnPanel depth_panel(const RunOptions& options, const PictureArguments& argume
   const std::vector<std::uint32_t> lost = members_of(missed);
   result.missed = missed.size();
   result.missed_triangles = lost.size();
-  result.broken = promises(options) && !missed.empty();
+  result.broken = promised && !missed.empty();
 
   Image& image = panel.sheet.image;
   image = depth_image(run, window.width, window.height, scale, mirrored);

@@ -129,8 +129,11 @@ Steps planned(const Scene& scene, const RunOptions& options) {
   }
   if (has_self(scene)) {
     steps.push_back({"self", Decision::runs, "objects are tested against themselves"});
-  } else {
-    steps.push_back({"self", Decision::left_out, "not asked for (--self)"});
+  }
+  if (const std::string unasked = not_asked_text(scene); !unasked.empty()) {
+    steps.push_back({"self", Decision::left_out, "not asked for (--self): " + unasked});
+  } else if (!has_self(scene)) {
+    steps.push_back({"self", Decision::left_out, "no object has two triangles"});
   }
   if (options.method == Method::exact || options.full) {
     steps.push_back({"exact tests", Decision::runs,

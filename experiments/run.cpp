@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdio>
 #include <limits>
-#include <stdexcept>
 
 #include "core/error.h"
+#include "experiments/kernel_probes.h"
 #include "experiments/run_culled.h"
 #include "experiments/run_pairs.h"
 #include "verify/exact.h"
@@ -78,7 +81,6 @@ void verify_stage(const Scene& scene, const Progress& progress, RunRecord& recor
                                 {.clearance = record.options.clearance,
                                  .max_examples = std::numeric_limits<std::size_t>::max()});
   Accounting& accounting = *record.verification;
-  if (!accounting.adds_up()) throw std::logic_error("the classes of the accounting do not add up");
   if (record.options.clearance == 0) record.missed = count_contacts(scene, accounting.examples);
   accounting.examples.resize(std::min(accounting.examples.size(), kExamples));
   record.stages.push_back({.name = "verify",
@@ -97,6 +99,28 @@ const GlContext& Session::context() {
   return *context_;
 }
 
+const DeviceVerdict& Session::verdict(Reliance reliance) {
+  const auto known = verdicts_.find(reliance);
+  if (known != verdicts_.end()) return known->second;
+  const Probes probes = [this, reliance] {
+    return reliance == Reliance::pairs ? pair_probes(context()) : drawing_probes(context());
+  };
+  const Say say = [](const std::string& line) {
+    // Progress may stand in the line.
+    std::fprintf(stderr, "%sfarcull: %s\n", ::isatty(STDERR_FILENO) ? "\r\033[K" : "",
+                 line.c_str());
+  };
+  return verdicts_.emplace(reliance, device_verdict(context().info(), reliance, probes, say))
+      .first->second;
+}
+
+void rely_on_device(Session& session, Reliance reliance, RunRecord& record) {
+  if (!promises(record.options)) return;
+  record.verdict = session.verdict(reliance);
+  record.promises = record.verdict->holds;
+  record.promise_reason = to_string(*record.verdict, reliance);
+}
+
 GlCanvas& Session::canvas(const Fattener& fattener, const GlCanvasOptions& options) {
   return canvases_
       .try_emplace({fattener.name, options.depth_format, options.query}, context(), fattener.mode,
@@ -110,12 +134,30 @@ PairDevice& Session::pairs() {
   return *pairs_;
 }
 
+void Session::forget_device() {
+  canvases_.clear();
+  pairs_.reset();
+  context_.reset();
+  verdicts_.clear();  // another device may answer next time
+}
+
 bool promises(const RunOptions& options) {
   if (options.method == Method::far) {
     return depth_of(options) == DepthMode::fragment && !options.radius.published &&
            options.radius.factor >= 1;
   }
   return options.method == Method::far_pairs || options.method == Method::i_collide;
+}
+
+Stage work_of(const std::vector<Stage>& stages) {
+  Stage out;
+  for (const Stage& stage : stages) {
+    out.draws += stage.draws;
+    out.queries += stage.queries;
+    out.draws_saved += stage.draws_saved;
+    out.queries_saved += stage.queries_saved;
+  }
+  return out;
 }
 
 bool has_self(const Scene& scene) {
@@ -139,33 +181,44 @@ void require_scene(const Scene& scene, Method method) {
 
 RunRecord run_scene(const Scene& scene, const RunOptions& options, Session& session,
                     const Progress& progress) {
+  const FloatingPointGuard guard;
   validate(options);
   require_scene(scene, options.method);
   RunRecord record;
+  record.callers = callers_floating_point();
   record.options = options;
   record.promises = promises(options);
+  record.promise_reason =
+      record.promises ? "nothing rests on a device" : "the method, or its radius, promises nothing";
   record.scene_hash = scene_hash(scene);
   record.degenerate_triangles = degenerate_triangles(scene);
 
   if (options.method == Method::exact) {
     run_exact(scene, progress, record);
   } else {
-    if (options.method == Method::far_pairs) {
-      run_far_pairs(scene, session, progress, record);
-    } else if (options.method == Method::i_collide) {
-      run_swept(scene, session, progress, record);
-    } else {
-      run_culled(scene, session, progress, record);
+    try {
+      if (options.method == Method::far_pairs) {
+        run_far_pairs(scene, session, progress, record);
+      } else if (options.method == Method::i_collide) {
+        run_swept(scene, session, progress, record);
+      } else {
+        run_culled(scene, session, progress, record);
+      }
+    } catch (...) {
+      session.forget_device();
+      throw;
     }
     decide_stage(scene, progress, record);
   }
   record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
   verify_stage(scene, progress, record);
+  require_proved("arithmetic");  // a driver's code ran in this thread too
+  record.used = floating_point();
   return record;
 }
 
 bool broken(const RunRecord& record, bool strict) {
-  return (strict || record.promises) && record.verification &&
+  return (strict || promises(record.options)) && record.verification &&
          record.verification->false_negatives > 0;
 }
 

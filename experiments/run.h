@@ -11,9 +11,11 @@
 #include <vector>
 
 #include "core/cull.h"
+#include "core/floating_point.h"
 #include "core/gl_context.h"
 #include "core/pairs.h"
 #include "core/sweep_prune.h"
+#include "experiments/device_verdict.h"
 #include "experiments/pair_device.h"
 #include "experiments/run_options.h"
 #include "verify/accounting.h"
@@ -30,9 +32,11 @@ struct RunTimes {
 
 struct RunRecord {
   RunOptions options;
-  bool promises = false;    // far-pairs, i-collide; far at the budget radius or more with fragment
-                            // depth: a miss breaks a guarantee
-  bool on_cpu = false;      // far-pairs on the cores of the CPU
+  bool promises = false;       // the method promises (see promises()), and the device that it used
+                               // keeps what the promise rests on: a miss breaks a guarantee
+  std::string promise_reason;  // why, or why not
+  std::optional<DeviceVerdict> verdict;  // of that device; empty where the promise rests on none
+  bool on_cpu = false;                   // far-pairs on the cores of the CPU
   std::string device_note;  // why no device was used, where none was; for far-pairs, why this one
   std::optional<GlInfo> device;  // what drew
   int depth_bits = 0;            // of the canvas
@@ -56,6 +60,7 @@ struct RunRecord {
   std::optional<ContactCounts> missed;        // what was missed, by the kind of contact; with a
                                               // verification, without a clearance
   RunTimes ms;
+  FloatingPoint callers, used;  // floating-point environment of our caller, and of this run
 };
 
 constexpr std::size_t kExamples = 10;  // missed pairs that a record names
@@ -66,22 +71,36 @@ class Session {
  public:
   explicit Session(std::string device) : device_(std::move(device)) {}
   const GlContext& context();
+  /// Whether the context's device keeps the assumptions; probed, and told in one line on stderr,
+  /// where no verdict is kept. GL state is not kept.
+  const DeviceVerdict& verdict(Reliance reliance);
   /// The canvas for the drawables of this fattener, by its name.
   GlCanvas& canvas(const Fattener& fattener, const GlCanvasOptions& options);
   PairDevice& pairs();
   bool has_pairs() const { return pairs_.has_value(); }
   SweepPrune& sweep() { return sweep_; }
+  /// Drops the canvases, the pair device and the context: after a failure nothing that lies on a
+  /// device is believed. Each is made again when it is next needed.
+  void forget_device();
 
  private:
   std::string device_;
   std::unique_ptr<GlContext> context_;
+  std::map<Reliance, DeviceVerdict> verdicts_;
   std::map<std::tuple<std::string, DepthFormat, QueryMode>, GlCanvas> canvases_;
   std::optional<PairDevice> pairs_;  // these two go before the context
   SweepPrune sweep_;
 };
 
-/// Whether a miss would break a guarantee (RunRecord::promises).
+/// Whether the method promises to miss nothing: far-pairs and i-collide, and far at the budget
+/// radius or more with fragment depth. A run promises if the device keeps its assumptions as well.
 bool promises(const RunOptions& options);
+
+/// Takes the session's verdict into the record of a method that promises.
+void rely_on_device(Session& session, Reliance reliance, RunRecord& record);
+
+/// What all stages together drew and asked, and saved of it; the rest is empty.
+Stage work_of(const std::vector<Stage>& stages);
 
 /// Whether an object of the scene is tested against itself.
 bool has_self(const Scene& scene);
@@ -91,7 +110,7 @@ bool has_self(const Scene& scene);
 void require_scene(const Scene& scene, Method method);
 
 /// Runs the method. Throws Error for bad options, as require_scene(), and for any fault of the
-/// device.
+/// device. After any exception the session has forgotten its device, and can be used again.
 RunRecord run_scene(const Scene& scene, const RunOptions& options, Session& session,
                     const Progress& progress = {});
 

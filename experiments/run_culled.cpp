@@ -17,6 +17,8 @@ Canvas& open_canvas(const Fattener& fattener, Session& session, const Progress& 
                     RunRecord& record) {
   if (progress) progress("opening the device");
   const Stopwatch setup;
+  session.context();
+  rely_on_device(session, Reliance::drawing, record);
   GlCanvas& canvas = session.canvas(
       fattener, {.depth_format = record.options.depth_format, .query = query_of(record.options)});
   record.device = session.context().info();
@@ -52,7 +54,7 @@ std::vector<std::uint32_t> cull_stage(const Scene& scene, const Plan& plan, Sess
       .touching = options.method != Method::s_cullide,
       .clusters = clusters_of(options, plan.triangles.size()),
       .full = options.full,
-      .enough = record.promises && !options.full ? kFewTriangles : 0,
+      .enough = promises(options) && !options.full ? kFewTriangles : 0,
       .bits = {}};
   CullResult result;
   result.live = plan.triangles;

@@ -59,6 +59,7 @@ void run_far_pairs(const Scene& scene, Session& session, const Progress& progres
   record.device = device.gl;
   record.on_cpu = !device.gl;
   record.device_note = device.reason;
+  if (device.gl) rely_on_device(session, Reliance::pairs, record);
   record.ms.setup = setup.ms();
   record.stages.push_back({.name = "setup",
                            .ran = true,

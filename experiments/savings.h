@@ -24,6 +24,7 @@ struct SavingsRow {
   std::vector<double> planned_ms,
       full_ms;             // of each repeat, cull + exact, in the order of the runs
   bool same_pairs = true;  // with and without, in every repeat
+  bool promises = true;    // the device keeps what the method's promise rests on
 
   double planned() const;  // medians
   double full() const;
@@ -38,7 +39,8 @@ std::vector<SavingsRow> run_savings(const SavingsArguments& arguments,
 
 /// Whether two runs found the same pairs, neighbours among them.
 bool same_pairs(const RunRecord& a, const RunRecord& b);
-/// The first method that promises, by these options, and whose pairs differ; empty: none.
+/// The first method that promises, by these options and on its device, and whose pairs differ;
+/// empty: none.
 std::string broken(const std::vector<SavingsRow>& rows, RunOptions options);
 
 std::string savings_table(const std::vector<SavingsRow>& rows);

@@ -74,6 +74,11 @@ class Syntax : public nlohmann::json_sax<json> {
   std::vector<std::set<std::string>> keys_;
 };
 
+// A mesh is named relative to the scene file.
+std::string mesh_path(const std::string& scene_file, const std::string& mesh) {
+  return (std::filesystem::path(scene_file).parent_path() / mesh).string();
+}
+
 std::string stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
 
 // The readers of values: each takes the value and its place in the file, as in objects[1].scale.
@@ -115,8 +120,7 @@ class SceneFile {
     Split split = Split::kNone;
     if (object.contains("split")) split = read_split(object["split"], place + ".split");
     const bool self = object.contains("self") && truth(object["self"], place + ".self");
-    const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
-    builder.add(meshes_.get((folder / mesh).string()), name, split, placement, self);
+    builder.add(meshes_.get(mesh_path(path_, mesh)), name, split, placement, self);
   }
 
   Placement read_placement(const json& object, const std::string& place) const {
@@ -241,7 +245,7 @@ Scene parse(const std::string& text, const std::string& path, MeshCache& meshes)
 Scene scene_of_meshes(const std::vector<std::string>& paths, MeshCache& meshes) {
   // Every extension first, so that nothing is read for minutes before the last argument is refused.
   for (const std::string& path : paths) {
-    if (extension(path) == ".json" || is_builtin_scene(path)) {
+    if (is_scene_file(path) || is_builtin_scene(path)) {
       throw Error(path, "a scene stands among other arguments",
                   "name one scene alone, or only mesh files");
     }
@@ -263,7 +267,7 @@ Scene load_any_scene(const std::vector<std::string>& arguments, MeshCache& meshe
   if (arguments.size() > 1) return scene_of_meshes(arguments, meshes);
   const std::string& name = arguments[0];
   if (is_builtin_scene(name)) return make_builtin_scene(name);
-  if (extension(name) == ".json") return parse(read_file(name, kMaxSceneFileBytes), name, meshes);
+  if (is_scene_file(name)) return parse(read_file(name, kMaxSceneFileBytes), name, meshes);
   if (has_mesh_extension(name)) return scene_of_meshes(arguments, meshes);
   throw Error(name,
               "neither a built-in scene nor a file that ends in .obj, .off, .ply, .stl or .json",
@@ -284,6 +288,25 @@ Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes) {
     throw Error(arguments[0], "the scene does not fit into memory",
                 "give fewer or smaller objects, or use a larger machine");
   }
+}
+
+bool is_scene_file(const std::string& name) { return extension(name) == ".json"; }
+
+std::vector<std::string> meshes_of_scene_file(const std::string& path) {
+  std::vector<std::string> out;
+  json root;
+  try {
+    root = json::parse(read_file(path, kMaxSceneFileBytes), nullptr, false);
+  } catch (const Error&) {
+    return out;
+  }
+  if (!root.is_object() || !root.contains("objects") || !root["objects"].is_array()) return out;
+  for (const json& object : root["objects"]) {
+    if (!object.is_object() || !object.contains("mesh") || !object["mesh"].is_string()) continue;
+    const auto mesh = object["mesh"].get<std::string>();
+    if (mesh.size() <= kMaxPathBytes) out.push_back(mesh_path(path, mesh));
+  }
+  return out;
 }
 
 Scene parse_scene_file(const std::string& text, const std::string& path) {

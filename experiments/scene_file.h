@@ -33,6 +33,12 @@ Scene load_scene(const std::vector<std::string>& arguments);
 /// The same with the meshes that `meshes` gives, and keeps.
 Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes);
 
+/// Whether load_scene() takes the name for that of a scene file.
+bool is_scene_file(const std::string& name);
+/// The paths of the meshes that a scene file names, each as often as it is named; as many as can be
+/// told, where the file cannot be read or is not of the form above.
+std::vector<std::string> meshes_of_scene_file(const std::string& path);
+
 /// The same for the text of a scene file; `path` stands in errors and is what mesh paths are
 /// relative to.
 Scene parse_scene_file(const std::string& text, const std::string& path);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "verify/not_asked.h"
+
 namespace farcull {
 namespace {
 
@@ -26,10 +28,18 @@ std::string scene_line(const Scene& scene, const RunRecord& record) {
 std::string device_text(const RunRecord& record) {
   if (record.on_cpu) return "cpu: " + record.device_note;
   if (!record.device) return "none: " + record.device_note;
+  const std::string resets =
+      record.device->reset_detection ? "" : "; it does not report when it resets";
   if (record.options.method == Method::far_pairs)
-    return record.device->renderer + ": " + record.device_note;
-  return fmt::format("{}, {} depth bits, {} subpixel bits", record.device->renderer,
-                     record.depth_bits, record.device->subpixel_bits);
+    return record.device->renderer + ": " + record.device_note + resets;
+  return fmt::format("{}, {} depth bits, {} subpixel bits{}", record.device->renderer,
+                     record.depth_bits, record.device->subpixel_bits, resets);
+}
+
+// Where the promise of the method rests on a device.
+std::string promise_line(const RunRecord& record) {
+  if (!record.verdict) return "";
+  return fmt::format("promise    {}{}\n", record.promises ? "" : "none: ", record.promise_reason);
 }
 
 std::string method_text(const RunRecord& record) {
@@ -200,13 +210,7 @@ std::string accounting_lines(const Scene& scene, const RunRecord& record) {
 // What was drawn and asked, of the methods that do so.
 std::string work_line(const RunRecord& record) {
   if (!draws(record.options.method)) return "";
-  Stage sum;
-  for (const Stage& s : record.stages) {
-    sum.draws += s.draws;
-    sum.queries += s.queries;
-    sum.draws_saved += s.draws_saved;
-    sum.queries_saved += s.queries_saved;
-  }
+  const Stage sum = work_of(record.stages);
   return fmt::format("drawn      {}, {}{}\n", counted(sum.draws, "element", "elements"),
                      counted(sum.queries, "query", "queries"),
                      sum.draws_saved + sum.queries_saved == 0
@@ -270,9 +274,39 @@ const ViewReport* widest_budget(const std::vector<ViewReport>& views) {
   return widest;
 }
 
+std::string not_asked_text(const Scene& scene) {
+  constexpr std::size_t kNamed = 3;
+  const NotAsked unasked = not_asked(scene);
+  if (unasked.pairs == 0) return "";
+  std::vector<std::string> names;
+  for (const auto& [first, last] : unasked.ranges) {
+    for (std::uint32_t o = first; o <= last && names.size() < kNamed + 1; ++o)
+      names.push_back(scene.objects[o].name);
+  }
+  std::string where = fmt::format("{}", fmt::join(names, ", "));
+  if (names.size() > kNamed) {
+    where =
+        fmt::format("{} of {} objects", grouped(unasked.objects), grouped(scene.objects.size()));
+  }
+  return counted(unasked.pairs, "pair", "pairs") + " of triangles inside " + where;
+}
+
+std::string not_asked_line(const Scene& scene, const std::string& options) {
+  const std::string text = not_asked_text(scene);
+  return text.empty()
+             ? ""
+             : "not asked  whether an object meets itself: " + text + " (" + options + " asks)\n";
+}
+
 std::string run_heading(const Scene& scene, const RunRecord& record) {
-  return scene_line(scene, record) + "device     " + device_text(record) + "\n" + "method     " +
-         method_text(record) + "\n";
+  std::string out =
+      scene_line(scene, record) + "device     " + device_text(record) + "\n" + "method     " +
+      method_text(record) + "\n" + promise_line(record) +
+      not_asked_line(scene,
+                     tests_self(record.options.method) ? "--self" : "--method far-pairs --self");
+  if (record.callers == kProved) return out;
+  return out + "arithmetic " + to_string(record.used) + "; the caller " +
+         to_string(record.callers) + "\n";
 }
 
 std::string run_table(const Scene& scene, const RunRecord& record) {
@@ -319,7 +353,7 @@ std::string comparison_table(const Scene& scene, const std::vector<RunRecord>& r
     out += "device     " + device_text(records[0]) + "\n";
   }
   if (pairs != records.end()) out += "far-pairs  " + device_text(*pairs) + "\n";
-  out += "\n";
+  out += not_asked_line(scene) + "\n";
   Table table("llrrrrrrrrrr");
   table.add({"method", "offset", "resolution", "objects", "triangles", "candidates", "colliding",
              self ? "neighbours" : "", "missed", "cull ms", "exact ms",

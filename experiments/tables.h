@@ -33,7 +33,13 @@ std::string radius_text(const RadiusRule& radius);
 /// The view with the largest budget: the one that a reader should quote. Null where none was drawn.
 const ViewReport* widest_budget(const std::vector<ViewReport>& views);
 
-/// The lines that say what was run, and on what.
+/// What the scene does not ask (verify/not_asked.h): "12 pairs of triangles inside a and b"; empty
+/// where it leaves out nothing.
+std::string not_asked_text(const Scene& scene);
+/// The same as a line of its own, with the options that ask it; empty where there is nothing.
+std::string not_asked_line(const Scene& scene, const std::string& options = "--self");
+
+/// The lines that say what was run, on what, and what was not asked.
 std::string run_heading(const Scene& scene, const RunRecord& record);
 
 /// One run. The stages of a view are folded into one row, and so are all rounds after the first.

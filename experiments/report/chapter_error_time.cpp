@@ -36,6 +36,25 @@ std::vector<const Row*> front_of(const std::vector<const Row*>& rows) {
   return front;
 }
 
+// The time of a row over that of another in the same study: of the medians, and the least and the
+// most that their fastest and slowest runs allow.
+std::string times_as_long(const Row& row, const Row& other) {
+  const auto of = [](const Row& r, const char* name) {
+    return time_of(r, name).value_or(ms_of(r));
+  };
+  return fmt::format("{} ({} to {})", rounded(ms_of(row) / ms_of(other)),
+                     rounded(of(row, "total_min") / of(other, "total_max")),
+                     rounded(of(row, "total_max") / of(other, "total_min")));
+}
+
+// The peer that times are given against: CGAL's box join, which every build has.
+const Row* yardstick(const SceneRows& scene) {
+  for (const Row* row : scene.rows) {
+    if (row->point.method == "cgal-boxes" && time_of(*row, "total")) return row;
+  }
+  return nullptr;
+}
+
 std::string in_words(const Row& row) {
   std::string out = contestant(row.point);
   if (row.point.resolution > 0) out += fmt::format(" at {} px", row.point.resolution);
@@ -115,13 +134,18 @@ std::vector<Figure> figures_of(const std::vector<SceneRows>& scenes) {
 
 DataTable front_table(const std::vector<SceneRows>& scenes) {
   DataTable out{.name = "error-time-front",
-                .caption = "The Pareto fronts: nothing is as fast with as few errors",
-                .columns = {"scene", "method", "ms", "missed", "wrong", "colliding"},
+                .caption =
+                    "The Pareto fronts: nothing is as fast with as few errors. Times are "
+                    "ratios of medians, with the least and the most that single runs allow",
+                .columns = {"scene", "method", "time over that of cgal-boxes", "missed", "wrong",
+                            "colliding"},
                 .alignment = "llrrrr",
                 .rows = {}};
   for (const SceneRows& scene : scenes) {
+    const Row* const peer = yardstick(scene);
     for (const Row* row : front_of(scene.rows)) {
-      out.rows.push_back({scene.scene, in_words(*row), time_cell(*row, "total"),
+      out.rows.push_back({scene.scene, in_words(*row),
+                          peer != nullptr ? times_as_long(*row, *peer) : "-",
                           count_cell(*row, "missed"), grouped(number_of(*row, "wrong")),
                           count_cell(*row, "colliding")});
     }
@@ -155,7 +179,7 @@ void add_front_finding(const SceneRows& scene, Chapter& chapter) {
   if (front.empty()) return;
   std::vector<std::string> words;
   for (const Row* row : front) {
-    words.push_back(fmt::format("{} ({} ms, {} wrong)", in_words(*row), rounded(ms_of(*row)),
+    words.push_back(fmt::format("{} ({} wrong)", in_words(*row),
                                 grouped(static_cast<std::uint64_t>(error_of(*row)))));
   }
   chapter.findings.push_back(fmt::format("On the front of {}: {}.", scene.scene, listed(words)));
@@ -177,10 +201,8 @@ void add_front_finding(const SceneRows& scene, Chapter& chapter) {
   }
   if (next == nullptr) return;
   chapter.findings.push_back(fmt::format(
-      "The fastest right answer on {} is that of {} in {} ms; the next method, {}, takes {} times "
-      "as long.",
-      scene.scene, in_words(*best), rounded(ms_of(*best)), in_words(*next),
-      rounded(ms_of(*next) / ms_of(*best))));
+      "The fastest right answer on {} is that of {}; the next method, {}, takes {} times as long.",
+      scene.scene, in_words(*best), in_words(*next), times_as_long(*next, *best)));
 }
 
 // What FCL's own test of triangles gets wrong, by its precision.

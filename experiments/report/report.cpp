@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <stdio.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -68,24 +69,78 @@ class Signals {
   std::array<struct sigaction, 3> before_ = {};
 };
 
-// A folder beside the report in which it is made; taken away unless it is put in its place.
+std::string content_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream out;
+  out << file.rdbuf();
+  return out.str();
+}
+
+bool is_report(const std::string& folder) {
+  return content_of(folder + "/index.html").find(kPageMark) != std::string::npos;
+}
+
+constexpr const char* kMarker = ".unfinished";
+
+// Opens the marker of a half-made report and locks it; -1: there is none, or who makes it lives. A
+// lock ends with its process, however that ends.
+int lock_marker(const std::string& path, int flags) {
+  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | flags, 0666);
+  if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) == 0) return file;
+  if (file >= 0) ::close(file);
+  return -1;
+}
+
+// Takes away what killed reports left beside the place: folders named like a workshop that hold its
+// marker, which nobody has locked, or an earlier report that a new one had just replaced.
+void remove_leftovers(const std::string& place) {
+  const fs::path whole(place);
+  const std::string start = whole.filename().string() + ".part-";
+  const fs::path folder = whole.has_parent_path() ? whole.parent_path() : ".";
+  std::error_code code;
+  std::vector<fs::path> found;
+  for (fs::directory_iterator next(folder, code), end; !code && next != end; next.increment(code)) {
+    const std::string name = next->path().filename().string();
+    if (!name.starts_with(start) || name.size() != start.size() + 6) continue;
+    if (next->symlink_status(code).type() == fs::file_type::directory)
+      found.push_back(next->path());
+  }
+  for (const fs::path& path : found) {
+    const std::string marker = path / kMarker;
+    const bool marked = fs::exists(fs::symlink_status(marker, code));
+    const int lock = marked ? lock_marker(marker, 0) : -1;
+    if (lock >= 0 || (!marked && is_report(path))) fs::remove_all(path, code);
+    if (lock >= 0) ::close(lock);
+  }
+}
+
+// A folder beside the report in which it is made; taken away unless it is put in its place, and by
+// the next report where the process was killed.
 class Workshop {
  public:
   explicit Workshop(std::string place) : place_(std::move(place)) {
+    remove_leftovers(place_);
     path_ = place_ + ".part-XXXXXX";
-    if (::mkdtemp(path_.data()) == nullptr) {
+    const auto refuse = [&] {
       throw Error(place_, std::string("cannot be made: ") + std::strerror(errno),
                   "use a folder with room that you may write to");
+    };
+    if (::mkdtemp(path_.data()) == nullptr) refuse();
+    // It gets its name when it is locked, so that nobody sees it without its lock.
+    const std::string marker = path_ + "/" + kMarker;
+    marker_ = lock_marker(marker + "-new", O_CREAT | O_EXCL);
+    if (marker_ < 0 || std::rename((marker + "-new").c_str(), marker.c_str()) != 0) {
+      const int code = errno;
+      take_away();
+      errno = code;
+      refuse();
     }
     // mkdtemp keeps others out, which a folder of results does not.
     const mode_t mask = ::umask(0);
     ::umask(mask);
     ::chmod(path_.c_str(), 0777 & ~mask);
   }
-  ~Workshop() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
+  ~Workshop() { take_away(); }
   Workshop(const Workshop&) = delete;
   Workshop& operator=(const Workshop&) = delete;
 
@@ -99,8 +154,20 @@ class Workshop {
   }
   const std::string& path() const { return path_; }
 
-  // One step for all who look: what was there is what the destructor takes away.
   void put() {
+    exchange();
+    ::unlink((place_ + "/" + kMarker).c_str());
+  }
+
+ private:
+  void take_away() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+    if (marker_ >= 0) ::close(marker_);
+  }
+
+  // One step for all who look: what was there is what the destructor takes away.
+  void exchange() {
     if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, place_.c_str(), RENAME_NOREPLACE) == 0 ||
         (errno == EEXIST &&
          ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, place_.c_str(), RENAME_EXCHANGE) == 0)) {
@@ -117,16 +184,9 @@ class Workshop {
                 "see who may write to the folder");
   }
 
- private:
   std::string place_, path_;
+  int marker_ = -1;
 };
-
-std::string content_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream out;
-  out << file.rdbuf();
-  return out.str();
-}
 
 // An earlier report may be replaced, nothing else.
 void check_place(const std::string& place) {
@@ -135,7 +195,7 @@ void check_place(const std::string& place) {
   if (status.type() == fs::file_type::not_found) return;
   const bool folder = status.type() == fs::file_type::directory;
   if (folder && fs::is_empty(place, code)) return;
-  if (folder && content_of(place + "/index.html").find(kPageMark) != std::string::npos) return;
+  if (folder && is_report(place)) return;
   throw Error(place, "is there and no report of this program", "move it away");
 }
 

@@ -26,18 +26,6 @@ std::vector<TrianglePair> all_pairs(const std::vector<TrianglePair>& pairs,
   return out;
 }
 
-std::vector<std::uint32_t> triangles_of(const std::vector<TrianglePair>& pairs) {
-  std::vector<std::uint32_t> out;
-  out.reserve(2 * pairs.size());
-  for (const TrianglePair& pair : pairs) {
-    out.push_back(pair.a);
-    out.push_back(pair.b);
-  }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
-
 // How many of a are not in b; both sorted.
 template <class T>
 std::uint64_t lacking(const std::vector<T>& a, const std::vector<T>& b) {
@@ -77,13 +65,7 @@ Outcome outcome_of(const Scene& scene, const Truth& truth, const RunRecord& reco
   const Method method = record.options.method;
   if (method == Method::i_collide) out.counts["object_triangles"] = record.object_triangles;
   if (draws(method)) {
-    Stage sum;
-    for (const Stage& stage : record.stages) {
-      sum.queries += stage.queries;
-      sum.draws += stage.draws;
-      sum.queries_saved += stage.queries_saved;
-      sum.draws_saved += stage.draws_saved;
-    }
+    const Stage sum = work_of(record.stages);
     out.counts["queries"] = sum.queries;
     out.counts["draws"] = sum.draws;
     out.counts["queries_saved"] = sum.queries_saved;
@@ -98,9 +80,18 @@ Outcome outcome_of(const Scene& scene, const Truth& truth, const RunRecord& reco
 
 }  // namespace
 
+std::vector<std::uint32_t> members_of(const std::vector<TrianglePair>& pairs) {
+  std::vector<std::uint32_t> out;
+  out.reserve(2 * pairs.size());
+  for (const TrianglePair& pair : pairs) out.insert(out.end(), {pair.a, pair.b});
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
 Errors errors_of(const Truth& truth, const std::vector<TrianglePair>& pairs) {
   return {.missed = lacking(truth.pairs, pairs),
-          .missed_triangles = lacking(triangles_of(truth.pairs), triangles_of(pairs)),
+          .missed_triangles = lacking(members_of(truth.pairs), members_of(pairs)),
           .wrong = lacking(pairs, truth.pairs)};
 }
 
@@ -172,7 +163,7 @@ const Truth& Lab::truth() {
     ExactResult result = all_colliding_pairs(*current_, {});
     truth_.emplace();
     truth_->pairs = all_pairs(result.pairs, result.neighbour_pairs);
-    truth_->triangles = triangles_of(truth_->pairs).size();
+    truth_->triangles = members_of(truth_->pairs).size();
     truth_->ms = result.join_ms + result.predicates_ms;
   }
   return *truth_;

@@ -21,6 +21,9 @@ struct Truth {
   double ms = 0;                    // that finding them took
 };
 
+/// The triangles that are in a pair, each once, ascending.
+std::vector<std::uint32_t> members_of(const std::vector<TrianglePair>& pairs);
+
 /// How an answer differs from the truth. All pairs count, neighbours among them.
 struct Errors {
   std::uint64_t missed = 0;            // colliding pairs that it lacks

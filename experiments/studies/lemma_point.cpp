@@ -56,6 +56,7 @@ Measurement measure_lemma(const Point& point, Lab& lab) {
   const RadiusRule rule = parse_radius(point.radius.empty() ? "budget" : point.radius);
 
   Measurement out;
+  bool promised = promises_of(point, rule);
   std::unique_ptr<WorstCanvas> made;
   Canvas* canvas = nullptr;
   if (worst) {
@@ -64,6 +65,7 @@ Measurement measure_lemma(const Point& point, Lab& lab) {
     canvas = made.get();
     out.device = "cpu";
   } else {
+    if (promised) promised = lab.session().verdict(Reliance::drawing).holds;
     canvas = &lab.session().canvas(
         fattener, {.depth_format = bits24 ? DepthFormat::fixed24 : DepthFormat::float32,
                    .query = bits24 ? QueryMode::occlusion : QueryMode::flags});
@@ -103,7 +105,7 @@ Measurement measure_lemma(const Point& point, Lab& lab) {
                 {"step_px", step_px},
                 {"radius_px", radius_px},
                 {"budget_px", budget_px},
-                {"promises", promises_of(point, rule)}};
+                {"promises", promised}};
   return out;
 }
 
