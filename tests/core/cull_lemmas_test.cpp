@@ -1,6 +1,6 @@
-// The five lemmas of Quick-CULLIDE (docs/reliability.md, "Quick-CULLIDE"), each as a property: on
-// raw triangles in the pixel-exact sense, on fattened ones against exact collisions. Each has a
-// twin that breaks its rule and is caught.
+// The two lemmas of CULLIDE and the five of Quick-CULLIDE (docs/reliability.md, "CULLIDE" and
+// "Quick-CULLIDE"), each as a property: on raw triangles in the pixel-exact sense, on fattened ones
+// against exact collisions. Each has a twin that breaks its rule and is caught.
 #include <gtest/gtest.h>
 
 #include "tests/core/cull_lab.h"
@@ -178,6 +178,279 @@ TEST(CullLemma, L3FfvStoredOnlyInTheSecondPassLosesPairs) {
 TEST(CullLemma, L5SfvStoredOnlyInTheFirstPassLosesPairs) {
   for (const Question& q : questions())
     EXPECT_GT(lost_by(storing(kL, true, false), q, q.drawing), 0) << q.name;
+}
+
+// ---- CULLIDE ----
+
+/// The objects of a scene, drawn in the first view of the settings.
+class OneView {
+ public:
+  OneView(const Scene& scene, const Drawing& drawing, const CullSettings& settings)
+      : plan_(make_plan(scene)), object_(owners(scene)), canvas_(*drawing.canvas) {
+    if (plan_.regions.empty()) return;
+    const auto window = fit_window(settings.views[0], plan_.regions, settings.resolution);
+    if (!window) return;
+    const Budget budget =
+        budget_for(canvas_.limits(), viewport_side(std::max(window->width, window->height)));
+    FattenCounts counts;
+    drawables_ = fatten(scene, plan_.triangles, *window, drawing.fattener,
+                        drawing.fattener.name == "raw" ? 0 : budget.radius(), counts);
+    canvas_.begin(*window, drawables_);
+    drawn_ = true;
+  }
+
+  /// Whether the asked object is fully visible with respect to the objects that `stored` names.
+  template <class Stored>
+  bool fully_visible(std::uint32_t asked, const Stored& stored) const {
+    if (!drawn_) return false;
+    Pass pass;
+    pass.slots = 1;
+    const auto step = [&](Verb verb, const auto& wanted) {
+      const auto first = static_cast<std::uint32_t>(pass.draws.size());
+      for (std::uint32_t i = 0; i < plan_.triangles.size(); ++i) {
+        if (wanted(object_[plan_.triangles[i]])) lab::add(pass.draws, drawables_, i, 0);
+      }
+      pass.steps.push_back({verb, first, static_cast<std::uint32_t>(pass.draws.size()) - first});
+    };
+    step(Verb::store, stored);
+    step(Verb::ask, [asked](std::uint32_t o) { return o == asked; });
+    return canvas_.run(pass)[0] == 0;
+  }
+
+  const std::vector<std::uint32_t>& objects() const { return object_; }
+
+ private:
+  Plan plan_;
+  std::vector<std::uint32_t> object_;
+  Canvas& canvas_;
+  Drawables drawables_;
+  bool drawn_ = false;
+};
+
+/// How often an object is fully visible with respect to the earlier, the later or all other objects
+/// and is in one of `pairs` with one of them.
+int visible_and_colliding(const Scene& scene, const Drawing& drawing, const CullSettings& settings,
+                          const Pairs& pairs) {
+  const OneView view(scene, drawing, settings);
+  int found = 0;
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    const auto earlier = [o](std::uint32_t s) { return s < o; };
+    const auto later = [o](std::uint32_t s) { return s > o; };
+    const auto others = [o](std::uint32_t s) { return s != o; };
+    const auto count = [&](const auto& stored) {
+      if (!view.fully_visible(o, stored)) return;
+      found += std::any_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
+        const std::uint32_t a = view.objects()[pair.first], b = view.objects()[pair.second];
+        return (a == o && stored(b)) || (b == o && stored(a));
+      });
+    };
+    count(earlier);
+    count(later);
+    count(others);
+  }
+  return found;
+}
+
+TEST(CullideLemma, L1AFullyVisibleObjectDoesNotCollide) {
+  for (const Question& q : questions()) {
+    SCOPED_TRACE(q.name);
+    std::size_t pairs = 0;
+    lab::expect_property(821, q.exact ? 20 : 40, [&] {
+      const Scene scene = lab::scene_of(*lab::small_triangles());
+      const auto name = *rc::gen::elementOf(std::vector<const char*>{"z", "-x", "1:2:3"});
+      const CullSettings settings = settings_for(q.drawing, name);
+      const Pairs wanted = oracle(q, scene, settings);
+      pairs += wanted.size();
+      RC_ASSERT(visible_and_colliding(scene, q.drawing, settings, wanted) == 0);
+    });
+    EXPECT_GT(pairs, 20u);
+  }
+}
+
+// Raw triangles on a coarse grid: objects that no sample sees collide, so the lemma is false of
+// space.
+TEST(CullideLemma, L1IsFalseOfRawTrianglesOnACoarseGrid) {
+  const Question raw = {"raw", lab::raw_on_ideal(), true};
+  int found = 0;
+  for (int n = 0; n < 10; ++n) {
+    const Scene scene = lab::scene_of(lab::random_small(2200 + n, 50));
+    CullSettings settings = settings_for(raw.drawing, "z");
+    settings.resolution = 4;
+    found += visible_and_colliding(scene, raw.drawing, settings, oracle(raw, scene, settings));
+  }
+  EXPECT_GT(found, 0);
+}
+
+TEST(CullideLemma, L1FailsWithASwappedDepthTest) {
+  for (const Fattener& fattener : {obb_fattener(), exact_fattener()}) {
+    const Question q = {
+        "", {fattener, std::make_shared<IdealCanvas>(fattener.solid, CanvasFault::swapped)}, true};
+    int found = 0;
+    for (int n = 0; n < 10; ++n) {
+      const Scene scene = lab::scene_of(lab::random_small(2200 + n, 50));
+      const CullSettings settings = settings_for(q.drawing, "z");
+      found += visible_and_colliding(scene, q.drawing, settings, oracle(q, scene, settings));
+    }
+    EXPECT_GT(found, 0) << fattener.name;
+  }
+}
+
+/// Per object: whether a triangle of it is in the potentially colliding set.
+std::vector<bool> in_pcs(const PassRule& rule, const Scene& scene, const Drawing& drawing,
+                         const CullSettings& settings) {
+  std::vector<bool> out(scene.objects.size());
+  const std::vector<std::uint32_t> object = owners(scene);
+  for (const std::uint32_t t : lab::run_by(rule, scene, drawing, settings).result.live)
+    out[object[t]] = true;
+  return out;
+}
+
+// Lemma 2, the half that reliability is: what collides is in the set.
+TEST(CullideLemma, L2ObjectsThatCollideStayInThePcs) {
+  for_all(822, [](const Question& q, const Scene& scene, const CullSettings& settings,
+                  const Pairs& pairs) {
+    const std::vector<std::uint32_t> object = owners(scene);
+    for (const PassRule& rule : {kPlainRule, kQuickRule}) {
+      const std::vector<bool> pcs = in_pcs(rule, scene, q.drawing, settings);
+      for (const auto& [u, t] : pairs) RC_ASSERT(pcs[object[u]] && pcs[object[t]]);
+    }
+  });
+}
+
+TEST(CullideLemma, L2RawTrianglesOnACoarseGridLoseObjectsThatCollide) {
+  const Question raw = {"raw", lab::raw_on_ideal(), true};
+  int lost = 0;
+  for (int n = 0; n < 10; ++n) {
+    const Scene scene = lab::scene_of(lab::random_small(2200 + n, 50));
+    CullSettings settings = settings_for(raw.drawing, "z");
+    settings.resolution = 4;
+    const std::vector<bool> pcs = in_pcs(kPlainRule, scene, raw.drawing, settings);
+    const std::vector<std::uint32_t> object = owners(scene);
+    for (const auto& [u, t] : oracle(raw, scene, settings))
+      lost += !pcs[object[u]] || !pcs[object[t]];
+  }
+  EXPECT_GT(lost, 0);
+}
+
+// Lemma 2, the half that culls: how many objects stay although a view shows them fully visible with
+// respect to all earlier and to all later ones; and how many it shows so.
+struct Leavers {
+  int stayed = 0, shown = 0;
+};
+void count_leavers(const PassRule& rule, const Question& q, const Scene& scene,
+                   const CullSettings& settings, Leavers& out) {
+  std::vector<bool> shown(scene.objects.size());
+  {
+    const OneView view(scene, q.drawing, settings);
+    for (std::uint32_t o = 0; o < shown.size(); ++o) {
+      shown[o] = view.fully_visible(o, [o](std::uint32_t s) { return s < o; }) &&
+                 view.fully_visible(o, [o](std::uint32_t s) { return s > o; });
+    }
+  }
+  const std::vector<bool> pcs = in_pcs(rule, scene, q.drawing, settings);
+  for (std::size_t o = 0; o < shown.size(); ++o) {
+    out.shown += shown[o] && scene.objects[o].triangle_count > 0;
+    out.stayed += shown[o] && pcs[o];
+  }
+}
+
+TEST(CullideLemma, L2AnObjectFullyVisibleToBothSidesLeavesThePcs) {
+  for (const Question& q : questions()) {
+    SCOPED_TRACE(q.name);
+    Leavers found;
+    lab::expect_property(823, 20, [&] {
+      const Scene scene = lab::scene_of(*lab::small_triangles());
+      const auto name = *rc::gen::elementOf(std::vector<const char*>{"z", "-x", "1:2:3"});
+      for (const PassRule& rule : {kPlainRule, kQuickRule})
+        count_leavers(rule, q, scene, settings_for(q.drawing, name), found);
+      RC_ASSERT(found.stayed == 0);
+    });
+    EXPECT_GT(found.shown, 20);
+  }
+}
+
+TEST(CullideLemma, L2WithoutTheSecondPassObjectsStay) {
+  PassRule rule = kPlainRule;
+  for (bool& asks : rule.asks[1]) asks = false;
+  for (const Question& q : questions()) {
+    Leavers found;
+    for (int n = 0; n < 5; ++n) {
+      const Scene scene = lab::scene_of(lab::random_small(2300 + n, 12));
+      count_leavers(rule, q, scene, settings_for(q.drawing, "z"), found);
+    }
+    EXPECT_GT(found.stayed, 0) << q.name;
+  }
+}
+
+/// Two objects of points whose box is a cube that holds everything, so that all is in a region.
+void add_cube(std::vector<std::vector<std::array<Vec3, 3>>>& objects) {
+  for (const double x : {1.125, -1.125}) {
+    const Vec3 p(x, -1.125, -1.125), q(-x, 1.125, 1.125);
+    objects.push_back({{p, p, p}, {q, q, q}});
+  }
+}
+
+/// Two square rings of half-width 0.3, each of four flat bars: one around the origin, the other
+/// upright around (0.27, lift, 0); linked where lift is 0.
+Scene rings(double lift) {
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+  for (int ring = 0; ring < 2; ++ring) {
+    const auto at = [&](double a, double b) {
+      return ring == 0 ? Vec3(a, b, 0) : Vec3(0.27 + a, lift, b);
+    };
+    constexpr double kIn = 0.22, kOut = 0.3;
+    const double corner[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+    for (int k = 0; k < 4; ++k) {
+      const double *p = corner[k], *q = corner[(k + 1) % 4];
+      const Vec3 a = at(kIn * p[0], kIn * p[1]), b = at(kOut * p[0], kOut * p[1]),
+                 c = at(kOut * q[0], kOut * q[1]), d = at(kIn * q[0], kIn * q[1]);
+      objects[ring].push_back({a, b, c});
+      objects[ring].push_back({a, c, d});
+    }
+  }
+  add_cube(objects);
+  return lab::scene_of(objects);
+}
+
+// The converse of lemma 2, "an object that collides with no other is not in the PCS", is false.
+// Linked rings do not touch, and in no view is one of them in front of the other.
+TEST(CullideLemma, L2LinkedRingsAreNeverFullyVisibleAlthoughTheyDoNotCollide) {
+  const auto is = [](std::uint32_t o) { return [o](std::uint32_t s) { return s == o; }; };
+  for (const Question& q : questions()) {
+    for (const char* name : {"1:2:3", "-2:1:1", "1:1:-3"}) {
+      CullSettings settings = settings_for(q.drawing, name);
+      settings.resolution = 96;
+      for (const double lift : {0.0, 0.8}) {
+        const Scene scene = rings(lift);
+        ASSERT_TRUE(lab::collisions(scene).empty());
+        const OneView view(scene, q.drawing, settings);
+        const bool apart = view.fully_visible(0, is(1)) || view.fully_visible(1, is(0));
+        EXPECT_EQ(apart, lift > 0) << q.name << ", " << name << ", lifted by " << lift;
+      }
+    }
+  }
+}
+
+// Nor is it true of triangles: those that are closer than the fattening can tell apart stay. Raw
+// ones leave, and so do fattened ones with room between them.
+TEST(CullideLemma, L2FattenedTrianglesCloserThanAPixelStayAlthoughTheyDoNotCollide) {
+  for (const Question& q : questions()) {
+    for (const double gap : {0.01, 0.8}) {
+      std::vector<std::vector<std::array<Vec3, 3>>> objects;
+      for (const double z : {0.0, gap})
+        objects.push_back({{Vec3(-0.5, -0.5, z - 0.5), Vec3(0.5, -0.5, z), Vec3(0, 0.5, z)}});
+      add_cube(objects);
+      const Scene scene = lab::scene_of(objects);
+      ASSERT_TRUE(lab::collisions(scene).empty());
+      const CullSettings settings = settings_for(q.drawing, "x,y,z");
+      for (const PassRule& rule : {kPlainRule, kQuickRule}) {
+        const std::vector<bool> pcs = in_pcs(rule, scene, q.drawing, settings);
+        const bool close = q.exact && gap < 0.1;
+        EXPECT_EQ(pcs[0] && pcs[1], close) << q.name << ", " << gap;
+        EXPECT_EQ(pcs[0] || pcs[1], close) << q.name << ", " << gap;
+      }
+    }
+  }
 }
 
 }  // namespace

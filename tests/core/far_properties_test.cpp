@@ -16,18 +16,8 @@ TEST(FarProperty, NoFamilyOfExtremeScenesLosesAPairOnTheWorstCanvas) {
 
 TEST(FarProperty, KeptCasesStayMended) { EXPECT_GT(lab::replay_cases(worst), 0); }
 
-// The property has teeth: without a radius some family loses a pair, and the counter-example
-// shrinks to a few triangles.
-TEST(FarProperty, WithoutARadiusItFails) {
-  const Fattener fattener = obb_fattener();
-  WorstCanvas canvas(fattener.solid);
-  bool missed = false;
-  lab::Random random(3);
-  for (int i = 0; i < 200 && !missed; ++i) {
-    missed = lab::far_on(canvas, lab::random_scene(5000 + i), fattener, "x,y,z", 32, 0)
-                 .accounting.false_negatives > 0;
-  }
-  EXPECT_TRUE(missed);
+TEST(FarProperty, EveryFamilyLosesPairsAtTheRadiusThatItNames) {
+  lab::expect_every_family_loses_pairs(worst, "worst");
 }
 
 }  // namespace

@@ -184,6 +184,8 @@ TEST(GlCanvas, NoticesEveryFault) {
     EXPECT_EQ(canvas.run(pass), right);
     canvas.inject(fault);
     EXPECT_THROW(canvas.run(pass), Error);
+    EXPECT_THROW(canvas.run(pass), std::logic_error) << "nothing is believed any more";
+    canvas.begin(layers.window, drawables);
     EXPECT_EQ(canvas.run(pass), right) << "the pass after a fault is a clean one";
   }
 }

@@ -20,6 +20,10 @@ TEST(GlFarProperty, NorWithOcclusionQueriesOn24BitDepth) {
       canvases({.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}), 15, "gl24");
 }
 
+TEST(GlFarProperty, EveryFamilyLosesPairsAtTheRadiusThatItNames) {
+  lab::expect_every_family_loses_pairs(canvases(), "gl");
+}
+
 TEST(GlFarProperty, KeptCasesStayMended) { EXPECT_GT(lab::replay_cases(canvases()), 0); }
 
 }  // namespace

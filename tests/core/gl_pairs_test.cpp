@@ -13,6 +13,7 @@
 #include "experiments/builtin_scenes.h"
 #include "tests/core/far_properties.h"
 #include "tests/core/gl_lab.h"
+#include "tests/core/repeated_scenes.h"
 #include "tests/core/scenes.h"
 #include "verify/exact.h"
 
@@ -290,6 +291,35 @@ TEST(GlPairs, RefusePixelsBeyondAStorageBlock) {
   EXPECT_FALSE(find_pairs(crowded_scene(1, 100), {.resolution = 1}, free).candidates.empty());
 }
 
+// Where pairs repeat from pixel to pixel, each is emitted once, and the answer is that of every
+// pixel by itself: the CPU's with so little memory that it remembers nothing.
+TEST(GlPairs, EqualEveryPixelByItselfWherePairsRepeat) {
+  GlPairs tight(lab::context(), {.memory = 200'000});
+  std::size_t pairs = 0;
+  lab::for_each_task([&](const PairTask& task, const std::string& name) {
+    SCOPED_TRACE(name);
+    PairCounts counts;
+    const std::vector<TrianglePair> expected = cpu_pair_backend(1, 1)->raw_pairs(task, counts);
+    pairs += expected.size();
+    EXPECT_EQ(shared().raw_pairs(task, counts), expected);
+    EXPECT_EQ(tight.raw_pairs(task, counts), expected);
+  });
+  EXPECT_GT(pairs, 1'000'000u);
+}
+
+// The twin: bits of an earlier call make pairs disappear.
+TEST(GlPairsTwin, WithStaleBitsPairsAreLost) {
+  const Scene scene = lab::coincident(150, 0, 3);
+  const PairRegions regions = pair_regions(scene, 0, false, 1);
+  PairScene seen;
+  ASSERT_TRUE(look(scene, regions, regions.triangles, parse_view("z"), 9, 0, 1, seen));
+  PairCounts counts;
+  EXPECT_EQ(shared().raw_pairs(seen.task, counts).size(), 150u * 150);
+  shared().inject(PairFault::stale_bits, 0);
+  EXPECT_EQ(shared().raw_pairs(seen.task, counts).size(), 0u);
+  EXPECT_EQ(shared().raw_pairs(seen.task, counts).size(), 150u * 150);
+}
+
 TEST(GlPairs, NoticeEveryFault) {
   const Scene scene = mixed_scene();
   const PairSettings settings{.views = parse_views("z"), .resolution = 24};
@@ -315,8 +345,9 @@ TEST(GlPairs, NoticeEveryFault) {
     backend.inject(PairFault::corrupted_count, 37 * at);
     EXPECT_THROW(find_pairs(scene, settings, backend), Error) << "count " << 37 * at;
   }
-  // The twin: a fault beyond the last dispatch is none, and nothing of the others is left.
-  backend.inject(PairFault::lost_dispatch, again);
+  // The twin: a fault beyond the last dispatch is none, and nothing of the others is left. After
+  // one the call is like the first.
+  backend.inject(PairFault::lost_dispatch, dispatches);
   EXPECT_EQ(find_pairs(scene, settings, backend).candidates, clean.candidates);
 }
 

@@ -42,7 +42,7 @@ TEST(GlProbe, EveryAssumptionIsProbedAndHolds) {
     EXPECT_FALSE(r.name.empty() || r.unit.empty() || r.note.empty()) << r.name;
     probed.insert(r.assumption);
   }
-  EXPECT_EQ(probed, (std::set<std::string>{"A1", "A2", "A3", "A4", "A5", "A6", "A7"}));
+  EXPECT_EQ(probed, (std::set<std::string>{"A1", "A2", "A3", "A4", "A5", "A6", "A7", "A8"}));
 }
 
 TEST(GlProbe, OtherSeedsPassToo) {
@@ -158,9 +158,45 @@ TEST(GlProbe, FailsWhereQueriesAreBlind) {
 TEST(GlProbe, FailsWhereAFaultGoesUnnoticed) {
   ProbeOptions options;
   options.skipped_faults = true;
-  EXPECT_EQ(failures(options, "A7"),
-            (Names{"faults are noticed, flags, 32F", "faults are noticed, occlusion queries, 32F",
-                   "faults are noticed, occlusion queries, 24 bits"}));
+  EXPECT_EQ(
+      failures(options, "A7"),
+      (Names{"faults are noticed, flags, 32F", "faults are noticed, occlusion queries, 32F",
+             "faults are noticed, occlusion queries, 24 bits", "faults are noticed, far-pairs"}));
+}
+
+TEST(GlProbe, FailsWhereATexelIsNotWhatWasStored) {
+  ProbeOptions options;
+  options.damaged_texel = true;
+  EXPECT_EQ(failures(options, "A5"), Names{"texels of the depth buffer, 32F"});
+}
+
+TEST(GlProbe, FailsWhereAtomicsLoseOrDouble) {
+  ProbeOptions options;
+  options.plain_atomics = true;
+  EXPECT_EQ(failures(options, "A8"), Names{"atomics"});
+}
+
+TEST(GlProbe, FailsWhereReadsComeBeforeWrites) {
+  ProbeOptions options;
+  options.unordered_reads = true;
+  EXPECT_EQ(failures(options, "A8"), (Names{"dispatch after dispatch", "dispatch after draw"}));
+}
+
+// FAR pairs relies on no rasterizer, and what it relies on is the same either way.
+TEST(GlProbe, PairsAloneRunWhatFarPairsReliesOn) {
+  std::set<std::string> all, alone;
+  for (const ProbeResult& r : run({.brief = true}, ""))
+    if (r.pairs) all.insert(r.assumption + " " + r.name);
+  for (const ProbeResult& r : run({.brief = true, .use = ProbeUse::drawing}, ""))
+    EXPECT_TRUE(r.drawing && r.name != "faults are noticed, far-pairs") << r.name;
+  for (const ProbeResult& r : run({.brief = true, .use = ProbeUse::pairs}, "")) {
+    EXPECT_TRUE(r.pass) << r.name << " " << r.note;
+    EXPECT_TRUE(r.pairs);
+    alone.insert(r.assumption + " " + r.name);
+  }
+  EXPECT_EQ(all, alone);
+  EXPECT_TRUE(alone.count("A8 atomics"));
+  EXPECT_TRUE(alone.count("A7 faults are noticed, far-pairs"));
 }
 
 }  // namespace

@@ -10,19 +10,16 @@
 #include <string>
 #include <vector>
 
+#include "core/kernel_case.h"
 #include "tests/core/chance.h"
 #include "tests/core/rational.h"
+#include "verify/interval_cases.h"
 
 namespace farcull::lab {
 
 using FloatTriangle = std::array<std::array<float, 3>, 3>;
 
-struct Answer {
-  std::array<float, 3> lo, hi;
-  float row_lo, row_hi;
-  bool hit;
-  float near, far;
-};
+using Answer = IntervalAnswer;
 
 inline float number(float x) { return x; }
 inline float number(glsl_chance::Chance x) { return x.value(); }
@@ -65,95 +62,12 @@ namespace {
 
 using lab::Answer;
 using lab::FloatTriangle;
+using rational::clipped;
 using rational::Q;
 using rational::Q3;
 using rational::Random;
 
 using Evaluate = Answer (*)(const FloatTriangle&, float, int, int, float);
-
-// The part of a convex polygon where sign * p[axis] <= sign * bound.
-std::vector<Q3> clipped(const std::vector<Q3>& polygon, int axis, int sign, const Q& bound) {
-  std::vector<Q3> out;
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Q3 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
-    const Q dp = sign * (p[axis] - bound), dq = sign * (q[axis] - bound);
-    if (dp <= 0) out.push_back(p);
-    if ((dp < 0 && dq > 0) || (dp > 0 && dq < 0))
-      out.push_back(rational::between(p, q, dp / (dp - dq)));
-  }
-  return out;
-}
-
-float usable(double x) { return std::abs(x) < 0x1p-60 ? 0.f : static_cast<float>(x); }
-
-// Triangles of every kind that has been trouble, near the pixels around `at`.
-FloatTriangle draw(Random& random) {
-  const double reach = std::exp2(random.uniform(2, random.below(8) == 0 ? 20 : 12));
-  const Vec3 at(random.uniform(0, reach), random.uniform(0, reach), random.uniform(-reach, reach));
-  const double size = std::exp2(random.uniform(-6, 4));
-  std::array<Vec3, 3> t;
-  for (Vec3& p : t) p = at + random.cube(size);
-  const Vec3 along = random.cube(1).normalized();
-  switch (random.below(9)) {
-    case 0:  // needles
-      t[1] = t[0] + 40 * size * along;
-      t[2] = t[1] + random.scaled3(-24, -8);
-      break;
-    case 1:  // corners at the centres, borders and corners of pixels
-      for (Vec3& p : t) {
-        p = p.array().round() + 0.5 * random.below(2);
-        if (random.coin()) p += random.scaled3(-24, -12);
-      }
-      break;
-    case 2:  // the plane all but contains the view
-      t[2].head<2>() = t[0].head<2>() + random.uniform(-2, 3) * (t[1] - t[0]).head<2>() +
-                       random.scaled3(-28, -16).head<2>();
-      t[2].z() += random.scaled(0, 6);
-      break;
-    case 3:  // segments and points
-      t[2] = t[random.below(2)];
-      if (random.below(4) == 0) t[1] = t[0];
-      break;
-    case 4:  // edges all but along a row or a column
-      t[1][random.below(2)] = t[0][0] + random.scaled(-26, -14);
-      t[1].y() = std::nextafter(t[0].y(), random.sign() * 1e30);
-      break;
-    case 5:  // an edge on the border of a pixel
-      t[0].y() = t[1].y() = std::round(t[0].y());
-      break;
-    case 6:  // a corner on the border, the others on both sides
-      t[0].y() = std::round(t[0].y());
-      t[1].y() = t[0].y() + random.uniform(0, size);
-      t[2].y() = t[0].y() - random.uniform(0, size);
-      break;
-    default:
-      break;
-  }
-  FloatTriangle out;
-  for (int k = 0; k < 3; ++k) {
-    for (int axis = 0; axis < 3; ++axis) {
-      out[k][axis] = usable(std::clamp(t[k][axis], -0x1p20, 0x1p20));
-    }
-  }
-  return out;
-}
-
-// A real triangle whose points lie within `widening` and half a unit in the last place of those of
-// the float triangle; mostly at the limit.
-std::vector<Q3> real_triangle(Random& random, const FloatTriangle& t, float widening) {
-  std::vector<Q3> out(3);
-  const bool together = random.coin();
-  std::array<int, 3> shift{};
-  for (int& s : shift) s = random.below(3) - 1;
-  for (int k = 0; k < 3; ++k) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const double room = widening + 0x1p-24 * std::abs(t[k][axis]);
-      const int s = together ? shift[axis] : random.below(3) - 1;
-      out[k][axis] = Q(t[k][axis]) + s * Q(room);
-    }
-  }
-  return out;
-}
 
 struct Tally {
   std::size_t checked = 0;
@@ -178,19 +92,15 @@ Tally compare(Evaluate evaluate, int triangles, float shrink = 0) {
   Tally tally;
   for (int n = 0; n < triangles; ++n) {
     if (triangles > 100) glsl_chance::rounding() = static_cast<glsl_chance::Rounding>(n % 3);
-    const FloatTriangle t = draw(random);
-    const float widening = static_cast<float>(
-        random.coin() ? 0x1p-40 : std::exp2(random.uniform(-12, random.below(4) == 0 ? 4 : -2)));
-    const std::vector<Q3> real = real_triangle(random, t, widening);
+    const IntervalCase c = interval_cases::random_case(random);
+    const FloatTriangle& t = c.corners;
+    const float widening = c.widening;
+    const std::vector<Q3> real = interval_cases::real_triangle(c);
     // Pixels around one point of the triangle; few, since each is clipped with rationals.
-    const int k = random.below(3);
-    const double mix = random.coin() ? 0 : random.uniform(0, 1);
-    const int i0 = static_cast<int>(std::floor(t[k][0] + mix * (t[(k + 1) % 3][0] - t[k][0])));
-    const int j0 = static_cast<int>(std::floor(t[k][1] + mix * (t[(k + 1) % 3][1] - t[k][1])));
-    for (int j = j0 - 1; j <= j0 + 1; ++j) {
+    for (int j = c.j - 1; j <= c.j + 1; ++j) {
       const std::vector<Q3> row = clipped(clipped(real, 1, -1, Q(j)), 1, 1, Q(j + 1));
       if (row.empty()) continue;
-      for (int i = i0 - 1; i <= i0 + 1; ++i) {
+      for (int i = c.i - 1; i <= c.i + 1; ++i) {
         const std::vector<Q3> part = clipped(clipped(row, 0, -1, Q(i)), 0, 1, Q(i + 1));
         if (part.empty()) continue;
         const Answer answer = evaluate(t, widening, i, j, shrink);
@@ -236,7 +146,7 @@ TEST(Interval, LosesPointsWhereThePixelIsTooSmall) {
 TEST(Interval, IsTight) {
   Random random(12);
   for (int n = 0; n < 3000; ++n) {
-    const FloatTriangle t = draw(random);
+    const FloatTriangle t = interval_cases::random_triangle(random);
     float most = 0;
     for (const auto& p : t) {
       for (const float x : p) most = std::max(most, std::fabs(x));
@@ -250,8 +160,8 @@ TEST(Interval, IsTight) {
     // Three times the margin, once for each rounding of a border (docs/budget.md, "Interval
     // pairs").
     const Q grown = Q(3 * 0x1p-17 * (1.0 + most));
-    std::vector<Q3> part = clipped(clipped(exact, 1, -1, j - grown), 1, 1, j + 1 + grown);
-    part = clipped(clipped(part, 0, -1, i - grown), 0, 1, i + 1 + grown);
+    const std::vector<Q3> part =
+        interval_cases::part_in(exact, i - grown, i + 1 + grown, j - grown, j + 1 + grown);
     ASSERT_FALSE(part.empty());
     Q near = part[0][2], far = part[0][2];
     for (const Q3& p : part) {
@@ -261,6 +171,79 @@ TEST(Interval, IsTight) {
     EXPECT_GE(Q(answer.near), near - grown);
     EXPECT_LE(Q(answer.far), far + grown);
   }
+}
+
+// A cell to be cut into 8 parts along an axis, and a coordinate about it: beside the border of a
+// part, inside, outside.
+struct CutCell {
+  float from, side, p;
+  float parts_per_px() const { return 8 / side; }
+  int exact_part() const {  // double holds all of it exactly
+    const double part = std::floor((double(p) - from) * parts_per_px());
+    return static_cast<int>(std::clamp(part, 0.0, 7.0));
+  }
+};
+
+CutCell random_cut(Random& random) {
+  CutCell out{};
+  const int level = random.below(3);
+  out.side = std::ldexp(1.0f, -3 * level);
+  out.from = static_cast<float>(random.below(1 << random.below(15)));
+  for (int k = 1; k <= level; ++k) out.from += std::ldexp(float(random.below(8)), -3 * k);
+  out.p = out.from + out.side * float(random.below(9)) / 8;
+  switch (random.below(4)) {
+    case 0:
+      break;
+    case 1:
+      out.p = out.from + static_cast<float>(random.uniform(-0.1, 1.1)) * out.side;
+      break;
+    case 2:
+      out.p = static_cast<float>(random.scaled(-140, 20));
+      break;
+    default: {  // a few floats beside the border
+      const float end = random.coin() ? HUGE_VALF : -HUGE_VALF;
+      for (int k = random.below(5); k > 0; --k) out.p = std::nextafter(out.p, end);
+      break;
+    }
+  }
+  return out;
+}
+
+// docs/budget.md, "Parts of a pixel": no rounding moves the border of a part.
+TEST(Interval, PartsOfAPixelAreExactHoweverTheDeviceRounds) {
+  using glsl_chance::Rounding;
+  Random random(14);
+  int seen[8] = {};
+  for (int n = 0; n < 300'000; ++n) {
+    const CutCell cell = random_cut(random);
+    glsl_chance::rounding() = std::array{Rounding::random, Rounding::up, Rounding::down}[n % 3];
+    const int part =
+        interval_chance::far_part(cell.p, cell.from, cell.parts_per_px(), glsl_chance::Chance(7));
+    ASSERT_EQ(part, cell.exact_part())
+        << cell.p << " in the cell of side " << cell.side << " at " << cell.from;
+    ASSERT_EQ(part, interval::far_part(cell.p, cell.from, cell.parts_per_px(), 7));
+    ++seen[part];
+  }
+  glsl_chance::rounding() = Rounding::random;
+  for (const int count : seen) EXPECT_GT(count, 1000);
+}
+
+// With a division by the part's side, which GLSL lets err by 2.5 u, a coordinate falls into the
+// next part although it is more than 1 u of its distance from the cell away from that.
+TEST(Interval, ADivisionWouldMoveTheBorderOfAPart) {
+  using glsl_chance::Chance;
+  Random random(14);
+  double most = 0;
+  for (int n = 0; n < 300'000; ++n) {
+    const CutCell cell = random_cut(random);
+    const Chance quotient = (Chance(cell.p) - cell.from) / Chance(cell.side / 8);
+    const int part = static_cast<int>(clamp(quotient, 0.0f, 7.0f)), truth = cell.exact_part();
+    if (part == truth) continue;
+    const double at = (double(cell.p) - cell.from) * cell.parts_per_px();
+    most = std::max(most, std::abs(at - std::max(part, truth)) / at);
+  }
+  EXPECT_GT(most, 0x1p-23);
+  EXPECT_LE(most, 2.5 * 0x1p-23 * (1 + 0x1p-20));
 }
 
 TEST(Interval, SlicesNeverDecrease) {

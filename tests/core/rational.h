@@ -1,27 +1,17 @@
-// Exact arithmetic for tests of rounded geometry: a double or float converts to a rational exactly,
-// so a claimed bound is decided, not estimated.
+// What tests of rounded geometry add to verify/rational.h: exact images of points, and random
+// numbers whose seed is printed.
 #pragma once
 
-#include <gmpxx.h>
-
-#include <array>
-#include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "core/view.h"
+#include "verify/rational.h"
 
 namespace farcull::rational {
-
-using Q = mpq_class;
-using Q3 = std::array<Q, 3>;
-
-inline Q3 exact(const Vec3& p) { return {Q(p[0]), Q(p[1]), Q(p[2])}; }
 
 /// map * (x - origin) without rounding.
 inline Q3 image(const Window& window, const Vec3& x) {
@@ -34,15 +24,6 @@ inline Q3 image(const Window& window, const Vec3& x) {
   return out;
 }
 
-inline Q3 minus(const Q3& a, const Q3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline Q dot(const Q3& a, const Q3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-/// a + t (b - a)
-inline Q3 between(const Q3& a, const Q3& b, const Q& t) {
-  Q3 out;
-  for (int i = 0; i < 3; ++i) out[i] = a[i] + t * (b[i] - a[i]);
-  return out;
-}
-
 inline std::vector<Vec3> box_corners(const Box& box) {
   std::vector<Vec3> corners;
   for (int bits = 0; bits < 8; ++bits) {
@@ -52,32 +33,17 @@ inline std::vector<Vec3> box_corners(const Box& box) {
   return corners;
 }
 
-/// A generator with the draws that these tests share. Its seed is printed; FARCULL_TEST_SEED gives
-/// another one.
-class Random {
+/// The seed is printed; FARCULL_TEST_SEED gives another one.
+class Random : public Draws {
  public:
-  explicit Random(std::uint64_t seed) {
-    if (const char* given = std::getenv("FARCULL_TEST_SEED")) seed = std::stoull(given);
-    std::cout << "[ seed " << seed << "; FARCULL_TEST_SEED=... for another ]\n";
-    engine_.seed(seed);
-  }
-
-  std::uint64_t bits() { return engine_(); }
-  int below(int n) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(n)); }
-  bool coin() { return (engine_() >> 33) & 1; }
-  double uniform(double lo, double hi) {
-    return lo + (hi - lo) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
-  }
-  double sign() { return coin() ? 1 : -1; }
-  /// A random sign and magnitude 2^lo .. 2^hi, the exponent uniform.
-  double scaled(double lo, double hi) { return sign() * std::exp2(uniform(lo, hi)); }
-  Vec3 cube(double half) {
-    return {uniform(-half, half), uniform(-half, half), uniform(-half, half)};
-  }
-  Vec3 scaled3(double lo, double hi) { return {scaled(lo, hi), scaled(lo, hi), scaled(lo, hi)}; }
+  explicit Random(std::uint64_t seed) : Draws(given(seed)) {}
 
  private:
-  std::mt19937_64 engine_;
+  static std::uint64_t given(std::uint64_t seed) {
+    if (const char* text = std::getenv("FARCULL_TEST_SEED")) seed = std::stoull(text);
+    std::cout << "[ seed " << seed << "; FARCULL_TEST_SEED=... for another ]\n";
+    return seed;
+  }
 };
 
 /// An axis view, a round oblique one, or a direction with components of very different sizes.

@@ -120,7 +120,20 @@ TEST(ErrorTimeChapter, HasTheFrontOfWhatNothingBeats) {
   EXPECT_EQ(series_of(chapter, 0, "Pareto front")->x, (std::vector<double>{1, 4, 4, 9}));
   EXPECT_EQ(series_of(chapter, 0, "Pareto front")->y, (std::vector<double>{5, 5, 0, 0}));
   EXPECT_TRUE(says(chapter.findings, "fcl-float misses 2 of 20 colliding pairs and reports 3"));
-  EXPECT_TRUE(says(chapter.findings, "that of FAR pairs in 4 ms"));
+  EXPECT_TRUE(says(chapter.findings,
+                   "that of FAR pairs; the next method, exact, takes 2.25 (2.25 to 2.25) times"));
+}
+
+// 9 over 4 in the median; at least 8 over 5, at most 12 over 3.
+TEST(ErrorTimeChapter, GivesRatiosWithWhatSingleRunsAllow) {
+  StoredStudy stored = stored_of("error-time", timed_rows());
+  const auto spread = [&](std::size_t row, double least, double most) {
+    stored.rows.at(row).measurement.times["total_min"] = least;
+    stored.rows.at(row).measurement.times["total_max"] = most;
+  };
+  spread(1, 3, 5);
+  spread(2, 8, 12);
+  EXPECT_TRUE(says(error_time_chapter(stored).findings, "takes 2.25 (1.60 to 4) times as long"));
 }
 
 // The twin: the front follows the rows, whoever they favour.
@@ -130,7 +143,8 @@ TEST(ErrorTimeChapter, GivesTheFrontToWhoeverIsAhead) {
   const Chapter chapter = error_time_chapter(stored_of("error-time", rows));
   ASSERT_EQ(chapter.tables.at(0).rows.size(), 1u);
   EXPECT_EQ(chapter.tables[0].rows[0][1], "exact");
-  EXPECT_TRUE(says(chapter.findings, "that of exact in 0.500 ms"));
+  EXPECT_TRUE(
+      says(chapter.findings, "that of exact; the next method, FAR pairs, takes 8 (8 to 8)"));
 }
 
 TEST(ErrorTimeChapter, NamesLibrariesThatAreNotThere) {

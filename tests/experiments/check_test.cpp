@@ -6,8 +6,11 @@
 
 #include "experiments/builtin_scenes.h"
 #include "experiments/mesh_text.h"
+#include "experiments/output.h"
+#include "experiments/tables.h"
 #include "tests/experiments/error_of.h"
 #include "verify/exact.h"
+#include "verify/pair_list.h"
 
 namespace farcull {
 namespace {
@@ -49,8 +52,12 @@ class Check : public testing::Test {
 TEST_F(Check, ProvedIsStatus0) {
   const Answer answer = check({written(), {"random-soup"}, ""});
   EXPECT_EQ(answer.status, 0);
-  EXPECT_EQ(answer.text.substr(0, 7), "proved\n");
+  EXPECT_EQ(
+      answer.text.substr(0, answer.text.find('\n')),
+      "proved: these " + grouped(record.pairs.size()) + " pairs of the scene meet, and no others");
   EXPECT_NE(answer.text.find("unattested"), std::string::npos);
+  EXPECT_NE(answer.text.find("about the scene and not about the run"), std::string::npos);
+  EXPECT_NE(answer.text.find("  which pairs the run kept"), std::string::npos);
   EXPECT_NE(answer.text.find("ns per pair"), std::string::npos);
 }
 
@@ -73,6 +80,78 @@ TEST_F(Check, RefutedIsStatus1AndNamesThePair) {
   EXPECT_EQ(scene.objects[json["pair"]["b"]["object"]].first_triangle +
                 json["pair"]["b"]["triangle"].get<std::uint32_t>(),
             first.b);
+}
+
+// The list that a run wrote is proved with the certificate, or shown not to be the one.
+TEST_F(Check, ComparesTheListThatIsGiven) {
+  const auto check_list = [&](const std::string& list) {
+    return check({.certificate = written(),
+                  .scene = {"random-soup"},
+                  .json = "-",
+                  .pairs = folder.write("pairs.csv", list)});
+  };
+  const std::string list = pairs_csv(scene, record);
+  ASSERT_EQ(list, pair_list(scene, record.pairs));
+  const Answer same = check_list(list);
+  EXPECT_EQ(same.status, 0);
+  nlohmann::json json = nlohmann::json::parse(same.text);
+  EXPECT_EQ(json["verdict"], "proved");
+  EXPECT_EQ(json["list"]["given_is_found"], true);
+  EXPECT_EQ(json["list"]["found_sha256"], certificate.list_sha256);
+
+  const std::size_t second = list.find('\n') + 1;
+  const std::size_t third = list.find('\n', second) + 1;
+  for (const auto& [other, reason] :
+       {std::pair(list.substr(0, second), "line 2 is nothing"),               // lacks every pair
+        std::pair(list.substr(0, second) + list.substr(third), "line 2 is"),  // lacks one
+        std::pair(list + "0,0,1,0\n", "it is nothing"),                       // one too many
+        std::pair(list.substr(0, list.size() - 1), "other bytes"),
+        std::pair(std::string(), "line 1 is nothing")}) {
+    const Answer answer = check_list(other);
+    EXPECT_EQ(answer.status, 1);
+    json = nlohmann::json::parse(answer.text);
+    EXPECT_EQ(json["verdict"], "not proved");
+    EXPECT_EQ(json["list"]["given_is_found"], false);
+    EXPECT_TRUE(json["proves"].is_null());
+    EXPECT_NE(json["reason"].get<std::string>().find(reason), std::string::npos) << json["reason"];
+  }
+}
+
+// A run that missed every pair: what it wrote is refuted; forged to call them kept, the certificate
+// is at most true of the scene, and the list of the run is still not the one.
+TEST_F(Check, AForgedCertificateClaimsNothingOfTheRun) {
+  RunRecord missed = record;
+  missed.options.method = Method::quick_cullide;
+  missed.pairs.clear();
+  const std::string list = folder.write("pairs.csv", pairs_csv(scene, missed));
+  certificate = certificate_of(scene, missed, {});
+  EXPECT_EQ(check({written(), {"random-soup"}}).text.substr(0, 8), "refuted:");
+  for (std::uint8_t& byte : certificate.evidence) {
+    if (byte == kMeets) byte |= kKept;
+  }
+  certificate.claims.kept += record.pairs.size();
+  certificate.claims.culled -= record.pairs.size();
+  certificate.run.method = "far";
+  const Answer forged = check({written(), {"random-soup"}});
+  EXPECT_EQ(forged.status, 1);
+  EXPECT_EQ(forged.text.substr(0, 58),
+            "not proved: the certificate is of another list of pairs: l");
+  certificate.list_sha256 = pair_list_hash(scene, record.pairs);
+  const Answer of_the_scene = check({written(), {"random-soup"}});
+  EXPECT_EQ(of_the_scene.status, 0);
+  EXPECT_NE(of_the_scene.text.find("  that the method was far\n  which pairs the run kept"),
+            std::string::npos);
+  EXPECT_EQ(check({.certificate = written(), .scene = {"random-soup"}, .pairs = list}).status, 1);
+}
+
+TEST_F(Check, SaysWhatWasNotAsked) {
+  const Answer answer = check({written(), {"random-soup"}, "-"});
+  const nlohmann::json unasked = nlohmann::json::parse(answer.text)["scene"]["self_not_asked"];
+  EXPECT_EQ(unasked["objects"], scene.objects.size());
+  EXPECT_EQ(unasked["pairs"], certificate.not_asked.pairs);
+  EXPECT_GT(certificate.not_asked.pairs, 0u);
+  EXPECT_NE(check({written(), {"random-soup"}}).text.find("\nnot asked  whether an object meets"),
+            std::string::npos);
 }
 
 TEST_F(Check, AnotherSceneIsStatus1) {
@@ -109,7 +188,9 @@ TEST_F(Check, CertificateOfARunTellsWhatDrew) {
   EXPECT_EQ(run.radius_px, 0.8);
   EXPECT_EQ(run.views.size(), 2u);
   EXPECT_EQ(run.device.value().renderer, "some device");
-  EXPECT_EQ(run.assumptions.size(), 7u);
+  ASSERT_EQ(run.assumptions.size(), 8u);
+  for (std::size_t a = 0; a < 8; ++a)
+    EXPECT_TRUE(run.assumptions[a].starts_with("A" + std::to_string(a + 1))) << run.assumptions[a];
   EXPECT_FALSE(certificate.run.device.has_value());  // of the method exact
   EXPECT_EQ(certificate.run.resolution, 0u);
 }

@@ -1,11 +1,17 @@
 #include "experiments/frames.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <set>
 
 #include "experiments/builtin_scenes.h"
+#include "experiments/growing_output.h"
+#include "experiments/output.h"
 #include "tests/experiments/error_of.h"
 
 namespace farcull {
@@ -16,6 +22,11 @@ constexpr const char* kFloor = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 std::string falling(double z) {
   const std::string h = std::to_string(z), l = std::to_string(z - 0.25);
   return "v 0.1 0.1 " + h + "\nv 0.9 0.1 " + h + "\nv 0.1 0.1 " + l + "\nf 1 2 3\n";
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 FramesQuestion question(Method method, FrameRange range) {
@@ -93,12 +104,89 @@ TEST(Frames, MissingFilesAndScenesThatStandStillAreNamed) {
   folder.write("m_0.obj", kFloor);
   folder.write("m_1.obj", kFloor);
   const std::string path = folder.path("m_%d.obj");
-  EXPECT_EQ(error_of([&] { FrameSource({path}, {0, 2}, false); }).where, folder.path("m_2.obj"));
+  FrameSource source({path}, {0, 2}, false);
+  ASSERT_TRUE(source.missing().has_value());
+  EXPECT_EQ(source.missing()->where, folder.path("m_2.obj"));
+  EXPECT_EQ(source.at(1).triangles.size(), 1u);
+  EXPECT_EQ(error_of([&] { source.at(2); }).where, folder.path("m_2.obj"));
+  EXPECT_FALSE(FrameSource({path}, {0, 1}, false).missing().has_value());
+  EXPECT_EQ(error_of([&] { FrameSource({path}, {2, 3}, false); }).where, folder.path("m_2.obj"));
   EXPECT_EQ(error_of([&] {
               FrameSource({folder.path("m_0.obj")}, {0, 2}, false);
             }).where,
             "--frames");
   EXPECT_EQ(error_of([&] { FrameSource({"two-tori"}, {0, 2}, false); }).where, "--frames");
+}
+
+// What a frame gave is there when the next one begins, as a whole document.
+TEST(Frames, ARecordIsWholeAfterEachFrame) {
+  const ScratchFolder folder;
+  const std::string path = folder.write("record.json", "of an earlier run");
+  FrameRecord record(path);
+  std::size_t frames = 0;
+  std::string rows, csv;
+  FramesQuestion asked = question(Method::far_pairs, {0, 4});
+  const FramesResult result =
+      run_frames({"two-spheres"}, asked, {}, [&](const FrameReport& report) {
+        record.add(report);
+        const auto json = nlohmann::json::parse(text_of(path));
+        EXPECT_EQ(json["frames"].size(), ++frames);
+        EXPECT_EQ(json["frames"].back()["frame"], frames - 1);
+        EXPECT_EQ(json["summary"]["frames"], frames);
+        EXPECT_EQ(json["summary"]["wanted"], 5);
+        EXPECT_EQ(json["method"], "far-pairs");
+        EXPECT_EQ(std::count(report.rows.begin(), report.rows.end(), '\n') > 1, frames == 1);
+        csv += report.pairs_csv;
+      });
+  record.finish();
+  EXPECT_EQ(frames, 5u);
+  const std::string text = text_of(path);
+  EXPECT_EQ(text, nlohmann::ordered_json::parse(text).dump(2) + "\n");
+  EXPECT_FALSE(result.json.contains("frames"));
+  const FramesResult whole = run_frames({"two-spheres"}, asked);
+  EXPECT_EQ(whole.pairs_csv, csv);
+  EXPECT_EQ(whole.json["frames"].size(), 5u);
+}
+
+TEST(Frames, AMissingMeshLeavesTheFramesBeforeIt) {
+  const ScratchFolder folder;
+  for (const int frame : {0, 1, 3}) folder.write("m_" + std::to_string(frame) + ".obj", kFloor);
+  const std::string floor = folder.write("floor.obj", kFloor), path = folder.path("record.json");
+  {
+    FrameRecord record(path);
+    const auto run = [&] {
+      run_frames({folder.path("m_%d.obj"), floor}, question(Method::exact, {0, 3}), {},
+                 [&](const FrameReport& report) { record.add(report); });
+    };
+    EXPECT_EQ(error_of(run).where, folder.path("m_2.obj"));
+  }
+  const auto json = nlohmann::json::parse(text_of(path));
+  EXPECT_EQ(json["frames"].size(), 2u);
+  EXPECT_EQ(json["summary"]["frames"], 2);
+  EXPECT_EQ(json["summary"]["wanted"], 4);
+}
+
+// A file that may not grow any more holds what it held.
+TEST(GrowingOutput, AFullDiskLeavesWhatWasWhole) {
+  const ScratchFolder folder;
+  const std::string path = folder.path("growing");
+  prepare_output();
+  GrowingOutput output(path);
+  output.add("[1", "]");
+  output.add(",2", " ] ");
+  output.add(",3", "]");
+  EXPECT_EQ(text_of(path), "[1,2,3]");
+  rlimit before = {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit full = {.rlim_cur = 100, .rlim_max = before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
+  const std::string long_text = "," + std::string(200, '4');
+  EXPECT_EQ(error_of([&] { output.add(long_text, "]"); }).where, path);
+  EXPECT_EQ(text_of(path), "[1,2,3]");
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  output.add(long_text, "]");
+  output.finish();
+  EXPECT_EQ(text_of(path), "[1,2,3" + long_text + "]");
 }
 
 // A frame is what its file says, triangles included.

@@ -288,6 +288,46 @@ wait "$pid" || status=$?
 [[ $(md5sum <"$page") == "$before" ]] || fail "a report that was ended replaced the one before"
 leftover=$(find "$work" -name 'report.part-*')
 [[ -z $leftover ]] || fail "half a report is left: $leftover"
+# Killed while it draws: the next report takes that away, but not what another one still works on,
+# nor what only has such a name.
+rm -f "$work/drawing"
+PATH="$work/bin:$PATH" setsid "$farcull" report "$work/results" >/dev/null 2>&1 &
+pid=$!
+for ((i = 0; i < 100; ++i)); do
+  if [[ -e $work/drawing ]]; then break; fi
+  sleep 0.1
+done
+kill -KILL "$pid"
+wait "$pid" 2>/dev/null || true
+half=$(find "$work/results" -name 'report.part-*')
+[[ -d $half ]] || fail "a killed report left nothing: the case shows nothing"
+mkdir "$work/results/report.part-abcdef" "$work/results/report.part-notours"
+rm -f "$work/drawing"
+# This one draws until the report beside it has ended.
+# shellcheck disable=SC2016  # as above
+printf '#!/bin/sh\n[ "$1" = --version ] || { touch "%s"; until [ -e "%s" ]; do sleep 0.1; done; }\n' \
+  "$work/drawing" "$work/ended" >"$work/bin/gnuplot"
+PATH="$work/bin:$PATH" "$farcull" report "$work/results" >/dev/null 2>&1 &
+pid=$!
+for ((i = 0; i < 100; ++i)); do
+  if [[ -e $work/drawing ]]; then break; fi
+  sleep 0.1
+done
+[[ ! -e $half ]] || fail "what a killed report left is still there"
+working=$(find "$work/results" -name 'report.part-??????' -not -name report.part-abcdef)
+[[ -d $working ]] || fail "no report is being made: the case shows nothing"
+"$farcull" report "$work/results" >/dev/null 2>&1 || fail "a report beside another fails"
+[[ -d $working ]] || fail "a report took away what another one works on"
+kill -TERM "$pid"
+touch "$work/ended"
+wait "$pid" 2>/dev/null || true
+for name in abcdef notours; do
+  [[ -d $work/results/report.part-$name ]] || fail "a folder of somebody else is gone"
+  rmdir "$work/results/report.part-$name"
+done
+leftover=$(find "$work" -name 'report.part-*')
+[[ -z $leftover ]] || fail "half a report is left: $leftover"
+[[ ! -e $work/results/report/.unfinished ]] || fail "a report in its place holds its mark"
 
 ((failures == 0)) || exit 1
 echo "report.browser: ${#ids[@]} figures at two widths and in a PDF of $(pdfinfo "$work/page.pdf" | awk '/^Pages:/ { print $2 }') pages"

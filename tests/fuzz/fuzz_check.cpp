@@ -7,6 +7,7 @@
 #include "tests/fuzz/target.h"
 #include "verify/certificate.h"
 #include "verify/exact.h"
+#include "verify/pair_list.h"
 
 namespace farcull {
 namespace {
@@ -59,19 +60,25 @@ Scene make_scene() {
 
 struct Truth {
   Scene scene = make_scene();
-  std::vector<TrianglePair> pairs;  // with overlapping boxes, sorted
+  std::vector<TrianglePair> pairs;    // with overlapping boxes, sorted
+  std::vector<TrianglePair> meeting;  // of these
   std::vector<bool> meets;
+  std::string list_sha256;
+  std::uint64_t not_asked = 0;  // pairs of triangles of one object
 
   Truth() {
     const std::vector<Box> boxes = triangle_boxes(scene);
     const std::vector<std::uint32_t> owner = owners(scene);
     for (std::uint32_t a = 0; a < boxes.size(); ++a) {
       for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
+        not_asked += owner[a] == owner[b];
         if (owner[a] == owner[b] || !overlap(boxes[a], boxes[b])) continue;
         pairs.push_back({a, b});
         meets.push_back(intersects(scene.corners(a), scene.corners(b)));
+        if (meets.back()) meeting.push_back({a, b});
       }
     }
+    list_sha256 = pair_list_hash(scene, meeting);
   }
 };
 
@@ -113,6 +120,7 @@ Answer judge(const Certificate& certificate, const CheckResult& result) {
   }
   const Certificate::Claims found = count(certificate);
   require(result.found == found, "wrong counts found");
+  require(result.meeting == t.meeting && result.list_sha256 == t.list_sha256, "another list");
   std::size_t culled_meeting = 0;
   std::optional<std::size_t> first;  // that contradicts the truth
   bool says_nothing = false;
@@ -130,7 +138,10 @@ Answer judge(const Certificate& certificate, const CheckResult& result) {
     return Answer::refuted;
   }
   if (result.verdict != Verdict::proved) return Answer::not_proved;
-  require(!result.pair && !says_nothing && certificate.claims == found, "proved, and it is not so");
+  require(!result.pair && !says_nothing && certificate.claims == found &&
+              certificate.list_sha256 == t.list_sha256 &&
+              certificate.not_asked.pairs == t.not_asked,
+          "proved, and it is not so");
   return Answer::proved;
 }
 
@@ -153,6 +164,8 @@ std::string text_around(std::span<const std::uint8_t> bytes) {
   Certificate certificate;
   certificate.scene = {t.scene.name, t.scene.objects.size(), t.scene.triangles.size(),
                        scene_hash(t.scene)};
+  certificate.not_asked = {t.scene.objects.size(), t.not_asked};
+  certificate.list_sha256 = t.list_sha256;
   if (!bytes.empty()) certificate.evidence.assign(bytes.begin() + 1, bytes.end());
   if (certificate.evidence.size() != t.pairs.size()) return to_text(certificate);
   Certificate::Claims& claims = certificate.claims = count(certificate);

@@ -10,11 +10,13 @@
 #include <cstdio>
 #include <iostream>
 
+#include "embedded/exact_glsl.h"
 #include "offsets/kernel.h"
 #include "offsets/obb.h"
 #include "offsets/round.h"
-#include "tests/offsets/exact_cases.h"
-#include "tests/offsets/exact_line.h"
+#include "tests/core/rational.h"
+#include "verify/exact_cases.h"
+#include "verify/exact_line.h"
 
 namespace farcull {
 namespace glsl::exact_without_widening {
@@ -412,6 +414,47 @@ TEST(ExactKernel, IsSeldomWiderThanTheBox) {
       mean, most, wider, found.ratio.size());
   EXPECT_LT(mean, 1);
   EXPECT_LT(wider * 1000, static_cast<long>(found.ratio.size()));
+}
+
+// ---- one normal ----
+
+/// The declarations of the kernel's GLSL text that hold a normal and are not precise: variables
+/// that far_touch takes, parameters that give one back, and the extent, whose bits count too.
+std::vector<std::string> not_precise(const std::string& glsl) {
+  std::vector<std::string> wanted = {"FAR_PRECISE float extent = "};
+  for (const std::string call : {"far_touch(d, mz, "}) {
+    for (std::size_t at = glsl.find(call); at != std::string::npos; at = glsl.find(call, at + 1)) {
+      const std::size_t from = at + call.size();
+      wanted.push_back("FAR_PRECISE vec4 " + glsl.substr(from, glsl.find(',', from) - from) +
+                       " = ");
+    }
+  }
+  for (const std::string name : {"void far_edge(", "void far_outward("}) {
+    const std::size_t at = glsl.find(name),
+                      to = glsl.find(')', glsl.find("FAR_INOUT(vec4)", at) + 15);
+    const std::string head = glsl.substr(at, to - at);
+    if (head.find(", FAR_PRECISE FAR_INOUT(vec4) n") == std::string::npos) wanted.push_back(head);
+  }
+  std::erase_if(wanted, [&](const std::string& text) {
+    return text.starts_with("FAR_PRECISE") && glsl.find(text) != std::string::npos;
+  });
+  return wanted;
+}
+
+// docs/budget.md, "One normal": GLSL promises that every use of n has the same bits only where the
+// variable is precise in the function that computes it. (The other parameters are values.)
+TEST(ExactKernel, EveryVariableThatHoldsANormalIsPrecise) {
+  const std::string glsl(embedded::exact_glsl);
+  EXPECT_EQ(not_precise(glsl), std::vector<std::string>{});
+  for (const std::string name : {"vec4 plane", "vec4 aside", "vec4 first", "vec4 last",
+                                 "FAR_INOUT(vec4) n", "float extent"}) {
+    const std::string qualified = "FAR_PRECISE " + name;
+    std::string without = glsl;
+    const std::size_t at = without.find(qualified);
+    ASSERT_NE(at, std::string::npos) << name;
+    without.replace(at, qualified.size(), name);
+    EXPECT_FALSE(not_precise(without).empty()) << name;
+  }
 }
 
 }  // namespace

@@ -10,7 +10,8 @@
 #include "offsets/exact.h"
 #include "offsets/obb.h"
 #include "tests/core/gl_lab.h"
-#include "tests/offsets/exact_line.h"
+#include "tests/core/rational.h"
+#include "verify/exact_line.h"
 
 namespace farcull {
 namespace {

@@ -5,11 +5,16 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <random>
 #include <stdexcept>
+#include <utility>
 
 #include "tests/verify/reference.h"
+#include "verify/accounting_parts.h"
+#include "verify/answers.h"
+#include "verify/box_pairs.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -294,6 +299,93 @@ TEST(Accounting, AgreesWithTheBoxJoinOnLargeScenes) {
     EXPECT_EQ(missing.false_negatives, 1u);
     EXPECT_EQ(missing.examples, Pairs{victim});
     EXPECT_TRUE(missing.adds_up());
+  }
+}
+
+// ---- twins that must fail ----
+
+/// Pairs of every class: 0 and 1 are neighbours that do not meet, 0 and 2 neighbours that do; 1
+/// meets 3; the boxes of 0 and 3 overlap, those of 3 and 4 do not.
+Scene scene_of_every_class() {
+  const Vec3 o(0, 0, 0), x(4, 0, 0), y(0, 4, 0), xy(4, 4, 0);
+  Scene scene =
+      reference::scene_of({{{o, x, y}, {x, xy, y}, {o, Vec3(3, 1, 1), Vec3(2, 1, -1)}},
+                           {{Vec3(3, 3, -1), Vec3(3, 3, 1), Vec3(3.5, 3, 1)},
+                            {Vec3(0.1, 0.1, 1), Vec3(0.2, 0.1, -0.1), Vec3(0.1, 0.2, 0.5)}}});
+  for (Object& object : scene.objects) object.self = true;
+  return scene;
+}
+
+TEST(AccountingTwin, AnAnswerThatIsNotGivenThrows) {
+  using enum PairAnswer;
+  const Pairs pairs = {{0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}};
+  std::vector<PairAnswer> answers = {apart, colliding, neighbours_apart, neighbours_colliding,
+                                     neighbours_unasked};
+  const Collisions all = count_answers(pairs, answers);
+  EXPECT_EQ(all.apart, 1u);
+  EXPECT_EQ(all.pairs, Pairs({{0, 2}}));
+  EXPECT_EQ(all.neighbours_apart, 1u);
+  EXPECT_EQ(all.neighbour_pairs, Pairs({{0, 4}}));
+  EXPECT_EQ(all.neighbours, 3u);
+  for (PairAnswer& answer : answers) {
+    const PairAnswer given = std::exchange(answer, undecided);
+    EXPECT_THROW(count_answers(pairs, answers), std::logic_error);
+    answer = given;
+  }
+  EXPECT_EQ(std::vector<PairAnswer>(1), std::vector{undecided});  // what nobody assigns
+  answers.pop_back();
+  EXPECT_THROW(count_answers(pairs, answers), std::logic_error);
+}
+
+TEST(AccountingTwin, AClassThatIsNotCountedThrows) {
+  const Scene scene = scene_of_every_class();
+  AccountingParts parts{decide, pairs_with_overlapping_boxes};
+  const Accounting right = account(scene, {}, {}, parts);
+  ASSERT_GE(right.neighbours, 1u);
+  ASSERT_GE(right.certified_by_predicates, 1u);
+  ASSERT_GE(right.certified_by_boxes, 1u);
+  ASSERT_GE(right.false_negatives, 2u);
+  int classes = 0;
+  const auto expect_caught = [&](const std::function<void(Collisions&)>& forget) {
+    parts.decide = [&](const Scene& s, std::span<const TrianglePair> p, const ExactQuestion& q) {
+      Collisions found = decide(s, p, q);
+      forget(found);
+      return found;
+    };
+    EXPECT_THROW(account(scene, {}, {}, parts), std::logic_error);
+    ++classes;
+  };
+  expect_caught([](Collisions& found) { found.apart = 0; });
+  expect_caught([](Collisions& found) { found.neighbours_apart = 0; });
+  expect_caught([](Collisions& found) { found.pairs.pop_back(); });
+  expect_caught([](Collisions& found) { found.neighbour_pairs.pop_back(); });
+  expect_caught([](Collisions& found) { ++found.apart; });
+  EXPECT_EQ(classes, 5);
+}
+
+TEST(AccountingTwin, AnEnumerationThatLosesABoxPairThrows) {
+  const Scene scene = scene_of_every_class();
+  for (const double clearance : {0.0, 0.25}) {
+    BoxPairs enumeration(scene, clearance);
+    Pairs pairs;
+    ASSERT_TRUE(enumeration.next(pairs, 1000));
+    ASSERT_GE(pairs.size(), 4u);
+    const auto with = [&](const Pairs& enumerated) {
+      const auto overlapping = [&](const Scene&, double) {
+        PairSet set;
+        for (const TrianglePair& pair : enumerated) set.add(pair);
+        return set;
+      };
+      return account(scene, {}, {.clearance = clearance}, {decide, overlapping});
+    };
+    EXPECT_TRUE(with(pairs).adds_up());
+    for (std::size_t lost = 0; lost < pairs.size(); ++lost) {
+      Pairs fewer = pairs;
+      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(lost));
+      EXPECT_THROW(with(fewer), std::logic_error);
+      fewer.push_back(fewer.front());  // as many as before
+      EXPECT_THROW(with(fewer), std::logic_error);
+    }
   }
 }
 

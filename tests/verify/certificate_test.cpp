@@ -18,6 +18,7 @@
 #include "verify/box_pairs.h"
 #include "verify/exact.h"
 #include "verify/integer_pair.h"
+#include "verify/pair_list.h"
 
 namespace farcull {
 namespace {
@@ -147,6 +148,15 @@ TEST(Certificate, AHundredChangesAreCaught) {
     const std::size_t i = changes.pick(false, n % 2 == 0);
     changes.expect(Verdict::not_proved, std::nullopt,
                    [&](Certificate& x) { x.evidence[i] ^= kKept; });
+  }
+  for (std::size_t digit = 0; digit < 64; digit += 21) {  // another list
+    changes.expect(Verdict::not_proved, std::nullopt, [&](Certificate& x) {
+      x.list_sha256[digit] = x.list_sha256[digit] == 'a' ? 'b' : 'a';
+    });
+  }
+  for (const auto count : {&Certificate::Unasked::objects, &Certificate::Unasked::pairs}) {
+    changes.expect(Verdict::not_proved, std::nullopt,
+                   [&](Certificate& x) { --(x.not_asked.*count); });
   }
   for (const auto count : {&Certificate::Claims::box_pairs, &Certificate::Claims::kept,
                            &Certificate::Claims::culled, &Certificate::Claims::separated,
@@ -309,6 +319,43 @@ TEST(Certificate, RefusesListsThatCannotBeOfARun) {
   EXPECT_THROW(make({}, c.meeting), std::logic_error);             // colliding, but not kept
 }
 
+// What is proved is the set of pairs that meet, and nothing about the run. So a certificate of a
+// run that missed pairs, forged to call them kept, can at most say what is true of the scene.
+TEST(Certificate, ForgedForARunThatMissedPairsProvesNothingOfTheRun) {
+  const Case& c = spheres();
+  Certificate::Run run = some_run();
+  run.method = "quick-cullide";
+  const Certificate honest = make_certificate(c.scene, {}, {}, run);
+  EXPECT_EQ(honest.list_sha256, pair_list_hash(c.scene, {}));
+  const CheckResult refuted = c.check(honest);
+  EXPECT_EQ(refuted.verdict, Verdict::refuted);
+  EXPECT_EQ(refuted.culled_meeting, c.meeting.size());
+
+  Certificate forged = honest;
+  for (std::uint8_t& byte : forged.evidence) {
+    if (byte == kMeets) byte |= kKept;
+  }
+  recount(forged);
+  forged.run.method = "far";
+  const CheckResult other_list = c.check(forged);
+  EXPECT_EQ(other_list.verdict, Verdict::not_proved);
+  EXPECT_NE(other_list.reason.find("another list of pairs"), std::string::npos);
+  EXPECT_FALSE(other_list.pair.has_value());
+  EXPECT_EQ(other_list.meeting, c.meeting);
+
+  // With the hash of the right list it says nothing that is false. The list that the run wrote is
+  // not that list, and which pairs the run kept stays unattested.
+  forged.list_sha256 = pair_list_hash(c.scene, c.meeting);
+  const CheckResult proved = c.check(forged);
+  EXPECT_EQ(proved.verdict, Verdict::proved);
+  EXPECT_EQ(proved.meeting, c.meeting);
+  EXPECT_EQ(proved.list_sha256, forged.list_sha256);
+  EXPECT_NE(proved.list_sha256, honest.list_sha256);
+  ASSERT_GE(proved.unattested.size(), 2u);
+  EXPECT_EQ(proved.unattested[0], "that the method was far");
+  EXPECT_NE(proved.unattested[1].find("which pairs the run kept"), std::string::npos);
+}
+
 // ---- the text ----
 
 TEST(CertificateText, RoundTrips) {
@@ -327,6 +374,7 @@ RC_GTEST_PROP(CertificateText, RoundTripsAnyEvidenceAndCounts,
   Certificate certificate;
   certificate.scene.hash = "0123456789abcdef";
   certificate.evidence = evidence;
+  certificate.list_sha256 = std::string(64, 'a');
   certificate.claims.kept = count;
   for (const std::uint8_t letter : letters)
     certificate.run.offset += static_cast<char>(letter & 127);  // control characters and NUL too
@@ -345,6 +393,7 @@ TEST(CertificateText, WritesNamesThatAreNotUtf8) {
 std::string changed_text(const std::string& from, const std::string& to) {
   Certificate certificate;
   certificate.scene = {"name", 2, 2, "0123456789abcdef"};
+  certificate.list_sha256 = std::string(64, '7');
   certificate.run = some_run();
   certificate.evidence = {1, 2, 3, 4};
   std::string text = to_text(certificate);
@@ -384,13 +433,19 @@ TEST(CertificateText, RefusesWhatIsNoJson) {
 
 TEST(CertificateText, RefusesAnotherForm) {
   for (const char* text : {"null", "7", "\"text\"", "[]"}) expect_refused(text, "no object");
-  expect_refused("{}", "format is missing");
+  expect_refused("{}", "format is not");
   expect_refused(changed_text("farcull-certificate", "farcull-record"), "format is not");
-  for (const char* version : {"1", "3", "0", "-1", "1.0", "\"1\"", "null", "[1]"})
-    expect_refused(changed_text("\"version\": 2", std::string("\"version\": ") + version),
+  for (const char* version : {"1", "2", "4", "0", "-1", "3.0", "\"3\"", "null", "[3]"})
+    expect_refused(changed_text("\"version\": 3", std::string("\"version\": ") + version),
                    "version is not");
-  expect_refused(changed_text("\"version\": 2", "\"version\": 2, \"more\": 2"),
+  expect_refused(changed_text("\"version\": 3", "\"version\": 3, \"more\": 2"),
                  "'more' is unknown");
+  expect_refused(changed_text("\"list_sha256\"", "\"list_sha1\""), "list_sha256 is missing");
+  expect_refused(changed_text("\"not_asked\"", "\"not\""), "not_asked is missing");
+  expect_refused(changed_text("\"pairs\": 0", "\"pairs\": -1"), "not_asked.pairs");
+  const std::string hash(64, '7');
+  for (const std::string& other : {hash.substr(1), hash + "7", hash.substr(1) + "F", std::string()})
+    expect_refused(changed_text(hash, other), "list_sha256 is not 64");
   expect_refused(changed_text("\"kept\": 0", "\"keep\": 0"), "claims.kept is missing");
   expect_refused(changed_text("\"kept\": 0", "\"kept\": 0, \"\xc3\xa9\": 0"), "is unknown");
   for (const char* count : {"-1", "1.5", "1e3", "\"1\"", "null", "{}", "18446744073709551616"})

@@ -1,0 +1,216 @@
+// Colliders and canvases on GL beside each other, beside contexts of the caller's own, and in
+// several threads.
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <optional>
+#include <random>
+#include <thread>
+
+#include "core/error.h"
+#include "core/gl_canvas.h"
+#include "experiments/builtin_scenes.h"
+#include "tests/faults/flat_scene.h"
+
+namespace farcull {
+namespace {
+
+const ColliderOptions kGl{.device = ColliderDevice::gl};
+
+const lab::FlatScene& spheres() {
+  static const lab::FlatScene scene(make_builtin_scene("two-spheres"), false);
+  return scene;
+}
+
+// A context as a host program has one, of OpenGL or OpenGL ES, made with EGL alone.
+class HostContext {
+ public:
+  explicit HostContext(EGLenum api = EGL_OPENGL_API) : api_(api) {
+    std::array<EGLDeviceEXT, 16> devices;
+    EGLint count = 0;
+    if (!eglQueryDevicesEXT(devices.size(), devices.data(), &count)) return;
+    for (EGLint d = 0; d < count && context_ == EGL_NO_CONTEXT; ++d) {
+      display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[d], nullptr);
+      if (display_ == EGL_NO_DISPLAY || !eglInitialize(display_, nullptr, nullptr)) continue;
+      eglBindAPI(api);
+      const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_NONE};
+      context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, version);
+    }
+    eglBindAPI(EGL_OPENGL_API);
+  }
+  ~HostContext() {
+    release();
+    if (context_ != EGL_NO_CONTEXT) eglDestroyContext(display_, context_);
+  }
+  bool make_current() const {
+    return eglBindAPI(api_) && eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
+  }
+  void release() const {
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglBindAPI(EGL_OPENGL_API);
+  }
+  bool is_current() const { return eglQueryAPI() == api_ && eglGetCurrentContext() == context_; }
+
+ private:
+  EGLenum api_;
+  EGLDisplay display_ = EGL_NO_DISPLAY;
+  EGLContext context_ = EGL_NO_CONTEXT;
+};
+
+TEST(Contexts, TwoCollidersInTurn) {
+  Collider a(kGl), b(kGl);
+  for (int turn = 0; turn < 3; ++turn) {
+    EXPECT_TRUE(spheres().found_by(a));
+    EXPECT_TRUE(spheres().found_by(b));
+  }
+}
+
+TEST(Contexts, AColliderThatWasAssignedOrOutlivedAnother) {
+  Collider a(kGl);
+  EXPECT_TRUE(spheres().found_by(a));
+  a = Collider(kGl);
+  EXPECT_TRUE(spheres().found_by(a));
+  {
+    Collider b(kGl);
+    EXPECT_TRUE(spheres().found_by(b));
+    std::swap(a, b);
+  }
+  EXPECT_TRUE(spheres().found_by(a));
+  EXPECT_EQ(eglGetCurrentContext(), EGL_NO_CONTEXT);
+}
+
+// The host's context, its rendering API and what it has bound are as they were.
+TEST(Contexts, TheCallersContextStaysCurrent) {
+  for (const EGLenum api : {EGL_OPENGL_API, EGL_OPENGL_ES_API}) {
+    HostContext host(api);
+    ASSERT_TRUE(host.make_current());
+    GLuint buffer = 0;
+    glGenBuffers(1, &buffer);
+    glBindBuffer(GL_ARRAY_BUFFER, buffer);
+    {
+      Collider collider(kGl);
+      EXPECT_TRUE(host.is_current());
+      EXPECT_TRUE(spheres().found_by(collider));
+      EXPECT_TRUE(host.is_current());
+      EXPECT_THROW(
+          collider.find({.vertices = std::array{0.0}, .triangles = {}, .object_starts = {}}),
+          ColliderError);
+      EXPECT_TRUE(host.is_current());
+      GlContext::list_devices();
+      EXPECT_TRUE(host.is_current());
+    }
+    EXPECT_TRUE(host.is_current());
+    GLint bound = 0;
+    glGetIntegerv(GL_ARRAY_BUFFER_BINDING, &bound);
+    EXPECT_EQ(bound, static_cast<GLint>(buffer));
+    EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+  }
+}
+
+TEST(Contexts, AColliderGoesFromThreadToThread) {
+  std::optional<Collider> collider;
+  bool right = false;
+  std::thread([&] { collider.emplace(kGl); }).join();
+  EXPECT_TRUE(spheres().found_by(*collider));
+  std::thread([&] { right = spheres().found_by(*collider); }).join();
+  EXPECT_TRUE(right);
+  std::thread([&] { collider.reset(); }).join();
+}
+
+TEST(Contexts, TwoThreadsAtOnceAreRefusedByName) {
+  const GlContext context;
+  const GlCurrent here(context);
+  std::string said;
+  std::thread([&] {
+    try {
+      const GlCurrent there(context);
+    } catch (const Error& error) {
+      said = error.what();
+    }
+  }).join();
+  EXPECT_NE(said.find("another thread is using it"), std::string::npos) << said;
+}
+
+TEST(Contexts, ContextsNest) {
+  const GlContext a, b;
+  const GlCurrent outer(a);
+  const EGLContext current = eglGetCurrentContext();
+  {
+    const GlCurrent inner(b);
+    EXPECT_NE(eglGetCurrentContext(), current);
+    const GlCurrent innermost(a);
+    EXPECT_EQ(eglGetCurrentContext(), current);
+  }
+  EXPECT_EQ(eglGetCurrentContext(), current);
+}
+
+// Twins: what the tests above would find without the guard.
+EGLBoolean make_nothing_current(EGLDisplay, EGLSurface, EGLSurface, EGLContext) { return EGL_TRUE; }
+
+TEST(ContextsTwin, AContextThatIsNotMadeCurrentIsNoticed) {
+  Collider a(kGl), b(kGl);
+  const auto before = epoxy_eglMakeCurrent;
+  epoxy_eglMakeCurrent = make_nothing_current;
+  EXPECT_THROW(spheres().found_by(a), ColliderError);
+  EXPECT_THROW(spheres().found_by(b), ColliderError);
+  epoxy_eglMakeCurrent = before;
+  EXPECT_TRUE(spheres().found_by(a));
+  EXPECT_TRUE(spheres().found_by(b));
+}
+
+// Any order of making, using, moving and destroying, in two threads, beside two hosts' contexts.
+TEST(Contexts, AnyOrderOfUse) {
+  std::mt19937 random(20261122);
+  const auto below = [&](int n) { return static_cast<int>(random() % n); };
+  const HostContext gl, es(EGL_OPENGL_ES_API);
+  const HostContext* current = nullptr;
+  std::array<std::optional<Collider>, 4> colliders;
+  int answers = 0;
+  for (int step = 0; step < 120; ++step) {
+    std::optional<Collider>& one = colliders[below(4)];
+    std::optional<Collider>& other = colliders[below(4)];
+    switch (below(10)) {
+      case 0:
+        if (!one || below(3) == 0) one.emplace(kGl);
+        break;
+      case 1:
+        if (below(3) == 0) one.reset();
+        break;
+      case 2:
+        if (&one != &other) std::swap(one, other);
+        break;
+      case 3:
+        if (current != nullptr) current->release();
+        current = below(3) == 0 ? nullptr : below(2) == 0 ? &gl : &es;
+        if (current != nullptr) {
+          ASSERT_TRUE(current->make_current());
+        }
+        break;
+      case 4:
+        if (one) {
+          bool right = false;
+          std::thread([&] { right = spheres().found_by(*one); }).join();
+          EXPECT_TRUE(right) << step;
+          ++answers;
+        }
+        break;
+      default:
+        if (!one) one.emplace(kGl);
+        EXPECT_TRUE(spheres().found_by(*one)) << step;
+        ++answers;
+    }
+    EXPECT_TRUE(current != nullptr ? current->is_current()
+                                   : eglGetCurrentContext() == EGL_NO_CONTEXT)
+        << step;
+  }
+  if (current != nullptr) current->release();
+  EXPECT_GT(answers, 50);
+  std::printf("contexts interleaved: 120 steps, 4 colliders, 2 hosts' contexts, %d answers\n",
+              answers);
+}
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,154 @@
+// What decides about kernels' answers: this CPU's are right, and answers that are a little too
+// narrow, far too wide, or no numbers are not.
+#include "verify/kernel_check.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "core/interval.h"
+#include "offsets/exact.h"
+#include "offsets/obb.h"
+
+namespace farcull::lab {
+using Answer = IntervalAnswer;
+using FloatTriangle = std::array<std::array<float, 3>, 3>;
+inline float number(float x) { return x; }
+}  // namespace farcull::lab
+
+namespace farcull::interval {
+#include "tests/core/interval_evaluate.h"
+}
+
+namespace farcull {
+namespace {
+
+using Change = std::function<void(SolidAnswer&)>;
+
+KernelTally boxes(const Change& change) {
+  KernelTally tally;
+  for (std::uint64_t i = 0; i < 20'000; ++i) {
+    SolidCase c{0.5f + static_cast<float>(i % 100), 0.5f, {}};
+    const bool direct = i % 3 == 0;
+    const KernelTriangle t = kernel_triangle(3, i, c.cx, c.cy);
+    c.solid = direct ? adversarial_box(3, i, c.cx, c.cy) : obb_of(t.corners, t.radius);
+    SolidAnswer a{};
+    a.hit = obb_fattener().solid.interval(c.cx, c.cy, c.solid, a.entry, a.exit);
+    change(a);
+    check_box(c, a, !direct && t.ordinary, tally);
+  }
+  return tally;
+}
+
+KernelTally sums(const Change& change) {
+  KernelTally tally;
+  for (std::uint64_t i = 0; i < 20'000; ++i) {
+    SolidCase c{0.5f + static_cast<float>(i % 100), 0.5f, {}};
+    const bool direct = i % 3 == 0;
+    const KernelTriangle t = kernel_triangle(3, i, c.cx, c.cy);
+    c.solid = direct ? adversarial_minkowski(3, i, c.cx, c.cy)
+                     : exact_of(t.corners[0], t.corners[1], t.corners[2], t.radius);
+    SolidAnswer a{};
+    a.hit = exact_fattener().solid.interval(c.cx, c.cy, c.solid, a.entry, a.exit);
+    change(a);
+    check_minkowski(c, a, !direct && t.ordinary, tally);
+  }
+  return tally;
+}
+
+KernelTally intervals(const std::function<void(IntervalAnswer&)>& change) {
+  KernelTally tally;
+  for (const IntervalCase& c : interval_kernel_cases(3, 2000)) {
+    IntervalAnswer a = interval::evaluate(c.corners, c.widening, c.i, c.j);
+    change(a);
+    check_interval(c, a, tally);
+  }
+  return tally;
+}
+
+KernelTally slices(const std::function<void(SliceAnswer&)>& change) {
+  KernelTally tally;
+  const std::vector<SliceCase> cases = slice_kernel_cases(3, 20'000);
+  std::vector<SliceAnswer> answers;
+  for (const SliceCase& c : cases) {
+    answers.push_back({interval::far_slice(c.z, c.near, c.slices_per_px),
+                       static_cast<std::int32_t>(glsl::clamp(c.x, 0.0f, 65536.0f))});
+    change(answers.back());
+  }
+  check_slices(cases, answers, tally);
+  return tally;
+}
+
+bool loose(const KernelTally& t) {
+  return static_cast<double>(t.loose) > kLooseShare * static_cast<double>(t.ordinary);
+}
+
+template <class Run>
+void expect_right(Run run) {
+  const KernelTally t = run([](auto&) {});
+  EXPECT_EQ(t.lost, 0u);
+  EXPECT_FALSE(loose(t)) << t.loose << " of " << t.ordinary;
+  EXPECT_GT(t.checked, 10'000u);
+}
+
+TEST(KernelCheck, ThisCpusAnswersAreRight) {
+  expect_right(boxes);
+  expect_right(sums);
+  expect_right(intervals);
+  expect_right(slices);
+}
+
+TEST(KernelCheck, NarrowerAnswersLosePoints) {
+  // By 2^-18 of each end, which is more than the widening.
+  const auto narrow = [](float& lo, float& hi) {
+    lo += std::abs(lo) * 0x1p-18f + 1e-6f;
+    hi -= std::abs(hi) * 0x1p-18f + 1e-6f;
+  };
+  const Change change = [&](SolidAnswer& a) { narrow(a.entry, a.exit); };
+  EXPECT_GT(boxes(change).lost, 100u);
+  EXPECT_GT(sums(change).lost, 100u);
+  EXPECT_GT(intervals([](IntervalAnswer& a) { a.near += 0.5f * (a.far - a.near); }).lost, 100u);
+  EXPECT_GT(intervals([](IntervalAnswer& a) { a.hi[0] = a.lo[0]; }).lost, 100u);
+  EXPECT_GT(intervals([](IntervalAnswer& a) { a.row_lo = a.row_hi; }).lost, 100u);
+}
+
+TEST(KernelCheck, MissedLinesAreLost) {
+  const Change miss = [](SolidAnswer& a) { a.hit = false; };
+  EXPECT_GT(boxes(miss).lost, 100u);
+  EXPECT_GT(sums(miss).lost, 100u);
+  EXPECT_GT(intervals([](IntervalAnswer& a) { a.hit = false; }).lost, 100u);
+}
+
+TEST(KernelCheck, WhatIsNoNumberIsLost) {
+  const Change nan = [](SolidAnswer& a) { a.exit = std::numeric_limits<float>::quiet_NaN(); };
+  EXPECT_GT(boxes(nan).lost, 100u);
+  EXPECT_GT(sums(nan).lost, 100u);
+  EXPECT_GT(
+      intervals([](IntervalAnswer& a) { a.far = std::numeric_limits<float>::infinity(); }).lost,
+      100u);
+}
+
+TEST(KernelCheck, AnswersThatSayNothingAreLoose) {
+  const Change wide = [](SolidAnswer& a) {
+    a.entry -= 1;
+    a.exit += 1;
+  };
+  EXPECT_TRUE(loose(boxes(wide)));
+  EXPECT_TRUE(loose(sums(wide)));
+  EXPECT_EQ(boxes(wide).lost, 0u);
+  EXPECT_TRUE(loose(intervals([](IntervalAnswer& a) { a.far += 20; })));
+}
+
+TEST(KernelCheck, SlicesMayNotDecreaseNorBeFarOff) {
+  EXPECT_GT(slices([](SliceAnswer& a) { a.slice = 63 - a.slice; }).lost, 100u);
+  EXPECT_GT(slices([](SliceAnswer& a) { a.slice = 0; }).lost, 100u);
+  EXPECT_GT(slices([](SliceAnswer& a) { a.slice += 2; }).lost, 100u);
+  EXPECT_GT(slices([](SliceAnswer& a) { a.pixel += 1; }).lost, 100u);
+  int n = 0;
+  EXPECT_GT(slices([&](SliceAnswer& a) { a.slice -= (++n % 100) == 0; }).lost, 10u);
+}
+
+}  // namespace
+}  // namespace farcull
