@@ -15,14 +15,17 @@ file(CONFIGURE OUTPUT ${OUT} CONTENT "#pragma once\n#define FARCULL_COMMIT \"${c
 
 # Beside it PROBED, with a hash of all that a verdict about a device rests on: kernels, probes, and what runs them.
 if(PROBED)
-  file(GLOB probed ${SOURCE}/core/*.glsl ${SOURCE}/core/shaders/* ${SOURCE}/core/gl_* ${SOURCE}/core/glsl_* ${SOURCE}/core/budget.*
-       ${SOURCE}/core/canvas.* ${SOURCE}/core/pair* ${SOURCE}/offsets/* ${SOURCE}/verify/kernel_* ${SOURCE}/verify/*_line.h
-       ${SOURCE}/verify/*_cases.h ${SOURCE}/verify/rational.h ${SOURCE}/experiments/*kernel_probes* ${SOURCE}/experiments/device_verdict*)
+  file(GLOB probed ${SOURCE}/core/gl/* ${SOURCE}/core/gl/shaders/* ${SOURCE}/core/pairs/* ${SOURCE}/core/base/glsl_* ${SOURCE}/core/view/budget.*
+       ${SOURCE}/core/canvas/* ${SOURCE}/core/scene/pair_sort.* ${SOURCE}/offsets/* ${SOURCE}/verify/kernel_* ${SOURCE}/verify/*_line.h
+       ${SOURCE}/verify/*_cases.h ${SOURCE}/verify/rational.h ${SOURCE}/experiments/method/*kernel_probes* ${SOURCE}/experiments/method/device_verdict*)
   list(SORT probed)
   set(hashes "")
   foreach(file IN LISTS probed)
+    if(IS_DIRECTORY ${file})
+      continue()
+    endif()
     file(SHA256 ${file} hash)
-    get_filename_component(name ${file} NAME)
+    file(RELATIVE_PATH name ${SOURCE} ${file})
     string(APPEND hashes "${name} ${hash}\n")
   endforeach()
   string(SHA256 hash "${hashes}")

@@ -1,9 +1,9 @@
 // From a kernel that was compiled as C++ to the functions of a SolidProgram.
 #pragma once
 
-#include "core/canvas.h"
-#include "core/glsl_shim.h"
-#include "core/glsl_worst.h"
+#include "core/base/glsl_shim.h"
+#include "core/base/glsl_worst.h"
+#include "core/canvas/canvas.h"
 
 namespace farcull {
 

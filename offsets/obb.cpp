@@ -1,3 +1,5 @@
+// The box is fitted in doubles, and its extents are measured and rounded outward. The kernel of
+// obb.glsl is compiled as scalar C++ and for the worst device.
 #include "offsets/obb.h"
 
 #include <Eigen/Geometry>

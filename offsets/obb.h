@@ -3,7 +3,7 @@
 // "bounding OBBs").
 #pragma once
 
-#include "core/fatten.h"
+#include "core/canvas/fatten.h"
 
 namespace farcull {
 

@@ -1,0 +1,63 @@
+// The floating-point environment of a thread. The proofs are about rounding to nearest, ties to
+// even, with subnormal numbers kept. A process may start otherwise: a library built with
+// -ffast-math sets flush-to-zero where it is loaded, and a caller may have chosen another rounding.
+#pragma once
+
+#include <cfenv>
+#include <cstdint>
+#include <string>
+
+namespace farcull {
+
+enum class Rounding : std::uint8_t { to_nearest, upward, downward, toward_zero, unknown };
+std::string to_string(Rounding rounding);
+
+/// How a thread computes in float and in double.
+struct FloatingPoint {
+  Rounding rounding = Rounding::to_nearest;
+  bool flushes_results = false;   // a result below the normal numbers becomes 0 (x86: FTZ)
+  bool flushes_operands = false;  // a subnormal operand counts as 0 (x86: DAZ)
+
+  bool operator==(const FloatingPoint&) const = default;
+};
+
+/// The environment that all proofs are about.
+inline constexpr FloatingPoint kProved;
+
+/// As in "rounds to nearest, keeps subnormals".
+std::string to_string(const FloatingPoint& floating_point);
+
+/// That of the calling thread, found out by arithmetic: the same on every processor, and in terms
+/// of what matters. It may raise floating-point exceptions.
+FloatingPoint floating_point();
+
+/// Throws Error naming `where` unless the calling thread computes as kProved says: to be called
+/// after code of others, which may have changed that, before its results are used.
+void require_proved(const std::string& where);
+
+/// Sets kProved for the calling thread, with no exception trapping, and restores what was there
+/// (rounding, flushing, traps and raised exceptions) at the end of its scope. A scope ends before
+/// that of the guard around it. Takes less than a microsecond.
+///
+/// A compiler that knows nothing of the environment may move arithmetic on local variables across
+/// the guard. So the guarded function leaves arithmetic that matters to functions that it calls and
+/// that are not inlined, or does it on memory that the guard's constructor might have changed.
+class FloatingPointGuard {
+ public:
+  /// Throws Error where arithmetic shows that it did not take effect; the environment is as before
+  /// then.
+  FloatingPointGuard();
+  ~FloatingPointGuard();
+  FloatingPointGuard(const FloatingPointGuard&) = delete;
+  FloatingPointGuard& operator=(const FloatingPointGuard&) = delete;
+
+ private:
+  std::fenv_t before_;
+  bool outermost_ = false;
+};
+
+/// The environment of our caller, as the outermost guard of the calling thread found it. Without a
+/// guard, floating_point().
+FloatingPoint callers_floating_point();
+
+}  // namespace farcull

@@ -1,0 +1,31 @@
+// Random numbers that are the same on every platform.
+#pragma once
+
+#include <cstdint>
+#include <random>
+
+namespace farcull {
+
+/// Draws from std::mt19937_64, whose words are specified. The distributions of <random> differ
+/// between standard libraries, so the mappings below are our own.
+class RandomNumbers {
+ public:
+  explicit RandomNumbers(std::uint64_t seed) : words_(seed) {}
+
+  std::uint64_t word() { return words_(); }
+  /// In [0, 1), from the 53 high bits of a word.
+  double unit() { return static_cast<double>(word() >> 11) * 0x1p-53; }
+  double between(double lo, double hi) { return lo + (hi - lo) * unit(); }
+  /// -1 or 1.
+  double sign() { return (word() & 1) != 0 ? 1 : -1; }
+  /// In 0 .. n - 1, n >= 1. Not quite uniform: a word modulo n.
+  template <class Integer>
+  Integer below(Integer n) {
+    return static_cast<Integer>(word() % static_cast<std::uint64_t>(n));
+  }
+
+ private:
+  std::mt19937_64 words_;
+};
+
+}  // namespace farcull

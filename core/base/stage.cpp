@@ -1,0 +1,174 @@
+// Words for stages. Every text that a person reads about a stage is made here.
+#include "core/base/stage.h"
+
+namespace farcull {
+namespace {
+
+std::string number(std::uint64_t n) { return std::to_string(n); }
+
+// "fatten" of "fatten x, round 2".
+std::string verb_of(StageKind kind) {
+  switch (kind) {
+    case StageKind::boxes:
+      return "boxes";
+    case StageKind::choose:
+      return "choose";
+    case StageKind::setup:
+      return "setup";
+    case StageKind::draw:
+      return "draw";
+    case StageKind::clusters:
+      return "sub-object level";
+    case StageKind::view:
+      return "view";
+    case StageKind::views:
+      return "views";
+    case StageKind::fatten:
+      return "fatten";
+    case StageKind::cull:
+      return "cull";
+    case StageKind::further_views:
+      return "further views";
+    case StageKind::further_rounds:
+      return "further rounds";
+    case StageKind::offset:
+      return "offset";
+    case StageKind::sweep:
+      return "sweep";
+    case StageKind::join:
+      return "join";
+    case StageKind::exact:
+      return "exact";
+    case StageKind::verify:
+      return "verify";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string to_string(Unit unit) {
+  switch (unit) {
+    case Unit::none:
+      return "";
+    case Unit::triangles:
+      return "triangles";
+    case Unit::pairs:
+      return "pairs";
+    case Unit::views:
+      return "views";
+  }
+  return "";
+}
+
+std::string name_of(const Stage& stage) {
+  std::string name = verb_of(stage.kind);
+  if (!stage.level.empty()) name += " " + stage.level;
+  if (!stage.subject.empty()) name += " " + stage.subject;
+  if (stage.round > 0) name += ", round " + number(stage.round);
+  return name;
+}
+
+std::string reason_of(const Stage& stage) {
+  const std::string n = number(stage.n), m = number(stage.m);
+  switch (stage.reason) {
+    case Reason::none:
+      return "";
+    case Reason::full:
+      return "--full: nothing is left out";
+    case Reason::regions:
+      return stage.n == 1 ? "1 pair of objects' boxes overlaps"
+                          : n + " pairs of objects' boxes overlap";
+    case Reason::meetings:
+      return "pairs of objects whose boxes overlap: " + n +
+             "; objects tested against themselves: " + m;
+    case Reason::no_boxes_overlap:
+      return "no two objects' boxes overlap, none is tested against itself";
+    case Reason::no_triangle_meets:
+      return "no triangle meets the box of another object";
+    case Reason::nothing_to_look_at:
+      return "boxes decide: no device is needed";
+    case Reason::device:
+      return stage.detail;
+    case Reason::shaders:
+      return "context and shaders for " + stage.detail;
+    case Reason::fattener:
+      return stage.detail +
+             (stage.n > 0 ? "; " + n + " triangles beyond the budget, kept" : std::string());
+    case Reason::unresolvable:
+      return "double arithmetic cannot resolve the region in pixels; nothing is culled here";
+    case Reason::unresolvable_view:
+      return "pixel space cannot resolve the scene in this view";
+    case Reason::nothing_left:
+      return "nothing is left";
+    case Reason::set_unchanged:
+      return "what its passes store has not changed since the last visit";
+    case Reason::passes:
+      return n + (stage.n == 1 ? " pass" : " passes") +
+             (stage.n < 2 ? ", the other stores what it stored at the last visit" : "");
+    case Reason::few_left:
+      return n + " triangles are left, at most " + m + " are enough";
+    case Reason::few_to_test:
+      return n + " triangles are left: " + m + " or fewer are cheaper to test";
+    case Reason::owners:
+      return "every triangle is an owner";
+    case Reason::clusters_given:
+      return "--clusters";
+    case Reason::clusters_large:
+      return "occlusion queries, more than " + n + " triangles";
+    case Reason::clusters_small:
+      return n + " triangles, at most " + m;
+    case Reason::clusters_flags:
+      return "flags: a question costs nothing";
+    case Reason::views_chosen:
+      return "views chosen by the scene";
+    case Reason::views_given:
+      return "views given";
+    case Reason::chosen:
+      return stage.detail + (stage.n > 0 ? ": " + n + " x " + m + " px" : std::string());
+    case Reason::few_candidates:
+      return "exact tests of " + n + " candidates are cheaper than a further view";
+    case Reason::enough_views:
+      return "enough views were looked at";
+    case Reason::keeps_sample:
+      return "it keeps all of a sample of the candidates";
+    case Reason::sweep:
+      return "boxes of " + n + " objects overlap, which have " + m + " triangles; " + stage.detail;
+    case Reason::join_kept:
+      return "boxes of what is kept";
+    case Reason::join_all:
+      return "boxes of all triangles";
+    case Reason::join_unresolvable:
+      return "no view can resolve the scene: pairs by their boxes alone";
+    case Reason::predicates:
+      return "exact predicates on the candidates";
+    case Reason::no_candidates:
+      return "there are no candidates";
+    case Reason::every_pair:
+      return "every pair; out: those that were missed";
+    case Reason::not_asked:
+      return "--no-verify";
+    case Reason::if_more_left:
+      return stage.n > 0 ? "if more than " + n + " triangles are left" : "if any triangle is left";
+    case Reason::if_more_candidates:
+      return "if more than " + n + " candidates are left for each triangle that takes part";
+    case Reason::if_changed:
+      return "if the round before changed something";
+    case Reason::if_candidates:
+      return "if there are candidates";
+  }
+  return "";
+}
+
+Stage work_of(const std::vector<Stage>& stages) {
+  Stage sum;
+  for (const Stage& stage : stages) {
+    sum.draws += stage.draws;
+    sum.queries += stage.queries;
+    sum.draws_saved += stage.draws_saved;
+    sum.queries_saved += stage.queries_saved;
+  }
+  return sum;
+}
+
+}  // namespace farcull

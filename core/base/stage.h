@@ -1,0 +1,109 @@
+// A stage of a run: what is done, or left out, and why. A plan lists the stages that are to come, a
+// trace those that were. The same structure serves both, so a run can be compared with its plan.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace farcull {
+
+enum class StageKind : std::uint8_t {
+  boxes,           // which triangles can take part, by boxes
+  choose,          // directions and resolutions of views
+  setup,           // the device: context, shaders, threads
+  draw,            // all drawing; a stage of its own only where nothing is drawn
+  clusters,        // whether there is a level between objects and triangles
+  view,            // a view as a whole
+  views,           // all views; a stage of its own only where none is looked at
+  fatten,          // the primitives of one view
+  cull,            // the passes of one level in one view
+  further_views,   // those that are left out because few triangles are left
+  further_rounds,  // rounds after the first
+  offset,          // a further fattener
+  sweep,           // sweep and prune
+  join,            // pairs of triangles whose boxes overlap
+  exact,           // exact predicates on the candidates
+  verify,          // accounting for every pair
+};
+
+/// Of what a stage counts.
+enum class Unit : std::uint8_t { none, triangles, pairs, views };
+
+/// Why a stage runs, was left out, or how it went. n and m are numbers of Stage.
+enum class Reason : std::uint8_t {
+  none,
+  full,                // --full: nothing is left out
+  regions,             // n pairs of objects' boxes overlap
+  meetings,            // n such pairs, m objects are tested against themselves
+  no_boxes_overlap,    // no two objects' boxes overlap (and none is tested against itself)
+  no_triangle_meets,   // no triangle meets the box of another object
+  nothing_to_look_at,  // the boxes decide: no device is needed
+  device,              // `detail` answered
+  shaders,             // context and shaders for the fattener `detail`
+  fattener,            // `detail`; n triangles are beyond its budget and kept
+  unresolvable,        // double arithmetic cannot resolve the region of the view in pixels
+  unresolvable_view,   // pixel space cannot resolve the scene in the view
+  nothing_left,        // no triangle is left
+  set_unchanged,       // what the passes store has not changed since the last visit of the view
+  passes,              // n passes ran; fewer than 2: the other one's stored set has not changed
+  few_left,            // n triangles are left, at most m are enough
+  few_to_test,         // n triangles are left: m or fewer are cheaper to test
+  owners,              // every triangle is an owner by itself
+  clusters_given,      // sizes of clusters are given
+  clusters_large,      // occlusion queries on many triangles
+  clusters_small,      // occlusion queries on n triangles or fewer
+  clusters_flags,      // flags are read back at once
+  views_chosen,        // by the scene
+  views_given,         // by the caller
+  chosen,              // the view is looked at, for `detail`, n x m px
+  few_candidates,      // exact tests of n candidates are cheaper than a further view
+  enough_views,        // as many as a run looks at
+  keeps_sample,        // the view keeps all of a sample of the candidates
+  sweep,               // boxes of n objects overlap, which have m triangles; `detail`
+  join_kept,           // boxes of what is kept
+  join_all,            // boxes of all triangles
+  join_unresolvable,   // no view can resolve the scene
+  predicates,          // exact predicates on the candidates
+  no_candidates,       // there are none
+  every_pair,          // every pair is accounted for
+  not_asked,           // --no-verify
+  // Rules by which pixels decide, in a plan.
+  if_more_left,        // if more than n triangles are left (n = 0: any)
+  if_more_candidates,  // if more than n candidates are left for each triangle that takes part
+  if_changed,          // if the round before changed something
+  if_candidates,       // if there are candidates
+};
+
+struct Stage {
+  StageKind kind = StageKind::boxes;
+  std::string subject = {};  // the view or the offset; of setup and boxes: empty
+  std::string level = {};    // of cull: "objects", "clusters of 32", "triangles"
+  int round = 0;             // of a visit, from 1; 0: the stage belongs to no round
+  bool ran = false;          // in a plan: it will run
+  bool depends = false;      // pixels decide whether it runs, or decided it
+  Reason reason = Reason::none;
+  std::string detail = {};     // a name that the reason speaks of
+  std::uint64_t n = 0, m = 0;  // numbers that the reason speaks of
+  double ms = 0;
+  std::uint64_t in = 0, out = 0;  // what enters and what is left
+  Unit unit = Unit::none;         // of in and out
+  std::uint64_t draws = 0;        // elements drawn
+  std::uint64_t queries = 0;      // slots asked
+  // Against plain CULLIDE's passes on the same live triangles; Quick-CULLIDE and FAR fill them.
+  std::uint64_t draws_saved = 0;
+  std::uint64_t queries_saved = 0;
+};
+
+/// "cull triangles z, round 2".
+std::string name_of(const Stage& stage);
+/// The reason in words, without a full stop; empty for Reason::none.
+std::string reason_of(const Stage& stage);
+/// "triangles", "pairs", "views" or "".
+std::string to_string(Unit unit);
+
+/// Elements drawn and slots asked by all stages together, and how many fewer than plain CULLIDE;
+/// the rest of the stage is empty.
+Stage work_of(const std::vector<Stage>& stages);
+
+}  // namespace farcull

@@ -1,0 +1,125 @@
+// The few verbs that culling needs of a rasterizer. Implementations: GL (core/gl/canvas.h), and one
+// on the CPU that behaves as badly as the device assumptions allow (verify/).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/view/raster.h"
+#include "core/view/view.h"
+
+namespace farcull {
+
+/// How a primitive gets its depth. fragment: one screen-aligned proxy, entry and exit depth
+/// computed by the shader function of the offset. fixed: the triangles of a closed or open surface,
+/// depth interpolated by the rasterizer.
+enum class DepthMode { fragment, fixed };
+
+/// The parameters of a solid, read by its shader function: five vec4. The last three numbers belong
+/// to the canvas, for elements of its own at a fixed depth: a solid leaves them 0.
+using Solid = std::array<std::array<float, 4>, 5>;
+
+/// A convex quadrilateral (px, in order around) and the solid seen through it.
+struct Proxy {
+  std::array<float, 8> corners;  // x, y
+  Solid solid;
+};
+
+/// A solid's shader function, one text for GLSL and C++ (core/base/glsl_shim.h):
+///   bool solid_interval(vec2 c, vec4 s0, .. vec4 s4, out float entry, out float exit)
+/// false: the line through the pixel centre c along the depth misses the solid; else [entry, exit],
+/// widened outward by the function's own rounding error, contains the part of the line inside the
+/// solid.
+struct SolidProgram {
+  std::string name;
+  std::string glsl;
+  bool (*interval)(float cx, float cy, const Solid& solid, float& entry, float& exit) = nullptr;
+  /// The same on the worst device that GLSL allows (core/base/glsl_worst.h): false where some
+  /// rounding misses, else the latest entry and the earliest exit.
+  bool (*interval_worst)(float cx, float cy, const Solid& solid, float& entry,
+                         float& exit) = nullptr;
+};
+
+/// All that one view can draw, as elements: proxies (fragment) or triangles (fixed). Item i owns
+/// the elements first[i] .. first[i + 1] - 1.
+struct Drawables {
+  DepthMode mode = DepthMode::fragment;
+  std::vector<std::uint32_t> first{0};
+  std::vector<Proxy> proxies;                    // fragment
+  std::vector<std::array<float, 12>> triangles;  // fixed; x, y, z px and 0 per corner
+  std::vector<std::uint32_t> undrawable;  // items beyond the budget: they own no elements, see Pass
+
+  std::size_t items() const { return first.size() - 1; }
+  std::size_t elements() const {
+    return mode == DepthMode::fragment ? proxies.size() : triangles.size();
+  }
+};
+
+/// One element drawn on behalf of a slot. kEverywhere: a full-window quad at the nearest depth,
+/// always seen, hiding all.
+struct Draw {
+  std::uint32_t element;
+  std::uint32_t slot;
+};
+constexpr std::uint32_t kEverywhere = 0xffffffff;
+
+enum class Verb : std::uint8_t { ask, store };
+
+/// A step of a pass: draws[first .. first + count - 1], all asked or all stored.
+struct Step {
+  Verb verb;
+  std::uint32_t first;
+  std::uint32_t count;
+};
+
+/// Steps in order, on a depth buffer that starts empty. Draws of one slot inside a step stand
+/// together. store: keeps the nearest depth per pixel (entry depth of a proxy). ask: a slot is seen
+/// where one of its fragments (exit depth of a proxy) is at or behind the stored depth (GEQUAL);
+/// where nothing is stored nothing is seen. touching = false: only fragments behind it (GREATER),
+/// as in S-CULLIDE, whose visibility test passes a fragment at or in front of the stored depth;
+/// contacts at equal depth are then not seen, so nothing is promised.
+struct Pass {
+  bool touching = true;
+  std::uint32_t slots = 0;
+  std::vector<Draw> draws;
+  std::vector<Step> steps;
+};
+
+class Canvas {
+ public:
+  virtual ~Canvas() = default;
+  virtual const RasterLimits& limits() const = 0;
+  /// Makes `drawables` (kept by the canvas until the next begin) the material of the passes that
+  /// follow.
+  virtual void begin(const Window& window, const Drawables& drawables) = 0;
+  /// Per slot: 1 seen, 0 not. Throws Error unless every command of the pass is known to have run
+  /// (assumption A7).
+  virtual std::vector<std::uint8_t> run(const Pass& pass) = 0;
+  /// The entry depth (store; nearest kept) or exit depth (ask; farthest kept) in px that `draws`
+  /// give each pixel of the window, NaN where there is no fragment; height rows of width values.
+  /// Where mapped depths are equal, any of theirs. Proxies only. For the lemmas' tests and for
+  /// pictures.
+  virtual std::vector<float> samples(Verb verb, const std::vector<Draw>& draws);
+  /// The depths, as the depth buffer holds them, that storing (entry, nearest kept) or asking
+  /// (exit, farthest kept) leaves in each pixel of the window for `draws`; height rows of width
+  /// values in [0, 1], empty pixels 1 for store and 0 for ask. For the lemmas' tests and for
+  /// pictures.
+  virtual std::vector<float> depths(Verb verb, const std::vector<Draw>& draws);
+};
+
+/// The depth map of a window, the same float expression wherever it stands:
+///   clamp(0.5 + z * scale, 0.25, 0.75), strictly nearer than the clear value 1.
+/// The rest of [0, 1] is for the items at fixed depths: 0 for kEverywhere, (0.75, 1) for a canvas's
+/// control items.
+float depth_scale(const Window& window);
+/// The depth of one step of a depth buffer in px.
+double depth_step(const Window& window, int depth_bits);
+/// How far a depth that a buffer gives back may be from 0.5 + z * scale of an exact z of the
+/// window, in steps of 2^-24, whatever the rounding of its operations: the product, of at most 1/4,
+/// rounds by 2^-25, and the sum, below 1, by 2^-24. Of 24 bits, storing rounds by 1 / (2^24 - 1)
+/// more, and reading back as a float by 2^-24.
+double depth_rounding(int depth_bits);
+
+}  // namespace farcull

@@ -1,0 +1,57 @@
+// The stage between the scene and the canvas: what each triangle is drawn as in a view. The offset
+// arrives as a function, so that core alone, with raw triangles, is a complete CULLIDE.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "core/canvas/canvas.h"
+#include "core/scene/scene.h"
+#include "core/view/clip.h"
+
+namespace farcull {
+
+/// Where a proxy may lie: |x| <= x, |y| <= y px, strictly inside the viewport.
+struct ProxyBounds {
+  double x;
+  double y;
+};
+ProxyBounds proxy_bounds(const Window& window);
+
+/// The largest radius (px) that offsets and their kernels are derived for (docs/budget.md, "The
+/// radius").
+constexpr double kMaxRadius = 0x1p20;
+
+struct Fattener {
+  std::string name;  // "raw", "obb", ...
+  DepthMode mode;
+  SolidProgram solid;  // fragment mode only
+  /// Appends the elements of one item: `patch` (drawable, count > 0) fattened by a ball of `radius`
+  /// px (>= 0).
+  std::function<void(const Patch& patch, double radius, const ProxyBounds& bounds, Drawables& out)>
+      fatten;
+  bool raw = false;  // draws the triangles themselves, whatever the radius
+};
+
+/// CULLIDE's primitives: the clipped triangle itself, fixed-function depth; the radius is not used.
+Fattener raw_triangles();
+
+/// A rectangle that contains the image of `points` fattened by a disc of `radius` px, inside
+/// `bounds`: along the longest edge where that fits, else aligned with the axes and cut off at
+/// `bounds`, a pixel or more outside the window. Corners are rounded to the nearest floats, which
+/// the budget's term "input" pays for.
+std::array<float, 8> proxy_rectangle(std::span<const Vec3> points, double radius,
+                                     const ProxyBounds& bounds);
+
+struct FattenCounts {
+  std::uint32_t outside = 0;  // items without elements: no point in the region
+  std::uint32_t clipped = 0;  // items cut by the region's border
+  std::uint32_t undrawable = 0;
+};
+
+/// The elements of `triangles` (items, in this order) in `window`. Runs on all cores; the result
+/// does not depend on them.
+Drawables fatten(const Scene& scene, std::span<const std::uint32_t> triangles, const Window& window,
+                 const Fattener& fattener, double radius, FattenCounts& counts);
+
+}  // namespace farcull

@@ -1,0 +1,436 @@
+// The schedule: rounds of views, visits of levels, passes. Culling holds the state of one run;
+// cull_by() puts its steps in order.
+#include "core/cull/cull.h"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+#include "core/base/error.h"
+#include "core/base/stopwatch.h"
+
+namespace farcull {
+namespace {
+
+double radius_of(const RadiusRule& rule, const Budget& budget, double step) {
+  const double radius = rule.published ? published_radius(step) : rule.factor * budget.radius();
+  // Beyond it floats overflow in the kernels, and a fragment would be lost instead of seen.
+  if (!(radius >= 0 && radius <= kMaxRadius)) {
+    throw Error("--radius", std::to_string(radius) + " px is beyond the largest ball, 2^20 px",
+                "choose a smaller factor");
+  }
+  return radius;
+}
+
+// The owner of each triangle: its object, or itself where its object is tested against itself.
+std::vector<std::uint32_t> owners(const Scene& scene, bool self) {
+  if (!self) return owners(scene);
+  std::vector<std::uint32_t> out;
+  out.reserve(scene.triangles.size());
+  std::uint32_t owner = 0;
+  for (const Object& object : scene.objects) {
+    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+      out.push_back(owner);
+      owner += object.self;
+    }
+    owner += !object.self;
+  }
+  return out;
+}
+
+// A view of the run, and the state that its last visit left.
+struct Place {
+  std::optional<Window> window;  // empty: nothing can be drawn in this view
+  // How many changes the sets stored in the first and second pass at triangle level had seen.
+  std::uint64_t stored[2] = {0, 0};
+  PassCost plain;  // of plain CULLIDE's two passes at triangle level on the live triangles
+};
+
+bool has_own_owners(const Scene& scene, const CullSettings& settings) {
+  return settings.self && std::any_of(scene.objects.begin(), scene.objects.end(),
+                                      [](const Object& object) { return object.self; });
+}
+
+// The window of each view; empty where doubles cannot resolve its pixels.
+std::vector<Place> places_of(const Regions& regions, const CullSettings& settings) {
+  std::vector<Place> places;
+  for (const View& view : settings.views) {
+    Place& place = places.emplace_back();
+    if (!regions.places.empty())
+      place.window = fit_window(view, regions.places, settings.resolution);
+  }
+  return places;
+}
+
+// Stages that no pixel decides: views that cannot be drawn, and whether there are clusters.
+std::vector<Stage> opening_stages(const Scene& scene, const Regions& regions,
+                                  const CullSettings& settings, const std::vector<Place>& places,
+                                  std::size_t live) {
+  std::vector<Stage> stages;
+  bool any = false;
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    any |= places[v].window.has_value();
+    if (places[v].window) continue;
+    stages.push_back(
+        {.kind = StageKind::view,
+         .subject = settings.views[v].name,
+         .reason = regions.places.empty() ? Reason::no_boxes_overlap : Reason::unresolvable,
+         .in = live,
+         .out = live,
+         .unit = Unit::triangles});
+  }
+  // Said once, and only where something is drawn.
+  const Clusters& clusters = settings.clusters;
+  if (clusters.reason == Reason::none || !any) return stages;
+  const bool alone = has_own_owners(scene, settings);
+  stages.push_back({.kind = StageKind::clusters,
+                    .ran = !alone && !clusters.sizes.empty(),
+                    .reason = alone ? Reason::owners : clusters.reason,
+                    .n = alone ? 0 : clusters.n,
+                    .m = alone ? 0 : clusters.m,
+                    .in = live,
+                    .out = live,
+                    .unit = Unit::triangles});
+  return stages;
+}
+
+std::string clusters_name(std::uint32_t size) { return "clusters of " + std::to_string(size); }
+
+// The parts of one run; cull_by() puts them in order.
+class Culling {
+ public:
+  Culling(const PassRule& rule, const Scene& scene, const Regions& regions,
+          const CullSettings& settings, Canvas& canvas, const Progress& progress)
+      : rule_(rule),
+        scene_(scene),
+        regions_(regions),
+        settings_(settings),
+        canvas_(canvas),
+        progress_(progress) {
+    const std::size_t triangles = scene.triangles.size();
+    if (!settings.bits.empty() && settings.bits.size() != triangles)
+      throw std::logic_error("cull: bits of another scene");
+    state_.owner = owners(scene, settings.self);
+    state_.bits.assign(triangles, kCulled);
+    for (const std::uint32_t t : regions.triangles)
+      state_.bits[t] = settings.bits.empty() ? 0 : settings.bits[t];
+    state_.live = regions.triangles;
+    own_owners_ = has_own_owners(scene, settings);
+    state_.remove_culled();
+    arrange_clusters();
+  }
+
+  std::size_t views() const { return places_.size(); }
+  int round() const { return round_; }
+  const Level& objects() const { return objects_; }
+  const std::vector<Level>& clusters() const { return clusters_; }
+  const Level& triangles() const { return triangles_; }
+
+  void open_views() {
+    places_ = places_of(regions_, settings_);
+    for (std::size_t v = 0; v < places_.size(); ++v)
+      result_.views.push_back(report_of(settings_.views[v].name, places_[v]));
+    result_.stages = opening_stages(scene_, regions_, settings_, places_, state_.live.size());
+  }
+
+  void begin_round() {
+    ++round_;
+    before_round_ = changes();
+  }
+
+  // Whether the round that ends changed something, so that another one may. What follows an empty
+  // set is left out.
+  bool round_changed() {
+    if (done_ || changes() == before_round_) return false;
+    if (!state_.live.empty() || settings_.full) return true;
+    leave_out({.kind = StageKind::further_rounds, .reason = Reason::nothing_left});
+    return false;
+  }
+
+  // Whether the visit that comes is left out; records why.
+  bool leaves_out(std::size_t view) {
+    Place& place = places_[view];
+    view_ = settings_.views[view].name;
+    if (!place.window || done_) return true;
+    if (settings_.full) return false;
+    if (state_.live.empty()) {
+      leave_out(of_visit(StageKind::view, Reason::nothing_left));
+    } else if (!due(place, kF) && !due(place, kL)) {
+      Stage& stage = leave_out(of_visit(StageKind::view, Reason::set_unchanged));
+      stage.draws_saved = place.plain.draws;
+      stage.queries_saved = place.plain.queries;
+      saved_ += place.plain;
+      notify(triangles_, kF);
+      notify(triangles_, kL);
+    } else {
+      return false;
+    }
+    return true;
+  }
+
+  void begin_visit(std::size_t view) {
+    if (progress_) progress_("culling along " + view_ + ", round " + std::to_string(round_));
+    place_ = &places_[view];
+    Stage stage = begin(of_visit(StageKind::fatten, Reason::fattener));
+    stage.detail = settings_.fattener.name;
+    stage.depends = round_ > 1 || (visited_ && !settings_.full);
+    items_ = state_.live;
+    FattenCounts counts;
+    drawables_ = fatten(scene_, items_, *place_->window, settings_.fattener,
+                        result_.views[view].radius_px, counts);
+    canvas_.begin(*place_->window, drawables_);
+    stage.out = drawables_.elements();
+    stage.n = counts.undrawable;
+    finish(stage);
+  }
+
+  bool has_object_level() const { return !own_owners_; }
+
+  // Both passes over the open triangles at one level.
+  void run_level(const Level& level) {
+    Stage stage = of_visit(StageKind::cull, Reason::nothing_left);
+    stage.level = level.name;
+    stage.depends = round_ > 1 || (!settings_.full && (visited_ || !first_level_));
+    first_level_ = false;
+    if (state_.live.empty() && !settings_.full) {
+      leave_out(stage);
+      return;
+    }
+    stage = begin(stage);
+    if (rule_.clears) state_.clear_bits();
+    for (const Bit bit : {kF, kL}) stage.n += run_one(level, bit, stage);
+    stage.reason = Reason::passes;
+    state_.remove_culled();
+    stage.out = state_.live.size();
+    finish(stage);
+  }
+
+  void end_visit() {
+    visited_ = true;
+    place_->plain = {};
+    if (!rule_.clears) {
+      place_->plain += plain_cost(state_, items_, drawables_, kF, triangles_);
+      place_->plain += plain_cost(state_, items_, drawables_, kL, triangles_);
+    }
+    if (settings_.full || settings_.enough == 0 || state_.live.size() > settings_.enough) return;
+    done_ = true;
+    leave_out({.kind = StageKind::further_views,
+               .reason = Reason::few_left,
+               .n = state_.live.size(),
+               .m = settings_.enough});
+  }
+
+  CullResult result() {
+    if (rule_.clears) state_.clear_bits();
+    result_.live = std::move(state_.live);
+    std::sort(result_.live.begin(), result_.live.end());
+    result_.bits = std::move(state_.bits);
+    return std::move(result_);
+  }
+
+ private:
+  ViewReport report_of(const std::string& name, const Place& place) const {
+    ViewReport report{.name = name, .budget = {}};
+    if (!place.window) return report;
+    const Window& w = *place.window;
+    report.drawn = true;
+    report.width = w.width;
+    report.height = w.height;
+    report.pixel_size = w.pixel_size;
+    report.budget = budget_for(canvas_.limits(), viewport_side(std::max(w.width, w.height)));
+    report.depth_step_px = depth_step(w, canvas_.limits().depth_bits);
+    if (!settings_.fattener.raw)
+      report.radius_px = radius_of(settings_.radius, report.budget, report.depth_step_px);
+    return report;
+  }
+
+  // The clusters of a run are fixed, so that fewer open triangles never ask in larger company.
+  void arrange_clusters() {
+    if (own_owners_ || settings_.clusters.sizes.empty()) return;
+    state_.live = spatial_order(state_.live, state_.owner, regions_.triangle_boxes);
+    groups_.reserve(settings_.clusters.sizes.size());  // levels point into it
+    for (const std::uint32_t size : settings_.clusters.sizes) {
+      groups_.push_back(cluster_numbers(state_.live, state_.owner, size));
+      clusters_.push_back({clusters_name(size), &groups_.back()});
+    }
+  }
+
+  std::uint64_t changes() const {
+    return rule_.clears ? state_.culled : state_.changes[0] + state_.changes[1];
+  }
+
+  // Version of the set that the pass for `bit` stores: the other bit decides what is in it.
+  std::uint64_t stored_version(Bit bit) const { return state_.changes[bit == kF]; }
+  bool due(const Place& place, Bit bit) const {
+    return settings_.full || rule_.clears || stored_version(bit) != place.stored[bit == kL];
+  }
+
+  bool run_one(const Level& level, Bit bit, Stage& stage) {
+    const bool leave_out = &level == &triangles_ && !due(*place_, bit);
+    PassCost plain, cost;
+    if (!rule_.clears) plain = plain_cost(state_, items_, drawables_, bit, level);
+    if (!leave_out) {
+      if (&level == &triangles_) place_->stored[bit == kL] = stored_version(bit);
+      cost = run_pass(state_, items_, drawables_, bit, rule_, level, settings_.touching, canvas_);
+    }
+    stage.draws += cost.draws;
+    stage.queries += cost.queries;
+    used_ += cost;
+    if (!rule_.clears) {
+      const PassCost saved = {plain.draws - cost.draws, plain.queries - cost.queries};
+      stage.draws_saved += saved.draws;
+      stage.queries_saved += saved.queries;
+      saved_ += saved;
+    }
+    notify(level, bit);
+    return !leave_out;
+  }
+
+  void notify(const Level& level, Bit bit) const {
+    if (!settings_.watch) return;
+    settings_.watch({.name = level.name + " " + view_ + ", round " + std::to_string(round_) +
+                             (bit == kF ? ", first pass" : ", second pass"),
+                     .bits = state_.bits,
+                     .draws = used_.draws,
+                     .queries = used_.queries,
+                     .draws_saved = saved_.draws,
+                     .queries_saved = saved_.queries});
+  }
+
+  // A stage of the visit that goes on.
+  Stage of_visit(StageKind kind, Reason reason) const {
+    return {.kind = kind, .subject = view_, .round = round_, .depends = true, .reason = reason};
+  }
+  Stage begin(Stage stage) {
+    watch_ = Stopwatch();
+    stage.ran = true;
+    stage.in = state_.live.size();
+    stage.unit = Unit::triangles;
+    return stage;
+  }
+  void finish(Stage& stage) {
+    stage.ms = watch_.ms();
+    result_.stages.push_back(stage);
+  }
+  Stage& leave_out(Stage stage) {
+    stage.depends = true;
+    stage.in = stage.out = state_.live.size();
+    stage.unit = Unit::triangles;
+    return result_.stages.emplace_back(std::move(stage));
+  }
+
+  const PassRule& rule_;
+  const Scene& scene_;
+  const Regions& regions_;
+  const CullSettings& settings_;
+  Canvas& canvas_;
+  const Progress& progress_;
+  CullResult result_;
+  CullState state_;
+  bool own_owners_ = false;                         // some triangle is an owner by itself
+  std::vector<std::vector<std::uint32_t>> groups_;  // per size of clusters, per triangle
+  Level objects_{"objects", &state_.owner};
+  std::vector<Level> clusters_;
+  Level triangles_{"triangles"};
+  std::vector<Place> places_;
+
+  int round_ = 0;
+  std::uint64_t before_round_ = 0;
+  bool done_ = false;        // few enough triangles are left
+  bool visited_ = false;     // a view was visited
+  bool first_level_ = true;  // no level has run yet
+  PassCost used_, saved_;
+
+  // Of the visit that goes on.
+  std::string view_;
+  Place* place_ = nullptr;
+  std::vector<std::uint32_t> items_;
+  Drawables drawables_;
+  Stopwatch watch_;
+};
+
+}  // namespace
+
+std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
+                                  const CullSettings& settings) {
+  const std::vector<Place> places = places_of(regions, settings);
+  const std::size_t live = regions.triangles.size();
+  std::vector<Stage> stages = opening_stages(scene, regions, settings, places, live);
+  std::vector<std::string> levels;
+  if (!has_own_owners(scene, settings)) {
+    levels.push_back("objects");
+    for (const std::uint32_t size : settings.clusters.sizes) levels.push_back(clusters_name(size));
+  }
+  levels.push_back("triangles");
+
+  bool first_view = true, first_level = true;
+  const Stage rule{.depends = true, .reason = Reason::if_more_left, .n = settings.enough};
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    if (!places[v].window) continue;
+    Stage fatten{.kind = StageKind::fatten,
+                 .subject = settings.views[v].name,
+                 .round = 1,
+                 .ran = true,
+                 .reason = Reason::fattener,
+                 .detail = settings.fattener.name};
+    const auto add = [&](Stage stage, bool depends) {
+      stage.depends = depends && !settings.full;
+      if (stage.depends) {
+        stage.reason = rule.reason;
+        stage.n = stage.kind == StageKind::cull && first_view ? 0 : rule.n;
+      }
+      stages.push_back(std::move(stage));
+    };
+    add(fatten, !first_view);
+    for (const std::string& level : levels) {
+      Stage cull = fatten;
+      cull.kind = StageKind::cull;
+      cull.level = level;
+      cull.reason = Reason::passes;
+      cull.n = 2;
+      add(cull, !first_level);
+      first_level = false;
+    }
+    first_view = false;
+  }
+  if (first_view) return stages;  // nothing is drawn
+  stages.push_back({.kind = StageKind::further_rounds,
+                    .ran = true,
+                    .depends = true,
+                    .reason = Reason::if_changed});
+  return stages;
+}
+
+CullResult cull(const Scene& scene, const Regions& regions, const CullSettings& settings,
+                Canvas& canvas, const Progress& progress) {
+  return cull_by(settings.quick ? kQuickRule : kPlainRule, scene, regions, settings, canvas,
+                 progress);
+}
+
+CullResult cull_by(const PassRule& rule, const Scene& scene, const Regions& regions,
+                   const CullSettings& settings, Canvas& canvas, const Progress& progress) {
+  if (settings.resolution < 1 || settings.resolution > canvas.limits().max_resolution) {
+    throw Error("--resolution",
+                std::to_string(settings.resolution) + " is outside 1 .. " +
+                    std::to_string(canvas.limits().max_resolution) + ", the limit of this device",
+                "choose a resolution in that range");
+  }
+  Culling run(rule, scene, regions, settings, canvas, progress);
+  run.open_views();
+  do {
+    run.begin_round();
+    for (std::size_t view = 0; view < run.views(); ++view) {
+      if (run.leaves_out(view)) continue;
+      run.begin_visit(view);
+      if (run.round() == 1) {
+        if (run.has_object_level()) run.run_level(run.objects());
+        for (const Level& clusters : run.clusters()) run.run_level(clusters);
+      }
+      run.run_level(run.triangles());
+      run.end_visit();
+    }
+  } while (run.round_changed());
+  return run.result();
+}
+
+}  // namespace farcull

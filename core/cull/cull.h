@@ -1,0 +1,126 @@
+// The CULLIDE family on a canvas. One schedule of views, levels and passes serves
+//   CULLIDE        Govindaraju, Redon, Lin, Manocha, Graphics Hardware 2003: quick = false
+//   Quick-CULLIDE  Govindaraju, Lin, Manocha, IEEE VR 2005: quick = true
+//   S-CULLIDE      the same paper, inside objects: self = true, touching = false, with either
+//   FAR            Govindaraju, Lin, Manocha, VRST 2004: Quick-CULLIDE with a fattener
+// docs/reliability.md holds the argument ("Passes, views, rounds" and "Quick-CULLIDE").
+//
+// Owners (objects; with `self`, single triangles) have a fixed order, that of the scene. Every
+// triangle has two bits. F: cleared against all earlier owners; L: against all later ones. A
+// triangle with both is culled. The four values of the bits are the four visibility sets:
+//   NFV neither; FFV F only (fully visible in the first pass); SFV L only (in the second); BFV
+//   both.
+//
+// Plain CULLIDE begins every level of a visit without bits: a triangle is culled where one view
+// finds it fully visible in both its passes. It asks every live triangle and stores every live
+// triangle, in both passes. Quick-CULLIDE keeps the bits across levels, views and rounds; FFV is
+// asked only in the second pass and stored only in the first, SFV the other way round; and it
+// leaves out a pass whose stored set is what it was when the pass last ran in that view.
+//
+// What is proved of the two (docs/reliability.md) and tested: after every step of their common
+// schedule, Quick-CULLIDE's bits contain plain CULLIDE's, and it has drawn and asked no more. So
+// where plain CULLIDE has reached its fixed point, Quick-CULLIDE keeps no more triangles and has
+// used no more queries and draws. It may go on from there, as bits of different views join: then it
+// culls more, and its total may exceed plain CULLIDE's (tests/core/cull/cull_quick_test.cpp has
+// such a scene).
+//
+// Bits are facts about the triangles: with a fattener that promises, F(t) means that t meets no
+// triangle of an earlier owner, L(t) none of a later one (theorem 2), whatever view, resolution or
+// fattener found it. So a run may start from the bits of another, as long as scene, plan and `self`
+// are the same. With raw triangles bits are as good as the run that set them.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/stage.h"
+#include "core/canvas/canvas.h"
+#include "core/canvas/fatten.h"
+#include "core/cull/clusters.h"
+#include "core/cull/pass.h"
+#include "core/scene/scene.h"
+#include "core/view/budget.h"
+#include "core/view/regions.h"
+#include "core/view/view.h"
+
+namespace farcull {
+
+/// The radius of the ball, as the budget of each view times a factor (1 or more keeps the promise),
+/// or as published.
+struct RadiusRule {
+  bool published = false;
+  double factor = 1;
+};
+
+/// The state of a run after a pass that had at least one triangle to decide.
+struct CullStep {
+  std::string name;                       // "objects z, round 1, first pass"
+  const std::vector<std::uint8_t>& bits;  // per triangle of the scene
+  std::uint64_t draws = 0, queries = 0;   // since the run began
+  std::uint64_t draws_saved = 0, queries_saved = 0;
+};
+
+struct CullSettings {
+  std::vector<View> views;
+  int resolution = 0;  // px along the larger side of each view's window
+  Fattener fattener;
+  RadiusRule radius;
+  bool quick = true;  // Quick-CULLIDE; false: plain CULLIDE
+  /// Every triangle of an object with Object::self is an owner; find_regions(scene, {.self = true})
+  /// goes with it.
+  bool self = false;
+  bool touching = true;  // false: what only touches is not seen, see Pass::touching
+  Clusters clusters = {};
+  bool full = false;         // nothing is left out
+  std::uint32_t enough = 0;  // live triangles at which no further view is drawn; 0: never enough
+  /// To start from, per triangle of the scene as CullResult::bits; empty: none. Plain CULLIDE takes
+  /// from them only what is culled.
+  std::vector<std::uint8_t> bits = {};
+  std::function<void(const CullStep&)> watch = {};
+};
+
+/// A view that was drawn, or could not be.
+struct ViewReport {
+  std::string name;
+  bool drawn = false;     // false: left out or unresolvable, see the stages
+  int width = 0;          // px
+  int height = 0;         // px
+  double pixel_size = 0;  // world units
+  Budget budget;
+  double radius_px = 0;  // of the ball that fattened the primitives; 0 for raw triangles
+  double depth_step_px = 0;
+};
+
+struct CullResult {
+  std::vector<std::uint32_t> live;  // ascending; the potentially colliding set at triangle level
+  /// Per triangle of the scene: 1 has F, 2 has L, 3 is culled or not in the regions.
+  std::vector<std::uint8_t> bits;
+  std::vector<ViewReport> views;
+  std::vector<Stage> stages;
+};
+
+/// Culls the triangles of regions.triangles. A round visits every view; a visit runs, at object
+/// level (in round 1, unless a triangle is an owner), at the level of clusters (in round 1) and at
+/// triangle level, the first pass, then the second. Rounds follow until one changes nothing: sets
+/// no bit (quick), or culls nothing (plain). Left out, unless `full`, each as a stage with its
+/// reason: passes and visits that are not due (quick), levels and visits where no triangle is left,
+/// and everything after a view that leaves at most `enough` triangles.
+/// Throws Error where the resolution is beyond the canvas's limit or the canvas cannot vouch for a
+/// pass; std::logic_error where settings.bits has another length than the scene.
+CullResult cull(const Scene& scene, const Regions& regions, const CullSettings& settings,
+                Canvas& canvas, const Progress& progress = {});
+
+/// cull() by a rule of the caller's: tests break the rule and must see it.
+CullResult cull_by(const PassRule& rule, const Scene& scene, const Regions& regions,
+                   const CullSettings& settings, Canvas& canvas, const Progress& progress = {});
+
+/// The stages that cull() will go through, in order, before anything is drawn. Stages whose running
+/// depends on pixels are marked so, with the rule that will decide; rounds after the first are one
+/// stage. settings.bits are not looked at.
+std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
+                                  const CullSettings& settings);
+
+}  // namespace farcull

@@ -1,0 +1,79 @@
+// The state of a culling run and one pass over it. core/cull/cull.h says what they are for; here
+// they stand apart so that tests can run passes by other rules.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/canvas/canvas.h"
+#include "core/canvas/fatten.h"
+
+namespace farcull {
+
+enum Bit : std::uint8_t { kF = 1, kL = 2, kCulled = kF | kL };
+
+/// Which live triangles a pass asks and stores: by [first, second pass][visibility set, as bits:
+/// NFV, FFV, SFV, BFV].
+struct PassRule {
+  bool asks[2][4];
+  bool stores[2][4];
+  bool clears;  // every level begins without bits
+};
+constexpr PassRule kPlainRule = {
+    .asks = {{true, true, true, false}, {true, true, true, false}},
+    .stores = {{true, true, true, false}, {true, true, true, false}},
+    .clears = true,
+};
+constexpr PassRule kQuickRule = {
+    .asks = {{true, false, true, false}, {true, true, false, false}},
+    .stores = {{true, true, false, false}, {true, false, true, false}},
+    .clears = false,
+};
+
+/// A level asks once for all open triangles of a group; groups stand together inside an owner.
+struct Level {
+  std::string name;
+  const std::vector<std::uint32_t>* group = nullptr;  // per triangle of the scene; null: each alone
+};
+
+struct CullState {
+  std::vector<std::uint8_t> bits;     // per triangle of the scene
+  std::vector<std::uint32_t> live;    // those of an owner stand together, owners ascending
+  std::vector<std::uint32_t> owner;   // per triangle of the scene
+  std::uint64_t changes[2] = {1, 1};  // how often an F, an L bit was set
+  std::uint64_t culled = 0;           // triangles that have both bits
+
+  /// Sets a bit of a live triangle.
+  void set(std::uint32_t triangle, Bit bit);
+  /// Removes the culled triangles from `live`.
+  void remove_culled();
+  /// Clears the bits of all live triangles.
+  void clear_bits();
+};
+
+struct PassCost {
+  std::uint64_t draws = 0;    // elements drawn
+  std::uint64_t queries = 0;  // slots asked
+  PassCost& operator+=(const PassCost& other) {
+    draws += other.draws;
+    queries += other.queries;
+    return *this;
+  }
+};
+
+/// Runs one pass on the canvas: owner by owner (ascending where F is asked, descending where L is),
+/// asks by the rule, then stores by the rule. What was not seen gets the bit, after the pass. Two
+/// kinds get it undrawn: triangles without elements in this view, and those asked before anything
+/// is stored. Undrawable ones get no bit and are stored everywhere. Stores that nobody is asked
+/// after are left out. items: those of `drawables`, triangles in the order of CullState::live.
+PassCost run_pass(CullState& state, std::span<const std::uint32_t> items,
+                  const Drawables& drawables, Bit ask, const PassRule& rule, const Level& level,
+                  bool touching, Canvas& canvas);
+
+/// Elements and slots that the pass of plain CULLIDE would draw and ask on the same live triangles.
+PassCost plain_cost(const CullState& state, std::span<const std::uint32_t> items,
+                    const Drawables& drawables, Bit ask, const Level& level);
+
+}  // namespace farcull

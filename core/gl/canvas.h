@@ -1,0 +1,49 @@
+// The canvas on OpenGL 4.3: a depth texture, proxies or triangles fetched from storage buffers, and
+// the full-visibility query either as an occlusion query per slot or as a flag that the fragment
+// program raises.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/canvas/canvas.h"
+#include "core/gl/canvas_options.h"
+#include "core/gl/context.h"
+
+namespace farcull {
+
+struct CanvasState;
+
+class GlCanvas final : public Canvas {
+ public:
+  /// `mode` and `solid` as in the fattener whose drawables will come. Throws Error where the
+  /// options do not go together or the device refuses. The context must outlive the canvas, which
+  /// makes it current for each of its calls. After any exception of begin(), run(), samples() or
+  /// depths() all that lies on the device is dropped; the next begin() makes it anew, and the
+  /// others throw std::logic_error before it.
+  GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram& solid,
+           const GlCanvasOptions& options = {});
+  ~GlCanvas() override;
+
+  const RasterLimits& limits() const override;
+  void begin(const Window& window, const Drawables& drawables) override;
+  std::vector<std::uint8_t> run(const Pass& pass) override;
+  std::vector<float> samples(Verb verb, const std::vector<Draw>& draws) override;
+  std::vector<float> depths(Verb verb, const std::vector<Draw>& draws) override;
+
+ private:
+  void forget();
+  void require_begun(const char* function) const;
+  template <class Work>
+  auto guarded(const Work& work);
+
+  const GlContext& context_;
+  DepthMode mode_;
+  std::string solid_;  // GLSL
+  GlCanvasOptions options_;
+  RasterLimits limits_;
+  std::unique_ptr<CanvasState> state_;  // null after a failure
+};
+
+}  // namespace farcull

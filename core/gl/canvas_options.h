@@ -1,0 +1,20 @@
+// Options of the canvas on OpenGL.
+#pragma once
+
+namespace farcull {
+
+enum class DepthFormat { float32, fixed24 };
+/// flags: an asked fragment raises its slot's flag. Proxies compare with the stored depth in the
+/// shader (float32 only: a comparison with a texel of a 24-bit texture loses equal depths);
+/// triangles at fixed depth rely on early fragment tests. occlusion: GL_ANY_SAMPLES_PASSED, many in
+/// flight, as published.
+enum class QueryMode { flags, occlusion };
+
+struct GlCanvasOptions {
+  DepthFormat depth_format = DepthFormat::float32;
+  QueryMode query = QueryMode::flags;
+  /// Bytes; as if a storage block held no more than this. 0: the device's own limit.
+  long storage_limit = 0;
+};
+
+}  // namespace farcull

@@ -1,0 +1,156 @@
+// Compiles programs, and asks GL after every binding and allocation whether it took effect.
+#include "core/gl/objects.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "core/base/error.h"
+#include "core/gl/context.h"
+
+namespace farcull {
+namespace {
+
+constexpr const char* kLost = "a command was lost: run again, or with another --device";
+constexpr const char* kReport = "report this driver's log with the output of `farcull doctor`";
+
+// Shaders write out and inout parameters through these names, so that kernels compile as C++ too
+// (core/base/glsl_shim.h).
+constexpr const char* kKernelNames =
+    "#define FAR_OUT(type) out type\n#define FAR_INOUT(type) inout type\n#define FAR_PRECISE "
+    "precise\n#define FAR_FIXED(x) (x)\n#define FAR_KERNEL\n";
+
+template <class Get, class Log>
+std::string log_of(GLuint object, Get get, Log log) {
+  GLint length = 0;
+  get(object, GL_INFO_LOG_LENGTH, &length);
+  std::string text(static_cast<std::size_t>(std::max(length, 1)), '\0');
+  log(object, length, nullptr, text.data());
+  while (!text.empty() && (text.back() == '\0' || text.back() == '\n')) text.pop_back();
+  return text;
+}
+
+// Every update goes through this binding. Whether it took effect is asked of GL: the contents that
+// follow would otherwise end in the buffer that was bound before.
+void bind_storage(GLuint name) {
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
+  GLint bound = 0;
+  glGetIntegerv(GL_SHADER_STORAGE_BUFFER_BINDING, &bound);
+  if (static_cast<GLuint>(bound) != name || name == 0)
+    throw Error("GL buffer", "a buffer was not bound", kLost);
+}
+
+}  // namespace
+
+// Numbers that look random, so that no few of them cancel in a sum; each step is a bijection, so no
+// two are equal before 2^32 of them.
+std::uint32_t gl_number() {
+  static std::atomic<std::uint32_t> last{0};
+  std::uint32_t tag = last += 1;
+  tag = (tag ^ tag >> 16) * 0x85ebca6bu;
+  tag = (tag ^ tag >> 13) * 0xc2b2ae35u;
+  return tag ^ tag >> 16;
+}
+
+bool GlStore::reserve(std::size_t wanted, std::size_t most) {
+  wanted = std::max<std::size_t>(wanted, 16);
+  if (name_ != 0 && wanted <= bytes_) return false;
+  const std::size_t grown_to = std::max(wanted, std::min(most, bytes_ + bytes_ / 2));
+  const std::size_t bytes = (grown_to + 15) / 16 * 16;
+  const auto size = static_cast<GLsizeiptr>(kTagBytes + bytes);
+  GlBuffer grown = gl_make<GlBuffer>(glGenBuffers);
+  bind_storage(grown);
+  glBufferData(GL_SHADER_STORAGE_BUFFER, size, nullptr, GL_DYNAMIC_COPY);
+  GLint64 given = 0;
+  glGetBufferParameteri64v(GL_SHADER_STORAGE_BUFFER, GL_BUFFER_SIZE, &given);
+  check_gl("buffer of " + std::to_string(size) + " bytes");
+  if (given != size)
+    throw Error("GL buffer", "a buffer has not the size that was asked for", kLost);
+  const std::uint32_t head[4] = {gl_number(), 0, 0, 0};
+  glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof head, head);
+  std::swap(name_, grown);
+  tag_ = head[0];
+  bytes_ = bytes;
+  return true;
+}
+
+void GlStore::write(std::size_t at, const void* data, std::size_t bytes) {
+  if (bytes == 0) return;
+  bind_storage(name_);
+  glBufferSubData(GL_SHADER_STORAGE_BUFFER, static_cast<GLintptr>(kTagBytes + at),
+                  static_cast<GLsizeiptr>(bytes), data);
+}
+
+void GlStore::clear(std::size_t bytes) {
+  bind_storage(name_);
+  glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, kTagBytes,
+                       static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+}
+
+void GlStore::read(std::size_t at, void* out, std::size_t bytes) const {
+  if (bytes == 0) return;
+  bind_storage(name_);
+  glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, static_cast<GLintptr>(kTagBytes + at),
+                     static_cast<GLsizeiptr>(bytes), out);
+}
+
+void gl_wait(const std::string& stage) {
+  const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  GLenum answer = GL_TIMEOUT_EXPIRED;
+  for (int second = 0; second < kLongestWait && answer == GL_TIMEOUT_EXPIRED; ++second)
+    answer = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, 1'000'000'000);
+  glDeleteSync(fence);
+  if (answer == GL_ALREADY_SIGNALED || answer == GL_CONDITION_SATISFIED) return;
+  check_gl(stage);
+  throw Error("GL " + stage,
+              answer == GL_TIMEOUT_EXPIRED
+                  ? "the device did not finish within " + std::to_string(kLongestWait) + " s"
+                  : "the device does not say whether it has finished",
+              "choose a smaller resolution, or another --device");
+}
+
+GlProgram gl_program(const std::string& name, const std::vector<std::string>& defines,
+                     const std::vector<ShaderText>& stages) {
+  GlProgram program(glCreateProgram());
+  for (const ShaderText& stage : stages) {
+    std::string text = std::string("#version 430 core\n") + kKernelNames;
+    for (const std::string& define : defines) text += "#define " + define + "\n";
+    for (const std::string& part : stage.texts) text += part;
+    const GLuint shader = glCreateShader(stage.stage);
+    const char* source = text.c_str();
+    glShaderSource(shader, 1, &source, nullptr);
+    glCompileShader(shader);
+    GLint ok = GL_FALSE;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+    const std::string log = ok ? "" : log_of(shader, glGetShaderiv, glGetShaderInfoLog);
+    if (ok) glAttachShader(program, shader);
+    glDeleteShader(shader);
+    if (!ok) throw Error("GL shader " + name, "it does not compile: " + log, kReport);
+  }
+  GLint attached = 0;
+  glGetProgramiv(program, GL_ATTACHED_SHADERS, &attached);
+  if (attached != static_cast<GLint>(stages.size()))
+    throw Error("GL shader " + name, "it lacks a stage", kLost);
+  glLinkProgram(program);
+  GLint ok = GL_FALSE;
+  glGetProgramiv(program, GL_LINK_STATUS, &ok);
+  if (!ok) {
+    throw Error("GL shader " + name,
+                "it does not link: " + log_of(program, glGetProgramiv, glGetProgramInfoLog),
+                kReport);
+  }
+  check_gl("shader " + name);
+  return program;
+}
+
+void gl_fill(GLuint buffer, const void* data, std::size_t bytes) {
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
+  if (bytes < 16) {
+    glBufferData(GL_SHADER_STORAGE_BUFFER, 16, nullptr, GL_STREAM_DRAW);
+    if (bytes > 0 && data)
+      glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
+  } else {
+    glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), data, GL_STREAM_DRAW);
+  }
+}
+
+}  // namespace farcull

@@ -1,0 +1,371 @@
+// Runs the programs of FAR pairs. Each dispatch counts its finished work items and leaves an echo
+// of the numbers and buffers that it read; both are compared when totals are read.
+#include "core/gl/pairs_device.h"
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+
+#include "core/base/error.h"
+#include "core/gl/echo.h"
+#include "core/pairs/backend.h"
+#include "embedded/echo_glsl.h"
+#include "embedded/interval_glsl.h"
+#include "embedded/pair_check_comp.h"
+#include "embedded/pair_common_glsl.h"
+#include "embedded/pair_conflicts_comp.h"
+#include "embedded/pair_copy_comp.h"
+#include "embedded/pair_cut_comp.h"
+#include "embedded/pair_items_comp.h"
+#include "embedded/pair_large_comp.h"
+#include "embedded/pair_lists_comp.h"
+#include "embedded/pair_main_glsl.h"
+#include "embedded/pair_rows_glsl.h"
+#include "embedded/pair_scan_comp.h"
+#include "embedded/pair_source_glsl.h"
+#include "embedded/pair_spans_comp.h"
+#include "embedded/pair_tests_comp.h"
+
+namespace farcull {
+namespace {
+
+constexpr GLuint kCounters = 7;           // binding
+constexpr GLint kBindings = 11;           // 0 .. 10
+constexpr std::uint32_t kGroup = 64;      // local_size_x of pair_common.glsl
+constexpr std::uint32_t kScanned = 64;    // numbers of a sum, pair_scan.comp
+constexpr std::size_t kDispatches = 240;  // that are counted between two reads
+constexpr std::size_t kMirrorBlock = std::size_t{64} << 10;
+
+struct Source {
+  const char* name;
+  std::uint32_t batch;  // work items of an invocation
+  const char* text;
+  int step;
+  const char* before = "";  // a text that it needs
+  std::vector<std::string> defines = {};
+};
+const std::array<Source, kPairPrograms>& sources() {
+  using namespace embedded;
+  static const std::array<Source, kPairPrograms> all = {{
+      {"pair items", 8, pair_items_comp, 0, pair_source_glsl},
+      {"pair records", 4, pair_items_comp, 1, pair_source_glsl},
+      {"pair spans", 16, pair_spans_comp, 0},
+      {"pair lists, marking", 8, pair_lists_comp, 0},
+      {"pair lists, counting", 8, pair_lists_comp, 1},
+      {"pair lists, filling", 4, pair_lists_comp, 2},
+      {"pair lists by rows, marking", 2, pair_lists_comp, 0, pair_rows_glsl, {"FAR_ROWS"}},
+      {"pair lists by rows, counting", 2, pair_lists_comp, 1, pair_rows_glsl, {"FAR_ROWS"}},
+      {"pair lists by rows, filling", 2, pair_lists_comp, 2, pair_rows_glsl, {"FAR_ROWS"}},
+      {"pair conflicts", 16, pair_conflicts_comp, 0},
+      {"pair scan, sums", 4, pair_scan_comp, 0},
+      {"pair scan, sums of sums", 4, pair_scan_comp, 1},
+      {"pair scan, top", 1, pair_scan_comp, 2},
+      {"pair scan, down to sums", 4, pair_scan_comp, 3},
+      {"pair scan, down", 4, pair_scan_comp, 4},
+      {"pair check of crowds", 32, pair_check_comp, 0},
+      {"pair check of lists", 64, pair_check_comp, 1},
+      {"pair tests", 4, pair_tests_comp, 0, "", {"FAR_SUM FAR_TESTS"}},
+      {"pair tests left", 4, pair_tests_comp, 1, "", {"FAR_SUM FAR_TESTS"}},
+      {"pair tests of uncut cells",
+       4,
+       pair_tests_comp,
+       0,
+       "",
+       {"FAR_SUM FAR_TESTS", "FAR_SOME_CROWDED"}},
+      {"pair tests left of uncut cells",
+       4,
+       pair_tests_comp,
+       1,
+       "",
+       {"FAR_SUM FAR_TESTS", "FAR_SOME_CROWDED"}},
+      {"pair subdivision, parents", 16, pair_cut_comp, 0},
+      {"pair subdivision, counting", 1, pair_cut_comp, 1, pair_rows_glsl},
+      {"pair subdivision, deciding", 1, pair_cut_comp, 2},
+      {"pair subdivision, filling", 1, pair_cut_comp, 3, pair_rows_glsl},
+      {"pair large ones", 16, pair_large_comp, 0},
+      {"pair comparison with large ones", 1, pair_large_comp, 1, pair_source_glsl},
+      {"pair sum of what was sent", 64, pair_copy_comp, 0, "", {"FAR_SUM FAR_SENT"}},
+      {"pair copy", 64, pair_copy_comp, 1},
+      {"pair zeros", 64, pair_copy_comp, 2},
+      {"pair tests, settled", 4, pair_tests_comp, 0, "", {"FAR_SUM FAR_TESTS", "FAR_SETTLED"}},
+      {"pair tests left, settled", 4, pair_tests_comp, 1, "", {"FAR_SUM FAR_TESTS", "FAR_SETTLED"}},
+      {"pair tests of uncut cells, settled",
+       4,
+       pair_tests_comp,
+       0,
+       "",
+       {"FAR_SUM FAR_TESTS", "FAR_SOME_CROWDED", "FAR_SETTLED"}},
+      {"pair tests left of uncut cells, settled",
+       4,
+       pair_tests_comp,
+       1,
+       "",
+       {"FAR_SUM FAR_TESTS", "FAR_SOME_CROWDED", "FAR_SETTLED"}},
+  }};
+  return all;
+}
+
+std::vector<std::string> defines_of(const Source& source, std::uint32_t index) {
+  const auto number = [](const char* name, std::uint32_t value) {
+    return std::string(name) + " " + std::to_string(value) + "u";
+  };
+  std::vector<std::string> out = source.defines;
+  for (const std::string& define : {
+           number("FAR_WHOLES", kTotalWholes),
+           number("FAR_ITEMS", kTotalItems),
+           number("FAR_LARGE", kTotalLarge),
+           number("FAR_ROWS_TOTAL", kTotalRows),
+           number("FAR_OVERFLOW", kTotalOverflow),
+           number("FAR_CROWDED_CELLS", kTotalCrowded),
+           number("FAR_MISMATCHES", kTotalMismatches),
+           number("FAR_LISTED", kTotalListed),
+           number("FAR_LISTED_ROWS", kTotalListedRows),
+           number("FAR_PARENTS", kTotalParents),
+           number("FAR_PAIRS", kTotalPairs),
+           number("FAR_TESTS", kTotalTests),
+           number("FAR_MORE", kTotalMore),
+           number("FAR_SENT", kTotalSent),
+           number("FAR_PROGRAM", index + 1),
+           number("FAR_CROWDED", kCrowded),
+           number("FAR_SUBDIVISION", kSubdivision),
+           number("FAR_SPAN", kSpan),
+           number("FAR_UNIT", kUnit),
+           number("FAR_LARGE_BATCH", kLargeBatch),
+           number("FAR_BATCH", source.batch),
+           "FAR_STEP " + std::to_string(source.step),
+           "FAR_WHOLE_PIXELS " + std::to_string(kWholePixels),
+       })
+    out.push_back(define);
+  return out;
+}
+
+constexpr std::array kSerials = {kSerialStart, kSerialItems, kSerialCut, kSerialPairs};
+
+// Where core/gl/shaders/pair_main.glsl adds the tags of buffers to the echo.
+constexpr std::uint32_t kTagPlace = 31;
+
+GLint limit_of(GLenum name) {
+  GLint value = 0;
+  glGetIntegerv(name, &value);
+  return value;
+}
+
+}  // namespace
+
+std::size_t PairMirror::update(std::span<const std::byte> data) {
+  const bool lost = store_.reserve(data.size(), data.size());
+  const std::size_t known = lost ? 0 : std::min(sent_.size(), data.size());
+  sent_.resize(data.size());
+  std::size_t sent = 0;
+  const auto send = [&](std::size_t begin, std::size_t end) {
+    if (begin == end) return;
+    std::memcpy(sent_.data() + begin, data.data() + begin, end - begin);
+    store_.write(begin, data.data() + begin, end - begin);
+    sent += end - begin;
+  };
+  std::size_t from = 0;  // the first byte of the blocks that changed up to here
+  for (std::size_t at = 0; at < known; at += kMirrorBlock) {
+    const std::size_t end = std::min(at + kMirrorBlock, known);
+    if (std::memcmp(sent_.data() + at, data.data() + at, end - at) != 0) continue;
+    send(from, at);
+    from = end;
+  }
+  send(from, data.size());
+  return sent;
+}
+
+PairQueue::PairQueue(const GlContext& context, const GlPairOptions& options)
+    : context_(context), block_(static_cast<std::size_t>(context.info().max_storage_block)) {
+  if (options.storage_limit > 0) {
+    block_ = std::min(block_, static_cast<std::size_t>(options.storage_limit));
+  }
+  block_ -= kTagBytes;
+  const GLint bindings = std::min(limit_of(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS),
+                                  limit_of(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS));
+  if (bindings < kBindings) {
+    throw Error("GL pairs",
+                "the device has " + std::to_string(bindings) +
+                    " storage bindings, FAR pairs needs " + std::to_string(kBindings),
+                "use --device cpu or another device");
+  }
+  // Those that every scene needs.
+  for (std::size_t p = 0; p <= static_cast<std::size_t>(PairProgram::tests); ++p) program(p);
+  words_.assign(kTotals + 2 * kDispatches, 0);
+  counters_.reserve(words_.size() * sizeof(std::uint32_t), block_);
+  start(true);
+  check_gl("pairs");
+}
+
+const PairQueue::Program& PairQueue::program(std::size_t which) {
+  Program& out = programs_[which];
+  if (out.name != 0) return out;
+  const Source& source = sources()[which];
+  GlProgram made =
+      gl_program(source.name, defines_of(source, static_cast<std::uint32_t>(which)),
+                 {{GL_COMPUTE_SHADER,
+                   {embedded::interval_glsl, embedded::pair_common_glsl, embedded::echo_glsl,
+                    source.before, source.text, embedded::pair_main_glsl}}});
+  GLint blocks = 0;
+  glGetProgramInterfaceiv(made, GL_SHADER_STORAGE_BLOCK, GL_ACTIVE_RESOURCES, &blocks);
+  std::uint32_t bindings = 0;
+  for (GLint b = 0; b < blocks; ++b) {
+    const GLenum wanted = GL_BUFFER_BINDING;
+    GLint binding = 0;
+    glGetProgramResourceiv(made, GL_SHADER_STORAGE_BLOCK, static_cast<GLuint>(b), 1, &wanted, 1,
+                           nullptr, &binding);
+    bindings |= 1u << binding;
+  }
+  out.bindings = bindings;
+  std::swap(out.name, made);
+  return out;
+}
+
+void PairQueue::start(bool fresh) {
+  if (fresh) dispatches_ = 0;
+  expected_.clear();
+  expected_sum_ = 0;
+  std::fill(words_.begin(), words_.end(), 0);
+  for (const PairTotal place : kSerials) words_[place] = serials_[place] = ++serial_;
+  counters_.write(0, words_.data(), words_.size() * sizeof(std::uint32_t));
+}
+
+void PairQueue::reset(PairTotals totals) {
+  std::array<std::uint32_t, kTotals> words{};
+  words[0] = serials_[totals.serial] = ++serial_;
+  counters_.write(totals.serial * sizeof(std::uint32_t), words.data(),
+                  totals.words * sizeof(std::uint32_t));
+}
+
+void PairQueue::run(PairProgram which, std::uint64_t count, const PairUniforms& u,
+                    const std::vector<PairBinding>& bindings) {
+  if (count == 0) return;
+  if (count >> 31 != 0) throw std::logic_error("PairQueue::run: too much work for one dispatch");
+  if (expected_.size() == kDispatches) check_finished("pairs");
+  const auto index = static_cast<std::size_t>(which);
+  const auto n = static_cast<std::uint32_t>(count);
+  const Program& used = program(index);
+  const auto finished = kTotals + 2 * static_cast<std::uint32_t>(expected_.size());
+  glUseProgram(used.name);
+  glUniform1ui(0, n);
+  glUniform1ui(1, finished);
+  glUniform4fv(2, 1, u.widen.data());
+  glUniform4iv(3, 1, u.tile.data());
+  glUniform2iv(4, 1, u.window.data());
+  glUniform2fv(5, 1, u.depth.data());
+  glUniform4uiv(6, 1, u.bins.data());
+  glUniform1ui(7, u.cells);
+  glUniform1ui(8, u.masked);
+  glUniform1ui(9, u.capacity);
+  glUniform1ui(10, u.items);
+  glUniform4uiv(11, 1, u.extra.data());
+  glUniform4fv(12, 1, u.numbers.data());
+  GlEcho echo;
+  echo.add({static_cast<std::uint32_t>(index) + 1, n, finished});
+  echo.add(u.widen);
+  echo.add(u.tile);
+  echo.add(u.window);
+  echo.add(u.depth);
+  echo.add(u.bins);
+  echo.add({u.cells, u.masked, u.capacity, u.items});
+  echo.add(u.extra);
+  echo.add(u.numbers);
+  const auto bind = [&](GLuint at, const GlStore& store) {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, at, store.name());
+    if ((used.bindings >> at & 1) != 0) echo.add_at(kTagPlace + at, store.tag());
+  };
+  for (const PairBinding& b : bindings) bind(b.index, *b.store);
+  bind(kCounters, counters_);
+  const std::uint32_t per_group = kGroup * sources()[index].batch;
+  const std::uint32_t groups = (n + per_group - 1) / per_group;
+  const std::uint32_t most = static_cast<std::uint32_t>(context_.info().max_compute_groups);
+  const std::uint32_t columns = std::min(groups, most);
+  const std::uint32_t rows = (groups + columns - 1) / columns;
+  glDispatchCompute(columns, rows, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  expected_.push_back({n, echo.sum});
+  ++dispatches_;
+}
+
+void PairQueue::expect(const GlStore& store, std::span<const std::byte> data) {
+  const std::size_t count = data.size() / sizeof(std::uint32_t);
+  expected_sum_ += gl_sum(data);
+  run(PairProgram::sum, count, {}, {{0, &store}});
+}
+
+void PairQueue::grow(GlStore& store, std::size_t wanted, std::size_t keep) {
+  if (wanted <= store.bytes()) return;
+  GlStore grown;
+  grown.reserve(wanted, block_);
+  if (keep > 0)
+    run(PairProgram::copy, keep / sizeof(std::uint32_t), {}, {{0, &store}, {1, &grown}});
+  std::swap(store, grown);
+}
+
+void PairQueue::scan(const GlStore& numbers, const GlStore& before, std::size_t count) {
+  // Where each level of sums begins, and how long it is.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> levels;
+  std::uint32_t at = 0;
+  for (std::size_t n = count;;) {
+    n = (n + kScanned - 1) / kScanned;
+    levels.emplace_back(at, static_cast<std::uint32_t>(n));
+    at += static_cast<std::uint32_t>(n);
+    if (n <= kScanned) break;
+  }
+  sums_.reserve(at * sizeof(std::uint32_t), block_);
+  const auto step = [&](PairProgram program, std::uint32_t from, std::size_t length,
+                        std::uint32_t to) {
+    PairUniforms u;
+    u.extra = {from, static_cast<std::uint32_t>(length), to, kTotalScanned};
+    run(program, (length + kScanned - 1) / kScanned, u, {{0, &numbers}, {1, &before}, {2, &sums_}});
+  };
+  step(PairProgram::sum_numbers, 0, count, levels[0].first);
+  for (std::size_t l = 1; l < levels.size(); ++l) {
+    step(PairProgram::sum_sums, levels[l - 1].first, levels[l - 1].second, levels[l].first);
+  }
+  step(PairProgram::scan_top, levels.back().first, levels.back().second, 0);
+  for (std::size_t l = levels.size(); l-- > 1;) {
+    step(PairProgram::scan_sums, levels[l - 1].first, levels[l - 1].second, levels[l].first);
+  }
+  step(PairProgram::scan_numbers, 0, count, levels[0].first);
+}
+
+void PairQueue::check_finished(const std::string& stage) {
+  gl_wait(stage);
+  const std::size_t words = kTotals + 2 * expected_.size();
+  // Where nothing is read, no serial number is found.
+  std::fill(words_.begin(), words_.end(), 0xffffffff);
+  counters_.read(0, words_.data(), words * sizeof(std::uint32_t));
+  check_gl(stage);
+  const auto lost = [&](const std::string& reason) {
+    throw Error("GL " + stage, reason, "a command was lost: run again, or with another --device");
+  };
+  for (const PairTotal place : kSerials) {
+    if (words_[place] != serials_[place]) lost("counts were not set to zero, or not read");
+  }
+  for (std::size_t d = 0; d < expected_.size(); ++d) {
+    const std::uint32_t finished = words_[kTotals + 2 * d];
+    if (finished != expected_[d].items) {
+      lost(std::to_string(finished) + " of " + std::to_string(expected_[d].items) +
+           " work items finished");
+    }
+    if (words_[kTotals + 2 * d + 1] != expected_[d].echo)
+      lost("a program ran with other numbers or other buffers than were meant");
+  }
+  const std::vector<std::uint32_t> zero(2 * expected_.size(), 0);
+  counters_.write(kTotals * sizeof(std::uint32_t), zero.data(),
+                  zero.size() * sizeof(std::uint32_t));
+  expected_.clear();
+}
+
+std::array<std::uint32_t, kTotals> PairQueue::read(const std::string& stage) {
+  check_finished(stage);
+  std::array<std::uint32_t, kTotals> totals;
+  std::copy_n(words_.begin(), kTotals, totals.begin());
+  if (totals[kTotalSent] != expected_sum_) {
+    throw Error("GL " + stage, "the device holds other data than were sent",
+                "a command was lost: run again, or with another --device");
+  }
+  return totals;
+}
+
+}  // namespace farcull

@@ -1,0 +1,33 @@
+// FAR pairs of one window on a GL device: parts of the window that fit the memory, one after the
+// other. For core/gl/pairs.cpp alone.
+#pragma once
+
+#include <vector>
+
+#include "core/gl/pairs_emission.h"
+#include "core/gl/pairs_items.h"
+#include "core/gl/pairs_lists.h"
+#include "core/gl/pairs_run.h"
+
+namespace farcull {
+
+class PairFinder {
+ public:
+  PairFinder(const GlContext& context, const GlPairOptions& options)
+      : run_(context, options), lists_(run_, items_), emission_(run_, items_) {}
+
+  std::vector<TrianglePair> find(const PairTask& task, PairCounts& counts);
+  std::size_t dispatches() const { return run_.device.dispatches(); }
+  std::size_t sent_bytes() const { return run_.scene.sent_bytes(); }
+
+ private:
+  void split(const PairPart& part);
+  bool find_in(const PairPart& part);
+
+  PairRun run_;
+  PairItems items_{run_};
+  PairLists lists_;
+  PairEmission emission_;
+};
+
+}  // namespace farcull

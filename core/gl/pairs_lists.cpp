@@ -1,0 +1,175 @@
+// Lists are counted, their places are scanned, and they are filled in: three passes over the items.
+// Crowded cells are cut in the same way, level by level.
+#include "core/gl/pairs_lists.h"
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/base/stopwatch.h"
+
+namespace farcull {
+namespace {
+
+constexpr std::size_t kSubCells = kSubdivision * kSubdivision;
+constexpr std::size_t kBins = std::size_t{1} << 20;  // that are wanted at most
+
+}  // namespace
+
+bool PairLevel::shape(std::size_t n, std::uint32_t groups, std::uint64_t expected,
+                      PairMemory& memory) {
+  cells = n;
+  std::uint32_t slices = kSlices, shift = 0;
+  const std::size_t most = std::min<std::uint64_t>({expected, kBins, memory.left / (8 * kWord)});
+  while (slices > 1 && cells * groups * slices > most) {
+    slices /= 2;
+    ++shift;
+  }
+  bins = {groups * slices, shift, slices, groups - 1};
+  const std::size_t wanted = (all_bins() + 1) * kWord;
+  if (!memory.take(wanted) || !memory.take(wanted)) return false;
+  if (counts.reserve(wanted, memory.block)) dirty = true;
+  if (dirty) {
+    counts.clear(counts.bytes());
+  }
+  dirty = true;  // until all that is counted is filled in
+  first.reserve(wanted, memory.block);
+  for (GlStore* store : {&entries, &places}) store->reserve(kVec4, kVec4);
+  return true;
+}
+
+bool PairLevel::fill(std::size_t n, PairMemory& memory) {
+  listed = n;
+  if (!memory.take(n * kEntry) || !memory.take(n * 2 * kWord)) return false;
+  entries.reserve(n * kEntry, memory.block);
+  places.reserve(n * 2 * kWord, memory.block);
+  return true;
+}
+
+// Runs one step of pair_lists.comp.
+void PairLists::visit(PairProgram wholes_program, PairProgram rows_program, std::size_t capacity) {
+  PairUniforms u = run_.common;
+  const PairLevel& pixels = levels_[0];
+  const bool fill = wholes_program == PairProgram::fill_wholes;
+  u.bins = pixels.bins;
+  u.capacity = static_cast<std::uint32_t>(capacity);
+  u.extra[0] = run_.owners.bits;
+  for (const bool by_rows : {false, true}) {
+    run_.device.run(by_rows ? rows_program : wholes_program,
+                    by_rows ? items_.row_items() : (fill ? items_.shown() : items_.wholes()), u,
+                    {{0, &items_.record_store()},
+                     {1, &rows_before_},
+                     {2, &masks_},
+                     {3, &pixels.counts},
+                     {4, &pixels.first},
+                     {6, by_rows || fill ? &items_.record_heads() : &items_.heads()},
+                     {8, by_rows ? &items_.listed_flags() : &items_.shown_list()},
+                     {9, &pixels.entries},
+                     {10, &pixels.places}});
+  }
+}
+
+// Marks the slices that two owners touch in each pixel.
+void PairLists::mark(const PairPart& part, std::size_t mask_bytes) {
+  const Stopwatch start;
+  // Where this is lost, slices are left that seem to be touched: more is listed, nothing less.
+  masks_.clear(mask_bytes);
+  visit(PairProgram::mark_wholes, PairProgram::mark_rows, 0);
+  PairUniforms u = run_.common;
+  u.extra[0] = run_.owners.bits;
+  run_.device.run(PairProgram::conflicts, 2 * part.cells(), u, {{2, &masks_}});
+  run_.counts.mark_ms += start.ms();
+}
+
+// The lists of the part's pixels; false: too much.
+bool PairLists::make(const PairPart& part, PairMemory& memory) {
+  PairLevel& pixels = levels_[0];
+  run_.common.cells = static_cast<std::uint32_t>(part.cells());
+  rows_before_.reserve(std::max<std::size_t>(items_.items() * kWord, kVec4), memory.block);
+  if (items_.row_items() > 0) {
+    rows_.reserve(items_.items() * kWord, memory.block);
+    run_.device.run(PairProgram::spans, items_.items(), run_.common,
+                    {{3, &rows_}, {6, &items_.record_heads()}});
+    run_.device.scan(rows_, rows_before_, items_.items());
+  }
+  const std::size_t mask_bytes =
+      run_.common.masked ? part.cells() * 8 * (1 + 2 * run_.owners.bits) : kVec4;
+  if (!memory.take(mask_bytes)) return false;
+  masks_.reserve(mask_bytes, memory.block);
+  if (!pixels.shape(part.cells(), run_.owners.groups, 2 * items_.wholes() + 8 * items_.row_items(),
+                    memory))
+    return false;
+  if (run_.common.masked) mark(part, mask_bytes);
+  visit(PairProgram::count_wholes, PairProgram::count_rows, 0);
+  run_.device.scan(pixels.counts, pixels.first, pixels.all_bins() + 1);
+  PairUniforms u = run_.common;
+  u.bins = pixels.bins;
+  run_.device.run(PairProgram::crowded, part.cells(), u, {{3, &pixels.counts}, {4, &pixels.first}});
+  const auto totals = run_.device.read("pair lists");
+  if (overflow(totals, memory)) return false;
+  run_.counts.crowded += totals[kTotalCrowded];
+  if (!items_.make_records(totals[kTotalListed], memory) ||
+      !pixels.fill(totals[kTotalScanned], memory))
+    return false;
+  visit(PairProgram::fill_wholes, PairProgram::fill_rows, pixels.listed);
+  run_.device.run(PairProgram::filled, pixels.all_bins(), u,
+                  {{3, &pixels.counts}, {4, &pixels.first}});
+  run_.counts.listed += totals[kTotalListed] + totals[kTotalListedRows];
+  return true;
+}
+
+// Cuts the crowded cells of level l into those of the next; false: too much.
+bool PairLists::cut(std::size_t l, std::size_t crowded, PairMemory& memory,
+                    std::size_t& crowded_below) {
+  PairLevel& level = levels_[l];
+  PairLevel& below = levels_[l + 1];
+  if (!memory.take(level.cells * kWord) || !memory.take(crowded * kVec4)) return false;
+  level.state.reserve(level.cells * kWord, memory.block);
+  level.parents.reserve(crowded * kVec4, memory.block);
+  if (!below.shape(crowded * kSubCells, run_.owners.groups, level.listed, memory)) return false;
+
+  PairUniforms u = run_.common;
+  u.bins = below.bins;
+  u.capacity = static_cast<std::uint32_t>(crowded);
+  u.extra = {static_cast<std::uint32_t>(l), level.bins[0], 0, 0};
+  u.numbers[0] = 1;
+  for (std::size_t k = 0; k <= l; ++k) u.numbers[0] /= kSubdivision;
+  u.numbers[1] = 1 / u.numbers[0];
+  const auto step = [&](PairProgram program, std::size_t n) {
+    run_.device.run(program, n, u,
+                    {{0, &items_.record_store()},
+                     {1, l > 0 ? &levels_[l - 1].parents : &level.parents},
+                     {2, &level.parents},
+                     {3, &below.counts},
+                     {4, program == PairProgram::parents ? &level.first : &below.first},
+                     {5, &level.entries},
+                     {6, &level.places},
+                     {8, &level.state},
+                     {9, &below.entries},
+                     {10, &below.places}});
+  };
+  run_.device.reset(kCutTotals);
+  step(PairProgram::parents, level.cells);
+  step(PairProgram::cut_count, level.listed);
+  step(PairProgram::cut_decide, crowded);
+  run_.device.scan(below.counts, below.first, below.all_bins() + 1);
+  run_.device.run(PairProgram::crowded, below.cells, u, {{3, &below.counts}, {4, &below.first}});
+  const auto totals = run_.device.read("pair subdivision");
+  if (totals[kTotalParents] != crowded) {
+    throw Error("GL pairs", "crowded pixels were counted twice with different results",
+                "a compute invocation was lost: run again, or with another --device");
+  }
+  if (overflow(totals, memory)) return false;
+  crowded_below = totals[kTotalCrowded];
+  if (!below.fill(totals[kTotalScanned], memory)) return false;
+  u.capacity = static_cast<std::uint32_t>(below.listed);
+  if (below.listed > 0) step(PairProgram::cut_fill, level.listed);
+  run_.device.run(PairProgram::filled, below.all_bins(), u,
+                  {{3, &below.counts}, {4, &below.first}});
+  return true;
+}
+
+void PairLists::set_dirty(bool dirty) {
+  for (PairLevel& level : levels_) level.dirty = dirty;
+}
+
+}  // namespace farcull

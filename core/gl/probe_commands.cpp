@@ -1,0 +1,406 @@
+// A5 .. A7: depth tests, queries, and whether lost commands are noticed.
+#include <algorithm>
+#include <array>
+
+#include "core/gl/driver_fault.h"
+#include "core/gl/probe_groups.h"
+#include "core/gl/probe_target.h"
+#include "embedded/canvas_frag.h"
+#include "embedded/probe_depth_frag.h"
+#include "embedded/probe_solid_frag.h"
+
+namespace farcull::probe {
+namespace {
+
+constexpr int kSide = 160;
+constexpr std::size_t kPixels = static_cast<std::size_t>(kSide) * kSide;
+
+// One proxy per pixel of a square target or window, in rows.
+std::vector<Proxy> pixel_proxies(int side) {
+  std::vector<Proxy> out;
+  out.reserve(static_cast<std::size_t>(side) * side);
+  for (int i = 0; i < side * side; ++i) out.push_back(pixel_box(i, side));
+  return out;
+}
+
+// Depths as the canvas uses them (its map's range and its control items) and any others; layers are
+// equal, neighbouring or far apart.
+std::vector<float> random_depths(Random& random, const std::vector<float>& beside) {
+  std::vector<float> out(kPixels);
+  for (std::size_t i = 0; i < kPixels; ++i) {
+    const int way = random.below(8);
+    float d = random.in_float(0, 0.96);
+    if (way < 3) d = random.in_float(0.25, 0.75);
+    if (way == 3) d = static_cast<float>(0.95 - random.below(800000) * 0x1p-22);
+    if (way > 4 && !beside.empty()) d = neighbour(beside[i], random.below(5) - 2);
+    if (way == 4) d = random.below(2) ? 0.25f : 0.75f;
+    out[i] = std::clamp(d, 0.0f, 0.96f);
+  }
+  return out;
+}
+
+// Layers of one proxy per pixel, which are stored with LESS and asked with GEQUAL.
+class DepthLayers {
+ public:
+  static constexpr std::size_t kLayers = 4;
+
+  DepthLayers(Random& random, DepthBuffer format)
+      : target_(kSide, kSide, format),
+        program_(proxy_program("depth", {embedded::probe_depth_frag})) {
+    for (std::vector<float>& layer : depths_) {
+      layer = random_depths(random, &layer == &depths_[0] ? std::vector<float>() : depths_[0]);
+      const std::vector<Proxy> one = proxies_at(layer);
+      proxies_.insert(proxies_.end(), one.begin(), one.end());
+    }
+    target_.upload(proxies_);
+  }
+
+  const std::vector<float>& depths(std::size_t layer) const { return depths_[layer]; }
+  /// The depths that the buffer holds after `count` layers.
+  std::vector<std::uint32_t> store(std::size_t first, std::size_t count) {
+    target_.start();
+    Target::depth_test(GL_LESS, true);
+    target_.use(program_);
+    target_.draw(first * kPixels, count * kPixels);
+    return target_.depths();
+  }
+  /// All layers stored, then a proxy at each of these depths: pixel i is i + 1 where it passed.
+  std::vector<std::uint32_t> ask(const std::vector<float>& asked) {
+    store(0, kLayers);
+    target_.upload(proxies_at(asked));
+    Target::depth_test(GL_GEQUAL, false);
+    const GLuint zero[4] = {0, 0, 0, 0};
+    glClearBufferuiv(GL_COLOR, 0, zero);
+    target_.draw(0, kPixels);
+    std::vector<std::uint32_t> passed = target_.colour();
+    target_.upload(proxies_);
+    return passed;
+  }
+
+ private:
+  static std::vector<Proxy> proxies_at(const std::vector<float>& depths) {
+    std::vector<Proxy> out = pixel_proxies(kSide);
+    for (std::size_t i = 0; i < kPixels; ++i) out[i].solid[4][2] = depths[i];
+    return out;
+  }
+
+  Target target_;
+  GlProgram program_;
+  std::array<std::vector<float>, kLayers> depths_;
+  std::vector<Proxy> proxies_;
+};
+
+ProbeResult raw_depth_test(const ProbeOptions& options, DepthBuffer format) {
+  constexpr std::size_t kLayers = DepthLayers::kLayers;
+  const bool floats = format == DepthBuffer::float32;
+  Random random(options.seed + 7);
+  DepthLayers layers(random, format);
+  // Drawn alone, each layer shows how the buffer rounds it; of all together the least must stay.
+  std::vector<std::uint32_t> least(kPixels, 0xffffffff);
+  std::vector<float> nearest(kPixels, 1);
+  Worst wrong;
+  for (std::size_t k = 0; k < kLayers; ++k) {
+    const std::vector<std::uint32_t> alone = layers.store(k, 1);
+    const std::vector<float>& depths = layers.depths(k);
+    for (std::size_t i = 0; i < kPixels; ++i) {
+      if (floats) wrong.count(alone[i] != std::bit_cast<std::uint32_t>(depths[i]));
+      least[i] = std::min(least[i], alone[i]);
+      nearest[i] = std::min(nearest[i], depths[i]);
+    }
+  }
+  const std::vector<std::uint32_t> kept = layers.store(0, kLayers);
+  for (std::size_t i = 0; i < kPixels; ++i) wrong.count(kept[i] != least[i]);
+
+  std::uint64_t extra = 0;
+  for (std::size_t k = 0; k < kLayers + 1; ++k) {
+    // The last time each pixel asks at the depth that it stores, and equal depths must pass.
+    std::vector<float> asked = k < kLayers ? layers.depths(k) : nearest;
+    if (k < kLayers) {
+      for (float& d : asked) d = std::max(0.0f, neighbour(d, random.below(3) - 1));
+    }
+    const std::vector<std::uint32_t> passed = layers.ask(asked);
+    for (std::size_t i = 0; i < kPixels; ++i) {
+      const bool pass = passed[i] == i + 1, must = asked[i] >= nearest[i];
+      extra += pass && !must;
+      wrong.count(must ? !pass : pass && floats);
+    }
+  }
+  std::string note =
+      "LESS keeps the nearest of 4 layers, GEQUAL passes at and behind it; neighbours, equal "
+      "depths, control depths";
+  if (!floats) note += "; " + std::to_string(extra) + " passed that were less than a step nearer";
+  return result("A5", floats ? "depth test, 32F" : "depth test, 24 bits", wrong, 0, "wrong pixels",
+                note);
+}
+
+struct Configuration {
+  const char* name;
+  DepthFormat depth_format;
+  QueryMode query;
+
+  GlCanvasOptions options() const {
+    GlCanvasOptions out;
+    out.depth_format = depth_format;
+    out.query = query;
+    return out;
+  }
+};
+constexpr Configuration kConfigurations[] = {
+    {"flags, 32F", DepthFormat::float32, QueryMode::flags},
+    {"occlusion queries, 32F", DepthFormat::float32, QueryMode::occlusion},
+    {"occlusion queries, 24 bits", DepthFormat::fixed24, QueryMode::occlusion}};
+
+// A canvas may refuse (its control items depend on the depth test and the queries, too): that is a
+// failure of this probe, and the next goes on.
+using CanvasProbe = ProbeResult (*)(const std::string& name, const GlContext& context,
+                                    const ProbeOptions& options,
+                                    const Configuration& configuration);
+ProbeResult on_canvas(const std::string& assumption, const std::string& kind, CanvasProbe run,
+                      const GlContext& context, const ProbeOptions& options,
+                      const Configuration& configuration) {
+  const std::string name = kind + ", " + configuration.name;
+  try {
+    return run(name, context, options, configuration);
+  } catch (const Error& error) {
+    return broken(assumption, name, error);
+  }
+}
+
+// The canvas from store to answer, on one proxy per pixel: a far and a near one stored, one asked
+// at a depth around the near one.
+ProbeResult canvas_depth_test(const std::string& name, const GlContext& context,
+                              const ProbeOptions& options, const Configuration& configuration) {
+  constexpr int kWindow = 64;
+  constexpr std::uint32_t kSlots = kWindow * kWindow;
+  constexpr std::ptrdiff_t kStored = std::ptrdiff_t{2} * kWindow * kWindow;  // proxies
+  Random random(options.seed + 8);
+  GlCanvas canvas(context, DepthMode::fragment, depth_solid(), configuration.options());
+  Drawables drawables;
+  std::vector<float> stored(kSlots), asked(kSlots);
+  for (int layer = 0; layer < 3; ++layer) {
+    std::vector<Proxy> proxies = pixel_proxies(kWindow);
+    for (std::uint32_t i = 0; i < kSlots; ++i) {
+      if (layer == 1) stored[i] = random.in_float(-90, 90);
+      if (layer == 2) asked[i] = neighbour(stored[i], random.below(2) ? 0 : random.below(64) - 32);
+      const float z = layer == 0 ? 95 : layer == 1 ? stored[i] : asked[i];
+      proxies[i].solid[0][2] = proxies[i].solid[0][3] = z;
+    }
+    drawables.proxies.insert(drawables.proxies.end(), proxies.begin(), proxies.end());
+  }
+  for (std::uint32_t i = 1; i <= 3 * kSlots; ++i) drawables.first.push_back(i);
+  Pass pass;
+  pass.slots = kSlots;
+  for (std::uint32_t i = 0; i < 3 * kSlots; ++i) pass.draws.push_back({i, i % kSlots});
+  pass.steps = {
+      {Verb::store, 0, kSlots}, {Verb::store, kSlots, kSlots}, {Verb::ask, 2 * kSlots, kSlots}};
+  canvas.begin(window(kWindow, kWindow), drawables);
+  Worst wrong;
+  std::string note =
+      "far and near proxies stored, each pixel asked as a slot of its own; unseen "
+      "though at or behind what is stored";
+  const std::vector<std::uint8_t> seen = canvas.run(pass);
+  std::vector<float> kept, exits;
+  if (canvas.limits().depth_bits == 32) {
+    const auto first = pass.draws.begin();
+    kept = canvas.depths(Verb::store, {first, first + kStored});
+    exits = canvas.depths(Verb::ask, {first + kStored, pass.draws.end()});
+    note += "; 32F: seen exactly where the depths say so";
+  }
+  for (std::uint32_t i = 0; i < kSlots; ++i) {
+    const bool must = asked[i] >= stored[i];
+    wrong.count((must && !seen[i]) || (!kept.empty() && seen[i] != (exits[i] >= kept[i])));
+  }
+  return result("A5", name, wrong, 0, "wrong slots", note);
+}
+
+// Queries on single pixels, all in flight before the first is read. Every other one is at a depth
+// where nothing passes.
+ProbeResult single_pixel_queries(const GlContext& context, const ProbeOptions& options) {
+  Random random(options.seed + 9);
+  constexpr std::size_t kQueries = 3000;
+  Worst missed;
+  std::uint64_t false_positives = 0, hidden = 0;
+  const int side = largest_side(context);
+  for (const auto& [width, height] : {std::pair{512, 512}, {side, 64}, {64, side}}) {
+    Target target(width, height, DepthBuffer::float32);
+    const GlProgram program =
+        proxy_program("query", {embedded::probe_solid_frag, embedded::canvas_frag}, {"FAR_ASK"});
+    std::vector<Proxy> proxies;
+    for (std::size_t i = 0; i < kQueries; ++i) {
+      const double x = random.below(width) - 0.5 * width, y = random.below(height) - 0.5 * height;
+      // At least 1/16 px around the centre; sometimes the whole pixel.
+      const double d = random.below(2) ? 0 : random.below(7) / 16.0;
+      proxies.push_back(box(x + d, y + d, x + 1 - d, y + 1 - d));
+      proxies.back().solid[4][1] = 1;
+      proxies.back().solid[4][2] = i % 2 == 0 ? (i % 4 == 0 ? 0.5f : 0.6f) : 0.4f;
+    }
+    target.upload(proxies);
+    target.start(0.5);
+    Target::depth_test(GL_GEQUAL, false);
+    target.use(program);
+    std::vector<GlQuery> queries;
+    while (queries.size() < kQueries) queries.push_back(gl_make<GlQuery>(glGenQueries));
+    for (std::size_t i = 0; i < kQueries; ++i) {
+      glBeginQuery(GL_ANY_SAMPLES_PASSED, queries[i]);
+      if (options.blind_queries) glEndQuery(GL_ANY_SAMPLES_PASSED);
+      target.draw(i, 1);
+      if (!options.blind_queries) glEndQuery(GL_ANY_SAMPLES_PASSED);
+    }
+    for (std::size_t i = 0; i < kQueries; ++i) {
+      GLuint any = 0;
+      glGetQueryObjectuiv(queries[i], GL_QUERY_RESULT, &any);
+      if (i % 2 == 0) {
+        missed.count(any == 0);
+      } else {
+        ++hidden;
+        false_positives += any != 0;
+      }
+    }
+    check_gl("probe queries");
+  }
+  return result("A6", "queries of single pixels", missed, 0, "missed",
+                std::to_string(kQueries) + " in flight, targets up to " + std::to_string(side) +
+                    " px; false positives " + std::to_string(false_positives) + " of " +
+                    std::to_string(hidden));
+}
+
+// Areas of 1 to 400 px of which few pixels pass or none, asked through the canvas.
+ProbeResult area_queries(const std::string& name, const GlContext& context,
+                         const ProbeOptions& options, const Configuration& configuration) {
+  constexpr int kWindow = 256;
+  constexpr std::uint32_t kSlots = 4000, kOpen = 400;
+  Random random(options.seed + 10);
+  GlCanvas canvas(context, DepthMode::fragment, depth_solid(), configuration.options());
+  Drawables drawables;
+  const auto add = [&](Proxy q, float z) {
+    q.solid[0][2] = q.solid[0][3] = z;
+    drawables.proxies.push_back(q);
+    drawables.first.push_back(static_cast<std::uint32_t>(drawables.proxies.size()));
+  };
+  // Stored: a far background, on it pixels so near that what is asked lies behind them.
+  std::vector<std::uint8_t> open(std::size_t{kWindow} * kWindow);
+  constexpr double kHalf = 0.5 * kWindow;
+  add(box(-kHalf, -kHalf, kHalf, kHalf), 50);
+  for (std::uint32_t i = 0; i < kOpen; ++i) {
+    const int x = random.below(kWindow), y = random.below(kWindow);
+    open[static_cast<std::size_t>(y) * kWindow + x] = 1;
+    add(box(x - kHalf, y - kHalf, x + 1 - kHalf, y + 1 - kHalf), -50);
+  }
+  const std::uint32_t stores = static_cast<std::uint32_t>(drawables.proxies.size());
+  std::vector<std::uint8_t> truth;
+  while (truth.size() < kSlots) {
+    const int w = 1 + random.below(20), h = 1 + random.below(20);
+    const int x = random.below(kWindow - w), y = random.below(kWindow - h);
+    std::uint8_t any = 0;
+    for (int j = y; j < y + h; ++j) {
+      for (int i = x; i < x + w; ++i) any |= open[static_cast<std::size_t>(j) * kWindow + i];
+    }
+    truth.push_back(any);
+    constexpr double d = 0.25;
+    add(box(x + d - kHalf, y + d - kHalf, x + w - d - kHalf, y + h - d - kHalf),
+        options.blind_queries ? -99 : 0);
+  }
+  Pass pass;
+  pass.slots = kSlots;
+  for (std::uint32_t i = 0; i < drawables.elements(); ++i)
+    pass.draws.push_back({i, i < stores ? 0 : i - stores});
+  pass.steps = {{Verb::store, 0, stores}, {Verb::ask, stores, kSlots}};
+  canvas.begin(window(kWindow, kWindow), drawables);
+  const std::vector<std::uint8_t> seen = canvas.run(pass);
+  Worst missed;
+  std::uint64_t false_positives = 0, hidden = 0;
+  for (std::uint32_t i = 0; i < kSlots; ++i) {
+    if (truth[i]) missed.count(!seen[i]);
+    hidden += !truth[i];
+    false_positives += seen[i] && !truth[i];
+  }
+  return result("A6", name, missed, 0, "missed",
+                "up to 400 px of which few pass; false positives " +
+                    std::to_string(false_positives) + " of " + std::to_string(hidden));
+}
+
+struct NamedFault {
+  DriverFaultKind kind;
+  const char* name;
+};
+
+ProbeResult faults(const std::string& name, const GlContext& context, const ProbeOptions& options,
+                   const Configuration& configuration) {
+  // One proxy stored, one asked behind it and one in front.
+  Drawables drawables;
+  for (const float z : {0.0f, 10.0f, -10.0f}) {
+    drawables.proxies.push_back(box(-20, -20, 20, 20));
+    drawables.proxies.back().solid[0][2] = drawables.proxies.back().solid[0][3] = z;
+    drawables.first.push_back(static_cast<std::uint32_t>(drawables.proxies.size()));
+  }
+  Pass pass;
+  pass.slots = 2;
+  pass.draws = {{0, 0}, {1, 0}, {2, 1}};
+  pass.steps = {{Verb::store, 0, 1}, {Verb::ask, 1, 2}};
+  const std::vector<std::uint8_t> right = {1, 0};
+  constexpr NamedFault kLostDraw = {DriverFaultKind::lost_draw, "lost draw"};
+  const std::vector<NamedFault> tried =
+      configuration.query == QueryMode::flags
+          ? std::vector<NamedFault>{kLostDraw,
+                                    {DriverFaultKind::oversized_dispatch, "oversized dispatch"},
+                                    {DriverFaultKind::unfinished_item, "unfinished invocation"}}
+          : std::vector<NamedFault>{kLostDraw,
+                                    {DriverFaultKind::lost_query, "lost query"},
+                                    {DriverFaultKind::blind_queries, "blind query"}};
+  Worst unnoticed;
+  std::string note, refusal;
+  for (const NamedFault& f : tried) {
+    std::optional<DriverFault> fault;
+    if (!options.skipped_faults) fault.emplace(f.kind);
+    GlCanvas canvas(context, DepthMode::fragment, depth_solid(), configuration.options());
+    canvas.begin(window(64, 64), drawables);
+    if (fault) fault->strike();
+    bool noticed = false;
+    try {
+      canvas.run(pass);
+    } catch (const Error&) {
+      noticed = true;
+    }
+    fault.reset();
+    // The pass after it must neither fail nor answer with what the fault left behind.
+    bool recovered = false;
+    try {
+      canvas.begin(window(64, 64), drawables);
+      recovered = canvas.run(pass) == right;
+    } catch (const Error& error) {
+      refusal = std::string("; ") + error.what();
+    }
+    unnoticed.count(!noticed);
+    unnoticed.count(!recovered);
+    note += (note.empty() ? "" : ", ") + std::string(f.name) +
+            (noticed ? " noticed" : " NOT noticed") + (recovered ? "" : " (the next pass FAILS)");
+  }
+  return result("A7", name, unnoticed, 0, "unnoticed",
+                note + "; the pass after each is counted, too" + refusal);
+}
+
+}  // namespace
+
+std::vector<ProbeResult> depth_tests(const GlContext& context, const ProbeOptions& options) {
+  std::vector<ProbeResult> out = {raw_depth_test(options, DepthBuffer::float32),
+                                  raw_depth_test(options, DepthBuffer::fixed24), texels(options)};
+  for (const Configuration& c : kConfigurations)
+    out.push_back(on_canvas("A5", "canvas", canvas_depth_test, context, options, c));
+  return out;
+}
+
+std::vector<ProbeResult> queries(const GlContext& context, const ProbeOptions& options) {
+  std::vector<ProbeResult> out = {single_pixel_queries(context, options)};
+  for (const Configuration& c : kConfigurations)
+    out.push_back(on_canvas("A6", "areas", area_queries, context, options, c));
+  return out;
+}
+
+std::vector<ProbeResult> commands(const GlContext& context, const ProbeOptions& options) {
+  std::vector<ProbeResult> out;
+  for (const Configuration& c : kConfigurations)
+    out.push_back(on_canvas("A7", "faults are noticed", faults, context, options, c));
+  return out;
+}
+
+}  // namespace farcull::probe

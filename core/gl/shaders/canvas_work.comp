@@ -1,0 +1,60 @@
+// Step 0: the sum of the words of a buffer, each mixed with its place. Step 1: packs flags, one word each, into bits: a flag
+// is raised where it holds this pass's serial number. The report begins with the number of work items that finished and
+// the sum, of all dispatches since the host set them to 0; each dispatch writes its echo to a word of its own.
+layout(local_size_x = 64) in;
+#if FAR_STEP == 0
+layout(std430, binding = 0) readonly buffer From { uvec4 from_tag; uvec4 from[]; };
+#else
+layout(std430, binding = 0) readonly buffer From { uvec4 from_tag; uint from[]; };
+#endif
+layout(std430, binding = 3) buffer Report { uvec4 report_tag; uint report[]; };
+
+layout(location = 0) uniform uint u_count;       // work items
+layout(location = 1) uniform uint u_echo;        // word of the report for the echo of this dispatch
+layout(location = 2) uniform uint u_serial;
+layout(location = 3) uniform uint u_flags;       // flags in all
+layout(location = 4) uniform uint u_bits;        // word of the report where the bits begin
+
+uint far_echo() {
+  uint sum = 0u;
+  FAR_ADD(0u, FAR_PROGRAM)
+  FAR_ADD(1u, u_count)
+  FAR_ADD(2u, u_echo)
+  FAR_ADD(3u, u_serial)
+  FAR_ADD(4u, u_flags)
+  FAR_ADD(5u, u_bits)
+  FAR_ADD(6u, from_tag.x)
+  FAR_ADD(7u, report_tag.x)
+  return sum;
+}
+
+uint sum_of_batch = 0u;
+
+void work(uint w) {
+#if FAR_STEP == 0
+  uvec4 words = from[w];
+  for (uint k = 0u; k < 4u; ++k) sum_of_batch += far_mixed(words[k], 4u * w + k);
+#else
+  uint bits = 0u;
+  for (uint i = 0u; i < 32u; ++i) {
+    uint flag = w * 32u + i;
+    if (flag < u_flags && from[flag] == u_serial) bits |= 1u << i;
+  }
+  report[u_bits + w] = bits;
+#endif
+}
+
+void main() {
+  uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  uint base = group * (64u * FAR_BATCH) + gl_LocalInvocationID.x;
+  if (base == 0u) report[u_echo] = far_echo();
+  uint done = 0u;
+  for (uint k = 0u; k < FAR_BATCH; ++k) {
+    uint w = base + k * 64u;
+    if (w >= u_count) break;
+    work(w);
+    ++done;
+  }
+  if (sum_of_batch != 0u) atomicAdd(report[1], sum_of_batch);
+  if (done > 0u) atomicAdd(report[0], done);
+}

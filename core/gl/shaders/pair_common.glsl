@@ -1,0 +1,73 @@
+// Shared by the programs of FAR pairs, after core/pairs/interval.glsl: uniforms, records, and the loop over work items. A program
+// defines work(w) for each w < u_count; FAR_BATCH of them are one invocation's, so that no invocation comes near 65,535
+// iterations (llvmpipe then stops without a word) and the finished ones are counted together. Where a text has several steps,
+// each is a program of its own with another FAR_STEP, so that none carries the code of the others.
+layout(local_size_x = 64) in;
+
+// Triangles that meet the part of the window are items. Whole ones (one interval in all their pixels) are heads alone until they
+// are listed; the others, and those that are listed, are records.
+// Record: five vec4: corners a, b, c with the three margins (far_margin) in their w; bounds lo, hi within the owner's limits.
+// Head of a record: triangle, code, pixels i0 | j0 << 16, i1 | j1 << 16; of a whole item the last is as far_pack makes it, and
+// until it is a record the first is its position among the active triangles.
+// Entry: two uvec4: bits of lo.x, lo.y, near; triangle; bits of hi.x, hi.y, far; code. Beside it: cell, record.
+const uint kRecordSize = 5u;
+// Code: number of the owner << 3 and these.
+const uint kWhole = 1u;
+const uint kSelf = 2u;
+const uint kLarge = 4u;
+
+layout(std430, binding = 7) buffer Counters { uvec4 tag_7; uint counters[]; };  // totals, then finished work items of each dispatch
+#define FAR_TAG_7 tag_7.x
+
+layout(location = 0) uniform uint u_count;       // work items of this dispatch
+layout(location = 1) uniform uint u_finished;    // index of the counter of those that finished
+layout(location = 2) uniform vec4 u_widen;       // as in core/pairs/interval.glsl
+layout(location = 3) uniform ivec4 u_tile;       // pixels i0, i1, j0, j1, inclusive
+layout(location = 4) uniform ivec2 u_window;     // px
+layout(location = 5) uniform vec2 u_depth;       // near end of the window (px), slices per px
+layout(location = 6) uniform uvec4 u_bins;       // of a cell: number, shift of a slice, number of a group, number of groups - 1
+layout(location = 7) uniform uint u_cells;       // pixels of the tile
+layout(location = 8) uniform uint u_masked;      // not 0: entries whose slices no other owner touches are left out
+layout(location = 9) uniform uint u_capacity;   // that the program's output holds
+layout(location = 10) uniform uint u_items;      // records of triangles that are not whole
+layout(location = 11) uniform uvec4 u_extra;     // what one program alone needs
+layout(location = 12) uniform vec4 u_numbers;    // the same
+
+uint far_group() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
+
+int far_pixel(float x, int count) { return int(clamp(x, 0.0f, float(count - 1))); }
+int far_depth_slice(float z) { return far_slice(z, u_depth.x, u_depth.y); }
+
+// Entries of a cell lie in bins by the last bit of their owner's number (where there are two groups), then by near slice.
+uint far_bin(uint cell, uint code, uint slice) {
+  return cell * u_bins.x + ((code >> 3) & u_bins.w) * u_bins.z + (slice >> u_bins.y);
+}
+
+// Pixels and slices of a whole item, beside its first pixel.
+uint far_pack(int width, int height, int first_slice, int last_slice) {
+  return uint(width - 1) | uint(height - 1) << 4 | uint(first_slice) << 8 | uint(last_slice) << 14;
+}
+
+// Adds to a total of two words.
+void far_add(uint counter, uint n) {
+  uint before = atomicAdd(counters[counter], n);
+  if (before + n < before) atomicAdd(counters[counter + 1u], 1u);
+}
+
+// The last of the `count` ascending numbers that is <= x, as an index; the first of them is 0.
+#define FAR_LAST_AT_MOST(name, numbers)                                        \
+  uint name(uint x, uint count) {                                              \
+    uint low = 0u;                                                             \
+    uint high = count;                                                         \
+    while (high - low > 1u) {                                                  \
+      uint middle = low + (high - low) / 2u;                                   \
+      if (numbers[middle] <= x) { low = middle; } else { high = middle; }      \
+    }                                                                          \
+    return low;                                                                \
+  }
+
+void work(uint w);
+
+#ifdef FAR_SUM
+uint far_sum_of_batch = 0u;  // added to the total FAR_SUM by main
+#endif

@@ -1,0 +1,70 @@
+// Large triangles with each active one, in the rectangle of that one's bounds: compare_large of core/pairs/cpu.cpp. Step 0 lists
+// the large ones among the records; step 1 compares FAR_LARGE_BATCH of them with each triangle that was sent.
+layout(std430, binding = 5) buffer Records { uvec4 tag_5; readonly vec4 records[]; };
+#define FAR_TAG_5 tag_5.x
+layout(std430, binding = 6) buffer RecordHeads { uvec4 tag_6; readonly uvec4 record_heads[]; };
+#define FAR_TAG_6 tag_6.x
+layout(std430, binding = 8) buffer Large { uvec4 tag_8; uint large[]; };  // records
+#define FAR_TAG_8 tag_8.x
+#if FAR_STEP == 0
+void work(uint w) {
+  if ((record_heads[w].y & kLarge) == 0u) return;
+  uint at = atomicAdd(counters[FAR_PARENTS], 1u);
+  if (at < u_capacity) large[at] = w;
+}
+#else
+layout(std430, binding = 9) buffer Pairs { uvec4 tag_9; writeonly uvec2 pairs[]; };
+#define FAR_TAG_9 tag_9.x
+
+// u_extra: z the first large triangle, w how many there are in all. u_items: the first triangle of this dispatch among those that
+// were sent.
+
+bool far_meets_over(uint l, vec4 box_lo, vec4 box_hi) {
+  vec4 a = records[kRecordSize * l];
+  vec4 b = records[kRecordSize * l + 1u];
+  vec4 c = records[kRecordSize * l + 2u];
+  vec4 lo;
+  vec4 hi;
+  far_bounds(a, b, c, u_widen, lo, hi);
+  precise float from = max(box_lo.y, lo.y) - b.w;
+  precise float to = min(box_hi.y, hi.y) + b.w;
+  FarStrip strip;
+  far_strip(a, b, c, from, to, strip);
+  precise float left = max(box_lo.x, lo.x) - a.w;
+  precise float right = min(box_hi.x, hi.x) + a.w;
+  float near;
+  float far;
+  if (!far_depths(strip, left, right, near, far)) return false;
+  precise float least = near - c.w;
+  precise float most = far + c.w;
+  return least <= box_hi.z && box_lo.z <= most;
+}
+
+void work(uint w) {
+  FarTriangle t;
+  if (!far_triangle(u_items + w, t)) return;
+  // Two triangles that meet do so in a pixel of some part, where both are found.
+  if (far_pixel(t.hi.x, u_window.x) < u_tile.x || far_pixel(t.lo.x, u_window.x) > u_tile.y ||
+      far_pixel(t.hi.y, u_window.y) < u_tile.z || far_pixel(t.lo.y, u_window.y) > u_tile.w)
+    return;
+  uint end = min(u_extra.z + FAR_LARGE_BATCH, u_extra.w);
+  // First to the next one whose box meets the triangle's, so that few steps compute a strip.
+  for (uint k = u_extra.z; k < end; ++k) {
+    uint l = 0u;
+    uint other = 0u;
+    for (; k < end; ++k) {
+      l = large[k];
+      uvec4 head = record_heads[l];
+      other = head.x;
+      if (other == t.triangle || !((t.code & kSelf) != 0u || ((t.code ^ head.y) >> 3) != 0u)) continue;
+      vec4 lo = max(t.lo, records[kRecordSize * l + 3u]);
+      vec4 hi = min(t.hi, records[kRecordSize * l + 4u]);
+      if (lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z) break;
+    }
+    if (k >= end) break;
+    if (!far_meets_over(l, t.lo, t.hi)) continue;
+    uint at = atomicAdd(counters[FAR_PAIRS], 1u);
+    if (at < u_capacity) pairs[at] = uvec2(min(t.triangle, other), max(t.triangle, other));
+  }
+}
+#endif

@@ -1,0 +1,82 @@
+// FAR pairs asks a device for the raw pairs of one view. Two implementations from one kernel
+// text (core/pairs/interval.glsl): threads of the CPU (core/pairs/cpu.h) and GL compute shaders
+// (core/gl/pairs.h).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/glsl_shim.h"
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+/// A vertex in pixel space, x and y from the window's lower left corner; w is 0.
+using PixelVertex = glsl::vec4;
+
+/// A closed box of pixel space; w is 0. Empty where lo > hi on some axis.
+struct PixelBox {
+  glsl::vec4 lo;
+  glsl::vec4 hi;
+};
+
+/// The depth of a window is cut into this many slices, one bit each.
+constexpr int kSlices = 64;
+/// A triangle whose bounds meet at most this many pixels has one interval, its whole depth, in all.
+constexpr int kWholePixels = 16;
+/// A pixel with more entries is crowded: it is cut into kSubdivision^2 sub-pixels, and each of them
+/// again, up to kMaxLevel times, wherever that leaves at most half of the tests.
+constexpr int kCrowded = 1024;
+constexpr int kSubdivision = 8;
+constexpr int kMaxLevel = 3;
+/// A triangle that meets more pixels than this, and more than an eighth of the number of active
+/// triangles, is large: compared with each of them directly.
+constexpr int kLargePixels = 256;
+
+/// One view of the scene as a backend sees it.
+struct PairTask {
+  std::span<const PixelVertex>
+      vertices;  // finite, |coordinate| <= 2^20 px, of the active triangles
+  std::span<const std::array<std::uint32_t, 3>> triangles;  // of the scene
+  std::span<const std::uint32_t> owners;                    // object of each triangle
+  std::span<const std::uint8_t> self;                       // per object: tested against itself
+  std::span<const PixelBox> limits;       // per object: contains every point it can share
+  std::span<const std::uint32_t> active;  // ascending indices into triangles: who takes part
+  bool neighbours = true;  // false: pairs of one object that share a vertex index may be left out
+  int width = 0;           // px; pixel (i, j) is [i, i + 1] x [j, j + 1]
+  int height = 0;          // px; 0 <= i < width, 0 <= j < height
+  float near_px = 0;       // the depth range of the window, for the slices
+  float far_px = 0;
+  glsl::vec4 widening{};  // px per axis: every point of a triangle is within this of the
+                          // triangle of its PixelVertex corners, up to float rounding
+};
+
+/// Work done, for stages and studies.
+struct PairCounts {
+  std::uint64_t listed = 0;      // triangles that met another owner's depth slices, per band
+  std::uint64_t entries = 0;     // in the lists of pixels and sub-pixels
+  std::uint64_t crowded = 0;     // pixels that were subdivided
+  std::uint64_t large = 0;       // triangles compared directly instead of being listed
+  std::uint64_t tests = 0;       // pairs of intervals compared
+  std::uint64_t bands = 1;       // parts the window was split into
+  std::uint64_t undrawable = 0;  // triangles that the view could not show: joined by boxes
+  double prepare_ms = 0;         // to pixel space
+  double mark_ms = 0, list_ms = 0, pair_ms = 0;  // CPU: summed over threads
+};
+
+class PairBackend {
+ public:
+  virtual ~PairBackend() = default;
+  virtual std::string name() const = 0;  // "cpu" or the renderer
+  /// Threads of the CPU that the rest of the work may use too; 0: as many as there are cores.
+  virtual unsigned threads() const { return 0; }
+  /// Pairs a < b (indices into task.triangles), sorted, each once: of different owners, or of one
+  /// that is `self`. Throws Error unless every command is known to have run (A7).
+  virtual std::vector<TrianglePair> raw_pairs(const PairTask& task, PairCounts& counts) = 0;
+};
+
+}  // namespace farcull

@@ -1,0 +1,412 @@
+// The pairs of one tile of the window, on one core: those whose intervals overlap in one of its
+// pixels. Crowded pixels are cut into parts first.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/stopwatch.h"
+#include "core/pairs/backend.h"
+#include "core/pairs/grid.h"
+#include "core/pairs/lists.h"
+#include "core/pairs/rows.h"
+#include "core/pairs/settled.h"
+#include "core/scene/pair_sort.h"
+
+namespace farcull {
+
+/// The rules by which a pair is passed over. Tests put others in their place, by which pairs are
+/// lost.
+struct TileRules {
+  /// True: a pair is settled also where its intervals do not overlap.
+  static constexpr bool kSettlesApart = false;
+  /// A pair of whole triangles is reported in the pixel with this lower bound (px) alone: the first
+  /// one of the common rectangle.
+  static float reporting(float a, float b) { return std::max(a, b); }
+};
+
+/// Works on tiles one after the other; keeps its buffers.
+template <class Rules = TileRules>
+class TileWorker {
+ public:
+  /// Begins a window, whose pairs go to a list of the pool. More entries than `memory` holds
+  /// (bytes) split a tile.
+  void begin(const PairGrid& grid, bool masked, std::size_t memory, PairPool& pool,
+             std::size_t list);
+  /// Adds the pairs of a tile, which may repeat. `items`: those that may meet it, ascending by
+  /// triangle. `masked`, of begin(): leaves out entries whose slices no other owner touches.
+  void run(const PairTile& tile, std::span<const PairItem> items, PairCounts& counts);
+
+ private:
+  using Shown = TileLists::Shown;
+  using Entry = TileLists::Entry;
+
+  // Longer lists are sorted by near depth and swept.
+  static constexpr std::size_t kSweepFrom = 64;
+  // Pairs of lists this long are looked up in the table of settled ones.
+  static constexpr std::size_t kSettleFrom = 128;
+  // They are where a list is crowded, or where so many pairs were added for each listed triangle
+  // that most of them must be the same ones again: what the table costs is little then.
+  static constexpr std::size_t kRepeatedFrom = 32;
+  // The part of a worker's memory that the table may take.
+  static constexpr std::size_t kSettledPart = 8;
+
+  static bool meet(const Entry& a, const Entry& b);
+  bool left_out(const Shown& a, const Shown& b) const;
+  void keep(const Entry& a, const Entry& b);
+  void split(const PairTile& tile, std::span<const PairItem> items, PairCounts& counts);
+  void pair_pixel(std::span<Entry> entries, int i, int j);
+  void pair_cell(std::span<Entry> entries, float x, float y, float size, int level);
+  bool subdivide(std::span<Entry> entries, float x, float y, float size, int level);
+  template <class Emit>
+  void sweep(std::span<Entry> entries, const Emit& emit);
+  bool number_entries(std::span<const Entry> entries);
+  bool sweep_unsettled(std::span<const Entry> entries);
+
+  const PairGrid* grid_ = nullptr;
+  bool masked_ = false;
+  std::size_t memory_ = 0;
+  PairPool* pool_ = nullptr;
+  std::size_t pool_list_ = 0;
+  PairTile tile_{};
+  PairCounts* counts_ = nullptr;
+  TileLists lists_;
+  SettledPairs settled_;
+  std::size_t added_ = 0, listed_ = 0;  // pairs and triangles of the window up to now
+  // Of one list: the number of each entry, the entry of each number, and numbers of those to come.
+  std::vector<std::uint32_t> numbers_, places_;
+  std::vector<std::uint64_t> to_come_;
+};
+
+// True where the bounds in the image and the intervals overlap.
+template <class Rules>
+bool TileWorker<Rules>::meet(const Entry& a, const Entry& b) {
+#ifdef __SSE2__
+  const __m128 a_lo = _mm_load_ps(&a.x0), a_hi = _mm_load_ps(&a.x1);
+  const __m128 b_lo = _mm_load_ps(&b.x0), b_hi = _mm_load_ps(&b.x1);
+  const __m128 apart = _mm_or_ps(_mm_cmpgt_ps(a_lo, b_hi), _mm_cmpgt_ps(b_lo, a_hi));
+  return (_mm_movemask_ps(apart) & 7) == 0;
+#else
+  return a.near <= b.far && b.near <= a.far && a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 &&
+         b.y0 <= a.y1;
+#endif
+}
+
+// Neighbours that the task does not ask for.
+template <class Rules>
+bool TileWorker<Rules>::left_out(const Shown& a, const Shown& b) const {
+  if (grid_->task().neighbours || a.owner != b.owner) return false;
+  const auto& [p, q, r] = b.vertices;
+  bool shared = false;
+  for (const std::uint32_t v : a.vertices) shared |= (v == p) | (v == q) | (v == r);
+  return shared;
+}
+
+// Calls emit for each two entries that meet and whose triangles may collide. Entries of an
+// owner stand together; long lists are put into another order.
+template <class Rules>
+template <class Emit>
+void TileWorker<Rules>::sweep(std::span<Entry> entries, const Emit& emit) {
+  const std::size_t n = entries.size();
+  const PairTask& task = grid_->task();
+  if (n <= kSweepFrom) {
+    for (std::size_t begin = 0, end = 0; begin < n; begin = end) {
+      const std::uint32_t owner = entries[begin].owner;
+      while (end < n && entries[end].owner == owner) ++end;
+      const bool self = task.self[owner] != 0;
+      for (std::size_t x = begin; x < end; ++x) {
+        const Entry a = entries[x];
+        const std::size_t from = self ? x + 1 : end;
+        counts_->tests += n - from;
+        for (std::size_t y = from; y < n; ++y) {
+          if (meet(a, entries[y])) emit(a, entries[y]);
+        }
+      }
+    }
+    return;
+  }
+  std::sort(entries.begin(), entries.end(),
+            [](const Entry& x, const Entry& y) { return x.near < y.near; });
+  const bool repeats = n > kCrowded || added_ > kRepeatedFrom * listed_;
+  if (n >= kSettleFrom && repeats && sweep_unsettled(entries)) return;
+  for (std::size_t x = 0; x + 1 < n; ++x) {
+    const Entry a = entries[x];
+    const bool self = task.self[a.owner] != 0;
+    std::size_t y = x + 1;
+    for (; y < n && entries[y].near <= a.far; ++y) {
+      if ((self || entries[y].owner != a.owner) && meet(a, entries[y])) emit(a, entries[y]);
+    }
+    counts_->tests += y - x - 1;
+  }
+}
+
+// Gives the entries their numbers in the table of settled pairs. False: too many.
+template <class Rules>
+bool TileWorker<Rules>::number_entries(std::span<const Entry> entries) {
+  const std::size_t n = entries.size();
+  if (!settled_.reserve(n)) return false;
+  numbers_.resize(n);
+  for (std::size_t x = 0; x < n; ++x) {
+    Shown& item = lists_.shown(entries[x]);
+    if (item.round != settled_.round()) {
+      item.number = settled_.number(item.triangle);
+      item.round = settled_.round();
+    }
+    numbers_[x] = item.number;
+  }
+  const std::size_t words = settled_.words();
+  places_.resize(64 * words);
+  to_come_.assign(words, 0);
+  for (std::size_t x = 0; x < n; ++x) {
+    places_[numbers_[x]] = static_cast<std::uint32_t>(x);
+    to_come_[numbers_[x] / 64] |= std::uint64_t{1} << (numbers_[x] % 64);
+  }
+  return true;
+}
+
+// The same for a long list, in order by near depth: a pair that is settled is passed over, and one
+// that is looked at becomes settled. False: too long.
+//
+// The partners of an entry are those behind it up to its far depth. Reading a row of the table
+// costs about an eighth of a test for each word, so the row is read only where it is much shorter
+// than the partners, and used only where it leaves fewer of them: never much slower than without
+// the table.
+//
+// Nothing is lost: a pair is looked at where its intervals overlap. It is kept there, or no pixel
+// will ever keep it, because of its owners, because nobody asks for neighbours, or because the
+// bounds in the image, which are the same in all pixels, are apart. A pair whose intervals do not
+// overlap here is not settled. The pool holds kept pairs until the whole window is done, and the
+// bits are forgotten before the next one. The rule of whole triangles is not needed here, since the
+// bits say the same.
+template <class Rules>
+bool TileWorker<Rules>::sweep_unsettled(std::span<const Entry> entries) {
+  const std::size_t n = entries.size();
+  if (!number_entries(entries)) return false;
+  const std::size_t words = settled_.words();
+  const PairTask& task = grid_->task();
+  for (std::size_t x = 0; x + 1 < n; ++x) {
+    const Entry a = entries[x];
+    const std::uint32_t number = numbers_[x];
+    to_come_[number / 64] &= ~(std::uint64_t{1} << (number % 64));
+    const std::size_t end = static_cast<std::size_t>(
+        std::upper_bound(entries.begin() + static_cast<std::ptrdiff_t>(x) + 1, entries.end(), a.far,
+                         [](float far, const Entry& y) { return far < y.near; }) -
+        entries.begin());
+    const bool self = task.self[a.owner] != 0;
+    const auto look = [&](std::size_t y) {
+      const Entry& b = entries[y];
+      settled_.settle(number, numbers_[y]);
+      if ((self || b.owner != a.owner) && meet(a, b)) keep(a, b);
+    };
+    if constexpr (Rules::kSettlesApart) {
+      for (std::size_t y = end; y < n; ++y) settled_.settle(number, numbers_[y]);
+    }
+    const std::span<const std::uint64_t> row = settled_.row(number);
+    std::size_t left = end - x - 1;
+    if (left > 2 * words) {
+      std::size_t unsettled = 0;
+      for (std::size_t w = 0; w < words; ++w) {
+        unsettled += static_cast<std::size_t>(std::popcount(to_come_[w] & ~row[w]));
+      }
+      if (unsettled < left) {
+        counts_->tests += unsettled;
+        for (std::size_t w = 0; w < words; ++w) {
+          for (std::uint64_t rest = to_come_[w] & ~row[w]; rest != 0; rest &= rest - 1) {
+            const std::size_t y =
+                places_[64 * w + static_cast<std::size_t>(std::countr_zero(rest))];
+            if (y < end) look(y);
+          }
+        }
+        continue;
+      }
+    }
+    counts_->tests += left;
+    for (std::size_t y = x + 1; y < end; ++y) {
+      if (!settled_.settled(number, numbers_[y])) look(y);
+    }
+  }
+  return true;
+}
+
+template <class Rules>
+void TileWorker<Rules>::pair_pixel(std::span<Entry> entries, int i, int j) {
+  if (entries.size() > kCrowded) {
+    ++counts_->crowded;
+    pair_cell(entries, static_cast<float>(i), static_cast<float>(j), 1, 0);
+    return;
+  }
+  // Two whole triangles overlap in all their common pixels or in none: the first of these alone, in
+  // the lower left corner of the common rectangle, reports them. Both are listed there if they are
+  // here: a list leaves an entry out by its slices alone, which are the same in all pixels of a
+  // whole triangle, and two that overlap in depth have a common slice, which is in conflict in
+  // every pixel that both meet. Bounds are cut to the limits before, so the limits are the same
+  // everywhere. Where that pixel lies in another tile (of another band or part of the window) this
+  // one reports them too, and where it is crowded, since their intervals may be finer there.
+  const auto elsewhere = [&](const Entry& a, const Entry& b) {
+    const auto first = [](float p, int count) {
+      return static_cast<int>(interval::clamp(p, 0, static_cast<float>(count - 1)));
+    };
+    const int ri = first(Rules::reporting(a.x0, b.x0), grid_->task().width);
+    const int rj = first(Rules::reporting(a.y0, b.y0), grid_->task().height);
+    if ((ri == i && rj == j) || ri < tile_.i0 || rj < tile_.j0) return false;
+    const std::size_t c = static_cast<std::size_t>(rj - tile_.j0) * tile_.width() + (ri - tile_.i0);
+    return lists_.size(c) <= kCrowded;
+  };
+  sweep(entries, [&](const Entry& a, const Entry& b) {
+    if ((a.shown & b.shown & TileLists::kWholeBit) == 0 || !elsewhere(a, b)) keep(a, b);
+  });
+}
+
+template <class Rules>
+void TileWorker<Rules>::keep(const Entry& a, const Entry& b) {
+  const Shown &s = lists_.shown(a), &t = lists_.shown(b);
+  if (left_out(s, t)) return;
+  ++added_;
+  pool_->add(pool_list_, {std::min(s.triangle, t.triangle), std::max(s.triangle, t.triangle)});
+}
+
+template <class Rules>
+void TileWorker<Rules>::pair_cell(std::span<Entry> entries, float x, float y, float size,
+                                  int level) {
+  if (entries.size() > kCrowded && level < kMaxLevel && subdivide(entries, x, y, size, level)) {
+    return;
+  }
+  sweep(entries, [&](const Entry& a, const Entry& b) { keep(a, b); });
+}
+
+// Cuts a crowded cell, unless that leaves more than half of the tests.
+template <class Rules>
+bool TileWorker<Rules>::subdivide(std::span<Entry> entries, float x, float y, float size,
+                                  int level) {
+  constexpr int kCells = kSubdivision * kSubdivision;
+  const float part = size / kSubdivision;
+  std::vector<TileLists::RawEntry> raw;
+  std::array<std::uint32_t, kCells + 1> first{};
+  const auto index = [parts_per_px = 1 / part](float p, float from) {
+    return interval::far_part(p, from, parts_per_px, kSubdivision - 1);
+  };
+  for (const Entry& entry : entries) {
+    const Shown& item = lists_.shown(entry);
+    const PairBounds& b = item.bounds;
+    const int i0 = index(b.lo.x, x), i1 = index(b.hi.x, x);
+    const int j0 = index(b.lo.y, y), j1 = index(b.hi.y, y);
+    const auto add = [&](int i, int j, float near, float far) {
+      const auto cell = static_cast<std::uint32_t>(j * kSubdivision + i);
+      raw.push_back({cell, entry.shown & ~TileLists::kWholeBit, near, far});
+      ++first[cell + 1];
+    };
+    if ((i1 - i0 + 1) * (j1 - j0 + 1) <= kWholePixels) {
+      for (int j = j0; j <= j1; ++j) {
+        for (int i = i0; i <= i1; ++i) add(i, j, entry.near, entry.far);
+      }
+      continue;
+    }
+    PairRows rows(*grid_, item.triangle, b);
+    for (int j = j0; j <= j1; ++j) {
+      float lo, hi;
+      const float y0 = y + static_cast<float>(j) * part;
+      if (!rows.row(y0, y0 + part, lo, hi)) continue;
+      for (int i = index(lo, x); i <= index(hi, x); ++i) {
+        float near, far;
+        const float x0 = x + static_cast<float>(i) * part;
+        if (!rows.depths(x0, x0 + part, near, far)) continue;
+        near = std::max(near, entry.near);
+        far = std::min(far, entry.far);
+        if (near <= far) add(i, j, near, far);
+      }
+    }
+  }
+  const auto tests = [](std::uint64_t n) { return n * (n - std::min<std::uint64_t>(n, 1)) / 2; };
+  std::uint64_t left = 0;
+  for (int c = 0; c < kCells; ++c) left += tests(first[c + 1]);
+  if (2 * left > tests(entries.size())) return false;
+
+  counts_->entries += raw.size();
+  for (int c = 0; c < kCells; ++c) first[c + 1] += first[c];
+  std::vector<Entry> sorted(raw.size());
+  std::array<std::uint32_t, kCells + 1> next = first;
+  for (const TileLists::RawEntry& part_of : raw) {
+    sorted[next[part_of.cell]++] = lists_.entry(part_of.shown, part_of.near, part_of.far);
+  }
+  for (int c = 0; c < kCells; ++c) {
+    const std::size_t n = first[c + 1] - first[c];
+    if (n < 2) continue;
+    pair_cell(std::span(sorted).subspan(first[c], n),
+              x + static_cast<float>(c % kSubdivision) * part,
+              y + static_cast<float>(c / kSubdivision) * part, part, level + 1);
+  }
+  return true;
+}
+
+template <class Rules>
+void TileWorker<Rules>::begin(const PairGrid& grid, bool masked, std::size_t memory, PairPool& pool,
+                              std::size_t list) {
+  grid_ = &grid;
+  lists_.begin(grid);
+  masked_ = masked;
+  memory_ = memory;
+  pool_ = &pool;
+  pool_list_ = list;
+  settled_.start(memory / kSettledPart);
+  added_ = listed_ = 0;
+}
+
+template <class Rules>
+void TileWorker<Rules>::split(const PairTile& tile, std::span<const PairItem> items,
+                              PairCounts& counts) {
+  PairTile low = tile, high = tile;
+  if (tile.height() > 1) {
+    low.j1 = tile.j0 + tile.height() / 2 - 1;
+    high.j0 = low.j1 + 1;
+  } else {
+    low.i1 = tile.i0 + tile.width() / 2 - 1;
+    high.i0 = low.i1 + 1;
+  }
+  ++counts.bands;
+  run(low, items, counts);
+  run(high, items, counts);
+}
+
+template <class Rules>
+void TileWorker<Rules>::run(const PairTile& tile, std::span<const PairItem> items,
+                            PairCounts& counts) {
+  tile_ = tile;
+  counts_ = &counts;
+  const std::size_t cells = static_cast<std::size_t>(tile.width()) * tile.height();
+  const std::size_t fixed = cells * (2 * sizeof(std::uint64_t) + sizeof(std::uint32_t));
+  // Lists grow by doubling; a triangle has at least one entry.
+  const std::size_t entry_bytes = 2 * (sizeof(TileLists::RawEntry) + sizeof(Shown)) + sizeof(Entry);
+  // A single pixel is done whatever it takes.
+  const std::size_t limit = cells == 1        ? SIZE_MAX
+                            : memory_ > fixed ? (memory_ - fixed) / entry_bytes
+                                              : 0;
+  const Stopwatch start;
+  bool fits = limit > 0;
+  if (fits) {
+    const std::size_t last = masked_ ? lists_.mark(tile, items) : 0;
+    counts.mark_ms += start.ms();
+    const Stopwatch listing;
+    fits = lists_.list(tile, items, last, masked_, std::min<std::size_t>(limit, UINT32_MAX));
+    counts.list_ms += listing.ms();
+  }
+  if (!fits) {
+    split(tile, items, counts);
+    return;
+  }
+  listed_ += lists_.shown_count();
+  counts.listed += lists_.shown_count();
+  counts.entries += lists_.size();
+  const Stopwatch pairing;
+  for (std::size_t c = 0; c < cells; ++c) {
+    if (lists_.size(c) < 2) continue;
+    pair_pixel(lists_.entries(c), tile.i0 + static_cast<int>(c % tile.width()),
+               tile.j0 + static_cast<int>(c / tile.width()));
+  }
+  counts.pair_ms += pairing.ms();
+}
+
+}  // namespace farcull

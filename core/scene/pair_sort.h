@@ -1,0 +1,61 @@
+// Pairs of triangle indices: collected in bounded memory although they repeat, and sorted into the
+// one order in which FAR pairs answers.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+/// All pairs of the parts, sorted by (a, b), each once. Linear in the pairs and the range of a
+/// where there are many pairs. The answer does not depend on `threads` (0: as many as there are
+/// cores).
+std::vector<TrianglePair> sorted_unique(std::span<const std::vector<TrianglePair>> parts,
+                                        unsigned threads);
+
+/// Collects pairs from several threads, each pair as often as it is found. A thread adds to a list
+/// of its own. A list that reaches its share of the larger of `buffer` and the number of distinct
+/// pairs is sorted, and goes into one list of the distinct pairs. So the lists hold at most
+/// `buffer` pairs or as many as are distinct, and the work stays linear in the pairs that are
+/// added.
+class PairPool {
+ public:
+  /// lists: as many as threads add at the same time; buffer: pairs in all lists together.
+  PairPool(std::size_t lists, std::size_t buffer);
+
+  void add(std::size_t list, const TrianglePair& pair) {
+    std::vector<TrianglePair>& pairs = lists_[list].pairs;
+    pairs.push_back(pair);
+    if (pairs.size() >= limit_.load(std::memory_order_relaxed)) shrink(list);
+  }
+  /// Room for `count` more pairs at the end of a list, all `value`, for those who write them there;
+  /// then shrink_if_full().
+  std::span<TrianglePair> append(std::size_t list, std::size_t count, const TrianglePair& value);
+  void shrink_if_full(std::size_t list) {
+    if (lists_[list].pairs.size() >= limit_.load(std::memory_order_relaxed)) shrink(list);
+  }
+  /// Pairs in the lists and in that of the distinct pairs; while nobody adds.
+  std::size_t held() const;
+  /// All pairs, sorted, each once; ends the pool.
+  std::vector<TrianglePair> take(unsigned threads);
+
+ private:
+  void shrink(std::size_t list);
+
+  struct alignas(64) List {  // no two threads write to one line of the cache
+    std::vector<TrianglePair> pairs;
+  };
+  std::size_t buffer_;
+  std::atomic<std::size_t> limit_;  // pairs of one list
+  std::vector<List> lists_;
+  std::mutex mutex_;  // of distinct_
+  std::vector<TrianglePair> distinct_;
+};
+
+}  // namespace farcull

@@ -1,0 +1,116 @@
+// Checks of a scene, its boxes and owners, and its fingerprint.
+#include "core/scene/scene.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/base/hash.h"
+
+namespace farcull {
+
+Box Box::empty() {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  return {Vec3::Constant(kInf), Vec3::Constant(-kInf)};
+}
+
+void Box::add(const Vec3& p) {
+  lo = lo.cwiseMin(p);
+  hi = hi.cwiseMax(p);
+}
+
+void Box::add(const Box& other) {
+  lo = lo.cwiseMin(other.lo);
+  hi = hi.cwiseMax(other.hi);
+}
+
+bool overlap(const Box& a, const Box& b) {
+  return !intersection(a, b).is_empty();  // so a box that is empty along one axis meets nothing
+}
+
+Box intersection(const Box& a, const Box& b) { return {a.lo.cwiseMax(b.lo), a.hi.cwiseMin(b.hi)}; }
+
+std::array<Vec3, 3> Scene::corners(std::uint32_t triangle) const {
+  const auto& t = triangles[triangle];
+  return {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+}
+
+void validate(const Scene& scene, const std::string& where) {
+  for (std::size_t i = 0; i < scene.vertices.size(); ++i) {
+    if (!scene.vertices[i].allFinite()) {
+      throw Error(where, "vertex " + std::to_string(i) + " is not finite",
+                  "give every coordinate a finite value that a double can hold");
+    }
+  }
+  for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+    for (const std::uint32_t v : scene.triangles[t]) {
+      if (v >= scene.vertices.size()) {
+        throw Error(where,
+                    "triangle " + std::to_string(t) + " names vertex " + std::to_string(v) +
+                        " of " + std::to_string(scene.vertices.size()),
+                    "correct the index");
+      }
+    }
+  }
+  std::uint64_t next = 0;
+  for (const Object& object : scene.objects) {
+    if (object.first_triangle != next) {
+      throw Error(where, "object '" + object.name + "' does not start where the one before it ends",
+                  "give objects contiguous ranges of triangles");
+    }
+    next += object.triangle_count;
+  }
+  if (next != scene.triangles.size() || scene.source_face.size() != scene.triangles.size()) {
+    throw Error(where, "the objects do not cover the triangles",
+                "give objects contiguous ranges of triangles");
+  }
+}
+
+std::vector<Box> triangle_boxes(const Scene& scene) {
+  std::vector<Box> boxes(scene.triangles.size());
+  for (std::size_t t = 0; t < boxes.size(); ++t) {
+    const auto& [a, b, c] = scene.triangles[t];
+    boxes[t] = {scene.vertices[a], scene.vertices[a]};
+    boxes[t].add(scene.vertices[b]);
+    boxes[t].add(scene.vertices[c]);
+  }
+  return boxes;
+}
+
+std::vector<Box> object_boxes(const Scene& scene, std::span<const Box> triangle_boxes) {
+  std::vector<Box> boxes;
+  boxes.reserve(scene.objects.size());
+  for (const Object& object : scene.objects) {
+    Box box = Box::empty();
+    for (const Box& b : triangle_boxes.subspan(object.first_triangle, object.triangle_count))
+      box.add(b);
+    boxes.push_back(box);
+  }
+  return boxes;
+}
+
+std::vector<std::uint32_t> owners(const Scene& scene) {
+  std::vector<std::uint32_t> owner(scene.triangles.size());
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    const Object& object = scene.objects[o];
+    for (std::uint32_t i = 0; i < object.triangle_count; ++i) owner[object.first_triangle + i] = o;
+  }
+  return owner;
+}
+
+std::string scene_hash(const Scene& scene) {
+  Fnv1a hash;
+  hash.add(std::uint64_t{scene.objects.size()});
+  for (const Object& object : scene.objects) {
+    hash.add(object.triangle_count | std::uint64_t{object.self} << 32);
+  }
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    for (const Vec3& p : scene.corners(t)) {
+      for (int i = 0; i < 3; ++i) hash.add(std::bit_cast<std::uint64_t>(p[i]));
+    }
+  }
+  return hash.hex();
+}
+
+}  // namespace farcull

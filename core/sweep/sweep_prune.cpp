@@ -1,0 +1,277 @@
+// Objects are swept by BoxSweep. The triangles that may have candidates are put in columns across
+// the sweep's axis, in the order of the last call, and each column is sorted and swept.
+#include "core/sweep/sweep_prune.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "core/scene/pair_sort.h"
+#include "core/sweep/insertion_sort.h"
+
+namespace farcull {
+
+using sweep::insertion_sort;
+using sweep::meet;
+
+namespace {
+
+/// The state of a triangle.
+enum Mark : std::uint8_t { kDropped, kSurvives, kInOrder, kLive };
+
+/// The group of a triangle of a `self` object has nobody else in it.
+constexpr std::uint32_t kAlone = 1u << 31;
+
+constexpr int kMostBits = 10;  // along an axis there are at most 2^10 columns
+
+/// By lower ends, with the index of what is sorted.
+struct Key {
+  double lo;
+  std::uint32_t index;
+};
+
+bool less(const Key& a, const Key& b) { return a.lo < b.lo; }
+
+}  // namespace
+
+SweepPruneResult SweepPrune::find(const Scene& scene) { return find(scene, triangle_boxes(scene)); }
+
+SweepPruneResult SweepPrune::find(const Scene& scene, std::span<const Box> boxes) {
+  if (boxes.size() != scene.triangles.size()) {
+    throw std::logic_error("SweepPrune::find: not as many boxes as triangles");
+  }
+  SweepPruneResult result;
+  SweepPruneCounts& counts = result.counts;
+  const std::vector<Box> of_objects = object_boxes(scene, boxes);
+  result.object_pairs = objects_.update(of_objects);
+  counts.object_pairs = result.object_pairs.size();
+  counts.swaps = objects_.swaps();
+  counts.sorts = objects_.sorted_from_scratch() ? 3 : 0;
+
+  counts.objects = find_survivors(scene, boxes, of_objects, result.object_pairs);
+  renew_order(boxes.size());
+  choose_columns(boxes);
+  fill_columns(boxes);
+  const std::uint64_t swaps = counts.swaps;
+  const std::vector<TrianglePair> found = sweep_columns(counts);
+  // Columns inherit the order of all triangles; many moves in them show that it has gone stale.
+  if (counts.swaps - swaps > items_.size()) {
+    sort_order();
+    ++counts.sorts;
+  }
+  result.candidates = sorted_unique({&found, 1}, 1);
+  counts.triangle_pairs = result.candidates.size();
+
+  for (const TrianglePair& pair : found) marks_[pair.a] = marks_[pair.b] = kLive;
+  for (const std::uint32_t t : survivors_) {
+    if (marks_[t] == kLive) result.triangles.push_back(t);
+  }
+  counts.triangles = result.triangles.size();
+  return result;
+}
+
+void SweepPrune::forget() {
+  objects_.forget();
+  order_.clear();
+}
+
+/// Triangles whose box meets the box of another object, whose box meets that of their own, or which
+/// would have to be compared with more than kTries of those; and all of `self` objects.
+std::uint64_t SweepPrune::find_survivors(const Scene& scene, std::span<const Box> boxes,
+                                         std::span<const Box> object_boxes,
+                                         std::span<const TrianglePair> object_pairs) {
+  constexpr int kTries = 32;  // cost about what the sweep of one triangle does
+  survivors_.clear();
+  marks_.assign(boxes.size(), kDropped);
+  groups_.resize(boxes.size());
+  // The partners of each object, one after the other; along the axis of the sweep by their lower
+  // ends, so that the search of a triangle may end early.
+  std::vector<std::size_t> starts(scene.objects.size() + 1, 0);
+  for (const TrianglePair& pair : object_pairs) ++starts[pair.a + 1], ++starts[pair.b + 1];
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  std::vector<Box> partners(starts.back());
+  std::vector<std::size_t> next(starts.begin(), starts.end() - 1);
+  for (const TrianglePair& pair : object_pairs) {
+    partners[next[pair.a]++] = object_boxes[pair.b];
+    partners[next[pair.b]++] = object_boxes[pair.a];
+  }
+  const int axis = axes_[0];
+  std::uint64_t objects = 0;
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    const Object& object = scene.objects[o];
+    const bool self = object.self && object.triangle_count > 1;
+    const auto begin = partners.begin() + static_cast<std::ptrdiff_t>(starts[o]);
+    const auto end = partners.begin() + static_cast<std::ptrdiff_t>(starts[o + 1]);
+    if (begin == end && !self) continue;
+    ++objects;
+    std::sort(begin, end, [axis](const Box& a, const Box& b) { return a.lo[axis] < b.lo[axis]; });
+    auto last = begin;  // met by the triangle before
+    for (std::uint32_t i = 0; i < object.triangle_count; ++i) {
+      const std::uint32_t t = object.first_triangle + i;
+      const Box& box = boxes[t];
+      if (box.is_empty()) continue;
+      bool survives = self || meet(box, *last);
+      int tries = 0;
+      for (auto p = begin; !survives && p != end && p->lo[axis] <= box.hi[axis]; ++p) {
+        const bool met = meet(box, *p);
+        if (met) last = p;
+        survives = met || ++tries == kTries;
+      }
+      if (!survives) continue;
+      groups_[t] = self ? kAlone | t : o;
+      marks_[t] = kSurvives;
+      survivors_.push_back(t);
+    }
+  }
+  return objects;
+}
+
+/// The axis along which boxes are shortest, compared with the extent of all, for the sweep. It
+/// stays what it was where another one is little better, since with it goes the order.
+void SweepPrune::choose_columns(std::span<const Box> boxes) {
+  constexpr double kBetter = 2;
+  Box all = Box::empty();
+  Vec3 lengths = Vec3::Zero();
+  const double n = static_cast<double>(survivors_.size());
+  for (const std::uint32_t t : survivors_) {
+    all.add(boxes[t]);
+    lengths += (boxes[t].hi - boxes[t].lo) / n;
+  }
+  const Vec3 extent = all.hi - all.lo;
+  std::array<double, 3> ratio;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double r = lengths[axis] / extent[axis];
+    ratio[axis] = std::isfinite(r) ? r : 1;  // flat in this axis, or beyond double: of no use
+  }
+  const int before = axes_[0];
+  const auto best = static_cast<int>(std::min_element(ratio.begin(), ratio.end()) - ratio.begin());
+  const int sweep = ratio[best] * kBetter < ratio[before] ? best : before;
+  axes_ = {sweep, (sweep + 1) % 3, (sweep + 2) % 3};
+  // Columns about as wide as four boxes are long, so that most boxes lie in one or two along an
+  // axis; no more of them than twice the boxes.
+  for (int k = 0; k < 2; ++k) {
+    const int axis = axes_[k + 1];
+    const double columns = std::clamp(0.25 / ratio[axis], 1.0, std::exp2(kMostBits));
+    const double scale = std::exp2(kMostBits) / extent[axis];
+    const bool of_use = std::isfinite(scale) && scale > 0;
+    from_[k] = all.lo[axis];
+    scale_[k] = of_use ? scale : 0;
+    bits_[k] = of_use ? std::ilogb(columns) : 0;
+  }
+  const int most = std::bit_width(survivors_.size());
+  while (bits_[0] + bits_[1] > most) --bits_[bits_[0] < bits_[1] ? 1 : 0];
+}
+
+/// The survivors; those of the last call stay in its order.
+void SweepPrune::renew_order(std::size_t triangles) {
+  std::size_t kept = 0;
+  for (const std::uint32_t t : order_) {
+    if (t >= triangles || marks_[t] != kSurvives) continue;
+    marks_[t] = kInOrder;
+    order_[kept++] = t;
+  }
+  order_.resize(kept);
+  for (const std::uint32_t t : survivors_) {
+    if (marks_[t] == kSurvives) order_.push_back(t);
+  }
+}
+
+/// The triangles of each column, in the order that was kept. Long boxes are in many, so columns
+/// are doubled in width until there are few entries for each triangle.
+void SweepPrune::fill_columns(std::span<const Box> boxes) {
+  constexpr std::uint64_t kEntries = 4;
+  const auto [sweep, u, v] = axes_;
+  // Never decreasing in x, so where two boxes overlap, the larger lower end is in a column of both.
+  const auto column = [this](double x, int k) {
+    const double at = scale_[k] > 0 ? (x - from_[k]) * scale_[k] : 0;
+    const auto index = static_cast<unsigned>(std::clamp(at, 0.0, std::exp2(kMostBits) - 1));
+    return static_cast<std::uint16_t>(index >> (kMostBits - bits_[k]));
+  };
+  items_.resize(order_.size());
+  std::uint64_t total = 0;
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const std::uint32_t t = order_[i];
+    const Box& box = boxes[t];
+    items_[i] = {
+        {box.lo[sweep], box.lo[u], box.lo[v]},
+        {box.hi[sweep], box.hi[u], box.hi[v]},
+        t,
+        groups_[t],
+        {column(box.lo[u], 0), column(box.hi[u], 0), column(box.lo[v], 1), column(box.hi[v], 1)}};
+    total += items_[i].range.columns();
+  }
+  while (total > kEntries * items_.size()) {
+    const int k = bits_[0] < bits_[1] ? 1 : 0;
+    --bits_[k];
+    total = 0;
+    for (Item& item : items_) {
+      Range& r = item.range;
+      if (k == 0) {
+        r.u0 /= 2, r.u1 /= 2;
+      } else {
+        r.v0 /= 2, r.v1 /= 2;
+      }
+      total += r.columns();
+    }
+  }
+  starts_.assign((std::size_t{1} << (bits_[0] + bits_[1])) + 1, 0);
+  const auto for_columns = [this](const Range& range, const auto& visit) {
+    for (std::size_t y = range.v0; y <= range.v1; ++y) {
+      for (std::size_t x = range.u0; x <= range.u1; ++x) visit(x + (y << bits_[0]));
+    }
+  };
+  for (const Item& item : items_) {
+    for_columns(item.range, [this](std::size_t c) { ++starts_[c]; });
+  }
+  std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+  entries_.resize(total);
+  for (std::size_t i = items_.size(); i-- > 0;) {  // from the back: ends become starts
+    for_columns(items_[i].range, [&](std::size_t c) { entries_[--starts_[c]] = items_[i]; });
+  }
+}
+
+/// Sorts and sweeps each column.
+std::vector<TrianglePair> SweepPrune::sweep_columns(SweepPruneCounts& counts) {
+  std::vector<TrianglePair> pairs;
+  std::vector<Key> keys;  // small, so that moving them is cheap
+  const auto nothing = [](const Key&, const Key&) {};
+  for (std::size_t c = 0; c + 1 < starts_.size(); ++c) {
+    const std::span column(entries_.data() + starts_[c], entries_.data() + starts_[c + 1]);
+    keys.clear();
+    for (std::uint32_t i = 0; i < column.size(); ++i) keys.push_back({column[i].lo[0], i});
+    if (!insertion_sort(std::span(keys), counts.swaps, less, nothing)) {
+      std::sort(keys.begin(), keys.end(), less);
+      ++counts.sorts;
+    }
+    const std::size_t u = c & ((std::size_t{1} << bits_[0]) - 1), v = c >> bits_[0];
+    for (auto i = keys.begin(); i != keys.end(); ++i) {
+      const Item& e = column[i->index];
+      for (auto j = i + 1; j != keys.end() && j->lo <= e.hi[0]; ++j) {
+        const Item& f = column[j->index];
+        if (e.group == f.group || e.lo[1] > f.hi[1] || f.lo[1] > e.hi[1] || e.lo[2] > f.hi[2] ||
+            f.lo[2] > e.hi[2]) {
+          continue;
+        }
+        // Each pair is reported once: in the one column that holds the larger lower ends.
+        if (std::max(e.range.u0, f.range.u0) != u || std::max(e.range.v0, f.range.v0) != v) {
+          continue;
+        }
+        pairs.push_back({std::min(e.triangle, f.triangle), std::max(e.triangle, f.triangle)});
+      }
+    }
+  }
+  return pairs;
+}
+
+/// Sorts the order for the calls to come, of which this one is taken to be the first.
+void SweepPrune::sort_order() {
+  std::vector<Key> keys;
+  keys.reserve(items_.size());
+  for (const Item& item : items_) keys.push_back({item.lo[0], item.triangle});
+  std::sort(keys.begin(), keys.end(), less);
+  for (std::size_t i = 0; i < keys.size(); ++i) order_[i] = keys[i].index;
+}
+
+}  // namespace farcull

@@ -1,0 +1,56 @@
+#include "core/view/budget.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/view/view.h"
+
+namespace farcull {
+namespace {
+
+// GLSL leaves the rounding mode open, so one operation errs by up to one unit in the last place:
+// 2^-23, not 2^-24.
+constexpr double kUnit = 0x1p-23;
+constexpr double kSqrt2 = std::numbers::sqrt2;
+
+}  // namespace
+
+std::array<BudgetTerm, 6> Budget::terms() const {
+  return {{{"sampling", sampling},
+           {"input", input},
+           {"double", double_},
+           {"vertex", vertex},
+           {"snap", snap},
+           {"offset", offset}}};
+}
+
+double Budget::radius() const {
+  double sum = 0;
+  for (const BudgetTerm& term : terms()) sum += term.px;
+  // Six additions of rounded terms err by less than 2^-49 of the sum; the factor also makes the
+  // inequality strict.
+  return sum * (1 + 0x1p-40);
+}
+
+Budget budget_for(const RasterLimits& limits, int viewport) {
+  const double half =
+      0.5 * viewport;  // M, the largest |coordinate| about the centre; W/2 of the viewport as well
+  Budget b;
+  b.sampling = kSqrt2 / 2;
+  b.input = kSqrt2 * kUnit * half;
+  // In the plane sqrt(2) of it; along the depth it adds to the distance from the centre only to
+  // second order: sqrt((s + sqrt(2) e)^2 + e^2) <= s + sqrt(2) e + e^2 / (2 s) with s = sqrt(2)/2
+  // (docs/budget.md, "double").
+  b.double_ = kSqrt2 * kMaxDoubleError + kMaxDoubleError * kMaxDoubleError;
+  // docs/budget.md, "vertex": product with 2/viewport (1), division by w (2.5), product with
+  // viewport/2 (1), each relative to M, and the sum with the viewport's centre (1), relative to M +
+  // viewport/2; 4 u for their products.
+  b.vertex = kSqrt2 * kUnit * (4.5 * half + (half + half)) * (1 + 4 * kUnit);
+  b.snap = kSqrt2 * std::ldexp(1.0, -limits.subpixel_bits);
+  b.offset = 0;
+  return b;
+}
+
+double published_radius(double depth_step) { return 0.5 * std::sqrt(2 + depth_step * depth_step); }
+
+}  // namespace farcull

@@ -1,0 +1,48 @@
+// The places by a join of the objects' boxes; a triangle takes part where its box meets the box of
+// a partner of its object.
+#include "core/view/regions.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/base/parallel.h"
+#include "core/scene/box_join.h"
+
+namespace farcull {
+
+Regions find_regions(const Scene& scene, const RegionRules& rules) {
+  Regions out;
+  out.triangle_boxes = triangle_boxes(scene);
+  out.object_boxes = object_boxes(scene, out.triangle_boxes);
+
+  std::vector<std::uint32_t> objects(scene.objects.size());
+  std::iota(objects.begin(), objects.end(), 0u);
+  // As owners of themselves, objects join like triangles.
+  std::vector<std::vector<std::uint32_t>> partners(objects.size());
+  for (const TrianglePair& pair : box_join(out.object_boxes, objects, objects)) {
+    partners[pair.a].push_back(pair.b);
+    partners[pair.b].push_back(pair.a);
+    out.places.push_back(intersection(out.object_boxes[pair.a], out.object_boxes[pair.b]));
+  }
+  for (const std::uint32_t o : objects) {
+    const Object& object = scene.objects[o];
+    const bool whole = rules.self && object.self && object.triangle_count > 1;
+    if (whole) out.places.push_back(out.object_boxes[o]);
+    for (std::uint32_t t = object.first_triangle; t < object.first_triangle + object.triangle_count;
+         ++t) {
+      const auto meets = [&](std::uint32_t partner) {
+        return overlap(out.triangle_boxes[t], out.object_boxes[partner]);
+      };
+      if (rules.full || whole || std::any_of(partners[o].begin(), partners[o].end(), meets))
+        out.triangles.push_back(t);
+    }
+  }
+  if (rules.full && out.places.empty() && !out.triangles.empty()) {
+    Box all = Box::empty();
+    for (const Box& box : out.object_boxes) all.add(box);
+    out.places.push_back(all);
+  }
+  return out;
+}
+
+}  // namespace farcull

@@ -1,0 +1,33 @@
+// Where a scene's objects can meet, by boxes alone, and which triangles can take part.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+struct Regions {
+  std::vector<Box> triangle_boxes;       // per triangle of the scene
+  std::vector<Box> object_boxes;         // per object
+  std::vector<Box> places;               // where two objects' boxes overlap, one per pair
+  std::vector<std::uint32_t> triangles;  // ascending; those whose box meets the box of another
+                                         // object: all that can take part
+};
+
+/// Further views and finer offsets are left out where no more triangles than this are kept: the
+/// exact tests of so few take less time than the upload and the readbacks of one view.
+constexpr std::uint32_t kFewTriangles = 256;
+
+struct RegionRules {
+  bool self = false;  // objects that are marked so are tested against themselves
+  bool full = false;  // leave nothing out: every triangle takes part
+};
+
+/// With `self` the box of a marked object of two triangles or more is a place of its own, and all
+/// of its triangles take part. With `full` the places are the same, or the box of the scene where
+/// there are none, so that the views are, and every triangle takes part.
+Regions find_regions(const Scene& scene, const RegionRules& rules = {});
+
+}  // namespace farcull

@@ -1,0 +1,180 @@
+#include "core/view/view.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+
+namespace farcull {
+namespace {
+
+constexpr double kUnit = 0x1p-53;
+
+// Image axes for a depth direction: for a coordinate axis the two others, so that its map
+// multiplies exactly. (A direction may round to length 1 along an axis and still not be that axis.)
+Eigen::Matrix3d rows_for(const Vec3& depth) {
+  Eigen::Matrix3d rows;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (depth[axis] != 0 && (depth.array() == 0).count() == 2) {
+      rows << Vec3::Unit((axis + 1) % 3).transpose(), Vec3::Unit((axis + 2) % 3).transpose(),
+          depth.transpose();
+      return rows;
+    }
+  }
+  int smallest = 0;
+  depth.cwiseAbs().minCoeff(&smallest);
+  const Vec3 right = depth.cross(Vec3::Unit(smallest)).normalized();
+  rows << right.transpose(), depth.cross(right).transpose(), depth.transpose();
+  return rows;
+}
+
+// The bounds of a box under map * (x - origin), widened by the rounding error of that evaluation.
+Box image(const Eigen::Matrix3d& map, const Vec3& origin, const Box& box, double& error) {
+  const Vec3 from = box.lo - origin;
+  const Vec3 to = box.hi - origin;
+  const Vec3 reach = from.cwiseAbs().cwiseMax(to.cwiseAbs());
+  Box out;
+  for (int row = 0; row < 3; ++row) {
+    double lo = 0, hi = 0;
+    for (int i = 0; i < 3; ++i) {
+      lo += std::min(map(row, i) * from[i], map(row, i) * to[i]);
+      hi += std::max(map(row, i) * from[i], map(row, i) * to[i]);
+    }
+    const double e = 8 * kUnit * map.row(row).cwiseAbs().dot(reach.transpose());
+    error = std::isfinite(e) ? std::max(error, e) : HUGE_VAL;
+    out.lo[row] = lo - e;
+    out.hi[row] = hi + e;
+  }
+  return out;
+}
+
+Box image(const Eigen::Matrix3d& map, const Vec3& origin, std::span<const Box> boxes,
+          double& error) {
+  Box all = Box::empty();
+  for (const Box& box : boxes) all.add(image(map, origin, box, error));
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> split_list(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+View parse_view(const std::string& text) {
+  const auto bad = [&text](const std::string& reason) {
+    return Error("--views", "'" + text + "' " + reason,
+                 "give axes (x, -x, y, -y, z, -z) or directions like 1:1:0.5, separated by commas");
+  };
+  const bool negative = text.starts_with('-');
+  const std::string axis = negative ? text.substr(1) : text;
+  if (axis == "x" || axis == "y" || axis == "z") {
+    const Vec3 depth = Vec3::Unit(axis[0] - 'x') * (negative ? -1 : 1);
+    return {text, rows_for(depth)};
+  }
+  const std::vector<std::string> parts = split_list(text, ':');
+  if (parts.size() != 3) throw bad("is no view");
+  Vec3 depth;
+  for (int i = 0; i < 3; ++i) {
+    const std::string& part = parts[i];
+    const std::optional<double> number = parse_number<double>(part);
+    if (!number || !std::isfinite(*number)) throw bad("has a component that is no finite number");
+    depth[i] = *number;
+  }
+  const double largest = depth.cwiseAbs().maxCoeff();
+  if (largest == 0) throw bad("is the zero direction");
+  return {text, rows_for((depth / largest).normalized())};
+}
+
+std::vector<View> parse_views(const std::string& text) {
+  std::vector<View> views;
+  for (const std::string& part : split_list(text, ',')) {
+    views.push_back(parse_view(part));
+    const auto same = [&](const View& v) { return v.name == part; };
+    if (std::any_of(views.begin(), views.end() - 1, same)) {
+      throw Error("--views", "'" + part + "' is given twice", "name each view once");
+    }
+  }
+  return views;
+}
+
+PixelPoint to_pixel(const Window& window, const Vec3& x) {
+  // The subtraction is one correctly rounded operation, so its error is relative to |x - origin|
+  // and not to |x|: scenes far from the world's origin lose nothing. Three products and two
+  // additions follow; 8 covers the five roundings and the cross terms (docs/budget.md, "double").
+  // Products that underflow err by at most 2^-1075 more, each.
+  const Vec3 d = x - window.origin;
+  PixelPoint out{window.map * d, 0};
+  const double bound = 8 * kUnit * (window.map.cwiseAbs() * d.cwiseAbs()).maxCoeff() + 0x1p-1000;
+  out.error = std::isfinite(bound) && out.p.allFinite() ? bound : HUGE_VAL;
+  return out;
+}
+
+double pixel_error(const Window& window, const Box& box) {
+  double error = 0x1p-1000;
+  image(window.map, window.origin, box, error);
+  return error;
+}
+
+Box pixel_box(const Window& window, const Box& box) {
+  double error = 0;
+  return image(window.map, window.origin, box, error);
+}
+
+std::optional<Window> fit_window(const View& view, std::span<const Box> regions, int resolution) {
+  Box world = Box::empty();
+  for (const Box& region : regions) world.add(region);
+  Window window{.view = view,
+                .origin = 0.5 * world.lo + 0.5 * world.hi,
+                .map = {},
+                .pixel_size = 0,
+                .width = 0,
+                .height = 0,
+                .lo = {},
+                .hi = {}};
+  double error = 0;
+
+  // Centre the window on the image: for oblique views the centre of the box is not the centre of
+  // the union's image.
+  const Box rough = image(view.rows, window.origin, regions, error);
+  if (!std::isfinite(error)) return std::nullopt;
+  const bool axis_aligned = (view.rows.array() == 0).count() == 6;
+  if (!axis_aligned) window.origin += view.rows.transpose() * (0.5 * rough.lo + 0.5 * rough.hi);
+
+  // A region that is flat in the image still needs a pixel of positive size. Whatever the
+  // resolution, the pixel is one that the coordinates can resolve: the centre, a rounded double,
+  // then lies within 1/16 px of the middle, and the window within its size.
+  const Box unit = image(view.rows, window.origin, regions, error);
+  const double magnitude = std::max(world.lo.cwiseAbs().maxCoeff(), world.hi.cwiseAbs().maxCoeff());
+  const double extent = std::max({unit.hi[0] - unit.lo[0], unit.hi[1] - unit.lo[1],
+                                  0x1p-20 * (unit.hi[2] - unit.lo[2]), 0x1p-960});
+  if (!std::isfinite(extent)) return std::nullopt;
+  window.pixel_size = std::max(extent / resolution, 0x1p-45 * magnitude);
+  window.map = view.rows / window.pixel_size;
+
+  error = 0;
+  const Box px = image(window.map, window.origin, regions, error);
+  if (!(error <= kMaxDoubleError)) return std::nullopt;
+  // The margin's own rounding: relative to the bounds it is inside their error, else below 2^-40.
+  window.lo = px.lo.array() - (1 + 0x1p-40);
+  window.hi = px.hi.array() + (1 + 0x1p-40);
+  const auto side = [&](int i) {
+    return 2 *
+           static_cast<int>(std::ceil(std::max(std::abs(window.lo[i]), std::abs(window.hi[i]))));
+  };
+  window.width = side(0);
+  window.height = side(1);
+  return window;
+}
+
+}  // namespace farcull
