@@ -3,15 +3,16 @@
 // of one object; so two subtrees that have no node in common below their parent hold different
 // objects, unless one object holds both, where they are joined iff it is `self`. Two nodes whose
 // boxes are far enough apart settle |a| * |b| pairs at once. Boxes are minima and maxima of the
-// coordinates; what is asked of two of them is one difference in double against the clearance,
-// whose rounding is monotone: it proves what it says, and of no two triangles does it say less than
-// of nodes that hold them. The order in which the tree divides changes the speed, never the answer.
+// coordinates. Two of them are compared by one difference in double against the clearance. Its
+// rounding is monotone: "apart" is proved, and nodes that are apart hold only triangles that are.
+// The order in which the tree divides changes the speed, never the answer.
 //
 // Why not a sweep along one axis: it tests every pair that overlaps on that axis, 1.4e8 on two
 // bunnies and all 1.1e10 for bundles of long parallel needles (37 s; the tree 0.07 s on both). The
 // tree is as short to state, and because it counts what it passes over, the classes add up only if
 // no pair was lost. A pair that the tree lost and another that it met twice would add up: so the
-// pairs whose boxes overlap are enumerated a second time, by verify/box_pairs, and compared.
+// pairs whose boxes overlap are enumerated a second time, by the certificate's BoxPairs, and
+// compared.
 #include "verify/accounting.h"
 
 #include <algorithm>
@@ -22,19 +23,16 @@
 #include <string>
 #include <utility>
 
-#include "core/floating_point.h"
-#include "core/stopwatch.h"
-#include "verify/accounting_parts.h"
-#include "verify/box_pairs.h"
-#include "verify/exact.h"
+#include "core/base/floating_point.h"
+#include "core/base/stopwatch.h"
 
 namespace farcull {
 namespace {
 
-constexpr std::uint32_t kLeafSize =
-    4;  // triangles; a trade between nodes and tests of single boxes
-constexpr std::size_t kChunk =
-    1 << 18;  // pairs decided at a time, so that no list of overlaps is ever stored
+// Triangles of a leaf; a trade between nodes and tests of single boxes.
+constexpr std::uint32_t kLeafSize = 4;
+// Pairs decided at a time, so that no list of overlaps is ever stored.
+constexpr std::size_t kChunk = 1 << 18;
 constexpr std::uint32_t kNone = 0xffffffff;
 
 struct Bounds {
@@ -292,31 +290,43 @@ std::uint64_t pairs_that_count(const Scene& scene) {
   return pairs;
 }
 
+/// Decides the pairs that were not kept, a chunk at a time, and counts them.
+class UnkeptPairs {
+ public:
+  UnkeptPairs(const Scene& scene, const AccountOptions& options, const AccountingSteps& steps,
+              Accounting& result)
+      : scene_(scene), options_(options), steps_(steps), result_(result) {}
+
+  void add(const TrianglePair& pair) {
+    chunk_.push_back(pair);
+    if (chunk_.size() == kChunk) decide();
+  }
+  void decide() {
+    const Collisions missed = steps_.decide(scene_, chunk_, {.clearance = options_.clearance});
+    result_.neighbours += missed.neighbours_apart;
+    result_.false_negatives += missed.pairs.size() + missed.neighbour_pairs.size();
+    result_.certified_by_predicates += missed.apart;
+    chunk_.clear();
+    std::vector<TrianglePair>& examples = result_.examples;
+    for (const auto* pairs : {&missed.pairs, &missed.neighbour_pairs})
+      examples.insert(examples.end(), pairs->begin(), pairs->end());
+    std::sort(examples.begin(), examples.end());
+    examples.resize(std::min(examples.size(), options_.max_examples));
+  }
+
+ private:
+  const Scene& scene_;
+  const AccountOptions& options_;
+  const AccountingSteps& steps_;
+  Accounting& result_;
+  std::vector<TrianglePair> chunk_;
+};
+
 }  // namespace
 
 bool Accounting::adds_up() const {
   return pairs_total ==
          pairs_kept + certified_by_boxes + neighbours + certified_by_predicates + false_negatives;
-}
-
-void PairSet::add(const TrianglePair& pair) {
-  ++count;
-  // The finalizer of SplitMix64: a sum of its values tells sets of one size apart.
-  std::uint64_t x = std::uint64_t{pair.a} << 32 | pair.b;
-  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ x >> 27) * 0x94d049bb133111ebu;
-  sum += x ^ x >> 31;
-}
-
-PairSet pairs_with_overlapping_boxes(const Scene& scene, double clearance) {
-  constexpr std::size_t kBlock = 1 << 16;
-  PairSet out;
-  BoxPairs enumeration(scene, clearance);
-  std::vector<TrianglePair> pairs;
-  while (enumeration.next(pairs, kBlock)) {
-    for (const TrianglePair& pair : pairs) out.add(pair);
-  }
-  return out;
 }
 
 Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
@@ -325,7 +335,7 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
 }
 
 Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
-                   const AccountOptions& options, const AccountingParts& parts) {
+                   const AccountOptions& options, const AccountingSteps& steps) {
   const FloatingPointGuard guard;
   const Stopwatch start;
   const double clearance = options.clearance;
@@ -336,20 +346,7 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
   result.pairs_total = pairs_that_count(scene);
   const Kept kept_pairs(scene, kept);
 
-  std::vector<TrianglePair> chunk;
-  const auto decide_chunk = [&] {
-    const Collisions missed = parts.decide(scene, chunk, {.clearance = clearance});
-    result.neighbours += missed.neighbours_apart;
-    result.false_negatives += missed.pairs.size() + missed.neighbour_pairs.size();
-    result.certified_by_predicates += missed.apart;
-    chunk.clear();
-    std::vector<TrianglePair>& examples = result.examples;
-    for (const auto* pairs : {&missed.pairs, &missed.neighbour_pairs}) {
-      examples.insert(examples.end(), pairs->begin(), pairs->end());
-    }
-    std::sort(examples.begin(), examples.end());
-    examples.resize(std::min(examples.size(), options.max_examples));
-  };
+  UnkeptPairs unkept(scene, options, steps, result);
   PairSet overlapping;
   const auto visit = [&](std::uint32_t s, std::uint32_t t) {
     const TrianglePair pair = {std::min(s, t), std::max(s, t)};
@@ -358,13 +355,12 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
       ++result.pairs_kept;
       return;
     }
-    chunk.push_back(pair);
-    if (chunk.size() == kChunk) decide_chunk();
+    unkept.add(pair);
   };
 
   const std::vector<Bounds> bounds = bounds_of_triangles(scene);
   const std::uint64_t disjoint = Tree(scene, bounds, clearance).join(visit);
-  decide_chunk();
+  unkept.decide();
   // A kept pair with disjoint boxes is a mistake upstream, but kept it is: it leaves the class that
   // comes later.
   const auto kept_disjoint = static_cast<std::uint64_t>(std::count_if(
@@ -376,7 +372,7 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
   }
   result.certified_by_boxes = disjoint - kept_disjoint;
   if (!result.adds_up()) throw std::logic_error("account: the classes do not add up");
-  if (const PairSet again = parts.overlapping(scene, clearance); again != overlapping) {
+  if (const PairSet again = steps.overlapping(scene, clearance); again != overlapping) {
     throw std::logic_error("account: " + std::to_string(overlapping.count) +
                            " pairs with overlapping boxes, and by another enumeration " +
                            std::to_string(again.count) +

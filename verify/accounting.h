@@ -1,5 +1,5 @@
-// Independent accounting: what became of every pair of triangles that counts, certified pair by
-// pair. Those of different objects count, and those of one object where it is `self`.
+// Independent accounting: the fate of every pair of triangles that counts, certified pair by pair.
+// Those of different objects count, and those of one object where it is `self`.
 //
 // It shares no code with what culled: it makes its own boxes, enumerates the overlapping ones by
 // its own algorithm (neither CGAL's join nor core's), and decides the rest with verify/exact. It
@@ -8,10 +8,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
+#include "verify/exact.h"
+#include "verify/pair_set.h"
 
 namespace farcull {
 
@@ -39,14 +42,26 @@ struct AccountOptions {
   std::size_t max_examples = 10;  // missed pairs that are returned, at most
 };
 
-/// kept: what culling left to the exact tests; sorted, each pair once, a < b, pairs of the scene
-/// that count. Breaking that is a programmer's mistake that would be miscounted in silence, hence
-/// std::logic_error; so is a scene whose ranges are not those of validate(), and a clearance that
-/// is negative or not finite. std::logic_error as well where the accounting itself fails: a pair is
-/// left undecided, the classes do not sum to pairs_total, or the pairs whose boxes overlap are not
-/// those that the certificate's own enumeration (verify/box_pairs) finds. Memory O(triangles +
-/// kept).
+/// kept: the pairs that culling left to the exact tests; sorted, each pair once, a < b, pairs of
+/// the scene that count. Breaking that is a programmer's mistake that would be miscounted in
+/// silence, hence std::logic_error; so is a scene whose ranges are not those of validate(), and a
+/// clearance that is negative or not finite. std::logic_error as well where the accounting itself
+/// fails: a pair is left undecided, the classes do not sum to pairs_total, or the pairs whose boxes
+/// overlap are not those that the certificate's own enumeration (verify/pair_set.h) finds. Memory
+/// O(triangles + kept).
 Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
                    const AccountOptions& options = {});
+
+/// The two functions that account() calls to decide and to enumerate.
+struct AccountingSteps {
+  std::function<Collisions(const Scene&, std::span<const TrianglePair>, const ExactQuestion&)>
+      decide;
+  std::function<PairSet(const Scene&, double clearance)> overlapping;
+};
+
+/// account() with these in place of decide() and pairs_with_overlapping_boxes(): account() must
+/// notice a faulty one.
+Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
+                   const AccountOptions& options, const AccountingSteps& steps);
 
 }  // namespace farcull

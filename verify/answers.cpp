@@ -1,9 +1,20 @@
-// No class is what the others leave over: an answer that nobody gave must not count as one.
+// Counts the answers. Each class is counted by its own answers, never as the rest of the others: a
+// candidate that nobody decided must not count as decided.
 #include "verify/answers.h"
 
+#include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 namespace farcull {
+
+std::vector<TrianglePair> Collisions::all() const {
+  std::vector<TrianglePair> both;
+  both.reserve(pairs.size() + neighbour_pairs.size());
+  std::merge(pairs.begin(), pairs.end(), neighbour_pairs.begin(), neighbour_pairs.end(),
+             std::back_inserter(both));
+  return both;
+}
 
 Collisions count_answers(std::span<const TrianglePair> candidates,
                          std::span<const PairAnswer> answers) {

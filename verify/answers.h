@@ -3,13 +3,14 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
-#include "verify/exact.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 
-/// A candidate begins undecided. neighbours_unasked: neighbours, where ExactQuestion::neighbours is
-/// false.
+/// The answer about one candidate. It begins undecided. neighbours_unasked: neighbours, where
+/// ExactQuestion::neighbours is false.
 enum class PairAnswer : std::uint8_t {
   undecided,
   apart,
@@ -17,6 +18,17 @@ enum class PairAnswer : std::uint8_t {
   neighbours_apart,
   neighbours_colliding,
   neighbours_unasked
+};
+
+struct Collisions {
+  std::vector<TrianglePair> pairs;            // that collide and are not neighbours
+  std::vector<TrianglePair> neighbour_pairs;  // neighbours that collide
+  std::uint64_t neighbours = 0;               // candidates that are neighbours, colliding or not
+  std::uint64_t apart = 0;                    // candidates that do not collide, no neighbours
+  std::uint64_t neighbours_apart = 0;         // neighbours that were decided and do not collide
+
+  /// pairs and neighbour_pairs together; sorted where both are.
+  std::vector<TrianglePair> all() const;
 };
 
 /// Each class counted where an answer is in it; the colliding candidates in the order given. Throws

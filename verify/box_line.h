@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/canvas.h"
+#include "core/canvas/canvas.h"
 #include "verify/rational.h"
 
 namespace farcull::box_line {

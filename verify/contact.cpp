@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 
 namespace farcull {
 namespace {
@@ -38,8 +38,8 @@ Sides sides(const Points& plane, const Points& t) {
   return {orientation(a, b, c, t[0]), orientation(a, b, c, t[1]), orientation(a, b, c, t[2])};
 }
 
-/// Whether some are strictly on each side: iff the relative interior meets the plane and does not
-/// lie in it.
+/// True iff some are strictly on each side, that is, iff the relative interior meets the plane and
+/// does not lie in it.
 bool crosses(const Sides& s) {
   return std::min({s[0], s[1], s[2]}) < 0 && std::max({s[0], s[1], s[2]}) > 0;
 }
@@ -86,8 +86,9 @@ std::pair<int, int> ends(const Corners& t) {
   return {static_cast<int>(first - t.begin()), static_cast<int>(last - t.begin())};
 }
 
-/// Whether the triangle and the open segment pq, whose ends are strictly on different sides of its
-/// plane, meet in the triangle's interior: whether the line passes all three edges on one side.
+/// Decides whether the triangle and the open segment pq, whose ends are strictly on different sides
+/// of its plane, meet in the triangle's interior: whether the line passes all three edges on one
+/// side.
 bool pierces(const Points& triangle, const Point& p, const Point& q) {
   const auto& [a, b, c] = triangle;
   const int side = orientation(p, q, a, b);

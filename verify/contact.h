@@ -1,6 +1,6 @@
 // How two triangles that intersect do so: they penetrate, or they merely touch.
 //
-// The lectures on CULLIDE and S-CULLIDE tell *penetrating* contacts, where the surfaces pass
+// The lectures on CULLIDE and S-CULLIDE distinguish *penetrating* contacts, where the surfaces pass
 // through each other, from *touching* ones, which S-CULLIDE ignores. Here as an exact definition:
 // two triangles penetrate iff their relative interiors meet and they do not lie in one plane. Two
 // others that intersect touch. What this means: A and B penetrate iff 0 is an interior point of A -
@@ -19,7 +19,7 @@
 #include <span>
 #include <thread>
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 

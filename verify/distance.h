@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 

@@ -18,7 +18,8 @@
 //
 // Preconditions everywhere: coordinates finite (any finite double: subnormal, 1e308 and -0.0, which
 // equals 0.0, are fine); scenes satisfy validate(). Functions of two triangles need a thread that
-// rounds to nearest and keeps subnormals (core/floating_point.h); functions of a scene see to that.
+// rounds to nearest and keeps subnormals (core/base/floating_point.h); functions of a scene see to
+// that.
 #pragma once
 
 #include <array>
@@ -27,11 +28,12 @@
 #include <thread>
 #include <vector>
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
+#include "verify/answers.h"
 
 namespace farcull {
 
-/// What the convex hull of three corners is. segment: the corners are collinear but not all equal.
+/// The convex hull of three corners. segment: the corners are collinear but not all equal.
 enum class Shape : std::uint8_t { point, segment, triangle };
 
 /// Exact, by CGAL's collinearity predicate.
@@ -59,14 +61,6 @@ struct ExactQuestion {
   double clearance = 0;                                    // world units, finite, >= 0
   unsigned threads = std::thread::hardware_concurrency();  // 0 counts as 1; changes no answer
   bool neighbours = true;  // false: neighbours are counted, not decided
-};
-
-struct Collisions {
-  std::vector<TrianglePair> pairs;            // that collide and are not neighbours
-  std::vector<TrianglePair> neighbour_pairs;  // neighbours that collide
-  std::uint64_t neighbours = 0;               // candidates that are neighbours, colliding or not
-  std::uint64_t apart = 0;                    // candidates that do not collide, no neighbours
-  std::uint64_t neighbours_apart = 0;         // neighbours that were decided and do not collide
 };
 
 /// The candidates that collide, in the order given (duplicates and all). Candidates may be of any

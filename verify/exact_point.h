@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 

@@ -9,24 +9,11 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
+#include "verify/filter_bounds.h"
 
 namespace farcull {
-
-enum class Triage : std::uint8_t { no, yes, unknown };
-
-/// Bounds on what rounding does, derived in filter.cpp and filter_distance.cpp. The defaults are
-/// the proved ones; smaller ones are for the tests, which show that they are needed.
-struct FilterBounds {
-  double side = 9 * 0x1p-53;      // of a determinant, in its permanent; of a projection
-  double normals = 12 * 0x1p-53;  // of the product of two normals
-  double point = 64 * 0x1p-53;    // of a constructed difference of points, in their extent
-  double gap = 16 * 0x1p-53;      // of a gap along a direction, in the magnitudes projected
-  double absolute = 0x1p-1000;    // underflow, per unit of what is multiplied last, plus one
-};
-inline constexpr FilterBounds kFilterBounds;
 
 /// Is the distance of the triangles at most `clearance` (finite, >= 0)? Looks at their planes
 /// alone: `yes` where they cross, `no` where one is on one side of the other's plane and farther
@@ -34,21 +21,19 @@ inline constexpr FilterBounds kFilterBounds;
 /// the planes. Degenerate triangles and contacts without overlap are `unknown`, and so is what
 /// nearly is one.
 Triage filter_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
-                     double clearance = 0, const FilterBounds& bounds = kFilterBounds);
+                     double clearance = 0);
 
 /// Do the triangles (v, a1, a2) and (v, b1, b2) share more than v?
 Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const Vec3& b1,
-                            const Vec3& b2, const FilterBounds& bounds = kFilterBounds);
+                            const Vec3& b2);
 
 /// Do the triangles (p, q, r) and (p, q, s) share more than the segment from p to q? Never `yes`:
 /// that takes four points in one plane.
-Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s,
-                          const FilterBounds& bounds = kFilterBounds);
+Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s);
 
 /// The same for a clearance > 0, by two points close to each other and the direction between them.
 /// Of triangles that cross it only knows the boundaries. `unknown` within about 1e-14 of the extent
 /// of the pair.
-Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance,
-                     const FilterBounds& bounds = kFilterBounds);
+Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
 }  // namespace farcull

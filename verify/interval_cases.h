@@ -1,5 +1,5 @@
-// Triangles and pixels that make trouble for the kernel of FAR pairs (core/interval.glsl), and the
-// real triangles that a float one stands for.
+// Triangles and pixels that make trouble for the kernel of FAR pairs (core/pairs/interval.glsl),
+// and the real triangles that a float one stands for.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/kernel_case.h"
+#include "core/canvas/kernel_case.h"
 #include "verify/rational.h"
 
 namespace farcull::interval_cases {

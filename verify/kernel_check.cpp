@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "verify/box_line.h"
-#include "verify/exact_cases.h"
-#include "verify/exact_line.h"
 #include "verify/interval_cases.h"
+#include "verify/minkowski_cases.h"
+#include "verify/minkowski_line.h"
 
 namespace farcull {
 namespace {
@@ -57,19 +57,19 @@ void check_box(const SolidCase& c, const SolidAnswer& answer, bool ordinary, Ker
 void check_minkowski(const SolidCase& c, const SolidAnswer& answer, bool ordinary,
                      KernelTally& tally) {
   if (!usable(answer)) return count(false, tally);
-  const exact_line::Line line(c.solid, c.cx, c.cy);
-  exact_line::Tally points;
-  exact_line::check_contacts(line, c.solid, c.cx, c.cy, answer, points);
-  exact_line::check(line, c.solid, c.cx, c.cy, exact_line::weights(1.0L / 3, 1.0L / 3), answer,
-                    points);
+  const minkowski_line::Line line(c.solid, c.cx, c.cy);
+  minkowski_line::Tally points;
+  minkowski_line::check_contacts(line, c.solid, c.cx, c.cy, answer, points);
+  minkowski_line::check(line, c.solid, c.cx, c.cy, minkowski_line::weights(1.0L / 3, 1.0L / 3),
+                        answer, points);
   tally.checked += static_cast<std::uint64_t>(points.checks);
   tally.lost += static_cast<std::uint64_t>(points.violations);
   if (!ordinary || !answer.hit) return;
-  exact_line::Weights at{};
-  exact_line::Real first = 0, last = 0;
+  minkowski_line::Weights at{};
+  minkowski_line::Real first = 0, last = 0;
   if (!line.contact(-1, at, first) || !line.contact(1, at, last)) return;
-  const exact_line::Real lo = std::max<exact_line::Real>(first, c.solid[0][3]);
-  const exact_line::Real hi = std::min<exact_line::Real>(last, c.solid[2][3]);
+  const minkowski_line::Real lo = std::max<minkowski_line::Real>(first, c.solid[0][3]);
+  const minkowski_line::Real hi = std::min<minkowski_line::Real>(last, c.solid[2][3]);
   count_excess(static_cast<double>(std::max(lo - answer.entry, answer.exit - hi)), tally);
 }
 
@@ -135,8 +135,8 @@ void check_slices(const std::vector<SliceCase>& cases, const std::vector<SliceAn
 
 KernelTriangle kernel_triangle(std::uint64_t seed, std::uint64_t index, float cx, float cy) {
   Draws random = draws_of(seed, index);
-  const int kind = static_cast<int>(index % exact_cases::kKindCount);
-  const exact_cases::Case c = exact_cases::random_case_at(random, kind, cx, cy);
+  const int kind = static_cast<int>(index % minkowski_cases::kKindCount);
+  const minkowski_cases::Case c = minkowski_cases::random_case_at(random, kind, cx, cy);
   return {c.triangle, c.radius, kind == 0};
 }
 
@@ -147,7 +147,7 @@ Solid adversarial_box(std::uint64_t seed, std::uint64_t index, float cx, float c
 
 Solid adversarial_minkowski(std::uint64_t seed, std::uint64_t index, float cx, float cy) {
   Draws random = draws_of(seed, index);
-  return exact_cases::adversarial_at(random, cx, cy);
+  return minkowski_cases::adversarial_at(random, cx, cy);
 }
 
 std::vector<IntervalCase> interval_kernel_cases(std::uint64_t seed, std::size_t count) {

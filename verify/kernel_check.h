@@ -1,12 +1,12 @@
-// Whether a kernel's answer is right: it contains what the real solid or triangle has on the line
-// or in the pixel, decided with rationals, and it is not so wide that it says nothing. For answers
-// of a device as much as of this CPU.
+// Decides whether a kernel's answer is right: it contains the part of the real solid or triangle on
+// the line or in the pixel, decided with rationals, and it is not so wide that it says nothing. For
+// answers of a device as much as of this CPU.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "core/kernel_case.h"
+#include "core/canvas/kernel_case.h"
 
 namespace farcull {
 
@@ -24,7 +24,7 @@ constexpr double kLoose = 0.1, kLooseShare = 1e-2;
 
 /// The solid of offsets/obb.glsl: three slabs. `ordinary`: a box of moderate size and slope.
 void check_box(const SolidCase& c, const SolidAnswer& answer, bool ordinary, KernelTally& tally);
-/// The solid of offsets/exact.glsl: hull and ball.
+/// The solid of offsets/minkowski.glsl: hull and ball.
 void check_minkowski(const SolidCase& c, const SolidAnswer& answer, bool ordinary,
                      KernelTally& tally);
 /// A triangle of FAR pairs.

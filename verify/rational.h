@@ -8,10 +8,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <random>
 #include <vector>
 
-#include "core/scene.h"
+#include "core/base/random.h"
+#include "core/scene/scene.h"
 
 namespace farcull::rational {
 
@@ -40,17 +40,13 @@ inline std::vector<Q3> clipped(const std::vector<Q3>& polygon, int axis, int sig
   return out;
 }
 
-/// Standard distributions differ between libraries, engines do not.
-class Draws {
+class Draws : public RandomNumbers {
  public:
-  explicit Draws(std::uint64_t seed) : engine_(seed) {}
+  using RandomNumbers::RandomNumbers;
 
-  std::uint64_t bits() { return engine_(); }
-  int below(int n) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(n)); }
-  bool coin() { return (engine_() >> 33) & 1; }
-  double uniform(double lo, double hi) {
-    return lo + (hi - lo) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
-  }
+  std::uint64_t bits() { return word(); }
+  bool coin() { return (word() >> 33) & 1; }
+  double uniform(double lo, double hi) { return between(lo, hi); }
   double sign() { return coin() ? 1 : -1; }
   /// A random sign and magnitude 2^lo .. 2^hi, the exponent uniform.
   double scaled(double lo, double hi) { return sign() * std::exp2(uniform(lo, hi)); }
@@ -58,9 +54,6 @@ class Draws {
     return {uniform(-half, half), uniform(-half, half), uniform(-half, half)};
   }
   Vec3 scaled3(double lo, double hi) { return {scaled(lo, hi), scaled(lo, hi), scaled(lo, hi)}; }
-
- private:
-  std::mt19937_64 engine_;
 };
 
 }  // namespace farcull::rational

@@ -1,9 +1,12 @@
+// A pixel counts as covered only where every rounding that the assumptions allow covers it, and its
+// depths are the worst ones.
 #include "verify/worst_canvas.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace farcull {
 namespace {
@@ -35,8 +38,8 @@ double cross(const Point& a, const Point& b, const Point& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Whether c is on the inner side of the edge for every choice of its ends: the product is linear in
-// each coordinate, so its least value is at corners of the ranges.
+// True where c is on the inner side of the edge for every choice of its ends: the product is linear
+// in each coordinate, so its least value is at corners of the ranges.
 bool surely_inside(const Range (&a)[2], const Range (&b)[2], const Point& c, double orientation) {
   for (int bits = 0; bits < 16; ++bits) {
     const Point from = {bits & 1 ? a[0].hi : a[0].lo, bits & 2 ? a[1].hi : a[1].lo};
@@ -44,6 +47,15 @@ bool surely_inside(const Range (&a)[2], const Range (&b)[2], const Point& c, dou
     if (orientation * cross(from, to, c) <= 0) return false;
   }
   return true;
+}
+
+// The depth buffer's place of a depth, for a scale of depth_scale().
+float mapped(float z, float scale) { return std::min(std::max(0.5f + z * scale, 0.25f), 0.75f); }
+
+// First and last index of the pixels whose centre is in [lo, hi].
+std::pair<int, int> pixels(double lo, double hi, int size) {
+  return {std::max(0, static_cast<int>(std::ceil(lo + 0.5 * size - 0.5))),
+          std::min(size - 1, static_cast<int>(std::floor(hi + 0.5 * size - 0.5)))};
 }
 
 }  // namespace
@@ -65,43 +77,32 @@ float WorstCanvas::stored_depth(float mapped) const {
   return static_cast<float>(std::floor(mapped * 0x1p24) * 0x1p-24);
 }
 
-// Calls visit(pixel, px, mapped) for each fragment of an element: px is the entry or exit depth,
-// mapped its place in the depth buffer.
 template <class Visit>
-void WorstCanvas::rasterize(std::uint32_t element, Verb verb, const Visit& visit) const {
+void WorstCanvas::rasterize_triangle(std::uint32_t element, const Visit& visit) const {
   const int width = window_.width, height = window_.height;
-  if (element == kEverywhere) {
-    for (std::size_t pixel = 0; pixel < static_cast<std::size_t>(width) * height; ++pixel)
-      visit(pixel, 0, 0);
-    return;
-  }
   const float scale = depth_scale(window_);
-  const auto mapped = [&](float z) { return std::min(std::max(0.5f + z * scale, 0.25f), 0.75f); };
-  const auto pixels = [](double lo, double hi, int size) {  // indices whose centre is in [lo, hi]
-    return std::pair{std::max(0, static_cast<int>(std::ceil(lo + 0.5 * size - 0.5))),
-                     std::min(size - 1, static_cast<int>(std::floor(hi + 0.5 * size - 0.5)))};
-  };
-
-  if (drawables_->mode == DepthMode::fixed) {
-    const std::array<float, 12>& t = drawables_->triangles[element];
-    const Point a = {t[0], t[1]}, b = {t[4], t[5]}, c = {t[8], t[9]};
-    const double area = cross(a, b, c);
-    if (area == 0) return;
-    const auto [x0, x1] = pixels(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), width);
-    const auto [y0, y1] = pixels(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), height);
-    for (int y = y0; y <= y1; ++y) {
-      for (int x = x0; x <= x1; ++x) {
-        const Point p = {x + 0.5 - 0.5 * width, y + 0.5 - 0.5 * height};
-        const double wa = cross(b, c, p) / area, wb = cross(c, a, p) / area,
-                     wc = cross(a, b, p) / area;
-        if (wa <= 0 || wb <= 0 || wc <= 0) continue;
-        const float z = static_cast<float>(wa * t[2] + wb * t[6] + wc * t[10]);
-        visit(static_cast<std::size_t>(y) * width + x, z, mapped(z));
-      }
+  const std::array<float, 12>& t = drawables_->triangles[element];
+  const Point a = {t[0], t[1]}, b = {t[4], t[5]}, c = {t[8], t[9]};
+  const double area = cross(a, b, c);
+  if (area == 0) return;
+  const auto [x0, x1] = pixels(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), width);
+  const auto [y0, y1] = pixels(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), height);
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) {
+      const Point p = {x + 0.5 - 0.5 * width, y + 0.5 - 0.5 * height};
+      const double wa = cross(b, c, p) / area, wb = cross(c, a, p) / area,
+                   wc = cross(a, b, p) / area;
+      if (wa <= 0 || wb <= 0 || wc <= 0) continue;
+      const float z = static_cast<float>(wa * t[2] + wb * t[6] + wc * t[10]);
+      visit(static_cast<std::size_t>(y) * width + x, z, mapped(z, scale));
     }
-    return;
   }
+}
 
+template <class Visit>
+void WorstCanvas::rasterize_proxy(std::uint32_t element, Verb verb, const Visit& visit) const {
+  const int width = window_.width, height = window_.height;
+  const float scale = depth_scale(window_);
   const Proxy& proxy = drawables_->proxies[element];
   Range corner[4][2];
   Point nominal[4];
@@ -132,8 +133,22 @@ void WorstCanvas::rasterize(std::uint32_t element, Verb verb, const Visit& visit
                                  entry, exit))
         continue;
       const float z = verb == Verb::store ? entry : exit;
-      visit(static_cast<std::size_t>(y) * width + x, z, mapped(z));
+      visit(static_cast<std::size_t>(y) * width + x, z, mapped(z, scale));
     }
+  }
+}
+
+// Calls visit(pixel, px, mapped) for each fragment of an element: px is the entry or exit depth,
+// mapped its place in the depth buffer.
+template <class Visit>
+void WorstCanvas::rasterize(std::uint32_t element, Verb verb, const Visit& visit) const {
+  if (element == kEverywhere) {
+    const std::size_t pixels = static_cast<std::size_t>(window_.width) * window_.height;
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) visit(pixel, 0, 0);
+  } else if (drawables_->mode == DepthMode::fixed) {
+    rasterize_triangle(element, visit);
+  } else {
+    rasterize_proxy(element, verb, visit);
   }
 }
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/canvas.h"
+#include "core/canvas/canvas.h"
 
 namespace farcull {
 
@@ -36,6 +36,10 @@ class WorstCanvas final : public Canvas {
   std::vector<float> depths(Verb verb, const std::vector<Draw>& draws) override;
 
  private:
+  template <class Visit>
+  void rasterize_triangle(std::uint32_t element, const Visit& visit) const;
+  template <class Visit>
+  void rasterize_proxy(std::uint32_t element, Verb verb, const Visit& visit) const;
   template <class Visit>
   void rasterize(std::uint32_t element, Verb verb, const Visit& visit) const;
   float stored_depth(float mapped) const;

@@ -14,22 +14,26 @@
 // R; `point` is 64 u.
 //
 // Far. For any vector d the distance is at least (min d.b_j - max d.a_i) / |d|. A computed d.x is
-// off by less than 5 u |d|.|x| (filter.cpp), their difference by 2 u |d|.|x| more: 12 u M, M the
-// product of the magnitudes of d with the largest |x| per axis. `gap` is 16 u. The computed length
-// of d, times the clearance, is off by less than 4 u of itself, which the factor 1 + 8 u covers.
+// off by less than 5 u |d|.|x| (filter_of_planes.h), their difference by 2 u |d|.|x| more: 12 u M,
+// M the product of the magnitudes of d with the largest |x| per axis. `gap` is 16 u. The computed
+// length of d, times the clearance, is off by less than 4 u of itself, which the factor 1 + 8 u
+// covers.
 //
 // Underflow: products are off by at most 2^-1075, far below `absolute`, where the length of d is
 // as computed only if its square is at least 2^-900; a shorter one counts as 2^-450 at least where
-// it shall be small. Overflow: as in filter.cpp; infinities and what is
+// it shall be small. Overflow: as in filter_of_planes.h; infinities and what is
 // not a number satisfy no comparison.
+#pragma once
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
-#include "verify/filter.h"
+#include "core/scene/scene.h"
+#include "verify/filter_bounds.h"
 
-namespace farcull {
-namespace {
+namespace farcull::filters {
 
 using Corners = std::array<Vec3, 3>;
 
@@ -47,11 +51,13 @@ struct Closest {
   }
 };
 
-double clamped(double x) { return x > 0 ? std::min(x, 1.0) : 0; }  // 0 for what is not a number
+inline double clamped(double x) {
+  return x > 0 ? std::min(x, 1.0) : 0;
+}  // 0 for what is not a number
 
 /// Between segments: from p + s u to q + t v, s and t in [0, 1].
-void offer_segments(const Vec3& p, const Vec3& p_end, const Vec3& q, const Vec3& q_end,
-                    Closest& closest) {
+inline void offer_segments(const Vec3& p, const Vec3& p_end, const Vec3& q, const Vec3& q_end,
+                           Closest& closest) {
   const Vec3 u = p_end - p;
   const Vec3 v = q_end - q;
   const Vec3 w = p - q;
@@ -67,7 +73,7 @@ void offer_segments(const Vec3& p, const Vec3& p_end, const Vec3& q, const Vec3&
 }
 
 /// From a corner p to the face of t, where it lies over it; `sense` -1 turns the difference round.
-void offer_face(const Vec3& p, const Corners& t, double sense, Closest& closest) {
+inline void offer_face(const Vec3& p, const Corners& t, double sense, Closest& closest) {
   const Vec3 e = t[1] - t[0];
   const Vec3 f = t[2] - t[0];
   const Vec3 w = p - t[0];
@@ -81,7 +87,7 @@ void offer_face(const Vec3& p, const Corners& t, double sense, Closest& closest)
 }
 
 /// The largest magnitude per axis.
-Vec3 extent_of(const Corners& a, const Corners& b) {
+inline Vec3 extent_of(const Corners& a, const Corners& b) {
   Vec3 most = Vec3::Zero();
   for (const Corners* t : {&a, &b}) {
     for (const Vec3& p : *t) most = most.cwiseMax(p.cwiseAbs());
@@ -89,10 +95,8 @@ Vec3 extent_of(const Corners& a, const Corners& b) {
   return most;
 }
 
-}  // namespace
-
-Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance,
-                     const FilterBounds& bounds) {
+template <class Bounds>
+Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
   Corners s;
   Corners t;
   for (int i = 0; i < 3; ++i) {
@@ -112,14 +116,15 @@ Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
   constexpr double kLeast = 0x1p-900;  // of a square whose root is accurate
   const Vec3 extent = extent_of(s, t);
   const double length = std::sqrt(std::max(closest.squared, kLeast));
-  if (length + bounds.point * extent.maxCoeff() + bounds.absolute <= clearance) return Triage::yes;
+  if (length + Bounds::point * extent.maxCoeff() + Bounds::absolute <= clearance)
+    return Triage::yes;
   if (closest.squared < kLeast) return Triage::unknown;
   const Vec3& d = closest.difference;
   const double s_most = std::max({d.dot(s[0]), d.dot(s[1]), d.dot(s[2])});
   const double t_least = std::min({d.dot(t[0]), d.dot(t[1]), d.dot(t[2])});
-  const double doubt = bounds.gap * d.cwiseAbs().dot(extent) + bounds.absolute;
+  const double doubt = Bounds::gap * d.cwiseAbs().dot(extent) + Bounds::absolute;
   const double needed = clearance * length;
   return t_least - s_most - doubt > needed + needed * 0x1p-50 ? Triage::no : Triage::unknown;
 }
 
-}  // namespace farcull
+}  // namespace farcull::filters

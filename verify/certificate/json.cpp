@@ -8,8 +8,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "core/error.h"
-#include "verify/certificate.h"
+#include "core/base/base64.h"
+#include "core/base/error.h"
+#include "verify/certificate/certificate.h"
 
 namespace farcull {
 namespace {
@@ -20,49 +21,6 @@ constexpr const char* kFormat = "farcull-certificate";
 constexpr std::uint64_t kVersion = 3;
 constexpr const char* kRemedy =
     "give a file that `farcull run ... --certificate` wrote; docs/certificate.md is the format";
-
-// ---- base64 (RFC 4648), padded, without line breaks ----
-
-constexpr std::string_view kDigits =
-    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-
-std::string encode(const std::vector<std::uint8_t>& bytes) {
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t have = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < have ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) out += k <= have ? kDigits[word >> (18 - 6 * k) & 63] : '=';
-  }
-  return out;
-}
-
-/// False where the text is not the encoding of any bytes. There is one encoding of each: bits that
-/// padding leaves over are 0.
-bool decode(const std::string& text, std::vector<std::uint8_t>& out) {
-  constexpr std::uint8_t kNone = 64;
-  std::array<std::uint8_t, 256> value;
-  value.fill(kNone);
-  for (std::uint8_t v = 0; v < 64; ++v) value[static_cast<unsigned char>(kDigits[v])] = v;
-  if (text.size() % 4 != 0) return false;
-  std::size_t padding = 0;
-  while (padding < 2 && padding < text.size() && text[text.size() - 1 - padding] == '=') ++padding;
-  out.reserve(text.size() / 4 * 3);
-  for (std::size_t i = 0; i < text.size(); i += 4) {
-    const std::size_t digits = i + 4 == text.size() ? 4 - padding : 4;
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const std::uint8_t v = k < digits ? value[static_cast<unsigned char>(text[i + k])] : 0;
-      if (v == kNone) return false;
-      word = word << 6 | v;
-    }
-    if ((word & (digits == 2 ? 0xffffu : digits == 3 ? 0xffu : 0u)) != 0) return false;
-    for (std::size_t k = 0; k + 1 < digits; ++k)
-      out.push_back(static_cast<std::uint8_t>(word >> (16 - 8 * k)));
-  }
-  return true;
-}
 
 // ---- reading ----
 
@@ -288,7 +246,7 @@ std::string to_text(const Certificate& certificate) {
         {"views", std::move(views)},
         {"device", std::move(device)},
         {"assumptions", Json(run.assumptions)}}},
-      {"evidence", encode(certificate.evidence)}};
+      {"evidence", to_base64(certificate.evidence)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -313,8 +271,9 @@ Certificate parse_certificate(std::string_view text, const std::string& name) {
   certificate.list_sha256 = reader.text(root["list_sha256"], "list_sha256");
   reader.digits(certificate.list_sha256, 64, "list_sha256");
   certificate.run = read_run(reader, root["unattested"]);
-  if (!decode(reader.text(root["evidence"], "evidence"), certificate.evidence))
-    reader.fail("evidence is not base64 (padded, without line breaks)");
+  auto evidence = from_base64(reader.text(root["evidence"], "evidence"));
+  if (!evidence) reader.fail("evidence is not base64 (padded, without line breaks)");
+  certificate.evidence = std::move(*evidence);
   return certificate;
 }
 

@@ -1,4 +1,5 @@
-#include "verify/box_pairs.h"
+// A tree of boxes over all triangles; each triangle asks it for later ones whose boxes it meets.
+#include "verify/certificate/box_pairs.h"
 
 #include <algorithm>
 #include <numeric>

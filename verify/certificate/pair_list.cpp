@@ -1,10 +1,10 @@
 // Makes the list line by line, so that its hash needs no more memory than one line and the owners
 // of the triangles.
-#include "verify/pair_list.h"
+#include "verify/certificate/pair_list.h"
 
 #include <algorithm>
 
-#include "verify/sha256.h"
+#include "verify/certificate/sha256.h"
 
 namespace farcull {
 namespace {

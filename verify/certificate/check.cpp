@@ -3,14 +3,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/floating_point.h"
-#include "core/parallel.h"
-#include "core/stopwatch.h"
-#include "verify/box_pairs.h"
-#include "verify/certificate.h"
-#include "verify/integer_pair.h"
-#include "verify/not_asked.h"
-#include "verify/pair_list.h"
+#include "core/base/floating_point.h"
+#include "core/base/parallel.h"
+#include "core/base/stopwatch.h"
+#include "verify/certificate/box_pairs.h"
+#include "verify/certificate/certificate.h"
+#include "verify/certificate/integer_pair.h"
+#include "verify/certificate/not_asked.h"
+#include "verify/certificate/pair_list.h"
 
 namespace farcull {
 namespace {
@@ -155,7 +155,7 @@ std::string wrong_list(const std::string& claimed, const std::string& found) {
                                 claimed + ", and that of the pairs that meet is " + found;
 }
 
-/// What the pairs so far came to.
+/// The counts of the pairs so far.
 class Tally {
  public:
   void add(const TrianglePair& pair, std::uint8_t byte, const Decision& decision) {

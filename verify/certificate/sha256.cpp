@@ -1,5 +1,5 @@
 // FIPS 180-4, sections 5.1.1 (padding) and 6.2 (the hash), in its notation.
-#include "verify/sha256.h"
+#include "verify/certificate/sha256.h"
 
 #include <algorithm>
 #include <bit>

@@ -3,11 +3,11 @@
 
 #include <functional>
 
-#include "verify/exact_line.h"
+#include "verify/minkowski_line.h"
 
-namespace farcull::exact_cases {
+namespace farcull::minkowski_cases {
 
-using exact_line::Weights;
+using minkowski_line::Weights;
 using rational::Draws;
 using Triangle = std::array<Vec3, 3>;
 
@@ -98,12 +98,12 @@ inline double random_radius(Draws& random) {
 inline Weights random_weights(Draws& random) {
   switch (random.below(4)) {
     case 0:
-      return exact_line::on_edge(random.below(3), random.below(2));
+      return minkowski_line::on_edge(random.below(3), random.below(2));
     case 1:
-      return exact_line::on_edge(random.below(3), random.uniform(0, 1));
+      return minkowski_line::on_edge(random.below(3), random.uniform(0, 1));
     default: {
       const double a = random.uniform(0, 1), b = random.uniform(0, 1);
-      return exact_line::weights(std::min(a, b), std::abs(a - b));
+      return minkowski_line::weights(std::min(a, b), std::abs(a - b));
     }
   }
 }
@@ -204,4 +204,4 @@ inline void adversarial(Draws& random, Solid& s, float& cx, float& cy) {
   s = adversarial_at(random, cx, cy);
 }
 
-}  // namespace farcull::exact_cases
+}  // namespace farcull::minkowski_cases

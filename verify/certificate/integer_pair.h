@@ -15,7 +15,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 

@@ -1,12 +1,13 @@
 // Counts the pairs that a scene does not ask about: those inside an object that is not `self`. No
-// number of pairs met, missed or proved speaks of them, so whoever tells one tells this as well.
+// number of pairs met, missed or proved speaks of them, so whoever reports one reports this as
+// well.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 

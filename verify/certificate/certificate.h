@@ -2,7 +2,7 @@
 // of evidence a pair, so that a stranger can prove or refute it without any of the code that
 // culled. docs/certificate.md is the format and the proof that 38 directions suffice.
 //
-// What is proved, where a check says so, is about the scene alone: of the pairs of triangles that
+// A check that passes proves something about the scene alone: of the pairs of triangles that
 // count (of different objects, and of one object where it is `self`), these meet and no others. The
 // certificate names the list of these pairs by its hash, so that a written list is proved with it.
 // Neighbours (verify/exact.h) meet iff they share more than their shared part. Pairs whose boxes
@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 
@@ -32,7 +32,8 @@ struct Certificate {
     bool operator==(const SceneKey&) const = default;
   };
 
-  /// What the scene does not ask (verify/not_asked.h), and so is no part of the claims.
+  /// The pairs that the scene does not ask about (verify/certificate/not_asked.h), and so is no
+  /// part of the claims.
   struct Unasked {
     std::uint64_t objects = 0;
     std::uint64_t pairs = 0;
@@ -59,7 +60,7 @@ struct Certificate {
     bool operator==(const View&) const = default;
   };
 
-  /// What no check can attest, for the reader's information.
+  /// For the reader's information; no check can attest it.
   struct Run {
     std::string method;
     std::uint64_t resolution = 0;  // px; 0 where nothing was drawn

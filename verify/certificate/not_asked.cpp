@@ -1,6 +1,6 @@
 // One pass over the objects: n triangles make n (n - 1) / 2 pairs, and neighbours in the order of
 // the scene join into one range.
-#include "verify/not_asked.h"
+#include "verify/certificate/not_asked.h"
 
 namespace farcull {
 

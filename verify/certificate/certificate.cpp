@@ -1,5 +1,5 @@
 // Making a certificate. Which direction is written is no matter of trust: the checker proves it.
-#include "verify/certificate.h"
+#include "verify/certificate/certificate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/floating_point.h"
-#include "core/parallel.h"
-#include "verify/box_pairs.h"
-#include "verify/integer_pair.h"
-#include "verify/not_asked.h"
-#include "verify/pair_list.h"
+#include "core/base/floating_point.h"
+#include "core/base/parallel.h"
+#include "verify/certificate/box_pairs.h"
+#include "verify/certificate/integer_pair.h"
+#include "verify/certificate/not_asked.h"
+#include "verify/certificate/pair_list.h"
 
 namespace farcull {
 namespace {

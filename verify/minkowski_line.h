@@ -1,6 +1,7 @@
 // A line along z and a triangle fattened by a ball, as the floats of a Solid say it
-// (offsets/exact.glsl). Notation: v0, v1, v2 the solid's corners relative to its centre m; d = c -
-// m in the image; p a point of the triangle. The ball about p cuts the line in the chord m.z + p.z
+// (offsets/minkowski.glsl). Notation: v0, v1, v2 the solid's corners relative to its centre m; d =
+// c - m in the image; p a point of the triangle. The ball about p cuts the line in the chord m.z +
+// p.z
 // -+ sqrt(r^2 - |d - p.xy|^2), and the solid's interval is the hull of all chords, so any p is a
 // test of a kernel: decided with rationals wherever long doubles leave a doubt.
 #pragma once
@@ -10,10 +11,10 @@
 #include <cmath>
 #include <limits>
 
-#include "core/kernel_case.h"
+#include "core/canvas/kernel_case.h"
 #include "verify/rational.h"
 
-namespace farcull::exact_line {
+namespace farcull::minkowski_line {
 
 using rational::Q;
 using Real = long double;
@@ -185,7 +186,7 @@ inline bool violates(const Solid& s, float cx, float cy, const Weights& w, const
     if (!answer.hit || *z < Q(answer.entry) || *z > Q(answer.exit)) return true;
   }
   if (!answer.hit) return false;
-  // Inside the chord and the cuts there is room for a depth beyond the answer.
+  // Inside the chord and the cuts a depth beyond the answer is possible.
   const auto strictly_inside = [&](const Q& z) {
     const Q off = z - p[2];
     return off * off < square;
@@ -195,7 +196,7 @@ inline bool violates(const Solid& s, float cx, float cy, const Weights& w, const
          (exit < zhi && exit >= zlo && strictly_inside(exit));
 }
 
-/// Whether long doubles leave a doubt that the chord is held. False is certain.
+/// True where long doubles leave a doubt that the chord is held. False is certain.
 inline bool doubtful(const Solid& s, const Chord& c, const Answer& answer) {
   if (c.square < -c.no_chord) return false;
   if (c.hi + c.doubt < s[0][3] || c.lo - c.doubt > s[2][3]) return false;
@@ -228,4 +229,4 @@ inline void check_contacts(const Line& line, const Solid& s, float cx, float cy,
   }
 }
 
-}  // namespace farcull::exact_line
+}  // namespace farcull::minkowski_line

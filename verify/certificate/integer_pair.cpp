@@ -1,0 +1,227 @@
+// A pair is scaled to integers once. Where the coordinates are short enough, 128-bit integers
+// decide it, else GMP's.
+#include "verify/certificate/integer_pair.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "verify/certificate/integer_direction.h"
+#include "verify/certificate/integer_points.h"
+#include "verify/certificate/integer_vector.h"
+
+namespace farcull {
+
+using namespace integer;
+
+namespace {
+
+/// value = mantissa * 2^exponent, the mantissa odd or 0.
+struct Parts {
+  std::int64_t mantissa = 0;
+  int exponent = 0;
+};
+
+Parts parts(double value) {
+  if (value == 0) return {};
+  int exponent = 0;
+  const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));
+  const int zeros = std::countr_zero(static_cast<std::uint64_t>(mantissa));
+  return {mantissa >> zeros, exponent - 53 + zeros};
+}
+
+int bit_length(Wide magnitude) {
+  const auto high = static_cast<std::uint64_t>(magnitude >> 64);
+  return high != 0 ? 128 - std::countl_zero(high)
+                   : 64 - std::countl_zero(static_cast<std::uint64_t>(magnitude));
+}
+
+/// The triangle whose corners are three of `points`, from `first` on.
+Corners<Wide> wide(const std::array<std::array<std::int64_t, 3>, 6>& points, int first) {
+  Corners<Wide> out;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) out[i][k] = points[first + i][k];
+  }
+  return out;
+}
+
+}  // namespace
+
+struct IntegerPair::Big {
+  Corners<mpz_class> a, b;
+  mpz_class clearance;
+
+  Big(const std::array<Vec3, 3>& from_a, const std::array<Vec3, 3>& from_b, double distance = 0) {
+    int least = std::numeric_limits<int>::max();
+    if (distance != 0) least = parts(distance).exponent;
+    for (const auto* t : {&from_a, &from_b}) {
+      for (const Vec3& p : *t) {
+        for (int k = 0; k < 3; ++k) {
+          if (p[k] != 0) least = std::min(least, parts(p[k]).exponent);
+        }
+      }
+    }
+    const auto scale = [least](mpz_class& to, double from) {
+      const Parts x = parts(from);
+      to = static_cast<long>(x.mantissa);
+      if (x.mantissa != 0) to <<= x.exponent - least;
+    };
+    const auto convert = [&](Corners<mpz_class>& to, const std::array<Vec3, 3>& from) {
+      for (int i = 0; i < 3; ++i) {
+        for (int k = 0; k < 3; ++k) scale(to[i][k], from[i][k]);
+      }
+    };
+    scale(clearance, distance);
+    convert(a, from_a);
+    convert(b, from_b);
+    // Every direction and every gap is about differences, and differences are shorter.
+    const Vector<mpz_class> origin = a[0];
+    for (auto* t : {&a, &b}) {
+      for (Vector<mpz_class>& p : *t) minus(p, Vector<mpz_class>(p), origin);
+    }
+  }
+};
+
+IntegerPair::IntegerPair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b)
+    : corners_{a, b}, bits_(std::numeric_limits<int>::max()) {
+  std::array<std::array<Parts, 3>, 6> all;
+  int least = std::numeric_limits<int>::max();
+  int top = std::numeric_limits<int>::min();
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const Parts x = all[i][k] = parts(corners_[i / 3][i % 3][k]);
+      if (x.mantissa == 0) continue;
+      least = std::min(least, x.exponent);
+      top = std::max(top, x.exponent + bit_length(x.mantissa < 0 ? -Wide{x.mantissa} : x.mantissa));
+    }
+  }
+  constexpr int kWidest = 125;  // of a coordinate, so that a difference still is a Wide
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (corners_[0][i] != corners_[1][j]) continue;
+      shared_[0] |= 1u << i;
+      shared_[1] |= 1u << j;
+    }
+  }
+  if (top > least && top - least > kWidest) return;
+  const auto value = [&](int i, int k) {
+    const Parts x = all[i][k];
+    return x.mantissa == 0 ? Wide{0} : Wide{x.mantissa} * (Wide{1} << (x.exponent - least));
+  };
+  std::array<std::array<Wide, 3>, 6> relative;
+  int longest = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Wide origin = value(0, k);
+    Wide lo = 0;
+    Wide hi = 0;
+    for (int i = 0; i < 6; ++i) {
+      relative[i][k] = value(i, k) - origin;
+      lo = std::min(lo, relative[i][k]);
+      hi = std::max(hi, relative[i][k]);
+    }
+    longest = std::max(longest, bit_length(hi - lo));
+  }
+  if (longest > most_bits(29)) return;
+  bits_ = longest;
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < 3; ++k) small_[i][k] = static_cast<std::int64_t>(relative[i][k]);
+  }
+}
+
+IntegerPair::~IntegerPair() = default;
+
+IntegerPair::Big& IntegerPair::big() {
+  if (!big_) big_ = std::make_unique<Big>(corners_[0], corners_[1]);
+  return *big_;
+}
+
+bool IntegerPair::separated_by(int direction) {
+  if (bits_ <= most_bits(direction)) {
+    const Corners<Wide> a = wide(small_, 0), b = wide(small_, 3);
+    Scratch<Wide> s;
+    make_direction(s, a, b, direction);
+    return has_gap(s, a, b);
+  }
+  thread_local Scratch<mpz_class> s;
+  const Big& pair = big();
+  make_direction(s, pair.a, pair.b, direction);
+  return has_gap(s, pair.a, pair.b);
+}
+
+std::optional<int> IntegerPair::separating_direction() {
+  // The directions of the lowest degree first: 29 .. 37, 0 .. 10, 11 .. 28.
+  for (int n = 0; n < kDirections; ++n) {
+    const int direction = n < 9 ? 29 + n : n - 9;
+    if (separated_by(direction)) return direction;
+  }
+  return std::nullopt;
+}
+
+bool IntegerPair::only_shared_by(int direction) {
+  if (bits_ <= most_bits(direction)) {
+    const Corners<Wide> a = wide(small_, 0), b = wide(small_, 3);
+    Scratch<Wide> s;
+    make_direction(s, a, b, direction);
+    return parts_at_shared(s, a, b, direction, shared_[0], shared_[1]);
+  }
+  thread_local Scratch<mpz_class> s;
+  const Big& pair = big();
+  make_direction(s, pair.a, pair.b, direction);
+  return parts_at_shared(s, pair.a, pair.b, direction, shared_[0], shared_[1]);
+}
+
+bool integer_intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  return !IntegerPair(a, b).separating_direction().has_value();
+}
+
+bool integer_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
+  const IntegerPair::Big pair(a, b, clearance);
+  Scratch<mpz_class> s;
+  for (int direction = 0; direction < kDirections; ++direction) {
+    make_direction(s, pair.a, pair.b, direction);
+    if (!has_gap(s, pair.a, pair.b)) continue;  // and leaves the projections in s
+    const auto [a_lo, a_hi] = std::minmax_element(s.on_a.begin(), s.on_a.end());
+    const auto [b_lo, b_hi] = std::minmax_element(s.on_b.begin(), s.on_b.end());
+    const mpz_class gap = *a_hi < *b_lo ? mpz_class(*b_lo - *a_hi) : mpz_class(*a_lo - *b_hi);
+    mpz_class square;  // of the direction's length
+    dot(square, s.d, s.d);
+    if (gap * gap > pair.clearance * pair.clearance * square) return false;
+  }
+  return true;
+}
+
+bool IntegerPair::has_common_point() {
+  thread_local PointSearch search;
+  const Big& pair = big();
+  // Whatever was constructed, only membership in both triangles counts.
+  return any_point(search, pair.a, pair.b,
+                   [&] { return search.lies_in(pair.a) && search.lies_in(pair.b); });
+}
+
+bool IntegerPair::meets_beyond_shared() {
+  // The corners of a that are shared, one of them repeated where there are fewer than three.
+  std::array<int, 3> shared = {-1, -1, -1};
+  std::size_t count = 0;
+  for (int i = 0; i < 3; ++i) {
+    if ((shared_[0] >> i & 1) != 0) shared[count++] = i;
+  }
+  if (count == 0) throw std::logic_error("IntegerPair: no shared position");
+  for (; count < 3; ++count) shared[count] = shared[count - 1];
+
+  thread_local PointSearch search;
+  const bool all = shared_[0] == 7 && shared_[1] == 7;
+  // The hull of the shared corners is the shared part unless they are the corners of a triangle.
+  if (all && search.is_triangle(big().a)) return true;
+  for (int direction = 0; direction < 11; ++direction) {
+    if (only_shared_by(direction)) return false;
+  }
+  const Big& pair = big();
+  const BigCorners part = {pair.a[shared[0]], pair.a[shared[1]], pair.a[shared[2]]};
+  return any_point(search, pair.a, pair.b, [&] {
+    return search.lies_in(pair.a) && search.lies_in(pair.b) && !search.lies_in(part);
+  });
+}
+
+}  // namespace farcull

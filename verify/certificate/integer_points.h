@@ -1,0 +1,133 @@
+// The 21 points of a pair of triangles: corners, edges with planes, edges with edges. Each is a
+// vector of integers over one integer. For integer_pair.cpp alone.
+#pragma once
+
+#include "verify/certificate/integer_vector.h"
+
+namespace farcull::integer {
+
+using BigVector = Vector<mpz_class>;
+using BigCorners = Corners<mpz_class>;
+
+/// Constructs points and verifies them. Its integers are members because GMP's own memory: a search
+/// that made them anew would spend most of its time on that.
+class PointSearch {
+ public:
+  /// Each constructs a point; false where there is none. It lies on the edge, but perhaps in
+  /// neither triangle.
+  bool corner(const BigCorners& t, int i) {
+    point_ = t[i];
+    scale_ = 1;
+    return true;
+  }
+  /// Where edge i of s crosses the plane of t, if it does so in one point.
+  bool edge_and_plane(const BigCorners& s, int i, const BigCorners& t) {
+    make_normal(t);
+    edge(u_, s, i);
+    minus(w_, t[0], s[i]);
+    dot(numerator_, normal_, w_);
+    dot(scale_, normal_, u_);
+    return along(s[i]);
+  }
+  /// The point of edge i of s nearest to the line of edge j of t, unless they are parallel. Where
+  /// the lines cross it is their common point.
+  bool edge_and_edge(const BigCorners& s, int i, const BigCorners& t, int j) {
+    edge(u_, s, i);
+    edge(v_, t, j);
+    cross(normal_, u_, v_);
+    minus(w_, t[j], s[i]);
+    cross(side_, w_, v_);
+    dot(numerator_, side_, normal_);
+    dot(scale_, normal_, normal_);
+    return along(s[i]);
+  }
+
+  /// True iff the normal of t is not zero.
+  bool is_triangle(const BigCorners& t) {
+    make_normal(t);
+    return !is_zero(normal_);
+  }
+
+  /// True iff the point constructed last lies in the closed hull of the corners, whatever its
+  /// dimension.
+  bool lies_in(const BigCorners& t) {
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        from_[i][k] = point_[k];
+        subtract_product(from_[i][k], scale_, t[i][k]);
+      }
+    }
+    make_normal(t);
+    if (!is_zero(normal_)) {
+      dot(value_, normal_, from_[0]);
+      if (value_ != 0) return false;
+      for (int i = 0; i < 3; ++i) {
+        edge(v_, t, i);
+        cross(side_, v_, from_[i]);
+        dot(value_, normal_, side_);
+        if (value_ < 0) return false;
+      }
+      return true;
+    }
+    // Collinear corners: the hull is the union of its edges. Between two ends: on their line, and
+    // the offsets from the ends differ in sign in every coordinate or are zero (which pins a point
+    // that both ends coincide in).
+    for (int i = 0; i < 3; ++i) {
+      edge(v_, t, i);
+      cross(side_, v_, from_[i]);
+      if (!is_zero(side_)) continue;
+      bool between = true;
+      for (int k = 0; k < 3; ++k)
+        between = between && sgn(from_[i][k]) * sgn(from_[(i + 1) % 3][k]) <= 0;
+      if (between) return true;
+    }
+    return false;
+  }
+
+ private:
+  void make_normal(const BigCorners& t) {
+    edge(v_, t, 0);
+    edge(w_, t, 1);
+    cross(normal_, v_, w_);
+  }
+  /// from + (numerator / scale) u; none unless the fraction is in [0, 1].
+  bool along(const BigVector& from) {
+    if (scale_ < 0) {
+      mpz_neg(scale_.get_mpz_t(), scale_.get_mpz_t());
+      mpz_neg(numerator_.get_mpz_t(), numerator_.get_mpz_t());
+    }
+    if (scale_ == 0 || numerator_ < 0 || numerator_ > scale_) return false;
+    for (int k = 0; k < 3; ++k) {
+      multiply(point_[k], from[k], scale_);
+      add_product(point_[k], u_[k], numerator_);
+    }
+    return true;
+  }
+
+  BigVector point_;                // times scale_
+  mpz_class scale_;                // > 0 where there is a point
+  std::array<BigVector, 3> from_;  // from each corner to the point, times scale_
+  BigVector normal_, u_, v_, w_, side_;
+  mpz_class numerator_, value_;
+};
+
+/// True iff one of the 21 points passes.
+template <class Test>
+bool any_point(PointSearch& search, const BigCorners& a, const BigCorners& b, const Test& test) {
+  for (int i = 0; i < 3; ++i) {
+    if (search.edge_and_plane(a, i, b) && test()) return true;
+    if (search.edge_and_plane(b, i, a) && test()) return true;
+  }
+  for (int i = 0; i < 3; ++i) {
+    if (search.corner(a, i) && test()) return true;
+    if (search.corner(b, i) && test()) return true;
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (search.edge_and_edge(a, i, b, j) && test()) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace farcull::integer

@@ -1,0 +1,24 @@
+// Bounds on the rounding of the filters (verify/filter.h).
+#pragma once
+
+#include <cstdint>
+
+namespace farcull {
+
+enum class Triage : std::uint8_t { no, yes, unknown };
+
+/// The proved bounds, derived in filter_of_planes.h and filter_of_distance.h. The filters take them
+/// as a type: tests show with smaller ones that they are needed.
+struct FilterBounds {
+  static constexpr double side =
+      9 * 0x1p-53;  // of a determinant, in its permanent; of a projection
+  static constexpr double normals = 12 * 0x1p-53;  // of the product of two normals
+  static constexpr double point =
+      64 * 0x1p-53;  // of a constructed difference of points, in their extent
+  static constexpr double gap =
+      16 * 0x1p-53;  // of a gap along a direction, in the magnitudes projected
+  static constexpr double absolute =
+      0x1p-1000;  // underflow, per unit of what is multiplied last, plus one
+};
+
+}  // namespace farcull

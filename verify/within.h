@@ -1,0 +1,34 @@
+// Is the distance of two triangles at most a clearance? Filters in doubles answer first, exact
+// arithmetic where they leave a doubt. For the sources of verify/exact.h alone.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "core/scene/scene.h"
+#include "verify/filter.h"
+
+namespace farcull {
+
+/// Throws std::logic_error naming `where` unless the clearance is finite and not negative.
+inline void require_clearance(const char* where, double clearance) {
+  if (!(clearance >= 0 && std::isfinite(clearance))) {
+    throw std::logic_error(std::string(where) + ": a clearance must be finite and not negative");
+  }
+}
+
+/// The answer by exact arithmetic alone.
+bool within_unfiltered(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                       double clearance);
+
+/// Precondition: a clearance as of require_clearance().
+inline bool is_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                      double clearance) {
+  Triage triage = filter_planes(a, b, clearance);
+  if (triage == Triage::unknown && clearance > 0) triage = filter_within(a, b, clearance);
+  return triage == Triage::unknown ? within_unfiltered(a, b, clearance) : triage == Triage::yes;
+}
+
+}  // namespace farcull
