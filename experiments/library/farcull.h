@@ -1,0 +1,135 @@
+// The library: all pairs of triangles that collide, between objects and inside them, exactly.
+//
+// Candidates come from FAR pairs (docs/library.md), which misses no pair that collides where
+// ColliderReport::promises is true; exact predicates on the doubles as given decide them. Triangles
+// are closed sets, so touching counts, and a degenerate triangle is the segment or the point that
+// it is. Where `promises` is true, the answer is the same on every device, for any number of
+// threads, views and pixels: these matter to time alone.
+//
+// Link farcull::farcull (CMake: find_package(farcull)) or `pkg-config farcull`. C++20.
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace farcull {
+
+/// What the library throws for bad input and for faults of a device; what() says all of it. No
+/// answer is given then.
+class ColliderError : public std::runtime_error {
+ public:
+  ColliderError(const std::string& what, std::string where, std::string reason, std::string remedy);
+
+  std::string where;   // "vertices", "triangles", "object_starts", an option, or a step on a device
+  std::string reason;  // what is wrong there
+  std::string remedy;  // what to do next
+};
+
+enum class ColliderDevice {
+  cpu,   // threads
+  gl,    // OpenGL 4.3 without a window, through EGL: hardware first, then a software renderer
+  best,  // gl where hardware answers, else cpu; the report says which, and why
+};
+
+struct ColliderOptions {
+  ColliderDevice device = ColliderDevice::cpu;
+  unsigned threads = 0;  // up to 1024, for the exact tests as well; 0: as many as there are cores
+  bool self = false;     // every object is tested against itself as well
+  std::vector<bool> self_objects = {};  // the same per object; empty, or one for each
+  double clearance = 0;    // pairs at this distance or less collide too; world units, finite, >= 0
+  bool neighbours = true;  // false: neighbours are counted, not decided
+  std::string views = "auto";  // directions to look along, as in "x,-y,1:1:0.5"; or by the scene
+  int resolution = 0;          // px along a view's larger side, 1 to 16384; 0: by the scene
+};
+
+/// Triangles, as flat arrays that the caller keeps. Nothing is kept of them after the call.
+struct ColliderInput {
+  std::span<const double> vertices;              // x, y, z of each vertex; finite
+  std::span<const std::uint32_t> triangles;      // three indices of vertices for each triangle
+  std::span<const std::uint32_t> object_starts;  // the first triangle of each object: ascending,
+                                                 // the first is 0; empty: all are one object
+};
+
+/// Two triangles, a < b, numbered from 0 in the order of the input.
+struct ColliderPair {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  auto operator<=>(const ColliderPair&) const = default;
+};
+
+struct ColliderReport {
+  struct Stage {
+    std::string name;
+    bool ran = false;
+    std::string reason;  // why it ran or was left out
+    double ms = 0;
+    std::uint64_t in = 0, out = 0;  // what entered and what was left
+    std::string unit;               // of them: triangles, views or pairs
+  };
+  struct View {
+    std::string name;           // as in ColliderOptions::views
+    bool looked = false;        // false: pixels cannot resolve the scene in this direction
+    std::string reason;         // why this direction and this resolution
+    int width = 0, height = 0;  // px
+  };
+
+  std::string device;           // "cpu", or the renderer
+  std::string device_reason;    // why this one
+  bool promises = false;        // a pair that collides is never left out; false where a probe of an
+                                // assumption fails on the device, or broke off
+  std::string promises_reason;  // why, or why not
+  double candidates_ms = 0;     // wall clock, from the input to the candidates
+  double exact_ms = 0;          // wall clock of the exact tests
+  std::uint64_t candidates = 0;
+  std::uint64_t neighbours = 0;  // candidates that are neighbours, colliding or not
+  std::vector<View> views;
+  std::vector<Stage> stages;
+
+  /// How the calling thread computes outside the call ("rounds upward, keeps subnormals"), where
+  /// that is not to nearest with subnormals kept; else empty. The call itself always rounds to
+  /// nearest and keeps them.
+  std::string callers_arithmetic;
+};
+
+struct ColliderResult {
+  std::vector<ColliderPair> pairs;  // all that collide, sorted, each once; of different objects, or
+                                    // of one that is tested against itself and not neighbours
+  /// Neighbours share a vertex position and are of one object: those whose intersection is more
+  /// than the shared positions and the edge between them. Sorted; empty without
+  /// ColliderOptions::neighbours.
+  std::vector<ColliderPair> neighbour_pairs;
+  ColliderReport report;
+};
+
+/// Finds colliding pairs again and again: buffers, threads' memory, the GL context and its programs
+/// stay from call to call. An object is used by one thread at a time. The EGL context that the
+/// caller has made current is current again after each call.
+class Collider {
+ public:
+  /// Opens the device. A GL device that no verdict is kept of is probed, which takes about a second
+  /// on Mesa llvmpipe, several where Mesa's cache of shaders is empty (docs/library.md). Throws
+  /// ColliderError naming the option that is bad, or where the device does not answer.
+  explicit Collider(const ColliderOptions& options);
+  Collider();  // default options
+  ~Collider();
+  Collider(Collider&&) noexcept;
+  Collider& operator=(Collider&&) noexcept;
+
+  /// Throws ColliderError for input that is not as ColliderInput says, for self_objects of another
+  /// number, and for any fault of the device; std::bad_alloc without memory. The object can be used
+  /// again after each. The calling thread may round in any direction and flush subnormals: the call
+  /// sets its floating-point environment (rounding, flushing, traps) and restores it at the end.
+  ColliderResult find(const ColliderInput& input);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace farcull

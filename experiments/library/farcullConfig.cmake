@@ -1,0 +1,13 @@
+# find_package(farcull): the target farcull::farcull, with what its archive links.
+include(CMakeFindDependencyMacro)
+find_dependency(Threads)
+find_dependency(PkgConfig)
+if(NOT TARGET PkgConfig::epoxy)
+  pkg_check_modules(epoxy QUIET IMPORTED_TARGET epoxy)
+  if(NOT epoxy_FOUND)
+    set(farcull_FOUND FALSE)
+    set(farcull_NOT_FOUND_MESSAGE "epoxy was not found (Debian: libepoxy-dev)")
+    return()
+  endif()
+endif()
+include(${CMAKE_CURRENT_LIST_DIR}/farcullTargets.cmake)

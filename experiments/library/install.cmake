@@ -1,0 +1,18 @@
+# What `cmake --install` puts in place: the program, the library with its header, and how other projects find it.
+include(CMakePackageConfigHelpers)
+install(TARGETS farcull_library EXPORT farcull ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(FILES library/farcull.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/farcull)
+
+set(farcull_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/farcull)
+install(EXPORT farcull NAMESPACE farcull:: DESTINATION ${farcull_cmake_dir} FILE farcullTargets.cmake)
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/farcullConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES library/farcullConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/farcullConfigVersion.cmake
+  DESTINATION ${farcull_cmake_dir})
+
+# The installed tree may be moved: its place is told from that of the file.
+file(RELATIVE_PATH farcull_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+configure_file(library/farcull.pc.in farcull.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/farcull.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+install(TARGETS farcull RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

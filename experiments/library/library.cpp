@@ -1,0 +1,234 @@
+// The collider: input is checked and copied into a scene, then planned, found and decided.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <thread>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/floating_point.h"
+#include "core/base/stopwatch.h"
+#include "core/view/view.h"
+#include "experiments/library/farcull.h"
+#include "experiments/method/run.h"
+
+namespace farcull {
+namespace {
+
+constexpr int kMostResolution = 16384;
+
+// The call with the floating-point environment of the proofs, the caller's restored afterwards.
+// Every Error that it throws becomes the one of the library.
+template <class Call>
+auto translated(const Call& call) {
+  try {
+    const FloatingPointGuard guard;
+    return call();
+  } catch (const Error& error) {
+    throw ColliderError(error.what(), error.where, error.reason, error.remedy);
+  }
+}
+
+constexpr unsigned kMostThreads = 1024;
+
+void check(const ColliderOptions& options) {
+  if (options.threads > kMostThreads)
+    throw Error("threads", "are more than 1024", "give a number up to 1024, or 0");
+  if (!(options.clearance >= 0) || !std::isfinite(options.clearance))
+    throw Error("clearance", "is no distance", "give a finite number, 0 or more");
+  if (options.resolution < 0 || options.resolution > kMostResolution)
+    throw Error("resolution", "is outside 0 .. 16384", "give a number of pixels, or 0");
+}
+
+RunOptions run_options(const ColliderOptions& options) {
+  check(options);
+  RunOptions out{.method = Method::far_pairs,
+                 .resolution = options.resolution,
+                 .views = options.views == "auto" ? "" : options.views,
+                 .clearance = options.clearance};
+  try {
+    if (options.views != "auto") parse_views(options.views);
+  } catch (const Error& error) {
+    throw Error("views", error.reason, error.remedy);
+  }
+  return out;
+}
+
+std::string device_of(const ColliderOptions& options) {
+  switch (options.device) {
+    case ColliderDevice::cpu:
+      return "cpu";
+    case ColliderDevice::gl:
+      return "gl";
+    case ColliderDevice::best:
+      return "";
+  }
+  return "";
+}
+
+// Into the scene of the last call, whose memory is used again.
+void take(const ColliderInput& input, const ColliderOptions& options, Scene& scene) {
+  constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
+  if (input.vertices.size() % 3 != 0 || input.vertices.size() / 3 > kMost)
+    throw Error("vertices", "are not three doubles for each of at most 2^32 - 1 vertices",
+                "give x, y, z of each");
+  if (input.triangles.size() % 3 != 0 || input.triangles.size() / 3 > kMost)
+    throw Error("triangles", "are not three indices for each of at most 2^32 - 1 triangles",
+                "give three indices of each");
+  const auto count = static_cast<std::uint32_t>(input.triangles.size() / 3);
+  scene.vertices.resize(input.vertices.size() / 3);
+  for (std::size_t v = 0; v < scene.vertices.size(); ++v) {
+    scene.vertices[v] = {input.vertices[3 * v], input.vertices[3 * v + 1],
+                         input.vertices[3 * v + 2]};
+    if (scene.vertices[v].allFinite()) continue;
+    throw Error("vertices", "vertex " + std::to_string(v) + " is not finite",
+                "give finite coordinates");
+  }
+  scene.triangles.resize(count);
+  for (std::size_t t = 0; t < count; ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = input.triangles[3 * t + k];
+      scene.triangles[t][k] = v;
+      if (v < scene.vertices.size()) continue;
+      throw Error("triangles",
+                  "triangle " + std::to_string(t) + " names vertex " + std::to_string(v) + " of " +
+                      std::to_string(scene.vertices.size()),
+                  "correct the index");
+    }
+  }
+  scene.source_face.resize(count);
+  const std::size_t objects = std::max<std::size_t>(input.object_starts.size(), 1);
+  if (!options.self_objects.empty() && options.self_objects.size() != objects) {
+    throw Error("self_objects",
+                "are " + std::to_string(options.self_objects.size()) + " for " +
+                    std::to_string(objects) + " objects",
+                "give one for each object, or none");
+  }
+  scene.objects.resize(objects);
+  for (std::size_t o = 0; o < objects; ++o) {
+    const std::uint32_t first = input.object_starts.empty() ? 0 : input.object_starts[o];
+    const std::uint32_t end = o + 1 < objects ? input.object_starts[o + 1] : count;
+    if ((o == 0 && first != 0) || first > end) {
+      throw Error("object_starts",
+                  "object " + std::to_string(o) + " starts at triangle " + std::to_string(first) +
+                      " and ends before " + std::to_string(end),
+                  "begin with 0, and let no start be below the one before it or beyond the number "
+                  "of triangles");
+    }
+    scene.objects[o].first_triangle = first;
+    scene.objects[o].triangle_count = end - first;
+    scene.objects[o].self =
+        options.self || (!options.self_objects.empty() && options.self_objects[o]);
+  }
+}
+
+std::vector<ColliderPair> given_out(const std::vector<TrianglePair>& pairs) {
+  std::vector<ColliderPair> out(pairs.size());
+  for (std::size_t k = 0; k < pairs.size(); ++k) out[k] = {pairs[k].a, pairs[k].b};
+  return out;
+}
+
+}  // namespace
+
+ColliderError::ColliderError(const std::string& what, std::string where, std::string reason,
+                             std::string remedy)
+    : std::runtime_error(what),
+      where(std::move(where)),
+      reason(std::move(reason)),
+      remedy(std::move(remedy)) {}
+
+struct Collider::State {
+  ColliderOptions options;
+  RunOptions run;
+  Session session;
+  Scene scene;  // of the last call
+
+  explicit State(const ColliderOptions& given)
+      : options(given), run(run_options(given)), session(device_of(given), given.threads, Say()) {
+    device();
+    promise();
+  }
+
+  // Opened where it is not: at first, and after a failure.
+  PairDevice& device() { return session.pairs(); }
+
+  // Of the device that is open, whatever an earlier one promised.
+  Promise promise() {
+    return promise_of(run, {.gl = device().gl, .cpu = !device().gl, .note = "", .relies = relies()},
+                      session);
+  }
+  std::optional<Reliance> relies() {
+    return device().gl ? std::optional(Reliance::pairs) : std::nullopt;
+  }
+
+  /// The collisions of the scene; `start`: when the call began. After an exception nothing on the
+  /// device may be believed.
+  ColliderResult find(const Stopwatch& start);
+};
+
+ColliderResult Collider::State::find(const Stopwatch& start) {
+  const PairDevice& open = device();
+  const unsigned threads =
+      options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
+  const Plan planned = plan(scene, run, options.threads);
+  const Candidates found = farcull::find(scene, planned, session);
+  ColliderResult out;
+  ColliderReport& report = out.report;
+  report.candidates_ms = start.ms();
+  report.candidates = found.count;
+
+  const Stopwatch deciding;
+  const Collisions decided = decide(
+      scene, found.pairs,
+      {.clearance = options.clearance, .threads = threads, .neighbours = options.neighbours});
+  out.pairs = given_out(decided.pairs);
+  out.neighbour_pairs = given_out(decided.neighbour_pairs);
+  report.neighbours = decided.neighbours;
+  report.exact_ms = deciding.ms();
+
+  require_proved("arithmetic");  // the driver's code ran in this thread too
+  const FloatingPoint callers = callers_floating_point();
+  if (callers != kProved) report.callers_arithmetic = to_string(callers);
+  report.device = open.backend->name();
+  report.device_reason = options.device == ColliderDevice::best ? open.reason : "asked for";
+  const Promise kept = promise();
+  report.promises = kept.holds;
+  report.promises_reason = open.gl ? kept.reason : "on the CPU nothing rests on a device";
+  std::vector<Stage> stages = planned.trace;
+  stages.insert(stages.end(), found.trace.begin(), found.trace.end());
+  stages.push_back({.kind = StageKind::exact,
+                    .ran = true,
+                    .reason = Reason::predicates,
+                    .ms = report.exact_ms,
+                    .in = report.candidates,
+                    .out = out.pairs.size() + out.neighbour_pairs.size(),
+                    .unit = Unit::pairs});
+  for (const Stage& s : stages)
+    report.stages.push_back(
+        {name_of(s), s.ran, reason_of(s), s.ms, s.in, s.out, to_string(s.unit)});
+  for (const PairView& v : found.pair_views())
+    report.views.push_back({v.name, v.looked, v.reason, v.width, v.height});
+  return out;
+}
+
+Collider::Collider(const ColliderOptions& options)
+    : state_(translated([&] { return std::make_unique<State>(options); })) {}
+Collider::Collider() : Collider(ColliderOptions{}) {}
+Collider::~Collider() = default;
+Collider::Collider(Collider&&) noexcept = default;
+Collider& Collider::operator=(Collider&&) noexcept = default;
+
+ColliderResult Collider::find(const ColliderInput& input) {
+  return translated([&] {
+    const Stopwatch start;
+    take(input, state_->options, state_->scene);
+    try {
+      return state_->find(start);
+    } catch (...) {
+      state_->session.forget_device();
+      throw;
+    }
+  });
+}
+
+}  // namespace farcull

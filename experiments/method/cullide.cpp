@@ -1,0 +1,177 @@
+// FAR and the CULLIDE family: boxes say what is drawn, a canvas culls it view by view, with one
+// offset after the other, and the boxes of what is kept are joined.
+#include "experiments/method/cullide.h"
+
+#include "core/base/stopwatch.h"
+#include "core/scene/box_join.h"
+#include "core/scene/members.h"
+#include "offsets/minkowski.h"
+#include "offsets/obb.h"
+// The header of a new offset goes here.
+
+namespace farcull {
+namespace {
+
+// The order in which offsets are tried, each on what the one before has left.
+std::vector<Fattener> fatteners_of(const RunOptions& options) {
+  if (!fattens(options.method)) return {raw_triangles()};
+  if (depth_of(options) == DepthMode::fixed) return {obb_surface_fattener()};
+  if (options.offset == "obb") return {obb_fattener()};
+  // A new offset goes here.
+  // Where nothing is promised, boxes before would be one more chance to miss.
+  if (options.full || !promises(options)) return {minkowski_fattener()};
+  return {obb_fattener(), minkowski_fattener()};
+}
+
+Clusters clusters_of(const RunOptions& options, std::size_t triangles) {
+  if (tests_self_alone(options.method)) return {.sizes = {}, .reason = Reason::owners};
+  if (options.clusters) return {.sizes = *options.clusters, .reason = Reason::clusters_given};
+  return usual_clusters(query_of(options) == QueryMode::occlusion, triangles);
+}
+
+CullSettings settings_of(const RunOptions& options, std::size_t triangles) {
+  const bool self = tests_self_alone(options.method);
+  return {.views = parse_views(views_of(options)),
+          .resolution = resolution_of(options),
+          .fattener = {},
+          .radius = options.radius,
+          .quick = traits(options.method).quick,
+          .self = self,
+          .touching = !self,
+          .clusters = clusters_of(options, triangles),
+          .full = options.full,
+          .enough = promises(options) && !options.full ? kFewTriangles : 0};
+}
+
+Stage setup_stage(const Fattener& fattener) {
+  return {
+      .kind = StageKind::setup, .ran = true, .reason = Reason::shaders, .detail = fattener.name};
+}
+
+Stage offset_stage(const Fattener& fattener) {
+  return {.kind = StageKind::offset,
+          .subject = fattener.name,
+          .depends = true,
+          .unit = Unit::triangles};
+}
+
+Stage join_stage() {
+  return {.kind = StageKind::join, .ran = true, .reason = Reason::join_kept, .unit = Unit::pairs};
+}
+
+// Culls with one offset after the other; fills the triangles that are left, views, trace, device.
+void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions& options,
+                     Session& session, const Progress& progress, Candidates& out) {
+  CullSettings settings = work.settings;
+  std::vector<ViewReport> views;
+  out.triangles = work.regions.triangles;
+  for (const Fattener& fattener : work.fatteners) {
+    const bool further = &fattener != &work.fatteners.front();
+    if (further && out.triangles.size() <= settings.enough) {
+      Stage stage = offset_stage(fattener);
+      stage.reason = Reason::few_to_test;
+      stage.in = stage.out = stage.n = out.triangles.size();
+      stage.m = settings.enough;
+      out.trace.push_back(stage);
+      break;
+    }
+    if (progress) progress("opening the device");
+    const Stopwatch setup;
+    GlCanvas& canvas = session.canvas(
+        fattener, {.depth_format = options.depth_format, .query = query_of(options)});
+    out.device.gl = session.context().info();
+    out.device.depth_bits = canvas.limits().depth_bits;
+    out.device.relies = Reliance::drawing;
+    Stage stage = setup_stage(fattener);
+    stage.depends = further;
+    stage.ms = setup.ms();
+    out.setup_ms += stage.ms;
+    out.trace.push_back(stage);
+
+    settings.fattener = fattener;
+    settings.bits = std::move(out.bits);
+    CullResult result = cull(scene, work.regions, settings, canvas, progress);
+    for (Stage& drawn : result.stages) {
+      drawn.depends |= further;
+      out.trace.push_back(std::move(drawn));
+    }
+    out.triangles = std::move(result.live);
+    out.bits = std::move(result.bits);
+    views = std::move(result.views);
+  }
+  out.by = std::move(views);
+}
+
+}  // namespace
+
+void plan_drawing(const Scene& scene, unsigned, const Progress&, Plan& plan) {
+  const Stopwatch watch;
+  const RunOptions& options = plan.options;
+  const bool self = tests_self_alone(options.method);
+  DrawPlan work{.regions = find_regions(scene, {.self = self, .full = options.full}),
+                .fatteners = {},
+                .settings = {},
+                .self = self};
+  const Regions& regions = work.regions;
+  plan.trace.push_back({.kind = StageKind::boxes,
+                        .ran = true,
+                        .reason = options.full ? Reason::full : Reason::regions,
+                        .n = options.full ? 0 : regions.places.size(),
+                        .ms = watch.ms(),
+                        .in = scene.triangles.size(),
+                        .out = regions.triangles.size(),
+                        .unit = Unit::triangles});
+  work.settings = settings_of(options, regions.triangles.size());
+  if (regions.triangles.empty()) {
+    plan.trace.push_back(
+        {.kind = StageKind::draw,
+         .reason = regions.places.empty() ? Reason::no_boxes_overlap : Reason::no_triangle_meets,
+         .unit = Unit::triangles});
+  } else {
+    work.fatteners = fatteners_of(options);
+    CullSettings first = work.settings;
+    first.fattener = work.fatteners.front();
+    plan.ahead.push_back(setup_stage(first.fattener));
+    const std::vector<Stage> drawn = planned_stages(scene, regions, first);
+    plan.ahead.insert(plan.ahead.end(), drawn.begin(), drawn.end());
+    for (std::size_t k = 1; k < work.fatteners.size(); ++k) {
+      Stage stage = offset_stage(work.fatteners[k]);
+      stage.ran = true;
+      stage.reason = Reason::if_more_left;
+      stage.n = work.settings.enough;
+      plan.ahead.push_back(stage);
+    }
+  }
+  plan.ahead.push_back(join_stage());
+  plan.work = std::move(work);
+}
+
+Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& session,
+                           const Progress& progress) {
+  const auto& work = std::get<DrawPlan>(plan.work);
+  const Stopwatch watch;
+  Candidates out;
+  out.by = std::vector<ViewReport>();
+  if (work.fatteners.empty()) {
+    out.device.note = reason_of(plan.trace.back()) + ": nothing to draw";
+  } else {
+    cull_by_offsets(scene, work, plan.options, session, progress, out);
+  }
+  out.triangle_count = out.triangles.size();
+  out.object_count = count_objects(scene, out.triangles);
+
+  const Stopwatch join;
+  if (progress) progress("joining boxes");
+  const std::vector<Box>& boxes = work.regions.triangle_boxes;
+  out.pairs = box_join(boxes, work.self ? join_owners(scene) : owners(scene), out.triangles);
+  out.count = out.pairs.size();
+  Stage stage = join_stage();
+  stage.ms = join.ms();
+  stage.in = out.triangle_count;
+  stage.out = out.count;
+  out.trace.push_back(stage);
+  out.ms = watch.ms() - out.setup_ms;
+  return out;
+}
+
+}  // namespace farcull

@@ -1,0 +1,66 @@
+// Whether a device keeps the assumptions that a method's promise rests on (docs/reliability.md), as
+// far as probes can tell. The probes run once for a device, a driver and a build of farcull; what
+// they found is kept in a file.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/gl/context.h"
+
+namespace farcull {
+
+struct ProbeResult;  // core/gl/probe.h
+
+/// What a method relies on a device for. pairs: FAR pairs on GL, A4 in compute shaders, A7 and A8.
+/// drawing: far, A1 to A8.
+enum class Reliance { pairs, drawing };
+
+struct DeviceVerdict {
+  bool holds = false;  // every probe passed
+  std::vector<std::string>
+      failed;               // those that did not, as in "A2 snapping: 0.0078 px, bound 0.0039"
+  std::string problem;      // which probe broke off, and why: nothing is promised
+  std::string made;         // when, as in 2026-01-31T12:00:00Z
+  std::size_t probes = 0;   // that ran
+  double ms = 0;            // that they took, when they ran
+  bool remembered = false;  // it was read, and no probe ran now
+  std::string file;         // where it is kept; empty: nowhere
+  std::string note;         // why the file was of no use, or could not be written or removed
+};
+
+/// One sentence without a full stop: what the probes found.
+std::string to_string(const DeviceVerdict& verdict, Reliance reliance);
+
+/// All that code generation and arithmetic on this device depend on, by name: the device, its
+/// driver and limits, the sources of kernels and probes, the features of the processor (of a
+/// software device), and the variables of the environment that drivers read.
+using VerdictInputs = std::vector<std::pair<std::string, std::string>>;
+VerdictInputs verdict_inputs(const GlInfo& device, Reliance reliance);
+
+/// The folder of verdicts: $XDG_CACHE_HOME/farcull, else $HOME/.cache/farcull; "" where neither is
+/// an absolute path.
+std::string verdict_folder();
+
+/// Runs the probes that a verdict rests on.
+using Probes = std::function<std::vector<ProbeResult>()>;
+/// Those of Reliance::pairs; brief ones.
+std::vector<ProbeResult> pair_probes(const GlContext& context);
+
+/// Told in one line that probes are about to run, and why.
+using Say = std::function<void(const std::string& line)>;
+
+/// The verdict that is kept, or else that of `probes`, which keep_verdict() keeps.
+/// A file that is damaged, of somebody else, or about something else is ignored and written anew.
+/// Throws nothing of the file system's; what `probes` throws passes through.
+DeviceVerdict device_verdict(const GlInfo& device, Reliance reliance, const Probes& probes,
+                             const Say& say = {});
+
+/// A verdict from the results of probes that have run, kept in place of an older one. Where a probe
+/// broke off and none failed nothing is kept. One that does not hold first removes the older one.
+DeviceVerdict keep_verdict(const GlInfo& device, Reliance reliance,
+                           const std::vector<ProbeResult>& results, double ms);
+
+}  // namespace farcull

@@ -1,0 +1,38 @@
+// A4, the shipped kernels: each runs on the device as its method runs it, and its answers are
+// compared with rational bounds (verify/kernel_check.h).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/gl/context.h"
+#include "core/gl/probe.h"
+
+namespace farcull {
+
+/// All but the first two are deliberate defects, so that tests can see the probes fail.
+struct KernelProbeOptions {
+  std::uint64_t seed = 1;
+  bool brief = false;            // about a third of the samples
+  bool bare = false;             // kernels that widen nothing
+  bool reversed_slices = false;  // depth slices from far to near
+};
+
+/// What FAR pairs relies on: far_bounds, far_margin, far_strip and far_depths on triangles of every
+/// kind, far_slice, and the conversion of a float to an integer. All functions here make the
+/// context current while they run.
+std::vector<ProbeResult> pair_kernel_probes(const GlContext& context,
+                                            const KernelProbeOptions& options = {});
+/// solid_interval of both offsets, which drawing relies on besides.
+std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
+                                             const KernelProbeOptions& options = {});
+
+/// run_probes and the kernels above, in the order of the assumptions; `started` as for run_probes.
+std::vector<ProbeResult> all_probes(const GlContext& context,
+                                    const std::function<void(const std::string&)>& started = {});
+/// Brief ones of what drawing relies on.
+std::vector<ProbeResult> drawing_probes(const GlContext& context);
+
+}  // namespace farcull

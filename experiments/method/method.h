@@ -1,0 +1,78 @@
+// The methods that a run can choose between, and what each can do. A method is one value of the
+// enumeration, one entry of the table in table.cpp, and the two functions that the entry names.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+
+#include "core/base/progress.h"
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+/// far: FAR (2004), CULLIDE's passes on fattened primitives. cullide: CULLIDE (2003).
+/// quick_cullide: Quick-CULLIDE (2005). s_cullide: S-CULLIDE (2005), every triangle an owner.
+/// i_collide: sweep and prune (I-COLLIDE, 1995). far_pairs: interval pairs. exact: no culling.
+/// docs/methods.md tells each one's source and where it can miss.
+enum class Method {
+  far,
+  cullide,
+  quick_cullide,
+  s_cullide,
+  i_collide,
+  far_pairs,
+  exact,
+  // A new method goes here.
+};
+
+struct Candidates;  // candidates.h
+struct Plan;        // plan.h
+class Session;      // session.h
+
+/// When a method promises to miss no pair.
+enum class Promises { never, always, at_budget_radius };
+
+struct Traits {
+  Method method;
+  const char* name;  // as --method takes it
+  Promises promises = Promises::never;
+  bool draws = false;    // on a canvas, in views at a resolution
+  bool fattens = false;  // what it draws, by an offset and a radius
+  bool quick = false;    // keeps visibility bits between passes
+  bool chooses_views =
+      false;                // by the scene; needs no canvas, and runs on the cores of the CPU too
+  bool culls = true;        // false: tests every pair whose boxes overlap
+  bool tests_self = false;  // can test an object's triangles against each other
+  bool tests_self_alone = false;  // and tests nothing else
+  bool takes_clearance = false;
+
+  /// Decides all that needs no pixels. Fills work, trace and ahead of `plan`, whose options are
+  /// set.
+  void (*plan)(const Scene& scene, unsigned threads, const Progress& progress, Plan& plan);
+  /// The method: candidates of the scene that was planned.
+  Candidates (*find)(const Scene& scene, const Plan& plan, Session& session,
+                     const Progress& progress);
+};
+
+/// The entry of the table.
+const Traits& traits(Method method);
+
+std::span<const Method> all_methods();
+std::string to_string(Method method);
+/// Throws Error naming `option` for an unknown one.
+Method parse_method(const std::string& name, const std::string& option = "--method");
+/// "far, cullide, ... or exact", of those that `can`.
+std::string method_names(const std::function<bool(const Traits&)>& can = {});
+
+inline bool draws(Method method) { return traits(method).draws; }
+inline bool fattens(Method method) { return traits(method).fattens; }
+inline bool chooses_views(Method method) { return traits(method).chooses_views; }
+/// In views, on a canvas or without one.
+inline bool looks(Method method) { return draws(method) || chooses_views(method); }
+inline bool culls(Method method) { return traits(method).culls; }
+inline bool tests_self(Method method) { return traits(method).tests_self; }
+inline bool tests_self_alone(Method method) { return traits(method).tests_self_alone; }
+inline bool takes_clearance(Method method) { return traits(method).takes_clearance; }
+
+}  // namespace farcull

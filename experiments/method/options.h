@@ -1,0 +1,70 @@
+// What a run is asked to do: options, their defaults, and which go together.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/cull/cull.h"
+#include "core/gl/canvas.h"
+#include "experiments/method/method.h"
+
+namespace farcull {
+
+/// A whole number of pixels, 1 or more. Throws Error naming `option`.
+int parse_resolution(const std::string& text, const std::string& option = "--resolution");
+/// "published", "budget" or a factor on the budget radius (0 to 100000). Throws Error naming
+/// --radius.
+RadiusRule parse_radius(const std::string& text);
+
+/// "flags" or "occlusion". Throws Error naming --query.
+QueryMode parse_query(const std::string& text);
+/// Sizes of clusters by commas, each 2 or more and below the one before; "none" for no clusters.
+/// Throws Error naming --clusters.
+std::vector<std::uint32_t> parse_clusters(const std::string& text);
+/// A number of runs, 1 or more. Throws Error naming --repeat.
+int parse_repeat(const std::string& text);
+
+struct RunOptions {
+  Method method = Method::far;
+  int resolution = 0;      // px along the larger side of a view's window; 0: 512, but chosen by the
+                           // scene for far-pairs
+  RadiusRule radius = {};  // far only
+  std::string offset = "obb";           // far only
+  std::optional<DepthMode> depth = {};  // default: fragment for far, fixed for the CULLIDE family
+  DepthFormat depth_format = DepthFormat::float32;
+  std::optional<QueryMode> query = {};  // default: flags; occlusion with fixed24 and for s-cullide
+  std::optional<std::vector<std::uint32_t>> clusters = {};  // default: usual_clusters()
+  std::string views = {};   // "": x,y,z, but chosen by the scene for far-pairs
+  std::string device = {};  // "": hardware first, then software; for far-pairs see pair_device.h
+  double clearance = 0;     // world units, finite, >= 0; far-pairs and exact only
+  bool verify = true;
+  bool neighbours = true;  // false: pairs of one object that share a vertex index are neither
+                           // candidates of far-pairs nor decided
+  bool full = false;       // leave nothing out that the scene does not need (docs/methods.md)
+  std::optional<std::uint64_t> seed = {};  // what the scene was drawn with; empty: it is not random
+};
+
+/// px; far-pairs takes no more. Nothing depends on it but time: a window has the square of it.
+constexpr int kMostPairResolution = 16384;
+/// Throws Error naming `option` for more.
+void require_pair_resolution(int resolution, const std::string& option = "--resolution");
+
+/// What applies where the option is not given. resolution_of: 0 and views_of: "" where the scene
+/// chooses.
+int resolution_of(const RunOptions& options);
+std::string views_of(const RunOptions& options);
+DepthMode depth_of(const RunOptions& options);
+QueryMode query_of(const RunOptions& options);
+/// Whether the method promises to miss nothing: far-pairs and i-collide, and far at the budget
+/// radius or more with fragment depth. A run promises if the device keeps its assumptions as well.
+bool promises(const RunOptions& options);
+/// The method in words for messages, such as "cullide at 512 px".
+std::string describe(const RunOptions& options);
+
+/// Throws Error naming the option where one is out of range or options do not go together. Opens no
+/// device.
+void validate(const RunOptions& options);
+
+}  // namespace farcull

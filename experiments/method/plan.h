@@ -1,0 +1,44 @@
+// Everything about a run that needs no pixels. `farcull plan` prints it, find() executes it.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "core/base/stage.h"
+#include "core/cull/cull.h"
+#include "core/pairs/pairs.h"
+#include "core/view/regions.h"
+#include "experiments/method/options.h"
+
+namespace farcull {
+
+/// Of the methods that draw.
+struct DrawPlan {
+  Regions regions;
+  std::vector<Fattener> fatteners;  // in the order in which they are tried; empty: nothing is drawn
+  CullSettings settings;            // but for the fattener
+  bool self = false;                // triangles of marked objects are owners
+};
+
+struct Plan {
+  RunOptions options;
+  std::variant<std::monostate, DrawPlan, PairPlan> work;
+  std::vector<Stage> trace;  // the stages of planning itself: they have run
+  std::vector<Stage> ahead;  // the stages to come, in order; those that pixels decide are marked
+  double ms = 0;             // that planning took
+
+  /// trace and ahead.
+  std::vector<Stage> stages() const;
+};
+
+/// Plans the run. The same scene and options give the same plan. No device is opened. threads: of
+/// the CPU; 0: as many as there are cores. Throws Error for options that are out of range or do not
+/// go together, and for a scene that the method has no use for.
+Plan plan(const Scene& scene, const RunOptions& options, unsigned threads = 0,
+          const Progress& progress = {});
+
+/// Throws Error where an object of the scene is tested against itself and the method does not look
+/// for that, or none is and it looks for nothing else.
+void require_scene(const Scene& scene, Method method);
+
+}  // namespace farcull

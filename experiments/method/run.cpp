@@ -1,0 +1,138 @@
+// The one pipeline. Command line, library, benchmark, studies and pictures call it.
+#include "experiments/method/run.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/base/stopwatch.h"
+#include "core/scene/members.h"
+
+namespace farcull {
+namespace {
+
+// The potentially colliding set, where the method gives pairs alone.
+void count_kept(const Scene& scene, Candidates& found) {
+  if (found.pairs.empty() || !found.triangles.empty()) return;
+  found.triangles = members_of(found.pairs, scene.triangles.size());
+  found.triangle_count = found.triangles.size();
+  found.object_count = count_objects(scene, found.triangles);
+}
+
+void decide_stage(const Scene& scene, const Progress& progress, Record& record) {
+  Stage stage{.kind = StageKind::exact,
+              .depends = !record.options.full,
+              .reason = Reason::no_candidates,
+              .unit = Unit::pairs};
+  if (record.found.decided) {
+    record.collisions = *std::move(record.found.decided);
+    record.found.decided.reset();
+    record.ms.exact = record.found.decided_ms;
+    return;
+  }
+  if (!record.found.pairs.empty() || record.options.full) {
+    if (progress) progress("exact tests");
+    const Stopwatch watch;
+    record.collisions =
+        decide(scene, record.found,
+               {.clearance = record.options.clearance, .neighbours = record.options.neighbours});
+    stage.ran = true;
+    stage.reason = Reason::predicates;
+    stage.ms = record.ms.exact = watch.ms();
+    stage.in = record.found.pairs.size();
+    stage.out = record.collisions.pairs.size() + record.collisions.neighbour_pairs.size();
+  }
+  record.trace.push_back(stage);
+}
+
+// Accounts for every pair that culling did not leave to the exact tests.
+void verify_stage(const Scene& scene, const Progress& progress, Record& record) {
+  Stage stage{.kind = StageKind::verify, .reason = Reason::not_asked, .unit = Unit::pairs};
+  if (record.options.verify) {
+    if (progress) progress("accounting for every pair");
+    const std::vector<TrianglePair> decided =
+        culls(record.options.method) ? std::vector<TrianglePair>() : pairs_left(record);
+    record.verification = account(scene, decided.empty() ? record.found.pairs : decided,
+                                  {.clearance = record.options.clearance,
+                                   .max_examples = std::numeric_limits<std::size_t>::max()});
+    Accounting& accounting = *record.verification;
+    if (record.options.clearance == 0) record.missed = count_contacts(scene, accounting.examples);
+    accounting.examples.resize(std::min(accounting.examples.size(), kExamples));
+    stage.ran = true;
+    stage.reason = Reason::every_pair;
+    stage.ms = accounting.ms;
+    stage.in = accounting.pairs_total;
+    stage.out = accounting.false_negatives;
+  }
+  record.trace.push_back(stage);
+}
+
+}  // namespace
+
+Candidates find(const Scene& scene, const Plan& plan, Session& session, const Progress& progress) {
+  const FloatingPointGuard guard;
+  try {
+    return traits(plan.options.method).find(scene, plan, session, progress);
+  } catch (...) {
+    session.forget_device();
+    throw;
+  }
+}
+
+Promise promise_of(const RunOptions& options, const UsedDevice& device, Session& session) {
+  Promise promise;
+  promise.holds = promises(options);
+  promise.reason =
+      promise.holds ? "nothing rests on a device" : "the method, or its radius, promises nothing";
+  if (!promise.holds || !device.relies) return promise;
+  promise.verdict = session.verdict(*device.relies);
+  promise.holds = promise.verdict->holds;
+  promise.reason = to_string(*promise.verdict, *device.relies);
+  return promise;
+}
+
+Collisions decide(const Scene& scene, const Candidates& candidates, const ExactQuestion& question) {
+  return candidates.decided ? *candidates.decided : decide(scene, candidates.pairs, question);
+}
+
+Record run(const Scene& scene, const RunOptions& options, Session& session,
+           const Progress& progress) {
+  const FloatingPointGuard guard;
+  Record record;
+  record.callers = callers_floating_point();
+  record.options = options;
+  const Plan planned = plan(scene, options, session.threads(), progress);
+  record.plan = planned.stages();
+  record.trace = planned.trace;
+  record.scene_hash = scene_hash(scene);
+  record.degenerate_triangles = degenerate_triangles(scene);
+
+  record.found = find(scene, planned, session, progress);
+  count_kept(scene, record.found);
+  record.trace.insert(record.trace.end(), record.found.trace.begin(), record.found.trace.end());
+  try {
+    record.promise = promise_of(options, record.found.device, session);
+  } catch (...) {
+    session.forget_device();
+    throw;
+  }
+  record.ms.setup = record.found.setup_ms;
+  record.ms.cull = planned.ms + record.found.ms;
+  decide_stage(scene, progress, record);
+  record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
+  verify_stage(scene, progress, record);
+  require_proved("arithmetic");  // a driver's code ran in this thread too
+  record.used = floating_point();
+  return record;
+}
+
+std::vector<TrianglePair> pairs_left(const Record& record) {
+  if (culls(record.options.method)) return record.found.pairs;
+  return record.collisions.all();
+}
+
+bool broken(const Record& record, bool strict) {
+  return (strict || promises(record.options)) && record.verification &&
+         record.verification->false_negatives > 0;
+}
+
+}  // namespace farcull

@@ -1,0 +1,75 @@
+// The pipeline: plan(), find(), decide(), and all of it as run(), from a scene to a record.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/floating_point.h"
+#include "experiments/method/candidates.h"
+#include "experiments/method/plan.h"
+#include "experiments/method/session.h"
+#include "verify/accounting.h"
+#include "verify/contact.h"
+
+namespace farcull {
+
+struct RunTimes {
+  double setup = 0;  // context, shaders; 0 where an earlier run of the process had made them
+  double cull = 0;   // plan, fattening, passes, box join of what is kept
+  double exact = 0;  // exact predicates on the candidates
+  double total = 0;  // of all stages but the verification
+};
+
+/// Whether a miss would break a guarantee.
+struct Promise {
+  bool holds = false;  // the method promises (see promises()), and the device that it used keeps
+                       // what the promise rests on
+  std::string reason;  // why, or why not
+  std::optional<DeviceVerdict> verdict;  // of that device; empty where the promise rests on none
+};
+
+struct Record {
+  RunOptions options;
+  std::string scene_hash;
+  std::uint64_t degenerate_triangles = 0;
+  std::vector<Stage> plan;   // as it was before anything ran
+  std::vector<Stage> trace;  // as it went
+  Promise promise;
+  Candidates found;
+  Collisions collisions;
+  std::optional<Accounting> verification;  // with kExamples examples
+  std::optional<ContactCounts> missed;     // by the kind of contact; with a verification, without a
+                                           // clearance
+  RunTimes ms;
+  FloatingPoint callers, used;  // floating-point environment of our caller, and of this run
+};
+
+constexpr std::size_t kExamples = 10;  // missed pairs that a record names
+
+/// The method: candidates of the scene that was planned. Throws Error for any fault of the device;
+/// after any exception the session has forgotten its device, and can be used again.
+Candidates find(const Scene& scene, const Plan& plan, Session& session,
+                const Progress& progress = {});
+
+/// Decides the candidates by exact predicates, where the method has not done so.
+Collisions decide(const Scene& scene, const Candidates& candidates, const ExactQuestion& question);
+
+/// The promise of the method on the device that it used, whose verdict is the session's.
+Promise promise_of(const RunOptions& options, const UsedDevice& device, Session& session);
+
+/// Plans, finds, decides and, where the options ask for it, accounts for every pair. Throws Error
+/// as plan() and find() do.
+Record run(const Scene& scene, const RunOptions& options, Session& session,
+           const Progress& progress = {});
+
+/// The pairs that were left to the exact tests, sorted; for a method that culls nothing the
+/// colliding ones, neighbours among them, so that every other pair has to be accounted for.
+std::vector<TrianglePair> pairs_left(const Record& record);
+
+/// Whether the record breaks a guarantee: `strict` asks it of every method (`farcull verify`). The
+/// verdict about the device is not looked at: a miss is a miss.
+bool broken(const Record& record, bool strict);
+
+}  // namespace farcull

@@ -1,0 +1,231 @@
+// Turns a record into JSON and its colliding pairs into CSV.
+#include "experiments/record/output.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "commit.h"
+#include "experiments/record/tables.h"
+#include "verify/certificate/not_asked.h"
+#include "verify/certificate/pair_list.h"
+
+namespace farcull {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json view_json(const ViewReport& view) {
+  Json budget = Json::object();
+  for (const BudgetTerm& term : view.budget.terms()) budget[term.name] = term.px;
+  budget["radius_px"] = view.radius_px;
+  return {{"name", view.name},
+          {"drawn", view.drawn},
+          {"width", view.width},
+          {"height", view.height},
+          {"pixel_size", view.pixel_size},
+          {"depth_step_px", view.depth_step_px},
+          {"budget", budget}};
+}
+
+Json view_json(const PairView& view) {
+  const PairCounts& c = view.counts;
+  return {{"name", view.name},
+          {"looked", view.looked},
+          {"reason", view.reason},
+          {"width", view.width},
+          {"height", view.height},
+          {"pixel_size", view.pixel_size},
+          {"widening_px", view.widening_px},
+          {"listed", c.listed},
+          {"entries", c.entries},
+          {"crowded", c.crowded},
+          {"large", c.large},
+          {"tests", c.tests},
+          {"bands", c.bands},
+          {"undrawable", c.undrawable}};
+}
+
+Json budget_json(const std::vector<ViewReport>& views) {
+  const ViewReport* widest = widest_budget(views);
+  return widest ? view_json(*widest)["budget"] : Json(nullptr);
+}
+
+Json device_json(const Record& record) {
+  if (record.found.device.cpu) return {{"cpu", record.found.device.note}};
+  if (!record.found.device.gl) return {{"none", record.found.device.note}};
+  const GlInfo& device = *record.found.device.gl;
+  Json out = {{"vendor", device.vendor},
+              {"renderer", device.renderer},
+              {"version", device.version},
+              {"glsl", device.glsl},
+              {"subpixel_bits", device.subpixel_bits},
+              {"depth_bits", record.found.device.depth_bits},
+              {"reset_detection", device.reset_detection}};
+  if (chooses_views(record.options.method)) {
+    out.erase("depth_bits");
+    out["reason"] = record.found.device.note;
+  }
+  return out;
+}
+
+Json environment_json(const FloatingPoint& floating_point) {
+  return {{"rounding", to_string(floating_point.rounding)},
+          {"flushes_results", floating_point.flushes_results},
+          {"flushes_operands", floating_point.flushes_operands}};
+}
+
+Json verdict_json(const Record& record) {
+  if (!record.promise.verdict) return nullptr;
+  const DeviceVerdict& v = *record.promise.verdict;
+  const auto or_null = [](const std::string& text) {
+    return text.empty() ? Json(nullptr) : Json(text);
+  };
+  return {{"holds", v.holds},           {"probes", v.probes},
+          {"failed", v.failed},         {"made", v.made},
+          {"remembered", v.remembered}, {"ms", v.ms},
+          {"file", or_null(v.file)},    {"problem", or_null(v.problem)},
+          {"note", or_null(v.note)}};
+}
+
+std::uint64_t self_objects(const Scene& scene) {
+  return static_cast<std::uint64_t>(
+      std::count_if(scene.objects.begin(), scene.objects.end(),
+                    [](const Object& object) { return object.self; }));
+}
+
+// A triangle as a person finds it again: its object, its place there and the face of the file it
+// came from.
+Json place_json(const Scene& scene, const std::vector<std::uint32_t>& owner,
+                std::uint32_t triangle) {
+  const Object& object = scene.objects[owner[triangle]];
+  return {{"object", owner[triangle]},
+          {"name", object.name},
+          {"triangle", triangle - object.first_triangle},
+          {"face", scene.source_face[triangle]}};
+}
+
+Json verification_json(const Scene& scene, const Record& record) {
+  const std::optional<Accounting>& accounting = record.verification;
+  if (!accounting) return nullptr;
+  const std::vector<std::uint32_t> owner = owners(scene);
+  Json examples = Json::array();
+  for (const TrianglePair& pair : accounting->examples) {
+    examples.push_back(
+        {{"a", place_json(scene, owner, pair.a)}, {"b", place_json(scene, owner, pair.b)}});
+  }
+  return {{"pairs_total", accounting->pairs_total},
+          {"pairs_kept", accounting->pairs_kept},
+          {"certified_by_boxes", accounting->certified_by_boxes},
+          {"certified_by_predicates", accounting->certified_by_predicates},
+          {"neighbours", accounting->neighbours},
+          {"false_negatives", accounting->false_negatives},
+          {"touching", record.missed ? Json(record.missed->touching) : Json(nullptr)},
+          {"penetrating", record.missed ? Json(record.missed->penetrating) : Json(nullptr)},
+          {"examples", examples},
+          {"ms", accounting->ms}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json floating_point_json(const FloatingPoint& callers,
+                                           const FloatingPoint& used) {
+  return {{"callers", environment_json(callers)}, {"used", environment_json(used)}};
+}
+
+Json not_asked_json(const Scene& scene) {
+  const NotAsked unasked = not_asked(scene);
+  return {{"objects", unasked.objects}, {"pairs", unasked.pairs}, {"which", unasked.ranges}};
+}
+
+nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
+  const RunOptions& o = record.options;
+  const bool drawn = draws(o.method);
+  Json resolution = nullptr;
+  if (looks(o.method)) resolution = resolution_of(o) > 0 ? Json(resolution_of(o)) : Json("auto");
+  Json views = Json::array();
+  for (const ViewReport& view : record.found.views()) views.push_back(view_json(view));
+  for (const PairView& view : record.found.pair_views()) views.push_back(view_json(view));
+  const std::optional<std::uint64_t> swept = record.found.swept_triangles();
+  Json stages = Json::array();
+  for (const Stage& s : record.trace) {
+    stages.push_back({{"name", name_of(s)},
+                      {"ran", s.ran},
+                      {"depends", s.depends},
+                      {"reason", reason_of(s)},
+                      {"ms", s.ms},
+                      {"in", s.in},
+                      {"out", s.out},
+                      {"unit", to_string(s.unit)},
+                      {"draws", s.draws},
+                      {"queries", s.queries},
+                      {"draws_saved", s.draws_saved},
+                      {"queries_saved", s.queries_saved}});
+  }
+  return {
+      {"scene",
+       {{"name", scene.name},
+        {"objects", scene.objects.size()},
+        {"self_objects", self_objects(scene)},
+        {"self_not_asked", not_asked_json(scene)},
+        {"triangles", scene.triangles.size()},
+        {"degenerate_triangles", record.degenerate_triangles},
+        {"hash", record.scene_hash}}},
+      {"method", to_string(o.method)},
+      {"resolution", resolution},
+      {"radius", fattens(o.method) ? Json(radius_text(o.radius)) : Json(nullptr)},
+      {"offset", fattens(o.method) ? Json(o.offset) : Json(nullptr)},
+      {"depth",
+       !drawn ? Json(nullptr) : Json(depth_of(o) == DepthMode::fragment ? "fragment" : "fixed")},
+      {"depth_format",
+       drawn ? Json(o.depth_format == DepthFormat::float32 ? "32f" : "24") : Json(nullptr)},
+      {"query",
+       drawn ? Json(query_of(o) == QueryMode::flags ? "flags" : "occlusion") : Json(nullptr)},
+      {"clearance", takes_clearance(o.method) ? Json(o.clearance) : Json(nullptr)},
+      {"full", o.full},
+      {"promises", record.promise.holds},
+      {"promise_reason", record.promise.reason},
+      {"verdict", verdict_json(record)},
+      {"views", views},
+      {"budget", budget_json(record.found.views())},
+      {"device", device_json(record)},
+      {"floating_point", floating_point_json(record.callers, record.used)},
+      {"stages", stages},
+      {"pcs", {{"objects", record.found.object_count}, {"triangles", record.found.triangle_count}}},
+      {"object_triangles", swept ? Json(*swept) : Json(nullptr)},
+      {"candidate_pairs", record.found.count},
+      {"colliding_pairs", record.collisions.pairs.size()},
+      {"neighbour_pairs", record.collisions.neighbour_pairs.size()},
+      {"neighbours", record.collisions.neighbours},
+      {"verification", verification_json(scene, record)},
+      {"time_ms",
+       {{"setup", record.ms.setup},
+        {"cull", record.ms.cull},
+        {"exact", record.ms.exact},
+        {"total", record.ms.total}}},
+      {"seed", o.seed ? Json(*o.seed) : Json(nullptr)},
+      {"commit", FARCULL_COMMIT}};
+}
+
+std::string pairs_header(const Scene& scene) { return pair_list_header(scene); }
+
+std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before) {
+  const PairListRows rows(scene);
+  std::string out;
+  const auto add = [&](const TrianglePair& pair) {
+    out += before;
+    rows.append(pair, out);
+  };
+  auto next = record.collisions.neighbour_pairs.begin();
+  for (const TrianglePair& p : record.collisions.pairs) {
+    for (; next != record.collisions.neighbour_pairs.end() && *next < p; ++next) add(*next);
+    add(p);
+  }
+  for (; next != record.collisions.neighbour_pairs.end(); ++next) add(*next);
+  return out;
+}
+
+std::string pairs_csv(const Scene& scene, const Record& record) {
+  return pairs_header(scene) + pairs_rows(scene, record, "");
+}
+
+}  // namespace farcull

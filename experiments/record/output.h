@@ -1,0 +1,29 @@
+// A record for other programs, as JSON and CSV.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/method/run.h"
+
+namespace farcull {
+
+/// Keys keep their order, so that the same run gives the same text.
+nlohmann::ordered_json to_json(const Scene& scene, const Record& record);
+
+/// The floating-point environment of the caller and the one in force.
+nlohmann::ordered_json floating_point_json(const FloatingPoint& callers, const FloatingPoint& used);
+
+/// What the scene does not ask (verify/certificate/not_asked.h): objects, pairs, and which objects,
+/// as the first and the last of each run of them.
+nlohmann::ordered_json not_asked_json(const Scene& scene);
+
+/// The colliding pairs as verify/certificate/pair_list.h writes them, sorted, each once; neighbours
+/// among them where an object of the scene is tested against itself.
+std::string pairs_csv(const Scene& scene, const Record& record);
+/// Its parts, `before` at the start of each row.
+std::string pairs_header(const Scene& scene);
+std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before);
+
+}  // namespace farcull

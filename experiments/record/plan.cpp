@@ -1,0 +1,43 @@
+// A plan is printed stage by stage, with the words that the record of the run uses as well.
+#include "experiments/record/plan.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/record/tables.h"
+#include "experiments/system/text_table.h"
+
+namespace farcull {
+
+std::string decision_of(const Stage& stage) {
+  return stage.depends ? "depends" : stage.ran ? "runs" : "left out";
+}
+
+std::string plan_table(const Scene& scene, const Plan& plan) {
+  Table table("lll");
+  table.add({"stage", "", "why"});
+  for (const Stage& stage : plan.stages())
+    table.add({name_of(stage), decision_of(stage), reason_of(stage)});
+  const RunOptions& options = plan.options;
+  return fmt::format("{}: {} objects, {} triangles, {}{}\n{}\n{}", scene.name,
+                     grouped(scene.objects.size()), grouped(scene.triangles.size()),
+                     describe(options), options.full ? ", --full" : "", not_asked_line(scene),
+                     table.text());
+}
+
+nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Stage& stage : plan.stages()) {
+    list.push_back(
+        {{"step", name_of(stage)}, {"decision", decision_of(stage)}, {"reason", reason_of(stage)}});
+  }
+  return {{"scene", scene.name},
+          {"objects", scene.objects.size()},
+          {"triangles", scene.triangles.size()},
+          {"method", to_string(plan.options.method)},
+          {"full", plan.options.full},
+          {"steps", list}};
+}
+
+}  // namespace farcull

@@ -1,0 +1,350 @@
+// Formats records as text, section by section.
+#include "experiments/record/tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/scene/members.h"
+#include "experiments/system/text_table.h"
+#include "verify/certificate/not_asked.h"
+
+namespace farcull {
+namespace {
+
+constexpr std::size_t kExamplesShown = 5;
+
+std::string scene_line(const Scene& scene, const Record& record) {
+  std::string line =
+      fmt::format("{}: {}, {}", scene.name, counted(scene.objects.size(), "object", "objects"),
+                  counted(scene.triangles.size(), "triangle", "triangles"));
+  if (record.degenerate_triangles > 0)
+    line += fmt::format(", {} of them degenerate", grouped(record.degenerate_triangles));
+  if (record.options.seed) line += fmt::format(", seed {}", *record.options.seed);
+  return line + "\n";
+}
+
+std::string device_text(const Record& record) {
+  if (record.found.device.cpu) return "cpu: " + record.found.device.note;
+  if (!record.found.device.gl) return "none: " + record.found.device.note;
+  const std::string resets =
+      record.found.device.gl->reset_detection ? "" : "; it does not report when it resets";
+  if (chooses_views(record.options.method))
+    return record.found.device.gl->renderer + ": " + record.found.device.note + resets;
+  return fmt::format("{}, {} depth bits, {} subpixel bits{}", record.found.device.gl->renderer,
+                     record.found.device.depth_bits, record.found.device.gl->subpixel_bits, resets);
+}
+
+// Where the promise of the method rests on a device.
+std::string promise_line(const Record& record) {
+  if (!record.promise.verdict) return "";
+  return fmt::format("promise    {}{}\n",
+                     record.promise.holds ? "" : "none: ", record.promise.reason);
+}
+
+std::string method_text(const Record& record) {
+  const RunOptions& o = record.options;
+  std::string text = describe(o);
+  if (fattens(o.method)) text += fmt::format(", {} offsets", o.offset);
+  if (draws(o.method)) {
+    text += fmt::format(", {} depth, {}",
+                        depth_of(o) == DepthMode::fragment ? "fragment" : "fixed-function",
+                        query_of(o) == QueryMode::flags ? "flags" : "occlusion queries");
+  }
+  if (o.clearance > 0) text += fmt::format(", clearance {}", o.clearance);
+  return text + (record.promise.holds ? "; promises to miss nothing" : "");
+}
+
+std::string views_text(const std::vector<ViewReport>& views) {
+  std::string text;
+  for (const ViewReport& view : views) {
+    text += (text.empty() ? "" : ", ") + view.name + " ";
+    text += view.drawn ? fmt::format("{} x {}", view.width, view.height) : "not drawn";
+  }
+  return text + " px";
+}
+
+std::string views_text(const std::vector<PairView>& views) {
+  std::string text;
+  for (const PairView& view : views) {
+    text += (text.empty() ? "" : ", ") + view.name + " ";
+    text += view.looked ? fmt::format("{} x {}", view.width, view.height) : "left out";
+  }
+  return text + " px";
+}
+
+// The radius of the view with the largest budget, and what the budget is made of.
+std::string radius_line(const Record& record) {
+  const ViewReport* view = widest_budget(record.found.views());
+  if (!fattens(record.options.method) || view == nullptr) return "";
+  const RadiusRule& rule = record.options.radius;
+  std::string line = fmt::format("radius     {:.5f} px", view->radius_px);
+  if (rule.published) line += ", as published";
+  if (!rule.published && rule.factor != 1) line += fmt::format(", {} of the budget", rule.factor);
+  if (rule.published || rule.factor != 1)
+    line += fmt::format("\nbudget     {:.5f} px", view->budget.radius());
+  bool first = true;
+  for (const BudgetTerm& term : view->budget.terms()) {
+    if (term.px <= 0) continue;
+    line += fmt::format("{}{} {:.5f}", first ? " = " : " + ", term.name, term.px);
+    first = false;
+  }
+  return line + "\n";
+}
+
+// A row of the stage table: one stage, or those of one view in the first round, or all of the
+// rounds after it, where little happens.
+struct Row {
+  std::string key;  // what stages are folded by; empty: nothing joins this row
+  std::string name;
+  std::string note;
+  std::vector<std::string> views;  // of later rounds; of what was left out, the stages
+  Stage sum;                       // ms of all, in of the first, out of the last
+};
+
+// The row that a stage is folded into: that of its view, or of all later rounds; empty: its own.
+std::string key_of(const Stage& stage) {
+  if (stage.round == 0) return "";
+  return stage.round == 1 ? "view " + stage.subject : "later rounds";
+}
+
+// A row for a stage that was left out; those that follow for the same reason join it.
+void add_left_out(const Stage& stage, std::vector<Row>& rows) {
+  const std::string name = name_of(stage), note = "left out: " + reason_of(stage);
+  if (rows.empty() || rows.back().note != note || rows.back().sum.ran) {
+    rows.push_back({"", name, note, {name}, stage});
+    return;
+  }
+  Row& row = rows.back();
+  row.views.push_back(name);
+  row.name = fmt::format("{} and {} more", row.views.front(), row.views.size() - 1);
+}
+
+// Adds a stage of a round to the row that it is folded into.
+void fold(const Stage& stage, Row& row) {
+  if (stage.round > 1) {
+    row.name = stage.round == 2 ? "round 2" : fmt::format("rounds 2-{}", stage.round);
+    if (std::find(row.views.begin(), row.views.end(), stage.subject) != row.views.end()) return;
+    row.note += (row.note.empty() ? "" : ", ") + stage.subject;
+    row.views.push_back(stage.subject);
+    return;
+  }
+  const bool fattened = stage.kind == StageKind::fatten;
+  row.note += fmt::format("{}{} {:.1f}", row.note.empty() ? "" : ", ",
+                          fattened ? "fatten" : stage.level, stage.ms);
+  if (fattened && stage.n > 0)
+    row.note += fmt::format(" ({} triangles beyond the budget, kept)", stage.n);
+}
+
+std::vector<Row> folded(const std::vector<Stage>& stages) {
+  std::vector<Row> rows;
+  for (const Stage& stage : stages) {
+    const std::string key = key_of(stage);
+    if (!stage.ran) {
+      add_left_out(stage, rows);
+    } else if (key.empty()) {
+      rows.push_back({"", name_of(stage), reason_of(stage), {}, stage});
+    } else {
+      if (rows.empty() || rows.back().key != key) {
+        rows.push_back({key, key, "", {}, stage});
+      } else {
+        rows.back().sum.ms += stage.ms;
+        rows.back().sum.out = stage.out;
+      }
+      fold(stage, rows.back());
+    }
+  }
+  return rows;
+}
+
+std::string stage_table(const std::vector<Stage>& stages) {
+  Table table("lrrrll");
+  table.add({"stage", "ms", "in", "out", "", ""});
+  for (const Row& row : folded(stages)) {
+    const Stage& s = row.sum;
+    const bool counts = s.unit != Unit::none && (s.ran || s.in > 0);
+    table.add({row.name, s.ran ? fmt::format("{:.1f}", s.ms) : "-", counts ? grouped(s.in) : "",
+               counts ? grouped(s.out) : "", counts ? to_string(s.unit) : "", row.note});
+  }
+  return table.text();
+}
+
+std::string accounting_lines(const Scene& scene, const Record& record) {
+  if (!record.verification) return "accounted  not at all (--no-verify)\n";
+  const Accounting& v = *record.verification;
+  std::string out = fmt::format(
+      "accounted  {} = {} kept + {} disjoint boxes\n           + {} proved disjoint{} + {} "
+      "missed\n",
+      counted(v.pairs_total, "pair", "pairs"), grouped(v.pairs_kept), grouped(v.certified_by_boxes),
+      grouped(v.certified_by_predicates),
+      v.neighbours > 0 ? " + " + grouped(v.neighbours) + " neighbours" : "",
+      grouped(v.false_negatives));
+  if (v.false_negatives > 0 && record.missed) {
+    out += fmt::format("           of those missed {} touching, {} penetrating\n",
+                       grouped(record.missed->touching), grouped(record.missed->penetrating));
+  }
+  const std::vector<std::uint32_t> owner = owners(scene);
+  const auto place = [&](std::uint32_t triangle) {
+    const Object& object = scene.objects[owner[triangle]];
+    return fmt::format("{} triangle {}", object.name, triangle - object.first_triangle);
+  };
+  const std::size_t shown = std::min(v.examples.size(), kExamplesShown);
+  for (std::size_t i = 0; i < shown; ++i)
+    out += fmt::format("  missed: {} meets {}\n", place(v.examples[i].a), place(v.examples[i].b));
+  if (v.false_negatives > shown && shown > 0)
+    out += fmt::format("  missed: {} more\n", grouped(v.false_negatives - shown));
+  return out;
+}
+
+// What was drawn and asked, of the methods that do so.
+std::string work_line(const Record& record) {
+  if (!draws(record.options.method)) return "";
+  const Stage sum = work_of(record.trace);
+  return fmt::format("drawn      {}, {}{}\n", counted(sum.draws, "element", "elements"),
+                     counted(sum.queries, "query", "queries"),
+                     sum.draws_saved + sum.queries_saved == 0
+                         ? ""
+                         : fmt::format("; {} and {} fewer than plain CULLIDE would",
+                                       grouped(sum.draws_saved), grouped(sum.queries_saved)));
+}
+
+// The window that was looked at where the scene chose.
+std::string resolution_text(const Record& r) {
+  if (!looks(r.options.method)) return "-";
+  if (resolution_of(r.options) > 0) return std::to_string(resolution_of(r.options));
+  for (const PairView& view : r.found.pair_views()) {
+    if (view.looked) return fmt::format("auto {}", std::max(view.width, view.height));
+  }
+  return "auto";
+}
+
+std::string missed_text(const Record& record) {
+  return record.verification ? grouped(record.verification->false_negatives) : "not verified";
+}
+
+}  // namespace
+
+std::string radius_text(const RadiusRule& radius) {
+  if (radius.published) return "published";
+  return radius.factor == 1 ? "budget" : fmt::format("{}", radius.factor);
+}
+
+const ViewReport* widest_budget(const std::vector<ViewReport>& views) {
+  const ViewReport* widest = nullptr;
+  for (const ViewReport& view : views) {
+    if (view.drawn && (!widest || view.budget.radius() > widest->budget.radius())) widest = &view;
+  }
+  return widest;
+}
+
+std::string not_asked_text(const Scene& scene) {
+  constexpr std::size_t kNamed = 3;
+  const NotAsked unasked = not_asked(scene);
+  if (unasked.pairs == 0) return "";
+  std::vector<std::string> names;
+  for (const auto& [first, last] : unasked.ranges) {
+    for (std::uint32_t o = first; o <= last && names.size() < kNamed + 1; ++o)
+      names.push_back(scene.objects[o].name);
+  }
+  std::string where = fmt::format("{}", fmt::join(names, ", "));
+  if (names.size() > kNamed) {
+    where =
+        fmt::format("{} of {} objects", grouped(unasked.objects), grouped(scene.objects.size()));
+  }
+  return counted(unasked.pairs, "pair", "pairs") + " of triangles inside " + where;
+}
+
+std::string not_asked_line(const Scene& scene, const std::string& options) {
+  const std::string text = not_asked_text(scene);
+  return text.empty()
+             ? ""
+             : "not asked  whether an object meets itself: " + text + " (" + options + " asks)\n";
+}
+
+std::string run_heading(const Scene& scene, const Record& record) {
+  std::string out =
+      scene_line(scene, record) + "device     " + device_text(record) + "\n" + "method     " +
+      method_text(record) + "\n" + promise_line(record) +
+      not_asked_line(scene,
+                     tests_self(record.options.method) ? "--self" : "--method far-pairs --self");
+  if (record.callers == kProved) return out;
+  return out + "arithmetic " + to_string(record.used) + "; the caller " +
+         to_string(record.callers) + "\n";
+}
+
+std::string run_table(const Scene& scene, const Record& record) {
+  std::string out = run_heading(scene, record);
+  if (!record.found.views().empty()) out += "views      " + views_text(record.found.views()) + "\n";
+  if (!record.found.pair_views().empty())
+    out += "views      " + views_text(record.found.pair_views()) + "\n";
+  out += radius_line(record);
+  out += "\n" + stage_table(record.trace) + "\n";
+  out += fmt::format("kept       {}, {}, {}\n",
+                     counted(record.found.object_count, "object", "objects"),
+                     counted(record.found.triangle_count, "triangle", "triangles"),
+                     counted(record.found.count, "candidate pair", "candidate pairs"));
+  out += fmt::format("colliding  {}{}\n", counted(record.collisions.pairs.size(), "pair", "pairs"),
+                     has_self(scene) ? fmt::format(" and {} of {}",
+                                                   counted(record.collisions.neighbour_pairs.size(),
+                                                           "neighbour pair", "neighbour pairs"),
+                                                   grouped(record.collisions.neighbours))
+                                     : "");
+  out += work_line(record);
+  out += accounting_lines(scene, record);
+  out += fmt::format(
+      "time       {:.1f} ms = setup {:.1f} + cull {:.1f} + exact {:.1f}{}\n", record.ms.total,
+      record.ms.setup, record.ms.cull, record.ms.exact,
+      record.verification ? fmt::format("; accounting {:.1f} more", record.verification->ms) : "");
+  return out;
+}
+
+std::string comparison_table(const Scene& scene, const std::vector<Record>& records) {
+  if (records.empty()) return "";
+  const auto drawn = std::find_if(records.begin(), records.end(), [](const Record& r) {
+    return r.found.device.gl && draws(r.options.method);
+  });
+  const auto pairs = std::find_if(records.begin(), records.end(),
+                                  [](const Record& r) { return chooses_views(r.options.method); });
+  const Record* reference = nullptr;
+  for (const Record& record : records) {
+    if (!culls(record.options.method)) reference = &record;
+  }
+  const bool self = has_self(scene);
+  std::string out = scene_line(scene, records[0]);
+  if (drawn != records.end()) {
+    out += "device     " + device_text(*drawn) + "\n";
+  } else if (!chooses_views(records[0].options.method)) {
+    out += "device     " + device_text(records[0]) + "\n";
+  }
+  if (pairs != records.end()) out += "far-pairs  " + device_text(*pairs) + "\n";
+  out += not_asked_line(scene) + "\n";
+  Table table("llrrrrrrrrrr");
+  table.add({"method", "offset", "resolution", "objects", "triangles", "candidates", "colliding",
+             self ? "neighbours" : "", "missed", "cull ms", "exact ms",
+             reference ? "x exact" : ""});
+  for (const Record& r : records) {
+    const double ratio =
+        reference ? (r.ms.cull + r.ms.exact) / (reference->ms.cull + reference->ms.exact) : 0;
+    table.add({to_string(r.options.method), fattens(r.options.method) ? r.options.offset : "-",
+               resolution_text(r), grouped(r.found.object_count), grouped(r.found.triangle_count),
+               grouped(r.found.count), grouped(r.collisions.pairs.size()),
+               self ? grouped(r.collisions.neighbour_pairs.size()) : "", missed_text(r),
+               fmt::format("{:.1f}", r.ms.cull), fmt::format("{:.1f}", r.ms.exact),
+               reference ? fmt::format("{:.2f}", ratio) : ""});
+  }
+  out += table.text();
+  out +=
+      "\nobjects, triangles: kept by culling; candidates: pairs of kept triangles whose boxes "
+      "overlap;\n"
+      "missed: colliding pairs that culling lost, found by exact predicates over all pairs.\n";
+  if (reference) {
+    out +=
+        "x exact: cull + exact ms over those of the method exact in this run\n"
+        "(CGAL's box join with cutoff 2000, exact predicates); the graphics context is set up "
+        "once\n"
+        "and not counted.\n";
+  }
+  return out;
+}
+
+}  // namespace farcull
