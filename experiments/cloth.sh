@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The cloth at every stiffness: all frames accounted for pair by pair by far-pairs, energies and residuals in the records.
-# Prints a row a stiffness and fails where a pair is missed, a number is not finite, a step did not converge or the energy grew by
-# more than the unbalanced forces can do. Keeps a record a stiffness in build/cloth/ and goes on where it was interrupted.
+# The cloth at each of four stiffnesses. far-pairs finds the colliding pairs of every frame, and the accounting decides every pair.
+# It prints a row for each stiffness. It fails if a pair is missed, a number is not finite, a step did not converge, or the energy
+# grew by more than the unbalanced forces can do. Each stiffness has a record in build/cloth/; a record that is there is not made again.
 #
 #   bash experiments/cloth.sh                              20,000 triangles, 500 frames: hours where it is stiff (docs/cloth.md)
 #   TRIANGLES=800 bash experiments/cloth.sh                minutes
@@ -15,7 +15,7 @@ farcull_build farcull
 
 triangles=${TRIANGLES:-20000}
 frames=${FRAMES:-500}
-# Of these sources: what another commit found is not taken for done.
+# The name of a record contains the commit, so that the record of another commit is not reused.
 commit=$(git rev-parse --short HEAD 2>/dev/null || echo unknown)
 out=build/cloth
 mkdir -p "$out"
@@ -27,7 +27,7 @@ for stiffness in 1e2 1e4 1e6 1e8; do
     build/farcull verify "cloth:$triangles:$stiffness" --method far-pairs --frames "$frames" --json "$record" >/dev/null || failed=1
   fi
   [[ -s $record ]] || continue
-  # One number a line, in the order of the record.
+  # The record has one number on each line.
   awk -F': ' -v stiffness="$stiffness" '
     { value = $2 + 0 }
     /"total J"/ { growth = n ? value - last : 0; if (!n++) first = value; last = value; }

@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# The main job in one command, on a machine with nothing but Debian and a checkout: installs what is
-# missing, builds, fetches real meshes and culls two interpenetrating bunnies with FAR and with
-# CULLIDE at five resolutions and with FAR pairs at its own, every culled pair checked by exact
-# predicates. Then a picture of what CULLIDE misses beside what FAR finds, the small grids of all
-# studies, and the report about them. Exit status: that of the comparison, else that of the first
-# of these that failed; 2 where it did not come to that.
+# The main job in one command, on a machine with nothing but Debian and a checkout.
+# 1. Installs the packages that are missing, builds the program (no tests), fetches real meshes.
+# 2. Compares FAR, CULLIDE, FAR pairs and the method exact on two bunnies that interpenetrate, and
+#    prints a table. Exact predicates check every pair that a method culled.
+# 3. Draws a picture of what CULLIDE misses and FAR finds, measures the small grids of all studies,
+#    and makes the report.
+# Exit status: that of the comparison, else that of the first step after it that failed; 2 if the
+# comparison did not start.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=setup.sh
@@ -21,44 +23,44 @@ case $status in
   0) echo "demo: scene two-bunnies, two copies of the Stanford bunny of 75408 triangles each" ;;
   3)
     scene=two-tori
-    echo "demo: scene two-tori, which is generated, in place of two-bunnies"
+    echo "demo: the meshes are missing; scene two-tori, two generated tori, replaces two-bunnies"
     ;;
   *) exit 2 ;;
 esac
 
 mkdir -p build/demo
 results=build/demo/compare.json
-rm -f "$results" # an old record must not pass for this run's
-echo "demo: far and cullide at resolutions 128 to 2048, far-pairs, exact; exact predicates count missed pairs"
+rm -f "$results" # so that an old record is not taken for this one
+echo "demo: each row is a run of a method; the column missed counts the colliding pairs that it lost"
 status=0
 build/farcull compare "$scene" --json "$results" || status=$?
 
 if [[ -e $results ]]; then echo "demo: all numbers are in $results"; fi
 if ((status)); then echo "demo: the comparison ended with status $status" >&2; fi
 
-# step WHAT COMMAND...: what follows is made even where something before it failed.
+# step TEXT COMMAND...: prints the text and runs the command. A step runs even if one before it
+# failed.
 step() {
   local failed=0
   echo "demo: $1"
   "${@:2}" || failed=$?
   if ((failed == 0)); then return; fi
-  echo "demo: this ended with status $failed: ${*:2}" >&2
+  echo "demo: this command ended with status $failed: ${*:2}" >&2
   if ((status == 0)); then status=$failed; fi
 }
 
 picture=build/demo/compare.png
-# Rows of another commit do not stand beside this one's.
+# Each commit has a store of its own, since a store refuses rows of another commit.
 commit=$(build/farcull --version)
 studies=build/demo/results-${commit##* }
 rm -f "$picture"
-step "the same as a picture: what is missed is red" build/farcull picture "$scene" \
+step "a picture of the same scene; missed triangles are red" build/farcull picture "$scene" \
   --compare cullide:128,cullide:1024,far:128 -o "$picture"
-step "the small grids of all studies, some minutes; what an earlier demo of this commit has measured stays" \
+step "the small grids of all studies, some minutes; points that an earlier demo measured are kept" \
   build/farcull experiment all --quick --resume --out "$studies"
-step "the report about them" build/farcull report "$studies"
+step "the report about the studies" build/farcull report "$studies"
 
-# Where everything lies.
-echo "demo: in $farcull_root:"
+echo "demo: these files were made in $farcull_root:"
 for made in "$results" "$picture" "$studies"/report/index.html "$studies"/results.sqlite; do
   if [[ -e $made ]]; then echo "  $made"; fi
 done

@@ -1,20 +1,20 @@
 #!/usr/bin/env bash
 # Brings the meshes of Debian's package libcgal-demo into build/meshes/. The package is downloaded
-# and unpacked, not installed: that needs no root, and small images exclude documentation, where the
-# meshes are, when they install.
-# Exit status: 0 they are all there; 3 they cannot be had (stderr says why); anything else: this
-# disk or this script.
+# and unpacked, not installed: that needs no root, and small images do not install documentation,
+# which contains the meshes.
+# Exit status: 0 all meshes are there; 3 they cannot be obtained, and stderr says why; anything else:
+# an error of this disk or of this script.
 set -euo pipefail
 
 root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 exec </dev/null
 export PATH="${PATH:-/usr/local/bin:/usr/bin:/bin}:/usr/sbin:/sbin"
 meshes=$root/build/meshes
-# The archive, in the package and where the package is installed.
+# The path of the archive in the package, and on a system where the package is installed.
 inside=usr/share/doc/libcgal-dev/data.tar.gz
 
-# Each mesh with its triangles: a file that claims another number is not the one that our results
-# are about.
+# Each mesh with its number of triangles. A file with another number is not the mesh that our results
+# were measured on.
 declare -A triangles=(
   [bunny00.off]=75408
   [ChineseDragon-10kv.off]=19994
@@ -24,13 +24,14 @@ declare -A triangles=(
   [elephant.off]=5558
 )
 
-# The number of faces in the header of an OFF file: the second of the three counts, which follow the
-# word OFF, after any comments and empty lines.
+# Prints the number of faces in the header of an OFF file. It is the second of the three counts after
+# the word OFF. Comments and empty lines may precede them.
 faces_in_header() {
   awk '{ sub(/#.*/, ""); sub(/^[ \t]*[A-Z]*OFF/, "") } NF { print $2; exit }' "$1"
 }
 
-# Is every mesh in FOLDER, as it should be? Says the first one that is not, in $trouble.
+# all_in FOLDER: whether every mesh is there with its number of triangles. If not, $trouble names the
+# first one that is wrong.
 all_in() {
   local folder=$1 name found
   for name in "${!triangles[@]}"; do
@@ -48,18 +49,17 @@ all_in() {
 
 if all_in "$meshes"; then exit 0; fi
 
-# All work is done in a folder beside the goal, on the same file system, so that a mesh arrives by
-# one rename: a run that is killed leaves no half of one.
+# All work is done in a folder on the same file system, so that one rename puts a mesh in place. A run
+# that is killed leaves no part of a mesh.
 mkdir -p "$root/build"
-# A run that had no chance to clean up (kill -9, a power cut) left its folder; an hour is longer
-# than any run lasts.
+# A run that was killed may have left its folder. No run lasts an hour.
 find "$root/build" -maxdepth 1 -name 'meshes.unpacking.*' -mmin +60 -exec rm -rf {} +
 work=$(mktemp -d "$root/build/meshes.unpacking.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM HUP
 
-# Unpacks the meshes of an archive, checks them and puts them where they belong.
+# take_from ARCHIVE: unpacks its meshes, checks them and moves them to build/meshes/.
 take_from() {
   local archive=$1
   local -a names=("${!triangles[@]}")
@@ -79,10 +79,10 @@ take_from() {
   echo "meshes: ${#triangles[@]} in build/meshes/"
 }
 
-# Downloads the package into $work: with apt's lists if they know it, otherwise (none yet, or old
-# ones) with lists of our own, which need no root and change nothing on the system.
+# Downloads the package into $work with the lists of apt. If these are missing or old, it downloads
+# lists into $work, which needs no root and changes nothing on the system.
 download() {
-  # Root's apt would work as the user _apt, who may not write here, and warn about it.
+  # Without this option apt, run by root, works as the user _apt, which may not write here, and warns.
   local -a apt=(apt-get -q -o APT::Sandbox::User=root -o Acquire::Retries=2)
   local -a own=(-o Dir::State::Lists="$work/lists" -o Dir::Cache="$work/cache")
   mkdir -p "$work/lists/partial" "$work/cache/archives/partial"
@@ -100,7 +100,7 @@ if [[ -r /$inside ]]; then
 fi
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-deb >/dev/null; then
-  trouble="they come in Debian's package libcgal-demo, and this system has no apt-get and dpkg-deb"
+  trouble="they are in the Debian package libcgal-demo, and this system has no apt-get or no dpkg-deb"
 elif ! download; then
   cause=$(grep -m 1 '^[WE]: Failed to fetch' "$work/apt.log" ||
     grep -m 1 '^E:' "$work/apt.log" || tail -n 1 "$work/apt.log")
@@ -111,5 +111,5 @@ elif ! dpkg-deb --fsys-tarfile "$work"/libcgal-demo_*.deb |
 elif take_from "$work/$inside"; then
   exit 0
 fi
-echo "meshes: the packaged meshes cannot be had: ${trouble/"$work/"/}" >&2
+echo "meshes: the packaged meshes cannot be obtained: ${trouble/"$work/"/}" >&2
 exit 3

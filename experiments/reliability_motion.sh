@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The promise in motion, at full size: FAR with both offsets and far-pairs on every frame of every built-in scene that moves,
-# each frame accounted for pair by pair. Fails where a pair is missed.
-# Keeps a record a scene in build/reliability-motion/ and goes on where it was interrupted; remove the folder to begin again.
+# The promise on moving scenes of full size. far-pairs, i-collide and FAR with both offsets run on every frame of every built-in
+# scene that moves, and the accounting decides every pair of each frame. It fails if a pair is missed. Each scene has a record in
+# build/reliability-motion/; a scene whose record is there does not run again. Remove the folder to begin again.
 #
 #   bash experiments/reliability_motion.sh                     all scenes, 100 frames each: hours on a software rasterizer
 #   FRAMES=10 bash experiments/reliability_motion.sh cloth     one scene, ten frames
@@ -20,7 +20,7 @@ scenes=("$@")
 if ((${#scenes[@]} == 0)); then
   mapfile -t scenes < <(build/farcull scenes --json - | awk -F'"' '$2 == "name" { name = $4 } /"moves": true/ { print name }')
 fi
-# Of these sources: what another commit found is not taken for done.
+# The name of a record contains the commit, so that the record of another commit is not reused.
 commit=$(git rev-parse --short HEAD 2>/dev/null || echo unknown)
 out=build/reliability-motion
 mkdir -p "$out"
@@ -41,7 +41,7 @@ for scene in "${scenes[@]}"; do
   fi
 done
 if ((${#failed[@]})); then
-  printf 'reliability in motion: missed, or a run failed: %s\n' "${failed[@]}" >&2
+  printf 'reliability in motion: a pair was missed, or a run failed: %s\n' "${failed[@]}" >&2
   exit 1
 fi
-echo "reliability in motion: none was missed; all records are in $out/"
+echo "reliability in motion: no pair was missed; all records are in $out/"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The promise of far-pairs: nothing missed at 32 to 4096 px, in one view, in three, and as the scene chooses, by both back ends,
-# on packaged meshes, on needles and inside objects. Prints a row a run (candidates, colliding pairs, their quotient, missed), keeps the
-# records in build/reliability-pairs/, and fails where a pair is missed. `bash experiments/reliability_pairs.sh needles` runs one scene.
+# The promise of far-pairs. It runs at 32 to 4096 px, in one view, in three, and as the scene decides, by both back ends, on packaged
+# meshes, on needles and inside objects. It prints a row for each run (candidates, colliding pairs, their quotient, missed), keeps the
+# records in build/reliability-pairs/, and fails if a pair is missed. `bash experiments/reliability_pairs.sh needles` runs one scene.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=setup.sh
@@ -11,7 +11,7 @@ farcull_setup
 farcull_build farcull
 bash experiments/meshes.sh
 
-# scene, and what is asked of it
+# A scene with its options.
 runs=(
   "two-bunnies" "two-bunnies@far" "two-bunnies@ground" "armadillo-elephant" "dragon-bunny" "near-copy"
   "needles" "needles@far" "needles-layers" "needles-crossed" "random-soup" "degenerate" "crowd" "field:100000"

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# docs/results.md and its figures, all of them, in one command: installs what is missing, builds,
-# measures every study (or goes on where an earlier call ended), reports, and puts page, figures and
-# pictures into docs/. About half an hour on two cores without a GPU; the figures in docs/ are of
-# such a machine.
+# Makes docs/results.md and all its figures: installs what is missing, builds, measures every study
+# (or continues where an earlier call ended), makes the report, and copies page, figures and pictures
+# into docs/. About half an hour on two cores without a GPU; docs/results.md was measured on such a
+# machine.
 #   bash experiments/results.sh [OPTIONS OF farcull experiment all]
-# Exit status: 0; 1 where a method that promises missed a pair; 2 where it did not come to that.
+# Exit status: 0; 1 if a method that promises missed a pair; 2 if the measurements did not complete.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=setup.sh
@@ -15,7 +15,7 @@ farcull_setup
 farcull_build farcull
 bash experiments/meshes.sh || echo "results: points on packaged meshes will be left out"
 
-# Rows of another commit do not stand beside this one's.
+# Each commit has a store of its own, since a store refuses rows of another commit.
 commit=$(build/farcull --version)
 out=build/results-${commit##* }
 status=0
@@ -31,5 +31,5 @@ for kind in figures:svg pictures:png; do
     if [[ -e $old && ! -e $out/report/$folder/${old##*/} ]]; then rm "$old"; fi
   done
 done
-echo "results: docs/results.md, from $out/results.sqlite"
+echo "results: made docs/results.md from $out/results.sqlite"
 exit "$status"

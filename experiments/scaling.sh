@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# far-pairs on fields of 10^4 to 10^7 triangles of constant density: time, memory beyond the input, candidates for each true pair, and the
-# exponent of time over triangles (least squares in logarithms; 1 is linear). Arguments: the numbers of triangles.
+# far-pairs on fields of 10^4 to 10^7 triangles of constant density. It prints time, memory beyond the input, candidates for each true
+# pair, and the exponent of time over triangles: the slope of a least-squares line through the logarithms, 1 for linear growth. The
+# arguments are the numbers of triangles.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=setup.sh

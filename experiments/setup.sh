@@ -1,44 +1,44 @@
 #!/usr/bin/env bash
-# The set-up that experiments/demo.sh and tests/run.sh share. Both source this file, call
-# farcull_setup for the packages and farcull_build for the program; `bash experiments/setup.sh` by
-# itself only installs the packages.
+# Shared by the scripts in experiments/ and tests/: functions that install packages and build.
+# A script sources this file, then calls farcull_setup for the packages and farcull_build for the
+# program. `bash experiments/setup.sh` by itself installs the packages and does nothing else.
 #
-# It has to work where there is nothing but Debian and a checkout: no sudo, no git, no terminal,
-# stdin closed, an empty environment. A second run installs and builds nothing.
+# It must work where there is nothing but Debian and a checkout: no sudo, no git, no terminal, a
+# closed stdin, an empty environment. A second run installs and builds nothing.
 set -euo pipefail
 
 farcull_root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 
-# Nothing here asks questions. With a closed stdin the next file that any program opens would become
+# Nothing here asks questions. If stdin were closed, the next file that a program opens would become
 # its stdin.
 exec </dev/null
 # dpkg refuses to run without PATH in the environment or without the sbin folders, which `su` and
 # cron leave out.
 export PATH="${PATH:-/usr/local/bin:/usr/bin:/bin}:/usr/local/sbin:/usr/sbin:/sbin"
 
+# What the program needs, and what CMake looks for when it configures the tests.
 farcull_packages=(
   # tools
   g++ cmake ninja-build pkg-config git
-  # EGL and GL. Of these a headless context on Mesa's software device needs, when it runs, libegl1
-  # with libegl-mesa0 (its vendor), libgl1-mesa-dri (llvmpipe itself) and libgl1 (epoxy opens
-  # libOpenGL.so.0 or libGL.so.1 by name). The last two are named here because the package system
-  # does not derive them from what the program is linked to.
+  # EGL and GL. A context without a window on Mesa's software device needs libegl1 with libegl-mesa0
+  # (its vendor), libgl1-mesa-dri (llvmpipe itself) and libgl1 (epoxy opens libOpenGL.so.0 or
+  # libGL.so.1 by name). The last two are named here because the program is not linked to them.
   libegl-dev libepoxy-dev libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri
   # exact predicates, linear algebra, tests, command line, records
   libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev libgtest-dev librapidcheck-dev libcli11-dev
   nlohmann-json3-dev libfmt-dev
   # results, pictures, figures
   libsqlitecpp-dev libsqlite3-dev libpng-dev gnuplot-nox
-  # what farcull bench compares with, and the cases of single kernels; a build without them works
+  # libraries that farcull bench compares with, and benchmarks of kernels; the build works without
   libfcl-dev libembree-dev libtbb-dev libbenchmark-dev
-  # what the test of the report opens its page with, and reads what it printed
-  chromium poppler-utils sqlite3
 )
+# What only the test of the report needs: it opens the page in a browser, prints it and reads the PDF.
+farcull_test_packages=(chromium poppler-utils sqlite3)
 
-# Prints those of farcull_packages that dpkg does not hold as completely installed, one per line.
+# Prints those of farcull_packages that are not completely installed, one per line.
 farcull_missing() {
   local package held
-  # It exits 1 when it does not know one of them, which is an answer and no failure.
+  # dpkg-query exits with 1 if it does not know one of them. That is no failure.
   # shellcheck disable=SC2016  # the format is dpkg's, not the shell's
   local format='${Package} ${db:Status-Status}\n'
   held=$(dpkg-query -W -f "$format" "${farcull_packages[@]}" 2>/dev/null) || true
@@ -53,18 +53,19 @@ farcull_as_root() {
   if ((EUID == 0)); then "${command[@]}"; else sudo "${command[@]}"; fi
 }
 
-# apt-get, waiting for another apt that holds the lock (a new machine upgrades itself in the
-# background).
+# Runs apt-get. It waits while another apt holds the lock; a new machine upgrades itself in the
+# background.
 farcull_apt_get() { farcull_as_root apt-get -o DPkg::Lock::Timeout=300 "$@"; }
 
-# farcull_install PACKAGES...: one attempt. `update` may fail for a source that has nothing to do
-# with us; `install` decides.
+# farcull_install PACKAGES...: one attempt. `update` may fail because of a source that we do not
+# need, so only the status of `install` counts.
 farcull_install() {
   farcull_apt_get update || echo "apt-get update failed; trying with the lists that are there"
   farcull_apt_get install --yes --no-install-recommends "$@"
 }
 
-# Installs the packages that are missing. Status 2, with what to do, where that is impossible.
+# Installs those of farcull_packages that are missing. If that is impossible it prints what to do, and
+# returns 2. A script that needs more packages appends them to farcull_packages first.
 farcull_setup() {
   if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
     echo "setup: no apt-get here, so nothing is installed; CMake names what it does not find" >&2
@@ -83,13 +84,12 @@ farcull_setup() {
   mkdir -p "$farcull_root/build" || return 2
   echo "setup: installing ${#missing[@]} packages: ${missing[*]}"
   if ! farcull_install "${missing[@]}" >"$log" 2>&1; then
-    # Once more, after a pause for the network, and after finishing what an installation killed
-    # earlier left undone.
+    # The second attempt comes after a pause for the network. Before it, dpkg completes an
+    # installation that was killed earlier.
     sleep 5
     farcull_as_root dpkg --configure -a >>"$log" 2>&1 || true
     if ! farcull_install "${missing[@]}" >>"$log" 2>&1; then
-      # The first complaints are the causes (a name that does not resolve, a full disk), the last
-      # only follow.
+      # The first messages name the causes, such as a full disk. The last ones only follow from them.
       awk '/^[WE]:/ && !seen[$0]++ && ++n <= 8' "$log" >&2
       printf '%s\n' "setup: installing failed twice (apt's output: build/setup.log). By hand:" \
         "  apt-get update && apt-get install --no-install-recommends ${missing[*]}" >&2
@@ -98,8 +98,9 @@ farcull_setup() {
   fi
 }
 
-# How many compilers may run at once: one per core, but one per 2 GiB of memory, which is what a
-# file full of CGAL takes. CMAKE_BUILD_PARALLEL_LEVEL, CMake's own variable, overrides it.
+# Prints how many compilers may run at once: one for each core, and at most one for each 2 GiB of
+# memory, which a file that includes CGAL takes. CMake's variable CMAKE_BUILD_PARALLEL_LEVEL
+# overrides it.
 farcull_jobs() {
   if [[ -n ${CMAKE_BUILD_PARALLEL_LEVEL:-} ]]; then
     printf '%s\n' "$CMAKE_BUILD_PARALLEL_LEVEL"
@@ -110,7 +111,8 @@ farcull_jobs() {
   jobs=$cores
   if [[ -r /proc/meminfo ]]; then
     bytes=$(awk '/^MemAvailable:/ { printf "%.0f", $2 * 1024 }' /proc/meminfo)
-    # In a container meminfo is the host's; the limit is the control group's (version 2, version 1).
+    # In a container meminfo is that of the host. The limit is that of the control group, in
+    # version 2 or version 1.
     for file in /sys/fs/cgroup/memory.max /sys/fs/cgroup/memory/memory.limit_in_bytes; do
       limit=$(cat "$file" 2>/dev/null) || continue
       if [[ $limit =~ ^[0-9]+$ ]] && ((limit < bytes)); then bytes=$limit; fi
@@ -120,25 +122,25 @@ farcull_jobs() {
   printf '%s\n' $((jobs > 1 ? jobs : 1))
 }
 
-# The value of a CMake cache entry of the build folder, empty where there is none.
+# Prints the value of a CMake cache entry of the build folder; nothing if there is none.
 farcull_cached() {
   sed -n "s/^$1:[^=]*=//p" "$farcull_root/build/CMakeCache.txt" 2>/dev/null || true
 }
 
-# Configures build/ as Release with the tests, unless it is so already; CMake itself notices changed
-# CMakeLists.txt.
+# Configures build/ as Release with the tests, unless that was done before. CMake itself notices a
+# CMakeLists.txt that changed.
 farcull_configure() {
   local build=$farcull_root/build
   local -a how=()
   if [[ -e $build/build.ninja || -e $build/Makefile ]]; then
-    # A folder that works keeps its generator.
+    # A configured folder keeps its generator.
     if [[ $(farcull_cached CMAKE_BUILD_TYPE) == Release &&
       $(farcull_cached FARCULL_TESTS) == ON ]]; then
       return 0
     fi
   else
-    # What an unfinished configuration remembers (a generator without its tool, say) must not bind
-    # this one.
+    # An unfinished configuration may have stored settings that do not work, such as a generator whose
+    # tool is missing.
     rm -rf "$build/CMakeCache.txt" "$build/CMakeFiles"
     if command -v ninja >/dev/null; then how=(-G Ninja); fi
   fi
@@ -150,15 +152,15 @@ farcull_configure() {
   fi
 }
 
-# farcull_progress JOBS LOG: reads the output of a build, from Ninja or make; lets through what
-# compilers and linkers say (stderr), and of the steps only every fifth part of the way, so that a
-# long build is not silent.
+# farcull_progress JOBS LOG: reads the output of a build by Ninja or make. It prints the messages of
+# compilers and linkers on stderr. Of the steps it prints one line for each fifth of the build, so that
+# a long build is not silent.
 farcull_progress() {
   local line percent said=-1
   local steps='^\[ *([0-9]+)(/([0-9]+)|%)\] (.*)$'
   while IFS= read -r line; do
     if [[ $line =~ $steps ]]; then
-      # The step that notes the commit runs in every build; it is no news.
+      # The step that stores the commit runs in every build, so it is not counted.
       [[ ${BASH_REMATCH[4]} == Building* || ${BASH_REMATCH[4]} == Linking* ]] || continue
       percent=${BASH_REMATCH[1]}
       if [[ -n ${BASH_REMATCH[3]} ]]; then percent=$((100 * percent / BASH_REMATCH[3])); fi
@@ -181,9 +183,8 @@ farcull_progress() {
   done
 }
 
-# farcull_build [TARGETS...]: brings build/ up to date, everything where no target is named. Prints
-# one line when there is nothing to do; otherwise how far it is, and what the compilers complain
-# about.
+# farcull_build [TARGETS...]: brings the targets in build/ up to date, or all targets if none is named.
+# It prints one line if there is nothing to do, else the progress and the messages of the compilers.
 farcull_build() {
   local build=$farcull_root/build started=$SECONDS jobs steps
   local -a what=()
@@ -208,8 +209,8 @@ farcull_build() {
   fi
 }
 
-# farcull_build_beside FOLDER "TARGETS" CMAKE-OPTIONS...: brings targets up to date in a folder
-# beside build/.
+# farcull_build_beside FOLDER "TARGETS" CMAKE-OPTIONS...: brings targets up to date in another build
+# folder.
 farcull_build_beside() {
   local build=$farcull_root/$1 log=$1/build.log started=$SECONDS jobs said
   local -a targets how=()
@@ -229,4 +230,7 @@ farcull_build_beside() {
   echo "build: ${targets[*]} done in $((SECONDS - started)) s (${log%/*}/)"
 }
 
-if [[ ${BASH_SOURCE[0]} == "$0" ]]; then farcull_setup; fi
+if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
+  farcull_packages+=("${farcull_test_packages[@]}")
+  farcull_setup
+fi

@@ -1,3 +1,4 @@
+// Ticks stand at 1, 2 or 5 times powers of ten, or at the values where these are powers of two.
 #include "experiments/report/axes.h"
 
 #include <fmt/format.h>
@@ -206,12 +207,6 @@ double Scale::place(double value) const {
   if (!std::isfinite(value)) return kNone;
   if (!logarithmic || value > 0) return value;
   return zero > 0 ? zero : kNone;
-}
-
-double Scale::place_bar(double value) const {
-  if (std::isnan(value)) return kNone;
-  if (logarithmic && value < from) return value <= 0 && zero > 0 ? zero : from;
-  return std::clamp(value, from, to);
 }
 
 std::size_t Scale::label_width() const {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/report/chapter.h"
+#include "experiments/report/chapters/chapter.h"
 
 namespace farcull {
 
@@ -22,8 +22,6 @@ struct Scale {
 
   /// Where a value is drawn; NaN where it has no place (0 on a logarithmic axis without zeros).
   double place(double value) const;
-  /// The same of an end of a bar: what lies below a logarithmic axis ends where the axis does.
-  double place_bar(double value) const;
   /// How many characters the longest label has.
   std::size_t label_width() const;
 };

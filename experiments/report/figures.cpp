@@ -1,66 +1,29 @@
+// Writes gnuplot scripts with every place, range and tick given, runs them, and mends the SVG.
 #include "experiments/report/figures.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 
-#include "core/error.h"
-#include "experiments/output.h"
-#include "experiments/report/axes.h"
+#include "core/base/error.h"
+#include "experiments/record/output.h"
+#include "experiments/report/figure_layout.h"
 #include "experiments/report/gnuplot.h"
 #include "experiments/report/html.h"
 #include "experiments/report/style.h"
+#include "experiments/system/output_file.h"
 
 namespace farcull {
 namespace {
 
-// Of text of kFigureText px, on average: names are drawn where they fit by this measure.
-constexpr double kCharacter = 7.3;
-constexpr double kLine = 19;
 constexpr const char* kFont = "farcull-font";  // replaced in the SVG by families
 constexpr const char* kFamilies =
     "Helvetica Neue, Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif";
-
-// In pixels from the top left corner.
-struct Box {
-  double left = 0, right = 0, top = 0, bottom = 0;
-};
-
-struct PlacedPanel {
-  Scale x, y;
-  Box box;
-  bool x_label = true, y_label = true;
-  double y_room = 0;  // from the axis to the middle of its label
-};
-
-struct Layout {
-  std::vector<PlacedPanel> panels;
-  double key_top = 0;
-  std::size_t key_columns = 1;
-  double height = 0;
-};
-
-std::size_t columns_for(const Figure& figure) {
-  const std::size_t panels = figure.panels.size();
-  if (panels <= 1) return 1;
-  if (panels != 3 && panels < 5) return 2;
-  // Three where every title fits above its panel.
-  return std::all_of(figure.panels.begin(), figure.panels.end(),
-                     [](const Panel& panel) {
-                       return kCharacter * static_cast<double>(characters(panel.title)) <
-                              kFigureWidth / 3.0 - 60;
-                     })
-             ? 3
-             : 2;
-}
-
-double plot_height(std::size_t columns) { return columns == 1 ? 300 : columns == 2 ? 215 : 150; }
 
 void check(const Figure& figure) {
   const auto require = [&](bool holds, const char* what) {
@@ -73,107 +36,8 @@ void check(const Figure& figure) {
   for (const Panel& panel : figure.panels) {
     for (const Series& series : panel.series) {
       require(series.x.size() == series.y.size(), "x and y differ in length");
-      require(series.lo.size() == series.hi.size(), "bars differ in length");
-      require(series.lo.empty() || series.lo.size() == series.y.size(), "not a bar for each y");
     }
   }
-}
-
-std::vector<double> values_along(const Panel& panel, bool horizontal) {
-  std::vector<double> out;
-  const auto add = [&out](const std::vector<double>& from) {
-    out.insert(out.end(), from.begin(), from.end());
-  };
-  for (const Series& series : panel.series) {
-    // A point that has no place on the other axis is still part of this one's range.
-    add(horizontal ? series.x : series.y);
-    if (!horizontal) {
-      for (const std::vector<double>* bars : {&series.lo, &series.hi}) {
-        // Bars down to 0 do not ask for a place for zeros.
-        for (const double value : *bars) {
-          if (!panel.y.logarithmic || value > 0) out.push_back(value);
-        }
-      }
-    }
-  }
-  for (const Mark& mark : panel.marks) {
-    if (mark.vertical == horizontal) out.push_back(mark.at);
-  }
-  return out;
-}
-
-Layout layout_of(const Figure& figure) {
-  Layout out;
-  const std::size_t count = figure.panels.size();
-  const std::size_t columns = columns_for(figure);
-  const std::size_t rows = (count + columns - 1) / columns;
-  const double high = plot_height(columns);
-  const double cell = static_cast<double>(kFigureWidth) / static_cast<double>(columns);
-  // Labels that a panel shares with the first of its row, or the last of its column, stand there.
-  const auto same = [&](auto label) {
-    return std::all_of(figure.panels.begin(), figure.panels.end(), [&](const Panel& panel) {
-      return label(panel) == label(figure.panels.front());
-    });
-  };
-  const bool one_x = same([](const Panel& p) { return p.x.label; });
-  const bool one_y = same([](const Panel& p) { return p.y.label; });
-  const bool titled = std::any_of(figure.panels.begin(), figure.panels.end(),
-                                  [](const Panel& p) { return !p.title.empty(); });
-
-  std::vector<double> left(columns, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Panel& panel = figure.panels[i];
-    PlacedPanel placed;
-    const double wide = cell - 70;
-    placed.x =
-        scale_of(panel.x, values_along(panel, true), static_cast<std::size_t>(wide / kCharacter));
-    placed.y = scale_of(panel.y, values_along(panel, false),
-                        static_cast<std::size_t>(8 * high / (2.1 * kLine)));
-    placed.x_label = !one_x || i + columns >= count;
-    placed.y_label = !one_y || i % columns == 0;
-    placed.y_room = kCharacter * static_cast<double>(placed.y.label_width()) + 17 + kLine / 2;
-    left[i % columns] =
-        std::max(left[i % columns], placed.y_room + (placed.y_label ? kLine / 2 : -kLine / 2) + 2);
-    out.panels.push_back(std::move(placed));
-  }
-  // The last label of an x axis reaches beyond it.
-  constexpr double kRight = 20;
-  double wide = kFigureWidth - kRight * static_cast<double>(columns);
-  for (const double l : left) wide -= l;
-  wide /= static_cast<double>(columns);
-
-  double top = 6;
-  for (std::size_t row = 0; row < rows; ++row) {
-    top += titled ? kLine + 5 : 4;
-    double x = 0;
-    bool labelled = false;
-    for (std::size_t column = 0; column < columns; ++column) {
-      const std::size_t i = row * columns + column;
-      x += left[column];
-      if (i < count) {
-        out.panels[i].box = {x, x + wide, top, top + high};
-        labelled = labelled || out.panels[i].x_label;
-      }
-      x += wide + kRight;
-    }
-    top += high + kLine + 6 + (labelled ? kLine : 0) + 10;
-  }
-
-  const std::vector<std::string> names = series_names(figure);
-  std::size_t longest = 1;
-  for (const std::string& name : names) longest = std::max(longest, characters(name));
-  const double entry = 52 + kCharacter * static_cast<double>(longest);
-  out.key_columns = std::clamp<std::size_t>(static_cast<std::size_t>((kFigureWidth - 20) / entry),
-                                            1, std::max<std::size_t>(names.size(), 1));
-  out.key_top = top + 4;
-  if (!names.empty()) {
-    const std::size_t lines = (names.size() + out.key_columns - 1) / out.key_columns;
-    // As even as it goes: four and three rather than six and one.
-    out.key_columns = (names.size() + lines - 1) / lines;
-    top = out.key_top + kLine * static_cast<double>(lines) + 6;
-  }
-  out.height = std::ceil(top);
-  return out;
 }
 
 class Script {
@@ -189,7 +53,7 @@ class Script {
     for (std::size_t i = 0; i < figure_.panels.size(); ++i) panel(i);
     line("unset multiplot");
     line("unset output");
-    return {script_, data_, static_cast<int>(layout_.height)};
+    return {script_, data_};
   }
 
  private:
@@ -263,8 +127,7 @@ class Script {
       const double y = layout_.key_top + kLine * (static_cast<double>(i / columns) + 0.5);
       const Series* series = first_of(names_[i]);
       const bool lines = series->style != Series::Style::points;
-      const bool dots =
-          series->style == Series::Style::lines_points || series->style == Series::Style::points;
+      const bool dots = series->style != Series::Style::lines;
       if (lines) {
         line(fmt::format(
             "set arrow from screen {0},{2} to screen {1},{2} nohead front dt {3} "
@@ -311,7 +174,7 @@ class Script {
   // Centred below and left of the panel, at places of our own: the plotter's depend on its fonts.
   void axis_labels(const Panel& panel, const PlacedPanel& placed) {
     constexpr const char* kText = "front textcolor rgb '#222222'";
-    const Box& box = placed.box;
+    const PlotBox& box = placed.box;
     if (placed.x_label && !panel.x.label.empty()) {
       line(fmt::format("set label {} at screen {},{} center {}", gnuplot_text(panel.x.label),
                        screen_x((box.left + box.right) / 2),
@@ -364,8 +227,7 @@ class Script {
     }
   }
 
-  // The block of a series in the data: x y, and lo hi where it has bars. Empty where no point of it
-  // has a place.
+  // Adds the block of a series to the data. False where no point of it has a place.
   bool add_data(const Series& series, const PlacedPanel& placed) {
     bool any = false;
     std::string block = fmt::format("# {}\n", gnuplot_text(series.name));
@@ -375,10 +237,6 @@ class Script {
       any = any || there;
       const auto number = [there](double v) { return there ? fmt::format("{:.17g}", v) : "NaN"; };
       block += number(x) + " " + number(y);
-      if (!series.lo.empty()) {
-        const double lo = placed.y.place_bar(series.lo[i]), hi = placed.y.place_bar(series.hi[i]);
-        block += " " + number(std::isnan(lo) ? y : lo) + " " + number(std::isnan(hi) ? y : hi);
-      }
       block += "\n";
     }
     if (!any) return false;
@@ -397,37 +255,17 @@ class Script {
     const std::string dots =
         fmt::format("pt {} ps {} lw 1.2 lc rgb '{}'", look.point, size_of(style), look.colour);
     std::vector<std::string> parts;
-    const bool bars = !series.lo.empty();
-    if (bars && series.style == Series::Style::lines) {
-      parts.push_back(
-          fmt::format("{} using 1:3:4 with filledcurves fs solid 0.18 noborder lc rgb '{}'", from,
-                      look.colour));
-    } else if (bars) {
-      parts.push_back(
-          fmt::format("{} using 1:2:3:4 with yerrorbars pt 0 lw 1 lc rgb '{}'", from, look.colour));
-    }
-    switch (series.style) {
-      case Series::Style::lines_points:
-        parts.push_back(from + " using 1:2 with lines " + lines);
-        parts.push_back(from + " using 1:2 with points " + dots);
-        break;
-      case Series::Style::lines:
-        parts.push_back(from + " using 1:2 with lines " + lines);
-        break;
-      case Series::Style::points:
-        parts.push_back(from + " using 1:2 with points " + dots);
-        break;
-      case Series::Style::steps:
-        parts.push_back(from + " using 1:2 with steps " + lines);
-        break;
-    }
+    if (series.style != Series::Style::points)
+      parts.push_back(from + " using 1:2 with lines " + lines);
+    if (series.style != Series::Style::lines)
+      parts.push_back(from + " using 1:2 with points " + dots);
     return fmt::format("{}", fmt::join(parts, ", \\\n  "));
   }
 
   void panel(std::size_t index) {
     const Panel& panel = figure_.panels[index];
     const PlacedPanel& placed = layout_.panels[index];
-    const Box& box = placed.box;
+    const PlotBox& box = placed.box;
     line(fmt::format("\n# panel {}", index + 1));
     line(fmt::format("set lmargin at screen {}", screen_x(box.left)));
     line(fmt::format("set rmargin at screen {}", screen_x(box.right)));

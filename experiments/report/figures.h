@@ -4,22 +4,16 @@
 
 #include <string>
 
-#include "experiments/report/chapter.h"
+#include "experiments/report/chapters/chapter.h"
 
 namespace farcull {
 
-/// What gnuplot is to run: NAME.gp, which reads NAME.dat in its own folder and writes NAME.svg, or
+/// The script for gnuplot: NAME.gp, which reads NAME.dat in its own folder and writes NAME.svg, or
 /// NAME.pdf with -e "kind='pdf'".
 struct FigureScript {
   std::string script;
   std::string data;
-  int height = 0;  // px, of kFigureWidth
 };
-
-/// Width of every figure in CSS pixels, and the size of its text: at the 170 mm that A4 leaves
-/// between margins a pixel is 0.67 pt, so that the text has 8.7 pt.
-constexpr int kFigureWidth = 720;
-constexpr int kFigureText = 13;
 
 /// Throws std::logic_error for a figure that breaks its header: no panel, lengths that differ, a
 /// name that is none of a file.

@@ -1,3 +1,4 @@
+// Starts gnuplot as a child process and takes any output of it for a failure.
 #include "experiments/report/gnuplot.h"
 
 #include <fcntl.h>
@@ -11,7 +12,7 @@
 #include <cstring>
 #include <vector>
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 extern char** environ;
 

@@ -1,7 +1,7 @@
+// Escapes what HTML and SVG take for markup.
 #include "experiments/report/html.h"
 
 #include <algorithm>
-#include <cstdint>
 
 namespace farcull {
 
@@ -50,23 +50,6 @@ std::string html_prose(const std::string& text) {
       }
     }
     from = to + 1;
-  }
-  return out;
-}
-
-std::string base64(const std::string& bytes) {
-  static constexpr char kDigits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t three = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      three = three << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      out += i + k <= bytes.size() ? kDigits[three >> (18 - 6 * k) & 63] : '=';
-    }
   }
   return out;
 }

@@ -11,6 +11,4 @@ std::string html_text(const std::string& text);
 /// The same, and what stands between backticks as code.
 std::string html_prose(const std::string& text);
 
-std::string base64(const std::string& bytes);
-
 }  // namespace farcull

@@ -1,3 +1,4 @@
+// Writes the same content as page.cpp as Markdown, with links to the files of figures.
 #include "experiments/report/markdown.h"
 
 #include <fmt/format.h>
@@ -5,9 +6,10 @@
 #include <algorithm>
 #include <map>
 
-#include "experiments/report/numbers.h"
-#include "experiments/shell_word.h"
-#include "experiments/tables.h"
+#include "experiments/report/chapters/numbers.h"
+#include "experiments/report/tables.h"
+#include "experiments/system/shell_word.h"
+#include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {
@@ -25,8 +27,9 @@ std::string row_of(const std::vector<std::string>& cells) {
 }
 
 std::string table_of(const DataTable& table) {
-  std::string out = row_of(table.columns) + "|";
-  for (const char side : table.alignment) out += side == 'r' ? "---:|" : "---|";
+  std::string out = row_of(names_of(table.columns)) + "|";
+  for (const Column& column : table.columns)
+    out += column.side == Column::Side::right ? "---:|" : "---|";
   out += "\n";
   for (const std::vector<std::string>& row : table.rows) out += row_of(row);
   return out + "\n";
@@ -43,8 +46,8 @@ std::string gaps_of(const StoredStudy& stored) {
 std::string broken_of(const Page& page) {
   std::vector<std::string> out;
   for (const DrawnChapter& drawn : page.chapters) {
-    for (const std::string& finding : drawn.chapter.findings) {
-      if (is_broken(finding)) out.push_back(drawn.chapter.title + ": " + finding);
+    for (const Finding& finding : drawn.chapter.findings) {
+      if (is_broken(finding)) out.push_back(drawn.chapter.title + ": " + printed(finding));
     }
   }
   if (out.empty()) return {};
@@ -125,17 +128,19 @@ std::string page_markdown(const Page& page, const std::string& folder) {
     out += fmt::format("## {}. {}\n\n{}\n\n", ++section, markdown_prose(chapter.title),
                        markdown_prose(chapter.question));
     out += gaps_of(drawn.stored);
-    out += bullets(chapter.findings);
+    std::vector<std::string> findings;
+    for (const Finding& finding : chapter.findings) findings.push_back(printed(finding));
+    out += bullets(findings);
     for (const DrawnPicture& picture : drawn.pictures) {
       if (picture.png.empty()) {
         out += fmt::format("A picture ({}) is left out: {}\n\n",
-                           markdown_code("farcull picture " + picture.picture.command),
+                           markdown_code(command_of(picture.picture.arguments)),
                            markdown_prose(sentence(picture.left_out)));
         continue;
       }
       out += fmt::format("![{0}](pictures/{1}.png)\n\n**Figure {2}.** {0} {3}\n\n",
                          markdown_prose(sentence(picture.picture.caption)), picture.picture.name,
-                         ++figure, markdown_code("farcull picture " + picture.picture.command));
+                         ++figure, markdown_code(command_of(picture.picture.arguments)));
     }
     for (const Figure& f : chapter.figures) {
       out += fmt::format("![{0}](figures/{1}.svg)\n\n**Figure {2}. {3}** {4}\n\n",

@@ -1,3 +1,4 @@
+// Writes the page from top to bottom: broken promises first, then a section for each chapter.
 #include "experiments/report/page.h"
 
 #include <fmt/format.h>
@@ -6,12 +7,14 @@
 #include <map>
 #include <set>
 
+#include "core/base/base64.h"
+#include "experiments/record/tables.h"
+#include "experiments/report/chapters/numbers.h"
 #include "experiments/report/figures.h"
 #include "experiments/report/html.h"
-#include "experiments/report/numbers.h"
 #include "experiments/report/page_style.h"
 #include "experiments/report/tables.h"
-#include "experiments/tables.h"
+#include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {
@@ -92,10 +95,10 @@ class Writer {
   bool broken() {
     std::string items;
     for (const DrawnChapter& c : page_.chapters) {
-      for (const std::string& finding : c.chapter.findings) {
+      for (const Finding& finding : c.chapter.findings) {
         if (!is_broken(finding)) continue;
         items += fmt::format("<li><a href=\"#{}\">{}</a>: {}</li>\n", c.chapter.study,
-                             html_text(c.chapter.title), html_prose(sentence(finding)));
+                             html_text(c.chapter.title), html_prose(sentence(printed(finding))));
       }
     }
     if (items.empty()) return false;
@@ -147,7 +150,7 @@ class Writer {
       const auto first = std::find_if_not(findings.begin(), findings.end(), is_broken);
       if (first == findings.end()) continue;
       items += fmt::format("<li><a href=\"#{}\">{}</a>: {}</li>\n", c.chapter.study,
-                           html_text(c.chapter.title), html_prose(sentence(*first)));
+                           html_text(c.chapter.title), html_prose(sentence(first->text)));
     }
     if (!items.empty()) out_ += "<ul class=\"findings\">\n" + items + "</ul>\n";
     out_ += "</section>\n";
@@ -170,9 +173,8 @@ class Writer {
     state(drawn.stored);
     if (!chapter.findings.empty()) {
       out_ += "<h3>What it shows</h3>\n<ul>\n";
-      for (const std::string& finding : chapter.findings) {
-        add("<li>{}</li>", html_prose(sentence(finding)));
-      }
+      for (const Finding& finding : chapter.findings)
+        add("<li>{}</li>", html_prose(sentence(printed(finding))));
       out_ += "</ul>\n";
     }
     for (const DrawnPicture& picture : drawn.pictures) show(picture);
@@ -190,7 +192,7 @@ class Writer {
         html_text(chapter.command), grid_text(drawn.stored), chapter.study, chapter.study);
   }
 
-  // What is missing, before anything is claimed; why points were left out is among the limits.
+  // Missing points, before anything is claimed; why points were left out is among the limits.
   void state(const StoredStudy& stored) {
     const std::size_t points = stored.declaration.points.size();
     if (!stored.complete()) {
@@ -214,7 +216,7 @@ class Writer {
   }
 
   void show(const DrawnPicture& drawn) {
-    const std::string command = "farcull picture " + drawn.picture.command;
+    const std::string command = command_of(drawn.picture.arguments);
     if (drawn.png.empty()) {
       add("<p class=\"note\" role=\"note\">A picture (<code>{}</code>) is left out: {}</p>",
           html_text(command), html_text(sentence(drawn.left_out)));
@@ -222,7 +224,9 @@ class Writer {
     }
     ++figure_;
     add("<figure id=\"pic-{}\">\n<img src=\"data:image/png;base64,{}\" alt=\"{}\">",
-        drawn.picture.name, base64(drawn.png), html_text(drawn.picture.caption));
+        drawn.picture.name,
+        to_base64({reinterpret_cast<const std::uint8_t*>(drawn.png.data()), drawn.png.size()}),
+        html_text(drawn.picture.caption));
     add("<figcaption><strong>Figure {}.</strong> {} <span class=\"files\"><code>{}</code> <a "
         "href=\"pictures/{}.png\">PNG</a></span></figcaption>\n</figure>",
         figure_, html_prose(sentence(drawn.picture.caption)), html_text(command),

@@ -1,3 +1,5 @@
+// Reads the store, makes the chapters, draws them, and writes all files into a folder that appears
+// at once.
 #include "experiments/report/report.h"
 
 #include <fcntl.h>
@@ -19,15 +21,17 @@
 #include <sstream>
 
 #include "commit.h"
-#include "core/error.h"
-#include "experiments/output.h"
+#include "core/base/error.h"
+#include "experiments/record/output.h"
+#include "experiments/report/chapters/chapters.h"
+#include "experiments/report/chapters/rows.h"
 #include "experiments/report/figures.h"
 #include "experiments/report/gnuplot.h"
 #include "experiments/report/markdown.h"
 #include "experiments/report/pictures.h"
-#include "experiments/report/rows.h"
 #include "experiments/report/tables.h"
 #include "experiments/studies/run_studies.h"
+#include "experiments/system/output_file.h"
 
 namespace farcull {
 namespace {
@@ -38,8 +42,8 @@ volatile std::sig_atomic_t signalled = 0;
 
 extern "C" void note_signal(int signal) { signalled = signal; }
 
-// While it lives, signals that would end the program are noted, and finish() ends it by them once
-// what was half-done is taken away.
+// While it lives, signals that would end the program are only noted. The destructor then ends the
+// program by them, after the unfinished folder is removed.
 class Signals {
  public:
   Signals() {
@@ -82,8 +86,8 @@ bool is_report(const std::string& folder) {
 
 constexpr const char* kMarker = ".unfinished";
 
-// Opens the marker of a half-made report and locks it; -1: there is none, or who makes it lives. A
-// lock ends with its process, however that ends.
+// Opens the marker of an unfinished report and locks it. -1: there is none, or the process that
+// makes the report still runs. A lock ends with its process, however that ends.
 int lock_marker(const std::string& path, int flags) {
   const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | flags, 0666);
   if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) == 0) return file;
@@ -91,8 +95,9 @@ int lock_marker(const std::string& path, int flags) {
   return -1;
 }
 
-// Takes away what killed reports left beside the place: folders named like a workshop that hold its
-// marker, which nobody has locked, or an earlier report that a new one had just replaced.
+// Removes folders that killed reports left beside the place: those named like an UnfinishedFolder
+// that hold a marker which nobody has locked, or an earlier report that a new one had just
+// replaced.
 void remove_leftovers(const std::string& place) {
   const fs::path whole(place);
   const std::string start = whole.filename().string() + ".part-";
@@ -114,11 +119,11 @@ void remove_leftovers(const std::string& place) {
   }
 }
 
-// A folder beside the report in which it is made; taken away unless it is put in its place, and by
-// the next report where the process was killed.
-class Workshop {
+// The folder beside the report in which the report is made. It is removed unless publish() puts it
+// in place; where the process was killed the next report removes it.
+class UnfinishedFolder {
  public:
-  explicit Workshop(std::string place) : place_(std::move(place)) {
+  explicit UnfinishedFolder(std::string place) : place_(std::move(place)) {
     remove_leftovers(place_);
     path_ = place_ + ".part-XXXXXX";
     const auto refuse = [&] {
@@ -126,23 +131,23 @@ class Workshop {
                   "use a folder with room that you may write to");
     };
     if (::mkdtemp(path_.data()) == nullptr) refuse();
-    // It gets its name when it is locked, so that nobody sees it without its lock.
+    // The marker gets its name when it is locked, so that no process sees it without its lock.
     const std::string marker = path_ + "/" + kMarker;
     marker_ = lock_marker(marker + "-new", O_CREAT | O_EXCL);
     if (marker_ < 0 || std::rename((marker + "-new").c_str(), marker.c_str()) != 0) {
       const int code = errno;
-      take_away();
+      remove();
       errno = code;
       refuse();
     }
-    // mkdtemp keeps others out, which a folder of results does not.
+    // mkdtemp denies access to other users, which a folder of results does not.
     const mode_t mask = ::umask(0);
     ::umask(mask);
     ::chmod(path_.c_str(), 0777 & ~mask);
   }
-  ~Workshop() { take_away(); }
-  Workshop(const Workshop&) = delete;
-  Workshop& operator=(const Workshop&) = delete;
+  ~UnfinishedFolder() { remove(); }
+  UnfinishedFolder(const UnfinishedFolder&) = delete;
+  UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
 
   std::string folder(const std::string& name) const {
     const std::string out = path_ + "/" + name;
@@ -154,19 +159,19 @@ class Workshop {
   }
   const std::string& path() const { return path_; }
 
-  void put() {
+  void publish() {
     exchange();
     ::unlink((place_ + "/" + kMarker).c_str());
   }
 
  private:
-  void take_away() {
+  void remove() {
     std::error_code ignored;
     fs::remove_all(path_, ignored);
     if (marker_ >= 0) ::close(marker_);
   }
 
-  // One step for all who look: what was there is what the destructor takes away.
+  // Exchanges the two folders in one step; the destructor removes the earlier report.
   void exchange() {
     if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, place_.c_str(), RENAME_NOREPLACE) == 0 ||
         (errno == EEXIST &&
@@ -207,7 +212,7 @@ std::string now() {
                      utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec);
 }
 
-// In the order of studies(), those of other programs last.
+// In the order of studies(), names that this program does not have last.
 std::vector<std::string> in_order(std::vector<std::string> names) {
   const auto place = [](const std::string& name) {
     const auto& all = studies();
@@ -221,11 +226,11 @@ std::vector<std::string> in_order(std::vector<std::string> names) {
 
 class Reporter {
  public:
-  Reporter(const ReportRequest& request, const Workshop& workshop)
+  Reporter(const ReportRequest& request, const UnfinishedFolder& unfinished)
       : request_(request),
-        root_(workshop.path()),
-        figures_(workshop.folder("figures")),
-        tables_(workshop.folder("tables")) {}
+        root_(unfinished.path()),
+        figures_(unfinished.folder("figures")),
+        tables_(unfinished.folder("tables")) {}
 
   void add(StoredStudy stored) {
     DrawnChapter drawn;
@@ -288,11 +293,11 @@ class Reporter {
     const std::string path = folder + "/" + picture.name + ".png";
     try {
       if (!request_.draw_picture) throw Error("picture", "no device was asked", "");
-      const std::vector<PanelResult> panels = request_.draw_picture(picture.command, path);
+      const std::vector<PanelResult> panels = request_.draw_picture(picture.arguments, path);
       out.png = content_of(path);
-      for (const std::string& finding : add_counts(out.picture, panels)) {
+      for (const Finding& finding : add_counts(out.picture, panels)) {
         chapter.findings.push_back(finding);
-        summary_.broken.push_back(finding);
+        summary_.broken.push_back(printed(finding));
       }
       ++summary_.pictures;
     } catch (const Error& error) {
@@ -349,8 +354,8 @@ ReportSummary write_report(const ReportRequest& request) {
   require_gnuplot();
 
   const Signals signals;
-  Workshop workshop(place);
-  Reporter reporter(request, workshop);
+  UnfinishedFolder unfinished(place);
+  Reporter reporter(request, unfinished);
   reporter.page.store = path;
   reporter.page.commit = FARCULL_COMMIT;
   reporter.page.written = now();
@@ -358,7 +363,7 @@ ReportSummary write_report(const ReportRequest& request) {
   for (StoredStudy& stored : measured) reporter.add(std::move(stored));
   ReportSummary summary = reporter.finish();
   Signals::check();
-  workshop.put();
+  unfinished.publish();
   summary.folder = place;
   return summary;
 }

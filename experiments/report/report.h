@@ -1,21 +1,20 @@
-// `farcull report`: what a store holds, as figures, tables and one page.
+// `farcull report`: writes the content of a store as figures, tables and one page.
 #pragma once
 
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "experiments/picture.h"
+#include "experiments/method/run.h"
+#include "experiments/picture/panel.h"
 #include "experiments/report/page.h"
-#include "experiments/run.h"
 
 namespace farcull {
 
-/// Draws the picture of these arguments of farcull picture into a PNG at the path, and says what
-/// its panels show, in their order. Throws Error where it cannot (no device, no meshes): the page
-/// then says why it is left out.
-using PictureMaker =
-    std::function<std::vector<PanelResult>(const std::string& arguments, const std::string& path)>;
+/// Writes the picture as a PNG to the path and returns its panels in their order. Throws Error
+/// where it cannot (no device, no meshes): the page then says why the picture is left out.
+using PictureMaker = std::function<std::vector<PanelResult>(const PictureArguments& arguments,
+                                                            const std::string& path)>;
 
 struct ReportRequest {
   std::string folder;  // of the store

@@ -1,3 +1,4 @@
+// Finds the method in the name of a series, and gives the others free colours in turn.
 #include "experiments/report/style.h"
 
 #include <algorithm>
@@ -8,8 +9,8 @@
 namespace farcull {
 namespace {
 
-// What a name contains, lower-case, with blanks for all that is no letter or digit; the first that
-// fits counts, so the longer ones come first.
+// The words that a name contains, lower-case, with blanks for all that is no letter or digit; the
+// first that fits counts, so the longer ones come first.
 struct Known {
   const char* words;
   SeriesStyle style;

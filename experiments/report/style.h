@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/report/chapter.h"
+#include "experiments/report/chapters/chapter.h"
 
 namespace farcull {
 

@@ -1,3 +1,4 @@
+// Writes tables as CSV, HTML and LaTeX, with the escapes of each.
 #include "experiments/report/tables.h"
 
 #include <fmt/format.h>
@@ -44,7 +45,7 @@ std::string value_text(const nlohmann::ordered_json& values, const std::string& 
   return at->is_string() ? at->get<std::string>() : at->dump();
 }
 
-// What pdfLaTeX's text fonts lack, as mathematics.
+// Signs that pdfLaTeX's text fonts lack, as mathematics.
 struct Sign {
   const char* text;
   const char* latex;
@@ -58,19 +59,26 @@ constexpr Sign kSigns[] = {
 
 }  // namespace
 
+std::vector<std::string> names_of(const std::vector<Column>& columns) {
+  std::vector<std::string> out;
+  for (const Column& column : columns) out.push_back(column.name);
+  return out;
+}
+
 std::string table_csv(const DataTable& table) {
-  std::string out = csv_line(table.columns);
+  std::string out = csv_line(names_of(table.columns));
   for (const std::vector<std::string>& row : table.rows) out += csv_line(row);
   return out;
 }
 
 std::string table_html(const DataTable& table) {
   const auto alignment = [&table](std::size_t column) {
-    return column < table.alignment.size() && table.alignment[column] == 'r' ? " class=\"r\"" : "";
+    return table.columns[column].side == Column::Side::right ? " class=\"r\"" : "";
   };
   std::string out = "<table>\n<thead><tr>";
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    out += fmt::format("<th scope=\"col\"{}>{}</th>", alignment(i), html_prose(table.columns[i]));
+    out +=
+        fmt::format("<th scope=\"col\"{}>{}</th>", alignment(i), html_prose(table.columns[i].name));
   }
   out += "</tr></thead>\n<tbody>\n";
   for (const std::vector<std::string>& row : table.rows) {
@@ -136,10 +144,13 @@ std::string table_latex(const DataTable& table) {
       out += (i > 0 ? " & " : "") + latex_text(cells[i]);
     return out + " \\\\\n";
   };
+  std::string alignment;
+  for (const Column& column : table.columns)
+    alignment += column.side == Column::Side::right ? 'r' : 'l';
   std::string out = "% \\usepackage{booktabs}\n\\begin{table}\n  \\centering\n  \\caption{" +
                     latex_text(table.caption) + ".}\n  \\label{tab:" + table.name +
-                    "}\n  \\begin{tabular}{" + table.alignment + "}\n    \\toprule\n    " +
-                    line(table.columns) + "    \\midrule\n";
+                    "}\n  \\begin{tabular}{" + alignment + "}\n    \\toprule\n    " +
+                    line(names_of(table.columns)) + "    \\midrule\n";
   for (const std::vector<std::string>& row : table.rows) out += "    " + line(row);
   return out + "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n";
 }

@@ -3,9 +3,12 @@
 
 #include <string>
 
-#include "experiments/report/chapter.h"
+#include "experiments/report/chapters/chapter.h"
 
 namespace farcull {
+
+/// The names of the columns.
+std::vector<std::string> names_of(const std::vector<Column>& columns);
 
 /// RFC 4180: cells in quotes where they have to be, a header row. Numbers are as people read them.
 std::string table_csv(const DataTable& table);
@@ -20,7 +23,7 @@ std::string table_html(const DataTable& table);
 /// times by their names, the device, the run, and why nothing was measured.
 std::string rows_csv(const StoredStudy& stored);
 
-/// Plain text in LaTeX: what it takes for commands is escaped, signs that no text font has become
+/// Plain text in LaTeX: characters of commands are escaped, signs that no text font has become
 /// mathematics.
 std::string latex_text(const std::string& text);
 

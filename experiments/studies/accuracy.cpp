@@ -1,16 +1,19 @@
 // The study "accuracy": what every method misses, by the number of pixels.
-#include "experiments/studies/lab.h"
 #include "experiments/studies/points.h"
+#include "experiments/studies/run_point.h"
+#include "experiments/studies/study.h"
 
 namespace farcull {
 namespace {
+
+using enum Method;
 
 struct AccuracyScene {
   const char* name;
   bool self = false;  // one object against itself, which the set methods but S-CULLIDE do not do
 };
 
-// Of small triangles, or few: at 4096 px large ones take a software device minutes.
+// Scenes of small triangles, or few: at 4096 px large ones take a software device minutes.
 std::vector<AccuracyScene> scenes_of(bool quick) {
   if (quick) return {{"two-tori"}, {"needles:60"}, {"mannequin-devil", true}};
   return {{"two-tori"}, {"needles:60"}, {"field"}, {"two-bunnies"}, {"mannequin-devil", true}};
@@ -25,30 +28,31 @@ int most_published(const std::string& offset, bool quick) {
 std::vector<Point> grid(const GridChoice& choice) {
   std::vector<Point> out;
   for (const AccuracyScene& scene : scenes_of(choice.quick)) {
-    const int most = scene.self && choice.quick ? 1024 : 4096;  // S-CULLIDE takes a step a triangle
+    const int most =
+        scene.self && choice.quick ? 1024 : 4096;  // S-CULLIDE takes a step per triangle
+    const NamedScene named{scene.name};
     for (int resolution = 64; resolution <= most; resolution *= 2) {
       if (scene.self) {
-        out.push_back(cullide_point(scene.name, "s-cullide", resolution));
+        out.push_back(cullide_point(named, s_cullide, resolution));
       } else {
-        out.push_back(cullide_point(scene.name, "cullide", resolution));
-        out.push_back(cullide_point(scene.name, "quick-cullide", resolution));
+        out.push_back(cullide_point(named, cullide, resolution));
+        out.push_back(cullide_point(named, quick_cullide, resolution));
         for (const std::string offset : {"obb", "exact"}) {
-          out.push_back(far_point(scene.name, offset, "budget", resolution));
+          out.push_back(far_point(named, offset, kBudgetRadius, resolution));
           if (resolution <= most_published(offset, choice.quick)) {
-            out.push_back(far_point(scene.name, offset, "published", resolution));
+            out.push_back(far_point(named, offset, kPublishedRadius, resolution));
           }
         }
       }
-      out.push_back(plain_point(scene.name, "far-pairs", resolution));
+      out.push_back(plain_point(named, far_pairs, resolution));
     }
-    out.push_back(plain_point(scene.name, "far-pairs"));
+    out.push_back(plain_point(named, far_pairs));
   }
   return out;
 }
 
-Measurement measure(const Point& point, Lab& lab) {
-  lab.scene(point.scene);
-  return measure_run(point, lab);
+PointResult measure(const Point& point, Lab& lab) {
+  return measure_run(std::get<RunPoint>(point), lab);
 }
 
 }  // namespace

@@ -3,17 +3,23 @@
 //
 // Govindaraju, Lin and Manocha, Fast and Reliable Collision Culling using Graphics Hardware, TVCG
 // 2006, section 6 (FAR against I-COLLIDE); Quick-CULLIDE, IEEE VR 2005 (against CULLIDE).
-#include "experiments/studies/lab.h"
+#include <utility>
+
+#include "experiments/studies/points.h"
+#include "experiments/studies/run_point.h"
+#include "experiments/studies/study.h"
 
 namespace farcull {
 namespace {
+
+using enum Method;
 
 struct MovingCase {
   const char* scene;
   bool self = false;  // its objects are tested against themselves as well, which few methods do
 };
 
-// All scenes that move, as large as the methods that draw can take on a software device.
+// All scenes that move, no larger than the methods that draw can take on a software device.
 const std::vector<MovingCase>& cases(bool quick) {
   static const std::vector<MovingCase> full = {
       {"two-spheres"},     {"needles:60"},  {"crowd:60"},           {"field:4000"},
@@ -23,45 +29,17 @@ const std::vector<MovingCase>& cases(bool quick) {
   return quick ? few : full;
 }
 
-long frames_of(bool quick) { return quick ? 4 : 12; }
-
 constexpr int kResolution = 256;
 
-std::vector<Point> methods_at(const MovingCase& moving, long frame) {
-  std::vector<Point> out;
-  const auto add = [&](const char* method, const char* offset, bool drawn) {
-    Point point;
-    point.scene = moving.scene;
-    point.method = method;
-    point.offset = offset;
-    if (drawn) {
-      const bool far = point.method == "far";
-      if (far) point.radius = "budget";
-      point.depth_format = "float32";
-      point.depth_mode = far ? "fragment" : "fixed";
-      point.resolution = kResolution;
-    }
-    point.frame = frame;
-    out.push_back(std::move(point));
-  };
-  add("i-collide", "", false);
+void add_methods(std::vector<Point>& out, const MovingCase& moving, const MotionFrame& frame) {
+  out.push_back(plain_point(frame, i_collide));
   if (!moving.self) {
-    add("far", "obb", true);
-    add("far", "exact", true);
-    add("cullide", "", true);
-    add("quick-cullide", "", true);
+    for (const char* offset : {"obb", "exact"})
+      out.push_back(far_point(frame, offset, kBudgetRadius, kResolution));
+    for (const Method method : {cullide, quick_cullide})
+      out.push_back(cullide_point(frame, method, kResolution));
   }
-  add("far-pairs", "", false);
-  return out;
-}
-
-// The number of frames of the grid that a point is of: the same motion in more frames moves less
-// from one to the next.
-long frames_with(const std::string& scene) {
-  for (const MovingCase& moving : cases(true)) {
-    if (scene == moving.scene) return frames_of(true);
-  }
-  return frames_of(false);
+  out.push_back(plain_point(frame, far_pairs));
 }
 
 }  // namespace
@@ -75,16 +53,15 @@ Study efficiency_study() {
       "does Quick-CULLIDE draw and ask less than CULLIDE, frame by frame over scenes that move?";
   study.grid = [](const GridChoice& choice) {
     std::vector<Point> out;
+    const long frames = choice.quick ? 4 : 12;
     for (const MovingCase& moving : cases(choice.quick)) {
-      for (long frame = 0; frame < frames_of(choice.quick); ++frame) {
-        for (Point& point : methods_at(moving, frame)) out.push_back(std::move(point));
-      }
+      for (long frame = 0; frame < frames; ++frame)
+        add_methods(out, moving, {moving.scene, frame, frames});
     }
     return out;
   };
   study.measure = [](const Point& point, Lab& lab) {
-    lab.scene(point.scene, point.frame, frames_with(point.scene));
-    return measure_run(point, lab);
+    return measure_run(std::get<RunPoint>(point), lab);
   };
   return study;
 }

@@ -1,13 +1,14 @@
+// Counts, on the cores of the CPU, the pixel centres that proxies cover.
 #include "experiments/studies/fragments.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/fatten.h"
-#include "core/parallel.h"
-#include "core/plan.h"
-#include "core/view.h"
-#include "offsets/exact.h"
+#include "core/base/parallel.h"
+#include "core/canvas/fatten.h"
+#include "core/view/regions.h"
+#include "core/view/view.h"
+#include "offsets/minkowski.h"
 #include "offsets/obb.h"
 
 namespace farcull {
@@ -39,7 +40,7 @@ Span span_at(const std::array<float, 8>& corners, double y) {
   return out;
 }
 
-// Of the elements from .. to - 1. Pixel centres are the halves between the window's borders.
+// Counts the elements from .. to - 1. Pixel centres are the halves between the window's borders.
 Fragments count_in(const Drawables& drawables, const SolidProgram& program, const Window& window,
                    std::size_t from, std::size_t to) {
   Fragments out;
@@ -69,17 +70,17 @@ Fragments count_in(const Drawables& drawables, const SolidProgram& program, cons
 
 }  // namespace
 
-Fragments count_fragments(const Scene& scene, const RunRecord& record, const std::string& offset) {
-  const Fattener fattener = offset == "exact" ? exact_fattener() : obb_fattener();
-  const Plan plan = make_plan(scene);
+Fragments count_fragments(const Scene& scene, const Record& record, const std::string& offset) {
+  const Fattener fattener = offset == "exact" ? minkowski_fattener() : obb_fattener();
+  const Regions regions = find_regions(scene);
   const std::vector<View> views = parse_views(views_of(record.options));
   Fragments sum;
-  for (std::size_t v = 0; v < views.size() && v < record.views.size(); ++v) {
-    const auto window = fit_window(views[v], plan.regions, resolution_of(record.options));
+  for (std::size_t v = 0; v < views.size() && v < record.found.views().size(); ++v) {
+    const auto window = fit_window(views[v], regions.places, resolution_of(record.options));
     if (!window) continue;
     FattenCounts counts;
-    const Drawables drawables =
-        fatten(scene, plan.triangles, *window, fattener, record.views[v].radius_px, counts);
+    const Drawables drawables = fatten(scene, regions.triangles, *window, fattener,
+                                       record.found.views()[v].radius_px, counts);
     const std::size_t chunks = chunks_for(drawables.elements(), 256);
     std::vector<Fragments> parts(chunks);
     for_chunks(drawables.elements(), chunks,

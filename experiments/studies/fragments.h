@@ -1,11 +1,11 @@
-// How many fragments an offset makes of a scene.
+// The number of fragments that an offset makes of a scene.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
-#include "core/scene.h"
-#include "experiments/run.h"
+#include "core/scene/scene.h"
+#include "experiments/method/run.h"
 
 namespace farcull {
 
@@ -18,11 +18,11 @@ struct Fragments {
   std::uint64_t elements = 0;  // proxies drawn
 };
 
-/// Counted on the CPU from the record's views and radii and the function that the shaders run
-/// (SolidProgram::interval), so that no device has a say but through its budget. The rasterizer's
-/// snapping of corners is not in it: a pixel centre within a snap of a proxy's edge may be counted
-/// otherwise than it is drawn. offset: obb or exact, by itself, whatever a run tries before it.
-/// Precondition: record is of `far` with fragment depth on this scene.
-Fragments count_fragments(const Scene& scene, const RunRecord& record, const std::string& offset);
+/// Counts on the CPU, from the record's views and radii and the function that the shaders run
+/// (SolidProgram::interval), so that the count depends on the device through its budget alone. The
+/// rasterizer's snapping of corners is left out: a pixel centre within a snap of a proxy's edge may
+/// be counted otherwise than it is drawn. offset: obb or exact, by itself, whatever a run tries
+/// before it. Precondition: record is of `far` with fragment depth on this scene.
+Fragments count_fragments(const Scene& scene, const Record& record, const std::string& offset);
 
 }  // namespace farcull

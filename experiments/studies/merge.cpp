@@ -1,3 +1,4 @@
+// Reads all shards, refuses what does not fit together, and writes one store.
 #include "experiments/studies/merge.h"
 
 #include <fmt/format.h>
@@ -10,14 +11,14 @@
 #include <set>
 #include <system_error>
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace farcull {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A file that is taken away again unless it was put in its place.
+// A file that is removed again unless it was put in its place.
 class Part {
  public:
   explicit Part(std::string path) : path_(std::move(path)) { remove(); }
@@ -41,7 +42,8 @@ class Part {
   std::string path_;
 };
 
-// While it lives, signals that would end the program wait, so that no half of a file stays.
+// While it lives, signals that would end the program are blocked, so that no half-written file is
+// left.
 class Uninterrupted {
  public:
   Uninterrupted() {
@@ -73,7 +75,7 @@ Source read(const std::string& path) {
 
 const char* const kMeasureAgain = "measure it again as the others were";
 
-// Of the program that measured the rows of a study.
+// Commits of the programs that measured the rows of a study.
 std::set<std::string> commits_of(const Source& source, std::size_t study) {
   std::set<std::int64_t> used;
   for (const Row& row : source.studies[study].rows) used.insert(row.run);
@@ -84,7 +86,7 @@ std::set<std::string> commits_of(const Source& source, std::size_t study) {
   return out;
 }
 
-// That both speak of the same studies, grids and program.
+// Refuses two stores whose studies, grids or programs differ.
 void require_alike(const Source& first, const Source& other) {
   const auto refuse = [&](const std::string& what) {
     throw Error(other.path, what + " than " + first.path, kMeasureAgain);
@@ -108,7 +110,7 @@ void require_alike(const Source& first, const Source& other) {
   }
 }
 
-// That every shard is there once, and every point has one row.
+// Refuses a shard that is missing or there twice, and a point without exactly one row.
 void require_whole(const std::vector<Source>& sources) {
   for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {
     const Declaration& all = sources.front().studies[i].declaration;

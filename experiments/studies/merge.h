@@ -1,4 +1,4 @@
-// Shards of studies, each measured into a file of its own, made one.
+// Joins shards of studies, each measured into a file of its own.
 #pragma once
 
 #include <string>

@@ -1,12 +1,15 @@
 // The study "offsets": three ways to bound what a triangle may touch in a pixel.
 #include "experiments/studies/fragments.h"
-#include "experiments/studies/lab.h"
 #include "experiments/studies/points.h"
+#include "experiments/studies/run_point.h"
+#include "experiments/studies/study.h"
 
 namespace farcull {
 namespace {
 
-constexpr int kRepeat = 3;  // the median of their times
+using enum Method;
+
+constexpr int kRepeat = 3;
 
 std::vector<Point> grid(const GridChoice& choice) {
   const std::vector<const char*> scenes =
@@ -17,35 +20,38 @@ std::vector<Point> grid(const GridChoice& choice) {
   std::vector<Point> out;
   for (const char* scene : scenes) {
     for (const int resolution : resolutions) {
-      out.push_back(far_point(scene, "obb", "budget", resolution));
-      out.push_back(far_point(scene, "exact", "budget", resolution));
-      out.push_back(plain_point(scene, "far-pairs", resolution));
+      const NamedScene named{scene};
+      for (const char* offset : {"obb", "exact"})
+        out.push_back(repeated(far_point(named, offset, kBudgetRadius, resolution), kRepeat));
+      out.push_back(repeated(plain_point(named, far_pairs, resolution), kRepeat));
     }
   }
   return out;
 }
 
-Measurement measure(const Point& point, Lab& lab) {
-  const Scene& scene = lab.scene(point.scene);
-  RunRecord record;
-  Measurement out = measure_run(point, lab, kRepeat, &record);
-  if (point.method == "far") {
-    const Fragments fragments = count_fragments(scene, record, point.offset);
-    out.counts["elements"] = fragments.elements;
-    out.counts["covered"] = fragments.covered;
-    out.counts["fragments"] = fragments.solid;
-    return out;
-  }
-  std::uint64_t entries = 0, tests = 0, looked = 0;
-  for (const PairView& view : record.pair_views) {
+FragmentCounts fragments_of(const std::vector<PairView>& views) {
+  FragmentCounts out{.tests = 0, .views = 0};
+  for (const PairView& view : views) {
     if (!view.looked) continue;
-    ++looked;
-    entries += view.counts.entries;
-    tests += view.counts.tests;
+    ++*out.views;
+    out.fragments += view.counts.entries;
+    *out.tests += view.counts.tests;
   }
-  out.counts["fragments"] = entries;
-  out.counts["tests"] = tests;
-  out.counts["views"] = looked;
+  return out;
+}
+
+PointResult measure(const Point& of, Lab& lab) {
+  const RunPoint& point = std::get<RunPoint>(of);
+  Record record;
+  PointResult out = measure_run(point, lab, &record);
+  FragmentCounts& counts = std::get<RunCounts>(out.counts).fragments.emplace();
+  if (point.method == far) {
+    const Fragments fragments = count_fragments(lab.current(), record, point.offset);
+    counts = {
+        .elements = fragments.elements, .covered = fragments.covered, .fragments = fragments.solid};
+  } else {
+    counts = fragments_of(record.found.pair_views());
+  }
   return out;
 }
 

@@ -1,47 +1,47 @@
-// The points that several studies put into their grids.
+// The points that several studies put into their grids, each measured once unless `repeat` is set.
 #pragma once
 
 #include <string>
+#include <utility>
 
-#include "experiments/studies/study.h"
+#include "experiments/studies/point.h"
 
 namespace farcull {
 
-/// FAR at a resolution, with fragment depth in 32 bits. offset: obb or exact; radius: as --radius.
-inline Point far_point(const std::string& scene, const std::string& offset,
-                       const std::string& radius, int resolution) {
-  return {.scene = scene,
-          .method = "far",
+/// FAR at a resolution, with fragment depth in 32 bits. offset: obb or exact.
+inline RunPoint far_point(PointScene scene, const std::string& offset, const RadiusRule& radius,
+                          int resolution) {
+  return {.scene = std::move(scene),
+          .method = Method::far,
           .offset = offset,
           .radius = radius,
-          .depth_format = "float32",
-          .depth_mode = "fragment",
-          .resolution = resolution,
-          .views = {}};
+          .depth_mode = DepthMode::fragment,
+          .depth_format = DepthFormat::float32,
+          .resolution = resolution};
 }
 
 /// A method of the CULLIDE family at a resolution, with the depth of the rasterizer in 32 bits.
-inline Point cullide_point(const std::string& scene, const std::string& method, int resolution) {
-  return {.scene = scene,
+inline RunPoint cullide_point(PointScene scene, Method method, int resolution) {
+  return {.scene = std::move(scene),
           .method = method,
-          .offset = {},
-          .radius = {},
-          .depth_format = "float32",
-          .depth_mode = "fixed",
-          .resolution = resolution,
-          .views = {}};
+          .depth_mode = DepthMode::fixed,
+          .depth_format = DepthFormat::float32,
+          .resolution = resolution};
 }
 
-/// What draws no sets: far-pairs (resolution 0: chosen by the scene), i-collide, exact, peers.
-inline Point plain_point(const std::string& scene, const std::string& method, int resolution = 0) {
-  return {.scene = scene,
-          .method = method,
-          .offset = {},
-          .radius = {},
-          .depth_format = {},
-          .depth_mode = {},
-          .resolution = resolution,
-          .views = {}};
+/// A method that draws no sets: far-pairs (resolution 0: chosen by the scene), i-collide, exact.
+inline RunPoint plain_point(PointScene scene, Method method, int resolution = 0) {
+  return {.scene = std::move(scene), .method = method, .resolution = resolution};
+}
+
+inline constexpr RadiusRule kBudgetRadius = {};
+inline constexpr RadiusRule kPublishedRadius = {.published = true};
+
+/// The same point, measured so often.
+template <class OfPoint>
+OfPoint repeated(OfPoint point, int repeat) {
+  point.repeat = repeat;
+  return point;
 }
 
 }  // namespace farcull

@@ -1,10 +1,12 @@
 // The study "precision": what a depth buffer's format and the way in which depth is made cost.
 #include "experiments/studies/lemma_point.h"
+#include "experiments/studies/points.h"
+#include "experiments/studies/study.h"
 
 namespace farcull {
 namespace {
 
-// Those whose depth varies inside a pixel; the others are too small for it.
+// Generators whose depth varies inside a pixel; the triangles of the others are too small for it.
 constexpr const char* kGenerators[] = {
     "random triangles", "edges at 45 degrees", "parallel to the view",  "almost flat",
     "needles",          "segments and points", "steep at pixel corners"};
@@ -12,7 +14,7 @@ constexpr const char* kGenerators[] = {
 std::vector<Point> grid(const GridChoice& choice) {
   const std::uint64_t points = choice.quick ? 500 : 4000;
   // Each with its border makes a viewport of a power of two; the depth reaches what a window may
-  // have (core/view.h, fit_window).
+  // have (core/view/view.h, fit_window).
   const std::vector<int> sides =
       choice.quick ? std::vector{508, 1020} : std::vector{508, 2044, 4092};
   const std::vector<double> depths =
@@ -20,21 +22,17 @@ std::vector<Point> grid(const GridChoice& choice) {
   std::vector<Point> out;
   for (const char* generator : kGenerators) {
     for (const double depth : depths) {
-      const std::string scene = LemmaScene{generator, points, depth}.name();
+      LemmaPoint point{
+          .generator = generator, .points = points, .depth = depth, .seed = choice.seed};
       for (const int side : sides) {
-        for (const char* mode : {"fragment", "fixed"}) {
-          for (const char* format : {"float32", "fixed24"}) {
-            for (const char* radius : {"published", "budget"}) {
-              out.push_back({.scene = scene,
-                             .method = "lemma",
-                             .offset = "obb",
-                             .radius = radius,
-                             .depth_format = format,
-                             .depth_mode = mode,
-                             .resolution = side,
-                             .views = {},
-                             .frame = -1,
-                             .seed = choice.seed});
+        point.side = side;
+        for (const DepthMode mode : {DepthMode::fragment, DepthMode::fixed}) {
+          point.depth_mode = mode;
+          for (const DepthFormat format : {DepthFormat::float32, DepthFormat::fixed24}) {
+            point.depth_format = format;
+            for (const RadiusRule& radius : {kPublishedRadius, kBudgetRadius}) {
+              point.radius = radius;
+              out.push_back(point);
             }
           }
         }
@@ -42,6 +40,10 @@ std::vector<Point> grid(const GridChoice& choice) {
     }
   }
   return out;
+}
+
+PointResult measure(const Point& point, Lab& lab) {
+  return measure_lemma(std::get<LemmaPoint>(point), lab);
 }
 
 }  // namespace
@@ -54,7 +56,7 @@ Study precision_study() {
               "when the rasterizer interpolates depth and when a fragment program computes "
               "it, at any resolution and depth of the scene?",
           .grid = grid,
-          .measure = measure_lemma};
+          .measure = measure};
 }
 
 }  // namespace farcull

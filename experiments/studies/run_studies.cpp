@@ -1,3 +1,4 @@
+// The loop over the open points of studies, and the sums that it prints.
 #include "experiments/studies/run_studies.h"
 
 #include <fmt/format.h>
@@ -8,17 +9,19 @@
 #include <new>
 #include <set>
 
-#include "core/error.h"
-#include "core/stopwatch.h"
-#include "experiments/builtin_scenes.h"
-#include "experiments/interrupt.h"
-#include "experiments/studies/lab.h"
-#include "experiments/tables.h"
+#include "core/base/error.h"
+#include "core/base/stopwatch.h"
+#include "experiments/measure/lab.h"
+#include "experiments/record/tables.h"
+#include "experiments/scenes/builtin/packaged.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/system/interrupt.h"
+#include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {
 
-// What of one study is to be done.
+// A study with the points that are to be measured.
 struct Task {
   const Study* study;
   std::vector<Point> points;
@@ -36,7 +39,8 @@ void make_folder(const std::string& folder) {
   }
 }
 
-// Rows of different programs or machines would stand in one table as if they were of one.
+// Refuses to go on where earlier rows are of another program or machine: one table would hold both
+// as if they were of one.
 void require_alike(const Store& store, const StoredStudy& stored, const Provenance& now) {
   std::set<std::int64_t> used;
   for (const Row& row : stored.rows) used.insert(row.run);
@@ -64,11 +68,12 @@ void require_alike(const Store& store, const StoredStudy& stored, const Provenan
 
 Task open_task(Store& store, const Study& study, const StudiesRequest& request) {
   Task task{.study = &study, .points = study.grid(request.choice), .open = {}};
+  const std::vector<PointKey> keys = keys_of(task.points);
   store.declare({.study = study.name,
                  .choice = request.choice,
                  .shard = request.shard.index,
                  .of = request.shard.of,
-                 .points = task.points});
+                 .points = keys});
   const StoredStudy stored = store.study(study.name);
   if (!stored.rows.empty() && !request.resume) {
     throw Error(store.path(),
@@ -77,7 +82,7 @@ Task open_task(Store& store, const Study& study, const StudiesRequest& request) 
   }
   require_alike(store, stored, request.provenance);
   std::vector<bool> done(task.points.size());
-  // What could not be had then may be there now.
+  // A library or mesh that was missing then may be there now.
   for (const Row& row : stored.rows) done[row.position] = row.measurement.left_out.empty();
   for (std::size_t i = 0; i < task.points.size(); ++i) {
     if (!done[i] && request.shard.holds(i)) task.open.push_back(i);
@@ -85,8 +90,8 @@ Task open_task(Store& store, const Study& study, const StudiesRequest& request) 
   return task;
 }
 
-// Why a scene cannot be had on this machine; empty: it can.
-std::string lacking(const Point& point) {
+// The reason why this machine does not have the scene; empty: it has.
+std::string lacking(const PointKey& point) {
   const std::string base = point.scene.substr(0, point.scene.find_first_of(":@"));
   const std::vector<BuiltinScene>& known = builtin_scenes();
   const auto entry = std::find_if(known.begin(), known.end(),
@@ -100,7 +105,8 @@ std::string lacking(const Point& point) {
   return "the packaged meshes are not in " + folder + "; bash experiments/meshes.sh fetches them";
 }
 
-// As the points of the study took in this run, or those of all studies where it has none yet.
+// Seconds for the points that are left, at the mean time of the points of their study in this run,
+// or of all studies where a study has none yet.
 std::optional<double> remaining(const std::vector<Task>& tasks, std::size_t at, std::size_t next) {
   double seconds = 0;
   std::size_t measured = 0;
@@ -120,20 +126,79 @@ std::optional<double> remaining(const std::vector<Task>& tasks, std::size_t at, 
   return out;
 }
 
-Measurement measure(const Study& study, const Point& point, Lab& lab) {
-  std::string why = lacking(point);
-  if (!why.empty()) return {.device = "none", .left_out = std::move(why)};
-  return study.measure(point, lab);
-}
+// Measures the open points of all tasks and keeps every row at once.
+class Runner {
+ public:
+  Runner(const StudiesRequest& request, StudiesSummary& summary, std::vector<Task>& tasks,
+         Store& store, const std::function<void(const StudiesProgress&)>& progress)
+      : request_(request), summary_(summary), tasks_(tasks), store_(store), progress_(progress) {
+    for (const StudySummary& study : summary.studies) {
+      now_.points += study.points;
+      now_.done += study.before;
+    }
+  }
+
+  void run() {
+    const std::int64_t run = store_.begin_run(request_.provenance);
+    Interruptible interruptible(static_cast<long>(now_.points), "points",
+                                "they are kept; the same command with --resume goes on",
+                                ::isatty(STDERR_FILENO));
+    interruptible.done(static_cast<long>(now_.done));
+    for (std::size_t t = 0; t < tasks_.size(); ++t) {
+      Task& task = tasks_[t];
+      now_.study = task.study->name;
+      for (std::size_t i = 0; i < task.open.size(); ++i) {
+        const Point& point = task.points[task.open[i]];
+        now_.point = describe(point);
+        now_.remaining_s = remaining(tasks_, t, i);
+        show("");
+        const Stopwatch watch;
+        const std::optional<Measurement> measurement = measure(*task.study, point);
+        if (!measurement) continue;
+        store_.add(now_.study, run, task.open[i], *measurement);
+        task.seconds += watch.ms() / 1000;
+        ++task.measured;
+        interruptible.done(static_cast<long>(++now_.done));
+      }
+    }
+  }
+
+ private:
+  void show(const std::string& stage) {
+    now_.stage = stage;
+    if (progress_) progress_(now_);
+  }
+
+  // Empty where measuring failed: the failure is noted, and the next point gets a new device.
+  std::optional<Measurement> measure(const Study& study, const Point& point) {
+    std::string why = lacking(key_of(point));
+    if (!why.empty()) return Measurement{.device = "none", .left_out = std::move(why)};
+    if (!lab_) {
+      lab_.emplace(request_.device, [this](const std::string& stage) { show(stage); });
+    }
+    std::string failure;
+    try {
+      return stored(study.measure(point, *lab_));
+    } catch (const Error& error) {
+      failure = error.what();
+    } catch (const std::bad_alloc&) {
+      failure = "out of memory";
+    }
+    summary_.failed.push_back(now_.study + ": " + now_.point + ": " + failure);
+    lab_.reset();
+    return std::nullopt;
+  }
+
+  const StudiesRequest& request_;
+  StudiesSummary& summary_;
+  std::vector<Task>& tasks_;
+  Store& store_;
+  const std::function<void(const StudiesProgress&)>& progress_;
+  StudiesProgress now_;
+  std::optional<Lab> lab_;
+};
 
 }  // namespace
-
-bool breaks_promise(const Measurement& measurement) {
-  const auto& counts = measurement.counts;
-  if (!counts.value("promises", false)) return false;
-  return counts.value("missed", std::uint64_t{0}) > 0 ||
-         counts.value("violations", std::uint64_t{0}) > 0;
-}
 
 StudiesSummary run_studies(const StudiesRequest& request,
                            const std::function<void(const StudiesProgress&)>& progress) {
@@ -141,9 +206,7 @@ StudiesSummary run_studies(const StudiesRequest& request,
   StudiesSummary summary;
   summary.store = store_path(request.folder, request.shard.index, request.shard.of);
   Store store(summary.store, Store::Access::write);
-
   std::vector<Task> tasks;
-  StudiesProgress now;
   for (const Study& study : request.studies) {
     tasks.push_back(open_task(store, study, request));
     const Task& task = tasks.back();
@@ -151,51 +214,12 @@ StudiesSummary run_studies(const StudiesRequest& request,
     for (std::size_t i = 0; i < task.points.size(); ++i) mine += request.shard.holds(i);
     summary.studies.push_back(
         {.study = study.name, .points = mine, .before = mine - task.open.size()});
-    now.points += mine;
-    now.done += mine - task.open.size();
   }
-
-  const std::int64_t run = store.begin_run(request.provenance);
-  Interruptible interruptible(static_cast<long>(now.points), "points",
-                              "they are kept; the same command with --resume goes on",
-                              ::isatty(STDERR_FILENO));
-  interruptible.done(static_cast<long>(now.done));
-  const auto show = [&](const std::string& stage) {
-    now.stage = stage;
-    if (progress) progress(now);
-  };
-  std::optional<Lab> lab;
+  Runner(request, summary, tasks, store, progress).run();
   for (std::size_t t = 0; t < tasks.size(); ++t) {
-    Task& task = tasks[t];
-    now.study = task.study->name;
-    for (std::size_t i = 0; i < task.open.size(); ++i) {
-      const Point& point = task.points[task.open[i]];
-      now.point = describe(point);
-      now.remaining_s = remaining(tasks, t, i);
-      show("");
-      const Stopwatch watch;
-      if (!lab) lab.emplace(request.device, show);
-      std::optional<Measurement> measurement;
-      try {
-        measurement = measure(*task.study, point, *lab);
-      } catch (const Error& error) {
-        summary.failed.push_back(now.study + ": " + now.point + ": " + error.what());
-      } catch (const std::bad_alloc&) {
-        summary.failed.push_back(now.study + ": " + now.point + ": out of memory");
-      }
-      if (!measurement) {
-        lab.reset();
-        continue;
-      }
-      store.add(now.study, run, task.open[i], *measurement);
-      task.seconds += watch.ms() / 1000;
-      ++task.measured;
-      interruptible.done(static_cast<long>(++now.done));
-    }
-    summary.studies[t].measured = task.measured;
-    summary.studies[t].seconds = task.seconds;
-  }
-  for (StudySummary& study : summary.studies) {
+    StudySummary& study = summary.studies[t];
+    study.measured = tasks[t].measured;
+    study.seconds = tasks[t].seconds;
     for (const Row& row : store.study(study.study).rows) {
       study.left_out += !row.measurement.left_out.empty();
       if (breaks_promise(row.measurement))

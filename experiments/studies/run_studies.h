@@ -53,10 +53,6 @@ struct StudiesSummary {
   std::vector<std::string> broken;
 };
 
-/// Whether the counts tell of a promise that was not kept: `promises` is true and `missed` or
-/// `violations` above 0.
-bool breaks_promise(const Measurement& measurement);
-
 /// Measures what has no row yet, or one that says why nothing was measured. An Error at a point is
 /// noted and the next point gets a new device; one of the store ends the run. Signals end the
 /// program, with a line that says how many points are kept. Throws Error for a folder that cannot

@@ -6,10 +6,14 @@
 
 #include <set>
 
-#include "experiments/studies/lab.h"
+#include "experiments/studies/points.h"
+#include "experiments/studies/run_point.h"
+#include "experiments/studies/study.h"
 
 namespace farcull {
 namespace {
+
+using enum Method;
 
 // A scene of one of the plots. A scene may serve in several, where it is measured once.
 struct Case {
@@ -52,25 +56,23 @@ std::vector<Case> cases(bool quick) {
   return out;
 }
 
-Point drawn_point(const Case& c, const char* method) {
-  Point point;
-  point.scene = c.scene;
-  point.method = method;
-  const bool far = point.method == "far";
-  if (far) {
-    point.offset = "obb";
-    point.radius = "budget";
-  }
-  point.depth_format = "float32";
-  point.depth_mode = far ? "fragment" : "fixed";
-  point.resolution = c.resolution;
-  return point;
-}
+// Times vary by a third on a shared machine; the methods that take less are run more often.
+int repeats_of(Method method) { return method == far || method == cullide ? 3 : 5; }
 
-// Times swing by a third on a shared machine; the methods that take less are run more often.
-int repeats_of(const Point& point) {
-  if (point.method == "far" || point.method == "cullide") return 3;
-  return 5;
+std::vector<RunPoint> points_of(const Case& c) {
+  const NamedScene scene{c.scene};
+  std::vector<RunPoint> out;
+  if (c.drawn) {
+    out = {far_point(scene, "obb", kBudgetRadius, c.resolution),
+           cullide_point(scene, cullide, c.resolution)};
+  }
+  for (const Method method : {far_pairs, i_collide, exact}) {
+    // Alone of these far-pairs has pixels; where the plot is of pixels it takes those.
+    const bool pixels = method == far_pairs && c.scene == "two-spheres";
+    out.push_back(plain_point(scene, method, pixels ? c.resolution : 0));
+  }
+  for (RunPoint& point : out) point.repeat = repeats_of(point.method);
+  return out;
 }
 
 }  // namespace
@@ -84,29 +86,16 @@ Study scaling_study() {
       "triangles, of pixels, with density, and with the pairs that collide?";
   study.grid = [](const GridChoice& choice) {
     std::vector<Point> out;
-    std::set<Point> had;
-    const auto add = [&](Point point) {
-      if (had.insert(point).second) out.push_back(std::move(point));
-    };
+    std::set<PointKey> had;
     for (const Case& c : cases(choice.quick)) {
-      for (const char* method : {"far", "cullide"}) {
-        if (c.drawn) add(drawn_point(c, method));
-      }
-      for (const char* method : {"far-pairs", "i-collide", "exact"}) {
-        Point point;
-        point.scene = c.scene;
-        point.method = method;
-        // Alone of these far-pairs has pixels; where the plot is of pixels it takes those.
-        if (point.method == "far-pairs" && c.scene == "two-spheres")
-          point.resolution = c.resolution;
-        add(std::move(point));
+      for (RunPoint& point : points_of(c)) {
+        if (had.insert(key_of(point)).second) out.push_back(std::move(point));
       }
     }
     return out;
   };
   study.measure = [](const Point& point, Lab& lab) {
-    lab.scene(point.scene);
-    return measure_run(point, lab, repeats_of(point));
+    return measure_run(std::get<RunPoint>(point), lab);
   };
   return study;
 }

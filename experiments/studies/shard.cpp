@@ -1,23 +1,17 @@
+// Reads a shard from text or from the environment.
 #include "experiments/studies/shard.h"
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <optional>
 
-#include "core/error.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace farcull {
 namespace {
 
 constexpr long kMostShards = 100'000;
-
-std::optional<long> number_of(const std::string& text) {
-  long out = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), out);
-  if (code != std::errc() || end != text.data() + text.size() || text.empty()) return std::nullopt;
-  return out;
-}
 
 bool is_shard(long index, long of) {
   return of >= 1 && of <= kMostShards && index >= 1 && index <= of;
@@ -27,9 +21,9 @@ bool is_shard(long index, long of) {
 
 Shard parse_shard(const std::string& text) {
   const std::size_t slash = text.find('/');
-  const std::optional<long> index = number_of(text.substr(0, slash));
+  const std::optional<long> index = parse_number<long>(text.substr(0, slash));
   const std::optional<long> of =
-      slash == std::string::npos ? std::nullopt : number_of(text.substr(slash + 1));
+      slash == std::string::npos ? std::nullopt : parse_number<long>(text.substr(slash + 1));
   if (!index || !of || !is_shard(*index, *of)) {
     throw Error("--shard", "'" + text + "' is no shard",
                 fmt::format("give K/N with 1 <= K <= N <= {}, such as 2/4", kMostShards));
@@ -42,7 +36,7 @@ Shard shard_from_environment(const std::function<const char*(const char*)>& vari
   const auto number = [&](const char* name) -> std::optional<long> {
     const char* const text = variable(name);
     if (text == nullptr) return std::nullopt;
-    const std::optional<long> out = number_of(text);
+    const std::optional<long> out = parse_number<long>(text);
     if (!out) throw Error(name, fmt::format("'{}' is no number", text), remedy);
     return out;
   };

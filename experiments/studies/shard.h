@@ -1,4 +1,4 @@
-// Which part of a study a process measures, where several share it.
+// The part of a study that a process measures, where several processes share it.
 #pragma once
 
 #include <functional>
@@ -19,11 +19,10 @@ struct Shard {
 /// "K/N" with 1 <= K <= N <= 100000. Throws Error naming --shard.
 Shard parse_shard(const std::string& text);
 
-/// As an array job of Slurm (SLURM_ARRAY_TASK_ID, _MIN, _MAX, _COUNT; steps of one
-/// from 0 or 1) or a process of
-/// Open MPI (OMPI_COMM_WORLD_RANK, _SIZE) says; the whole study where neither speaks. `variable`
-/// gives an environment variable or null. Throws Error naming the variable where it is no number,
-/// the array has gaps, or both speak.
+/// The shard of this process of an array job of Slurm (SLURM_ARRAY_TASK_ID, _MIN, _MAX, _COUNT;
+/// steps of one from 0 or 1) or of Open MPI (OMPI_COMM_WORLD_RANK, _SIZE); the whole study where
+/// neither is set. `variable` gives an environment variable or null. Throws Error naming the
+/// variable where it is no number, the array has gaps, or both are set.
 Shard shard_from_environment(const std::function<const char*(const char*)>& variable);
 
 }  // namespace farcull

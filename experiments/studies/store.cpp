@@ -1,3 +1,4 @@
+// The tables of the store and their statements.
 #include "experiments/studies/store.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -7,23 +8,18 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <utility>
 
-#include "commit.h"
-#include "core/error.h"
-#include "core/gl_context.h"
-#include "experiments/bench_machine.h"
+#include "core/base/error.h"
 
 namespace farcull {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The shape of a file of version kStoreVersion. `results` is for people who ask by SQL.
+// The tables of a file of version kStoreVersion. `results` is for questions in SQL.
 constexpr const char* kSchema = R"(
 CREATE TABLE runs (
   run INTEGER PRIMARY KEY, started TEXT NOT NULL, commit_id TEXT NOT NULL, gl_vendor TEXT NOT NULL,
@@ -48,28 +44,7 @@ CREATE VIEW results AS
   FROM points JOIN rows USING (study, position) JOIN runs USING (run);
 )";
 
-std::string now() {
-  const std::time_t seconds =
-      std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc = {};
-  ::gmtime_r(&seconds, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
-}
-
-std::string cpu_features() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    const std::size_t colon = line.find(": ");
-    // x86 says flags, Arm Features.
-    if ((line.starts_with("flags") || line.starts_with("Features")) && colon != std::string::npos)
-      return line.substr(colon + 2);
-  }
-  return "unknown";
-}
-
-// What SQLite refuses, as an Error that says what to do.
+// An error of SQLite as an Error that says what to do.
 Error refusal(const std::string& path, const SQLite::Exception& error) {
   const std::string text = error.getErrorStr();
   switch (error.getErrorCode() & 0xff) {
@@ -133,19 +108,6 @@ std::string grid_text(const GridChoice& choice) {
 }
 
 }  // namespace
-
-Provenance provenance_now(const std::string& device, const std::string& options) {
-  const GlInfo gl = GlContext(device).info();
-  return {.started = now(),
-          .commit = FARCULL_COMMIT,
-          .gl_vendor = gl.vendor,
-          .gl_renderer = gl.renderer,
-          .gl_version = gl.version,
-          .cpu = cpu_model(),
-          .cpu_features = cpu_features(),
-          .cores = usable_cores(),
-          .options = options};
-}
 
 struct Store::State {
   std::string path;
@@ -321,7 +283,7 @@ void Store::declare(const Declaration& wanted) {
     SQLite::Statement insert(state_->database,
                              "INSERT INTO points VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     for (std::size_t i = 0; i < wanted.points.size(); ++i) {
-      const Point& p = wanted.points[i];
+      const PointKey& p = wanted.points[i];
       insert.reset();
       insert.bind(1, wanted.study);
       insert.bind(2, static_cast<std::int64_t>(i));
@@ -339,25 +301,13 @@ void Store::declare(const Declaration& wanted) {
   });
 }
 
-std::vector<std::size_t> Store::done(const std::string& study) const {
-  return guarded(state_->path, [&] {
-    std::vector<std::size_t> out;
-    SQLite::Statement select(state_->database,
-                             "SELECT position FROM rows WHERE study = ? ORDER BY position");
-    select.bind(1, study);
-    while (select.executeStep())
-      out.push_back(static_cast<std::size_t>(select.getColumn(0).getInt64()));
-    return out;
-  });
-}
-
 void Store::add(const std::string& study, std::int64_t run, std::size_t position,
                 const Measurement& measurement) {
   add(study, {.position = position,
               .point = {},
               .measurement = measurement,
               .run = run,
-              .measured = now()});
+              .measured = utc_now()});
 }
 
 void Store::add(const std::string& study, const Row& row) {

@@ -1,9 +1,9 @@
-// Where results are kept: one SQLite file, a transaction for every row, so that whatever ends a run
-// (a signal, a full disk, the power) takes at most the point that was being measured.
+// The store of results: one SQLite file, a transaction for every row, so that a run that is ended
+// (by a signal, a full disk, the power) loses at most the point that was being measured.
 //
 //   runs    one row for each start of the program: commit, device, driver, CPU, options, time
 //   points  the declared grid of each study, all shards of it
-//   rows    what came of a point, and in which run
+//   rows    the result of a point, and its run
 // PRAGMA user_version holds kStoreVersion, PRAGMA application_id kStoreId.
 #pragma once
 
@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/studies/provenance.h"
 #include "experiments/studies/study.h"
 
 namespace farcull {
@@ -21,31 +22,17 @@ namespace farcull {
 constexpr std::int32_t kStoreId = 0x46415243;  // "FARC"
 constexpr std::int32_t kStoreVersion = 1;
 
-/// Who measured, on what, when.
-struct Provenance {
-  std::string started;  // UTC, ISO 8601
-  std::string commit;   // of the program
-  std::string gl_vendor, gl_renderer, gl_version;
-  std::string cpu;           // model
-  std::string cpu_features;  // as /proc/cpuinfo lists them
-  unsigned cores = 0;
-  std::string options;  // of the command line, as JSON
-};
-
-/// Of this process: opens the device to ask for its names. Throws Error where there is none.
-Provenance provenance_now(const std::string& device, const std::string& options);
-
-/// What a study was declared with.
+/// The grid of a study in a store.
 struct Declaration {
   std::string study;
   GridChoice choice;
-  int shard = 1, of = 1;      // which part of the points this file answers for, 1 <= shard <= of
-  std::vector<Point> points;  // of all shards
+  int shard = 1, of = 1;         // which part of the points this file answers for, 1 <= shard <= of
+  std::vector<PointKey> points;  // of all shards
 };
 
 struct Row {
   std::size_t position = 0;  // in the grid
-  Point point;
+  PointKey point;
   Measurement measurement;
   std::int64_t run = 0;
   std::string measured;  // UTC, ISO 8601
@@ -80,16 +67,14 @@ class Store {
   std::optional<Declaration> declaration(const std::string& study) const;
   /// The same again changes nothing. Throws Error where the study was declared otherwise.
   void declare(const Declaration& declaration);
-  /// Positions that have a row, ascending.
-  std::vector<std::size_t> done(const std::string& study) const;
-  /// In one transaction, on the disk when it returns. A row that says why nothing was measured is
-  /// replaced. Throws Error where the point has another row, is none of the grid, or the disk
-  /// refuses; the file is then as before.
+  /// Adds a row in one transaction, on the disk when it returns. A row that says why nothing was
+  /// measured is replaced. Throws Error where the point has another row, is none of the grid, or
+  /// the disk refuses; the file is then as before.
   void add(const std::string& study, std::int64_t run, std::size_t position,
            const Measurement& measurement);
-  /// The same for a row of another store; row.run is the number here. `point` is not looked at.
+  /// The same for a row of another store; row.run is the number here. `point` is not read.
   void add(const std::string& study, const Row& row);
-  /// What `work` adds, in one transaction: all of it, or nothing where it throws.
+  /// Runs `work` in one transaction: all that it adds is kept, or nothing where it throws.
   void together(const std::function<void()>& work);
 
   StoredStudy study(const std::string& name) const;

@@ -1,0 +1,130 @@
+// Options of `farcull bench`, and its run.
+#include "experiments/command/bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "experiments/method/run.h"
+#include "experiments/record/output.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/scene_file.h"
+#include "experiments/system/machine.h"
+#include "experiments/system/output_file.h"
+
+namespace farcull {
+namespace {
+
+template <class Value>
+Value number_in(const char* option, const std::string& text, Value least, Value most,
+                const std::string& remedy) {
+  const std::optional<Value> value = parse_number<Value>(text);
+  if (!value || !(*value >= least) || !(*value <= most))
+    throw Error(option, "'" + text + "' is none", remedy);
+  return *value;
+}
+
+std::string peers_text() {
+  std::string with = "Peers here:";
+  std::string without;
+  std::size_t column = with.size();
+  for (const Peer& peer : all_peers(usable_cores())) {
+    if (!peer.missing.empty()) {
+      without += "Left out: " + peer.name + ": " + peer.missing + ".\n";
+      continue;
+    }
+    const bool wraps = column + peer.name.size() > 90;
+    column = wraps ? 2 + peer.name.size() : column + 1 + peer.name.size();
+    with += (wraps ? "\n  " : " ") + peer.name;
+  }
+  return with + "\n" + without;
+}
+
+}  // namespace
+
+CLI::App* BenchCommand::add_to(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("bench", "times beside other libraries, from triangles to pairs");
+  add_scene(*command, scene_);
+  const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
+    command->add_option(name, text, help)->type_name(type);
+  };
+  command
+      ->add_flag("--self", self_,
+                 "every object is tested against itself as well, but\n"
+                 "for triangles that share a vertex position")
+      ->disable_flag_override();
+  add("--peers", peers_, "LIST", "all, none, or names by commas; default all");
+  add("--methods", methods_, "LIST", "of far-pairs,far,exact; all or none; default all");
+  add("--threads", threads_, "N", "cores for each of them; default all there are");
+  add("--repeat", repeat_, "N", "runs of each after a cold one; default 5");
+  add("--limit", limit_, "SECONDS",
+      "who takes longer in the cold run is not repeated;\ndefault 60");
+  add("--device", device_, "DEVICE",
+      "for methods on GL, as for farcull run, or cpu for\nnone of them; default where there is "
+      "one");
+  add("--json", outputs_.json, "FILE", kJsonHelp);
+  command->footer([] {
+    return "Examples:\n"
+           "  farcull bench two-bunnies\n"
+           "  farcull bench needles-layers --threads 1 --peers fcl-obbrss,embree-low\n"
+           "  farcull bench field:1000000 --peers none --methods far-pairs --json field.json\n\n" +
+           peers_text() +
+           "docs/bench.md says what is measured. Exit status 1: two of them disagree about a pair.";
+  });
+  return command;
+}
+
+BenchOptions BenchCommand::parse() const {
+  BenchOptions options;
+  if (peers_) options.peers = *peers_;
+  if (methods_) options.methods = *methods_;
+  options.threads = usable_cores();
+  if (threads_) {
+    options.threads =
+        number_in<unsigned>("--threads", *threads_, 1, 1 << 16, "give a number from 1");
+  }
+  if (repeat_)
+    options.repeat = number_in<int>("--repeat", *repeat_, 1, 1'000'000, "give 1 or more");
+  if (limit_) {
+    options.limit_s = number_in<double>("--limit", *limit_, 0, 1e9, "give seconds, 0 to 1e9");
+  }
+  options.device = device_of(device_);
+  options.self = self_;
+  options.seed = scene_.size() == 1 ? builtin_seed(scene_[0]) : std::nullopt;
+  validate(options);
+  if (options.device != "cpu") {
+    RunOptions run;
+    run.device = options.device;
+    validate(run);
+  }
+  return options;
+}
+
+int BenchCommand::run() {
+  const BenchOptions options = parse();
+  if (std::find(scene_.begin(), scene_.end(), "") != scene_.end())
+    throw Error("SCENE", "a name is empty", "name mesh files, a scene file or a built-in scene");
+  const Outputs outputs = checked(outputs_, scene_files(scene_));
+  confine_to_cores(options.threads);
+  TerminalProgress terminal;
+  const Progress progress = terminal.callback();
+  if (progress) progress("reading the scene");
+  Scene scene = load_scene(scene_);
+  if (options.self) {
+    for (Object& object : scene.objects) object.self = true;
+  }
+  const BenchResult result = bench(scene, contestants(scene, options, progress), options, progress);
+  terminal.clear();
+  if (outputs.json) write_json(to_json(scene, options, result), *outputs.json);
+  if (!outputs.to_stdout()) write_output("-", bench_table(scene, options, result));
+  if (!result.disagreement) return 0;
+  complain(describe(scene, *result.disagreement));
+  return 1;
+}
+
+}  // namespace farcull

@@ -1,0 +1,27 @@
+// `farcull bench`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "experiments/command/options.h"
+#include "experiments/measure/bench.h"
+
+namespace farcull {
+
+/// Declares the command on the program's options; run() runs it.
+class BenchCommand {
+ public:
+  CLI::App* add_to(CLI::App& app);
+  /// The exit status: 1 where two contestants disagree. Throws Error where the arguments are bad.
+  int run();
+
+ private:
+  BenchOptions parse() const;
+
+  std::vector<std::string> scene_;
+  bool self_ = false;
+  Text peers_, methods_, threads_, repeat_, limit_, device_;
+  Outputs outputs_;
+};
+
+}  // namespace farcull

@@ -1,0 +1,176 @@
+// Declares the commands, parses the command line and dispatches. Each command has a file of its
+// own.
+#include "experiments/command/cli.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "commit.h"
+#include "core/base/error.h"
+#include "core/base/floating_point.h"
+#include "experiments/command/bench.h"
+#include "experiments/command/check.h"
+#include "experiments/command/compare.h"
+#include "experiments/command/doctor.h"
+#include "experiments/command/experiment.h"
+#include "experiments/command/options.h"
+#include "experiments/command/picture.h"
+#include "experiments/command/report.h"
+#include "experiments/command/run.h"
+#include "experiments/command/scenes.h"
+#include "experiments/command/studies.h"
+#include "experiments/system/output_file.h"
+
+namespace farcull {
+namespace {
+
+constexpr const char* kOutOfMemory =
+    "memory: there is not enough; use a smaller scene or resolution, a higher limit (ulimit -v) or "
+    "a machine with more memory";
+
+std::string fault(const std::exception& error) {
+  return std::string("a fault of farcull itself: ") + error.what() +
+         "; report it with the command line";
+}
+
+// An error of CLI11 as an Error with a remedy. `app` is as the parse left it.
+Error refusal(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App* command = &app;
+  std::string name = "farcull";
+  for (bool deeper = true; deeper;) {
+    deeper = false;
+    for (const CLI::App* subcommand : command->get_subcommands({})) {
+      if (!subcommand->parsed()) continue;
+      command = subcommand;
+      name += " " + command->get_name();
+      deeper = true;
+      break;
+    }
+  }
+  const std::vector<const CLI::App*> subcommands = command->get_subcommands({});
+  const std::string help = "see " + name + " --help";
+  const std::string text = error.what();
+  // Words that were not understood come first: they may be why something else is missing.
+  const std::vector<std::string> words = app.remaining(true);
+  if (!words.empty()) {
+    const std::string& word = words.front();
+    if (word.starts_with("-")) return Error(word, name + " has no such option", help);
+    if (subcommands.empty()) return Error(word, "is one argument too many for " + name, help);
+    std::string known;
+    for (const CLI::App* subcommand : subcommands)
+      known += (known.empty() ? "" : ", ") + subcommand->get_name();
+    return Error(word, "no such command", "give one of " + known);
+  }
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+    return Error("SCENE", "none is named",
+                 "name mesh files, a scene file or a built-in scene (farcull scenes lists them)");
+  }
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    for (const CLI::Option* option : command->get_options()) {
+      if (option->count() > 1 && option->get_items_expected_max() == 1) {
+        return Error(option->get_name(), fmt::format("is given {} times", option->count()),
+                     "give it once");
+      }
+    }
+    std::string option = text.substr(0, text.find_first_of(": "));
+    if (text.find("override") != std::string::npos) {
+      if (!option.starts_with("-")) option.insert(0, "--");
+      return Error(option, "takes no value", "give " + option + " alone");
+    }
+    return Error(option, "its value is missing", help);
+  }
+  return Error(name, text, help);
+}
+
+// Options of the program itself.
+void describe(CLI::App& app) {
+  app.get_formatter()->column_width(28);
+  app.set_help_flag("-h,--help", "print this and exit");
+  app.set_version_flag("--version", std::string("farcull 0.1, commit ") + FARCULL_COMMIT,
+                       "print the version and exit");
+  app.require_subcommand(0, 1);
+  app.footer(
+      "Each has its own --help. Exit status: 0 done; 1 a guarantee is broken; 2 bad input or\n"
+      "environment.\n\n"
+      "Examples:\n"
+      "  farcull run two-spheres\n"
+      "  farcull run a.obj b.ply --resolution 1024 --pairs pairs.csv\n"
+      "  farcull run cloth.obj --method far-pairs --self\n"
+      "  farcull compare two-tori\n"
+      "  farcull doctor");
+}
+
+// Runs the command that the arguments name; the exit status.
+int dispatch(int argc, char** argv) {
+  CLI::App app("farcull: collision culling that never misses.", "farcull");
+  describe(app);
+
+  RunCommand run(RunCommand::Kind::run), verify(RunCommand::Kind::verify),
+      plan(RunCommand::Kind::plan);
+  CompareCommand compare;
+  BenchCommand bench;
+  DoctorCommand doctor;
+  CheckCommand check;
+  ExperimentCommands experiments;
+  MergeCommand merge;
+  PictureCommand picture;
+  ReportCommand report;
+  ScenesCommand scenes;
+  std::vector<std::pair<const CLI::App*, std::function<int()>>> commands;
+  const auto add = [&](auto&... command) {  // in the order of the help
+    (commands.emplace_back(command.add_to(app), [&command] { return command.run(); }), ...);
+  };
+  add(run, verify, plan, compare, bench, doctor, check, experiments, merge, picture, report,
+      scenes);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& wanted) {  // --help, --version
+    std::ostringstream out;
+    app.exit(wanted, out, out);
+    write_output("-", out.str());
+    return kExitDone;
+  } catch (const CLI::ParseError& error) {
+    throw refusal(app, error);
+  }
+  for (const auto& [command, run_command] : commands) {
+    if (*command) return run_command();
+  }
+  std::fputs(app.help().c_str(), stderr);
+  throw Error("COMMAND", "none is given", "name one, as in farcull run two-spheres");
+}
+
+}  // namespace
+
+int command_line(int argc, char** argv) {
+  prepare_output();
+  // Mesa would print warnings about the devices that it tries. Our own message reports the outcome.
+  ::setenv("EGL_LOG_LEVEL", "fatal", 0);
+  try {
+    // For this thread; core/base/parallel.h sets the threads that it starts. oneTBB's threads copy
+    // the environment of the thread that first uses it, which is this one.
+    const FloatingPointGuard guard;
+    return dispatch(argc, argv);
+  } catch (const Error& error) {
+    complain(error.what());
+  } catch (const std::bad_alloc&) {
+    complain(kOutOfMemory);
+  } catch (const std::system_error& error) {
+    // Threads that cannot be started: each takes memory for its stack.
+    const bool memory = error.code() == std::errc::resource_unavailable_try_again ||
+                        error.code() == std::errc::not_enough_memory;
+    complain(memory ? kOutOfMemory : fault(error));
+  } catch (const std::exception& error) {
+    complain(fault(error));
+  }
+  return kExitBad;
+}
+
+}  // namespace farcull

@@ -1,0 +1,68 @@
+// Reads the options, runs the methods side by side and prints their table.
+#include "experiments/command/compare.h"
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/record/tables.h"
+#include "experiments/scenes/scene_file.h"
+#include "experiments/system/output_file.h"
+
+namespace farcull {
+
+CLI::App* CompareCommand::add_to(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("compare", "methods and resolutions side by side");
+  add_scene(*command, arguments_.scene);
+  add_option(*command, "--methods", arguments_.methods, "LIST",
+             "separated by commas;\ndefault far,cullide,far-pairs,exact");
+  add_option(*command, "--resolutions", arguments_.resolutions, "LIST",
+             "separated by commas;\ndefault 128,256,512,1024,2048; for far-pairs auto");
+  add_option(*command, "--offsets", arguments_.offsets, "LIST",
+             "for far, separated by commas: obb, exact;\ndefault obb");
+  add_option(*command, "--repeat", arguments_.repeat, "N",
+             "runs of each, the one with the median time is shown;\ndefault 1");
+  add_option(*command, "--views", views_, "VIEWS", kViewsHelp);
+  add_option(*command, "--device", device_, "DEVICE", kRunDeviceHelp);
+  add_flag(*command, "--self", arguments_.self, kSelfHelp);
+  add_option(*command, "--clearance", clearance_, "D", kClearanceHelp);
+  add_option(*command, "--json", outputs_.json, "FILE", kJsonHelp);
+  command->footer(
+      "Examples:\n"
+      "  farcull compare two-tori\n"
+      "  farcull compare two-bunnies --methods far,exact --resolutions 256,512 --repeat 5\n"
+      "  farcull compare mannequin-devil --methods far-pairs,exact --self\n\n"
+      "Exit status 1: a method that promises missed a pair.");
+  return command;
+}
+
+int CompareCommand::run() const {
+  CompareArguments arguments = arguments_;
+  arguments.options.device = device_of(device_);
+  arguments.options.seed = seed_of(arguments.scene);
+  if (views_) {
+    const bool pairs =
+        !arguments.methods || arguments.methods->find("far-pairs") != std::string::npos;
+    arguments.options.views = parse_views_option(*views_, pairs);
+  }
+  if (clearance_) arguments.options.clearance = parse_clearance(*clearance_);
+  validate(arguments);
+  check_scene(arguments.scene);
+  const Outputs outputs = checked(outputs_, scene_files(arguments.scene));
+  TerminalProgress terminal;
+  const Progress progress = terminal.callback();
+  if (progress) progress("reading the scene");
+  Scene scene = load_scene(arguments.scene);
+  if (arguments.self) make_self(scene);
+  const Comparison comparison = compare(scene, arguments, progress);
+  terminal.clear();
+  const std::vector<Record> records = comparison.median_records();
+  if (outputs.json) write_json(to_json(scene, comparison), *outputs.json);
+  if (!outputs.to_stdout()) write_output("-", comparison_table(scene, records));
+  for (const Record& record : records) {
+    if (!broken(record, false)) continue;
+    complain(missed(record));
+    return kExitBroken;
+  }
+  return kExitDone;
+}
+
+}  // namespace farcull

@@ -1,0 +1,257 @@
+// The lemma experiment at one radius or along a sweep, as a table, JSON and CSV.
+#include "experiments/command/lemma.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+
+#include "commit.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/gl/canvas.h"
+#include "experiments/lemma/lemma.h"
+#include "experiments/method/run.h"
+#include "experiments/system/output_file.h"
+#include "offsets/minkowski.h"
+#include "offsets/obb.h"
+#include "verify/worst_canvas.h"
+
+namespace farcull {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Sweep {
+  double from, to, step;
+  int count() const { return static_cast<int>(std::floor((to - from) / step + 1e-9)) + 1; }
+  double at(int i) const { return from + i * step; }
+};
+
+Sweep parse_sweep(const std::string& text) {
+  double values[3] = {};
+  std::string_view rest = text;
+  for (int i = 0; i < 3; ++i) {
+    const std::optional<double> value = take_number<double>(rest);
+    const bool last = i == 2;
+    if (!value || !std::isfinite(*value) || (last ? !rest.empty() : !rest.starts_with(':'))) {
+      throw Error("--sweep", "'" + text + "' is no sweep",
+                  "give FROM:TO:STEP of the radius factor, such as 0.5:1.1:0.01");
+    }
+    values[i] = *value;
+    if (!last) rest.remove_prefix(1);
+  }
+  const Sweep sweep{values[0], values[1], values[2]};
+  if (sweep.from < 0 || sweep.to < sweep.from || sweep.step <= 0 ||
+      (sweep.to - sweep.from) / sweep.step > 100000) {
+    throw Error("--sweep",
+                "'" + text + "' does not ascend from 0 or more in at most 100000 positive steps",
+                "give FROM:TO:STEP, such as 0.5:1.1:0.01");
+  }
+  return sweep;
+}
+
+std::string radius_name(const RadiusRule& rule) {
+  return rule.published ? "published" : fmt::format("{}", rule.factor);
+}
+
+struct Result {
+  RadiusRule rule;
+  std::vector<LemmaRow> rows;
+};
+
+Json row_json(const LemmaRow& row) {
+  return {{"generator", row.generator},
+          {"points", row.points},
+          {"violations", row.violations()},
+          {"no_sample", row.no_sample},
+          {"not_bounding", row.not_bounding}};
+}
+
+Json result_json(const Result& result) {
+  const LemmaRow total = lemma_total(result.rows);
+  Json rows = Json::array();
+  for (const LemmaRow& row : result.rows) rows.push_back(row_json(row));
+  return {{"radius", result.rule.published ? Json("published") : Json(result.rule.factor)},
+          {"points", total.points},
+          {"violations", total.violations()},
+          {"no_sample", total.no_sample},
+          {"not_bounding", total.not_bounding},
+          {"generators", rows}};
+}
+
+std::string result_table(const Result& result) {
+  std::string out = fmt::format("{:<28} {:>12} {:>12} {:>12} {:>12} {:>10}\n", "generator",
+                                "points", "no sample", "not bounding", "violations", "rate");
+  std::vector<LemmaRow> rows = result.rows;
+  rows.push_back(lemma_total(rows));
+  for (const LemmaRow& row : rows) {
+    out += fmt::format(
+        "{:<28} {:>12} {:>12} {:>12} {:>12} {:>9.3f}%\n", row.generator, row.points, row.no_sample,
+        row.not_bounding, row.violations(),
+        row.points ? 100.0 * static_cast<double>(row.violations()) / static_cast<double>(row.points)
+                   : 0.0);
+  }
+  return out;
+}
+
+std::string sweep_csv(const std::vector<Result>& results) {
+  std::string out = "factor,generator,points,violations,no_sample,not_bounding\n";
+  for (const Result& result : results) {
+    std::vector<LemmaRow> rows = result.rows;
+    rows.push_back(lemma_total(rows));
+    for (const LemmaRow& row : rows) {
+      out += fmt::format("{},{},{},{},{},{}\n", result.rule.factor, row.generator, row.points,
+                         row.violations(), row.no_sample, row.not_bounding);
+    }
+  }
+  return out;
+}
+
+// The smallest factor of the sweep from which on no point was violated.
+std::optional<double> smallest_safe(const std::vector<Result>& results) {
+  std::optional<double> out;
+  for (const Result& result : results) {
+    if (lemma_total(result.rows).violations() > 0) {
+      out.reset();
+    } else if (!out) {
+      out = result.rule.factor;
+    }
+  }
+  return out;
+}
+
+void validate(const LemmaArguments& arguments) {
+  if (arguments.points < 1 || arguments.points > 1'000'000'000'000) {
+    throw Error("--points", fmt::format("{} is no number of points", arguments.points),
+                "give 1 to 1e12");
+  }
+  if (arguments.canvas != "gl" && arguments.canvas != "worst") {
+    throw Error("--canvas", "'" + arguments.canvas + "' is no canvas", "give gl or worst");
+  }
+  if (arguments.offset != "obb" && arguments.offset != "exact") {
+    throw Error("--offset", "'" + arguments.offset + "' is no offset", "give obb or exact");
+  }
+  if (!arguments.csv.empty() && arguments.sweep.empty()) {
+    throw Error("--csv", "there is a table to write only with --sweep",
+                "add --sweep 0.5:1.1:0.01, or use --json");
+  }
+}
+
+std::vector<RadiusRule> rules_of(const LemmaArguments& arguments) {
+  if (arguments.sweep.empty()) return {parse_radius(arguments.radius)};
+  const Sweep sweep = parse_sweep(arguments.sweep);
+  std::vector<RadiusRule> out;
+  for (int i = 0; i < sweep.count(); ++i)
+    out.push_back({.published = false, .factor = sweep.at(i)});
+  return out;
+}
+
+// A canvas with the context that it needs; the worst canvas needs none.
+struct LemmaCanvas {
+  std::unique_ptr<GlContext> context;
+  std::unique_ptr<Canvas> canvas;
+
+  LemmaCanvas(const LemmaArguments& arguments, const Fattener& fattener) {
+    if (arguments.canvas == "worst") {
+      canvas = std::make_unique<WorstCanvas>(fattener.solid);
+    } else {
+      context = std::make_unique<GlContext>(arguments.device);
+      canvas = std::make_unique<GlCanvas>(*context, fattener.mode, fattener.solid);
+    }
+  }
+};
+
+Result measure(const LemmaArguments& arguments, const RadiusRule& rule, Canvas& canvas,
+               const Fattener& fattener, const Progress& progress) {
+  LemmaSettings settings;
+  settings.points = arguments.points;
+  settings.seed = arguments.seed;
+  settings.displace = arguments.canvas == "worst";
+  settings.radius = [&rule](const Budget& budget, double step) {
+    return lemma_radius(rule, budget, step);
+  };
+  const std::string before = "radius " + radius_name(rule) + ", ";
+  const Progress named =
+      progress ? [&](const std::string& text) { progress(before + text); } : Progress{};
+  return {rule, lemma_experiment(canvas, fattener, settings, named)};
+}
+
+Json to_json(const LemmaArguments& arguments, const LemmaCanvas& on,
+             const std::vector<Result>& results) {
+  Json device;
+  if (on.context) {
+    const GlInfo& info = on.context->info();
+    device = {{"vendor", info.vendor}, {"renderer", info.renderer}, {"version", info.version}};
+  }
+  Json out = {{"experiment", "lemma"},
+              {"canvas", arguments.canvas},
+              {"offset", arguments.offset},
+              {"device", device},
+              {"subpixel_bits", on.canvas->limits().subpixel_bits},
+              {"seed", arguments.seed},
+              {"commit", FARCULL_COMMIT}};
+  if (arguments.sweep.empty()) {
+    out.update(result_json(results.front()));
+  } else {
+    out["sweep"] = Json::array();
+    for (const Result& result : results) out["sweep"].push_back(result_json(result));
+    const std::optional<double> safe = smallest_safe(results);
+    out["smallest_factor_without_violation"] = safe ? Json(*safe) : Json(nullptr);
+  }
+  return out;
+}
+
+std::string sweep_table(const std::vector<Result>& results) {
+  std::string text = fmt::format("{:>10} {:>12} {:>12} {:>12} {:>12}\n", "factor", "points",
+                                 "no sample", "not bounding", "violations");
+  for (const Result& result : results) {
+    const LemmaRow total = lemma_total(result.rows);
+    text += fmt::format("{:>10.6g} {:>12} {:>12} {:>12} {:>12}\n", result.rule.factor, total.points,
+                        total.no_sample, total.not_bounding, total.violations());
+  }
+  const std::optional<double> safe = smallest_safe(results);
+  if (!safe) return text + "\nthe last factor still has violations\n";
+  return text +
+         fmt::format("\nno violation from the factor {:.6g} on: the budget's slack is {:.4g} %\n",
+                     *safe, 100 * (1 - *safe));
+}
+
+std::string text_of(const LemmaArguments& arguments, const LemmaCanvas& on,
+                    const std::vector<Result>& results) {
+  const std::string heading =
+      fmt::format("canvas {}, offset {}, {}\n\n", arguments.canvas, arguments.offset,
+                  on.context ? on.context->info().renderer : "no device");
+  if (!arguments.sweep.empty()) return heading + sweep_table(results);
+  return heading + "radius " + radius_name(results.front().rule) + "\n" +
+         result_table(results.front());
+}
+
+}  // namespace
+
+int lemma_command(const LemmaArguments& arguments, const Progress& progress,
+                  const std::function<void()>& done) {
+  validate(arguments);
+  const std::vector<RadiusRule> rules = rules_of(arguments);
+  const Fattener fattener = arguments.offset == "exact" ? minkowski_fattener() : obb_fattener();
+  const LemmaCanvas on(arguments, fattener);
+  std::vector<Result> results;
+  bool broken = false;
+  for (const RadiusRule& rule : rules) {
+    results.push_back(measure(arguments, rule, *on.canvas, fattener, progress));
+    const bool promises = !rule.published && rule.factor >= 1;
+    broken = broken || (promises && lemma_total(results.back().rows).violations() > 0);
+  }
+  done();
+  if (!arguments.json.empty())
+    write_output(arguments.json, to_json(arguments, on, results).dump(2) + "\n");
+  if (!arguments.csv.empty()) write_output(arguments.csv, sweep_csv(results));
+  if (arguments.json != "-" && arguments.csv != "-")
+    write_output("-", text_of(arguments, on, results));
+  return broken ? 1 : 0;
+}
+
+}  // namespace farcull

@@ -1,0 +1,3 @@
+#include "experiments/command/cli.h"
+
+int main(int argc, char** argv) { return farcull::command_line(argc, argv); }

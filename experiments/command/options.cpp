@@ -1,0 +1,140 @@
+// Checks values and places of output before a command runs.
+#include "experiments/command/options.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/mesh/text.h"
+#include "experiments/system/output_file.h"
+#include "experiments/system/text_table.h"
+
+namespace farcull {
+
+void add_scene(CLI::App& command, std::vector<std::string>& scene) {
+  command.add_option("SCENE", scene, kSceneHelp)->required()->type_name("");
+}
+
+void complain(const std::string& message) {
+  std::fprintf(stderr, "farcull: %s\n", clean_name(message).c_str());
+}
+
+Progress TerminalProgress::callback() {
+  const char* const terminal = std::getenv("TERM");
+  if (!::isatty(STDERR_FILENO) || terminal == nullptr || std::string_view(terminal) == "dumb")
+    return {};
+  return [this](const std::string& stage) { show(stage + " ..."); };
+}
+
+void TerminalProgress::clear() {
+  if (std::exchange(shown_, false)) std::fputs("\r\033[K", stderr);
+}
+
+// A line that wraps could not be written over, so it is cut to the terminal as it is now.
+void TerminalProgress::show(std::string line) {
+  winsize size = {};
+  if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1)
+    line = line.substr(0, size.ws_col - 1u);
+  std::fprintf(stderr, "\r\033[K%s", line.c_str());
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+bool Outputs::to_stdout() const {
+  return json == "-" || pairs == "-" || certificate == "-" || csv == "-" || picture == "-";
+}
+
+Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs) {
+  std::vector<NamedFile> files;
+  for (const auto& [option, path, example] :
+       {std::tuple("--json", &outputs.json, "result.json"),
+        std::tuple("--pairs", &outputs.pairs, "result.csv"),
+        std::tuple("--certificate", &outputs.certificate, "result.json"),
+        std::tuple("--csv", &outputs.csv, "result.csv"),
+        std::tuple("-o", &outputs.picture, "picture.png")}) {
+    if (!*path) continue;
+    // By its other name, standard output would be written at two places at once.
+    if (**path == "/dev/stdout") *path = "-";
+    if ((*path)->empty())
+      throw Error(option, "the path is empty", "name a file, or - for standard output");
+    // `run a.off --json --pairs b.csv`: CLI11 takes what follows for the value.
+    if ((*path)->starts_with("-") && **path != "-") {
+      throw Error(option, "its value is missing before '" + **path + "'",
+                  "name a file, with ./ before a name that begins with -");
+    }
+    // `run --json a.off b.off`: the mesh would be gone.
+    if (has_mesh_extension(**path)) {
+      throw Error(option, **path + " is named like a mesh and would be overwritten",
+                  std::string("name the file to write first, as in ") + option + " " + example);
+    }
+    files.push_back({option, **path});
+  }
+  require_apart(inputs, files);
+  for (const NamedFile& file : files) check_output(file.path);
+  if (!outputs.to_stdout()) check_output("-");
+  return outputs;
+}
+
+void check_scene(const std::vector<std::string>& scene) {
+  if (std::find(scene.begin(), scene.end(), "") != scene.end())
+    throw Error("SCENE", "a name is empty", "name mesh files, a scene file or a built-in scene");
+}
+
+std::optional<std::uint64_t> seed_of(const std::vector<std::string>& scene) {
+  return scene.size() == 1 ? builtin_seed(scene[0]) : std::nullopt;
+}
+
+double parse_clearance(const std::string& text) {
+  const std::optional<double> value = parse_number<double>(text);
+  if (!value || !std::isfinite(*value) || *value < 0) {
+    throw Error("--clearance", "'" + text + "' is no distance",
+                "give a finite distance in world units, 0 or more");
+  }
+  return *value;
+}
+
+std::string parse_views_option(const std::string& text, bool may_choose) {
+  if (text.empty()) throw Error("--views", "its value is empty", "give directions, as in x,y,z");
+  if (text != "auto") return text;
+  if (!may_choose) {
+    throw Error("--views", "auto has a meaning for far-pairs alone",
+                "give directions, as in x,y,z, or use far-pairs");
+  }
+  return "";
+}
+
+void make_self(Scene& scene) {
+  for (Object& object : scene.objects) object.self = true;
+}
+
+std::string missed(const Record& record) {
+  return fmt::format("{} culled pairs that collide: {}", describe(record.options),
+                     grouped(record.verification->false_negatives));
+}
+
+std::string device_of(const Text& device) {
+  if (device && device->empty())
+    throw Error("--device", "its value is empty", "give software, hardware or a number");
+  return device.value_or("");
+}
+
+void write_json(const nlohmann::ordered_json& json, const std::string& path) {
+  write_output(path, json.dump(2) + "\n");
+}
+
+}  // namespace farcull

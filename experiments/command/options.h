@@ -1,0 +1,118 @@
+// Options, outputs and progress that several commands share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/cull/cull.h"
+#include "experiments/command/files.h"
+#include "experiments/method/run.h"
+
+namespace farcull {
+
+using Text = std::optional<std::string>;  // of an option; empty where it was not given
+
+inline constexpr int kExitDone = 0, kExitBroken = 1, kExitBad = 2;  // exit statuses
+
+/// Declares an option with a value; `type` stands for the value in the help.
+template <class Value>
+void add_option(CLI::App& command, const char* name, Value& value, const char* type,
+                const char* help) {
+  command.add_option(name, value, help)->type_name(type);
+}
+/// Declares an option without a value.
+inline void add_flag(CLI::App& command, const char* name, bool& value, const char* help) {
+  command.add_flag(name, value, help)->disable_flag_override();
+}
+/// Declares SCENE, which has to be given.
+void add_scene(CLI::App& command, std::vector<std::string>& scene);
+
+/// The one line of a failure, on standard error. A path may hold anything, so control characters do
+/// not get through.
+void complain(const std::string& message);
+
+/// One line on standard error that is written over, on a terminal only.
+class TerminalProgress {
+ public:
+  Progress callback();
+  void clear();
+  TerminalProgress() = default;
+  ~TerminalProgress() { clear(); }
+  TerminalProgress(const TerminalProgress&) = delete;
+  TerminalProgress& operator=(const TerminalProgress&) = delete;
+
+ private:
+  void show(std::string line);
+
+  bool shown_ = false;
+};
+
+/// Where results go besides the table.
+struct Outputs {
+  Text json = {};
+  Text pairs = {};
+  Text certificate = {};
+  Text csv = {};
+  Text picture = {};  // -o
+
+  bool to_stdout() const;
+};
+
+/// The outputs of a command that reads these files, or an Error for what can be known to go wrong
+/// with them before anything is run: paths that are none, outputs that are inputs or one another
+/// (require_apart()), what check_output() refuses.
+Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs);
+
+/// Throws Error where a name of the scene is empty.
+void check_scene(const std::vector<std::string>& scene);
+/// The seed of the scene, where it is a random built-in one.
+std::optional<std::uint64_t> seed_of(const std::vector<std::string>& scene);
+
+/// A distance in world units. Throws Error naming --clearance.
+double parse_clearance(const std::string& text);
+/// --views as RunOptions takes it: `auto` is "". Throws Error where the value is empty.
+std::string parse_views_option(const std::string& text, bool may_choose);
+/// --self: every object of the scene is tested against itself.
+void make_self(Scene& scene);
+
+/// The guarantee that `record` broke, for complain().
+std::string missed(const Record& record);
+
+/// Empty where none is asked for. Throws Error where the value is empty.
+std::string device_of(const Text& device);
+
+void write_json(const nlohmann::ordered_json& json, const std::string& path);
+
+inline constexpr const char* kViewsHelp =
+    "axes or directions to look along, by commas, as in\n"
+    "x,-y,1:1:0.5; default x,y,z; for far-pairs auto:\n"
+    "chosen by the scene";
+inline constexpr const char* kDeviceHelp =
+    "software, hardware or a number that `farcull doctor`\n"
+    "lists; default hardware first, then software";
+inline constexpr const char* kRunDeviceHelp =
+    "cpu (far-pairs), software, hardware or a number that\n"
+    "`farcull doctor` lists; default hardware first, then\n"
+    "software; for far-pairs hardware first, then cpu";
+inline constexpr const char* kSelfHelp =
+    "every object is tested against itself as well\n"
+    "(far-pairs, s-cullide, i-collide, exact); collisions of\n"
+    "triangles that share a vertex position are listed apart";
+inline constexpr const char* kFullHelp =
+    "leave nothing out that the scene does not need, to\n"
+    "measure what leaving out saves (see farcull plan)";
+inline constexpr const char* kClearanceHelp =
+    "pairs at this distance or less collide, in world\n"
+    "units (far-pairs, exact); default 0";
+inline constexpr const char* kSceneHelp =
+    "mesh files (.obj .off .ply .stl), each an object;\n"
+    "or one scene file (.json); or one built-in scene\n"
+    "(`farcull scenes` lists them)";
+inline constexpr const char* kJsonHelp =
+    "write the record as JSON to this file; - for standard\n"
+    "output, without the table";
+
+}  // namespace farcull

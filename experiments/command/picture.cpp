@@ -1,0 +1,215 @@
+// Options of `farcull picture` become PictureArguments; the result goes to a file or standard
+// output.
+#include "experiments/command/picture.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <charconv>
+
+#include "core/base/error.h"
+#include "experiments/scenes/mesh/mesh.h"
+#include "experiments/scenes/mesh/text.h"
+#include "experiments/system/output_file.h"
+#include "experiments/system/text_table.h"
+
+namespace farcull {
+namespace {
+
+// "900x760", both even afterwards: a window has its middle between two pixels.
+void parse_size(const std::string& text, int& width, int& height) {
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  const auto bad = [&text] {
+    return Error("--size", "'" + text + "' is no size",
+                 "give the width and height of a panel in px, as in 900x760");
+  };
+  const auto first = std::from_chars(at, end, width);
+  if (first.ec != std::errc() || first.ptr == end || *first.ptr != 'x') throw bad();
+  const auto second = std::from_chars(first.ptr + 1, end, height);
+  if (second.ec != std::errc() || second.ptr != end) throw bad();
+  width += width % 2;
+  height += height % 2;
+}
+
+long parse_frame(const std::string& text) {
+  long frame = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), frame);
+  if (code != std::errc() || end != text.data() + text.size() || frame < 0 || frame > 1'000'000'000)
+    throw Error("--frame", "'" + text + "' is no frame", "give its number, 0 or more");
+  return frame;
+}
+
+// "far", or "far:128" with a resolution of its own.
+RunOptions parse_panel(const std::string& text, const RunOptions& usual) {
+  RunOptions options = usual;
+  const std::size_t colon = text.find(':');
+  options.method = parse_method(text.substr(0, colon), "--compare");
+  const bool takes = looks(options.method);
+  if (!takes) options.resolution = 0;
+  if (colon == std::string::npos) return options;
+  if (!takes) {
+    throw Error("--compare", to_string(options.method) + " has no resolution",
+                "leave out what follows the colon");
+  }
+  options.resolution = parse_resolution(text.substr(colon + 1), "--compare");
+  return options;
+}
+
+// Where the picture goes, from a command that reads these files.
+std::string checked_output(const Text& output, const std::vector<NamedFile>& inputs) {
+  if (!output || output->empty())
+    throw Error("-o", "it does not say where the picture goes",
+                "give -o FILE.png, or -o - for standard output");
+  const std::string path = *checked({.picture = output}, inputs).picture;
+  if (path == "-" && ::isatty(STDOUT_FILENO)) {
+    throw Error("-o", "standard output is a terminal, which shows no PNG",
+                "let it go somewhere, or give -o FILE.png");
+  }
+  return path;
+}
+
+}  // namespace
+
+CLI::App* PictureCommand::add_to(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("picture", "what a method finds and misses, as a picture (PNG)");
+  add_options(*command);
+  return command;
+}
+
+void PictureCommand::add_options(CLI::App& app) {
+  CLI::App* command = &app;
+  command->add_option("SCENE", scene_, kSceneHelp)->required()->type_name("");
+  const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
+    command->add_option(name, text, help)->type_name(type);
+  };
+  add("-o,--output", output_, "FILE", "where the PNG goes; - for standard output");
+  add("--method", method_, "METHOD", "as farcull run takes it; default far");
+  add("--compare", compare_, "LIST",
+      "several methods, a panel each, by commas, each perhaps\nwith a resolution: "
+      "cullide:128,far:128");
+  add("--resolution", resolution_, "N", "px, as farcull run takes it; default 512");
+  add("--radius", radius_, "RADIUS", "for far: budget, published, or a factor");
+  add("--offset", offset_, "OFFSET", "for far: obb or exact; default obb");
+  add("--depth", depth_, "fragment|fixed", "for far; default fragment");
+  add("--device", device_, "DEVICE", kRunDeviceHelp);
+  command->add_flag("--self", self_, kSelfHelp)->disable_flag_override();
+  add("--frame", frame_, "F", "of a scene that moves");
+  add("--frames", frames_, "N|A:B",
+      "of the motion that F is one of; default 30 of a\nbuilt-in scene");
+  add("--view", view_, "DIR",
+      "direction that the picture looks along, as in -z or\n-1:-1:-2; default -0.45:-0.35:-0.82");
+  add("--up", up_, "AXIS", "upwards in the picture; default y");
+  command->add_flag("--zoom", zoom_, "show only where something collides")->disable_flag_override();
+  depth_view_option_ = command
+                           ->add_option("--view-depth", depth_view_,
+                                        "instead: the depth that the method stores in one of\nits "
+                                        "views (default z; --view-depth=-z for -z), and\n"
+                                        "what that view culls")
+                           ->type_name("[VIEW]")
+                           ->expected(0, 1);
+  add("--size", size_, "WxH", "px of a panel; default 900x760");
+  command->footer(
+      "Examples:\n"
+      "  farcull picture two-bunnies --method cullide --resolution 128 -o missed.png\n"
+      "  farcull picture two-bunnies --compare cullide,far --resolution 256 -o compare.png\n"
+      "  farcull picture two-bunnies --compare cullide:128,cullide:512,far:128 --zoom -o c.png\n"
+      "  farcull picture mannequin-devil --method s-cullide --self -o self.png\n"
+      "  farcull picture two-tori --resolution 64 --view-depth x -o depth.png\n"
+      "  farcull picture cloth --frame 100 --frames 101 --method far-pairs --up z -o cloth.png\n\n"
+      "Exit status 1: a method that promises missed a pair; the picture shows it.");
+}
+
+RunOptions PictureCommand::usual_options() const {
+  RunOptions usual;
+  usual.device = farcull::device_of(device_);
+  usual.verify = false;
+  if (resolution_) usual.resolution = parse_resolution(*resolution_);
+  if (radius_) usual.radius = parse_radius(*radius_);
+  if (offset_) usual.offset = *offset_;
+  if (depth_) {
+    if (*depth_ != "fragment" && *depth_ != "fixed")
+      throw Error("--depth", "'" + *depth_ + "' is no choice", "give fixed or fragment");
+    usual.depth = *depth_ == "fixed" ? DepthMode::fixed : DepthMode::fragment;
+  }
+  return usual;
+}
+
+PictureArguments PictureCommand::arguments() const {
+  PictureArguments out;
+  out.scene = scene_;
+  out.self = self_;
+  out.zoom = zoom_;
+  if (frame_) out.frame = parse_frame(*frame_);
+  if (frames_) out.frames = parse_frames(*frames_);
+  if (size_) parse_size(*size_, out.width, out.height);
+  for (const auto& [option, text] : {std::pair("--view", view_), std::pair("--up", up_)}) {
+    if (text && text->empty())
+      throw Error(option, "its value is empty", "give a direction, as in -z");
+  }
+  out.view = view_.value_or("");
+  out.up = up_.value_or("");
+  if (depth_view_option_->count() > 0) {
+    const std::string given = depth_view_.empty() ? "" : depth_view_.front();
+    out.depth_view = given.empty() ? "z" : given;
+  }
+
+  RunOptions usual = usual_options();
+  if (method_ && compare_)
+    throw Error("--compare", "names the methods, and so does --method", "give one of the two");
+  bool far = false;
+  for (const std::string& word : split_list(compare_.value_or(method_.value_or("far")))) {
+    if (compare_) {
+      out.panels.push_back(parse_panel(word, usual));
+    } else {
+      usual.method = parse_method(word);
+      if (usual.resolution > 0 && !looks(usual.method)) {
+        throw Error("--resolution", "has no meaning for --method " + word,
+                    "leave --resolution out");
+      }
+      out.panels.push_back(usual);
+    }
+    RunOptions& options = out.panels.back();
+    far |= fattens(options.method);
+    if (!fattens(options.method)) {
+      options.radius = {};
+      options.offset = "obb";
+      options.depth.reset();
+    }
+  }
+  if (!far) {
+    for (const auto& [option, text] :
+         {std::pair("--radius", radius_), std::pair("--offset", offset_),
+          std::pair("--depth", depth_)}) {
+      if (text) throw Error(option, "has a meaning for far alone", "leave it out");
+    }
+  }
+  validate(out);
+  return out;
+}
+
+int PictureCommand::run() const {
+  const PictureArguments arguments = this->arguments();
+  check_scene(arguments.scene);
+  std::optional<FrameRange> range = arguments.frames;
+  if (arguments.frame && !range) range = FrameRange{*arguments.frame, *arguments.frame};
+  const std::string path = checked_output(output_, scene_files(arguments.scene, range));
+  TerminalProgress terminal;
+  Lab lab(arguments.panels.front().device, terminal.callback());
+  const PictureResult result = write_picture(arguments, lab, path);
+  terminal.clear();
+  int status = kExitDone;
+  std::string lines;
+  for (const PanelResult& panel : result.panels) {
+    lines += panel.title + ": " + panel.headline + "\n";
+    if (!panel.broken) continue;
+    status = kExitBroken;
+    complain(fmt::format("{} culled pairs that collide: {}", panel.title, grouped(panel.missed)));
+  }
+  if (path != "-")
+    write_output("-", lines + result.not_asked + "The picture is in " + clean_name(path) + "\n");
+  return status;
+}
+
+}  // namespace farcull

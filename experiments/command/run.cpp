@@ -1,0 +1,293 @@
+// Reads the options of the three commands, then plans or runs.
+#include "experiments/command/run.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "experiments/measure/frames.h"
+#include "experiments/record/certificate.h"
+#include "experiments/record/output.h"
+#include "experiments/record/plan.h"
+#include "experiments/record/tables.h"
+#include "experiments/scenes/scene_file.h"
+#include "experiments/system/output_file.h"
+
+namespace farcull {
+namespace {
+
+template <class Value>
+Value choose(const std::string& option, const std::string& given,
+             const std::map<std::string, Value>& values) {
+  const auto found = values.find(given);
+  if (found != values.end()) return found->second;
+  std::string known;
+  for (const auto& [name, value] : values) known += (known.empty() ? "" : " or ") + name;
+  throw Error(option, "'" + given + "' is no choice", "give " + known);
+}
+
+constexpr const char* kRunExamples =
+    "Examples:\n"
+    "  farcull run two-spheres\n"
+    "  farcull run bunny.off dragon.off --method cullide --resolution 256\n"
+    "  farcull run cloth.obj --method far-pairs --self --pairs pairs.csv\n"
+    "  farcull run a.obj b.obj --method far-pairs --clearance 0.001\n"
+    "  farcull run 'cloth_%04d.obj' body.obj --method far-pairs --frames 1:100 --no-verify\n"
+    "  farcull run scene.json --json - | jq .verification\n"
+    "  farcull run two-spheres --radius published --depth fixed --depth-format 24\n\n"
+    "Exit status 1: a method that promises missed a pair. i-collide and far-pairs promise,\n"
+    "and far at the budget radius or more with fragment depth; on OpenGL only where the\n"
+    "probes of the device pass (farcull doctor), but the status is 1 all the same.\n"
+    "farcull verify asks it of every method.";
+constexpr const char* kVerifyExamples =
+    "Examples:\n"
+    "  farcull verify two-spheres\n"
+    "  farcull verify two-spheres --method cullide --resolution 64\n"
+    "  farcull verify two-spheres --method far-pairs --frames 30\n"
+    "  farcull verify scene.json --json record.json\n\n"
+    "Exit status 1: a culled pair intersects, whatever the method.";
+constexpr const char* kPlanExamples =
+    "Examples:\n"
+    "  farcull plan two-bunnies\n"
+    "  farcull plan two-bunnies --method far --offset exact\n"
+    "  farcull plan bunnies-far-apart --method far-pairs --json -\n\n"
+    "The same scene and options give the same plan. farcull run --full leaves nothing out.";
+
+}  // namespace
+
+CLI::App* RunCommand::add_to(CLI::App& app) {
+  const auto declare = [&](const char* name, const char* title, const char* examples) {
+    CLI::App* command = app.add_subcommand(name, title);
+    command->footer(examples);
+    return command;
+  };
+  CLI::App* command = nullptr;
+  switch (kind_) {
+    case Kind::run:
+      command =
+          declare("run", "cull a scene, test what is left, account for every pair", kRunExamples);
+      break;
+    case Kind::verify:
+      command = declare("verify", "run; status 1 if any culled pair intersects", kVerifyExamples);
+      break;
+    case Kind::plan:
+      command =
+          declare("plan", "what run would do, what it would leave out, and why", kPlanExamples);
+      break;
+  }
+  add_scene(*command, scene_);
+  add_method_options(*command);
+  if (kind_ != Kind::verify)
+    add_flag(*command, "--no-verify", no_verify_, "leave out the accounting of all pairs");
+  if (kind_ == Kind::plan) {
+    add_option(*command, "--json", outputs_.json, "FILE", kJsonHelp);
+  } else {
+    add_outputs(*command);
+  }
+  return command;
+}
+
+void RunCommand::add_method_options(CLI::App& command) {
+  const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
+    add_option(command, name, text, type, help);
+  };
+  add("--method", method_, "METHOD",
+      "far, cullide, quick-cullide, s-cullide, i-collide,\nfar-pairs or exact; default far");
+  add("--resolution", resolution_, "N|auto",
+      "pixels along the larger side of each view's window;\ndefault 512; for far-pairs auto: "
+      "chosen by the scene");
+  add("--radius", radius_, "RADIUS",
+      "of the ball that fattens a primitive, for far: budget,\n"
+      "published, or a factor on the budget; default budget");
+  add("--offset", offset_, "OFFSET",
+      "what a primitive is fattened to, for far: obb or\nexact; default obb");
+  add("--depth", depth_, "fragment|fixed",
+      "entry and exit depth by the fragment program\n"
+      "(reliable), or fixed function as published;\n"
+      "default fragment for far, fixed for the others");
+  add("--depth-format", depth_format_, "32f|24", "of the depth buffer; default 32f");
+  add("--query", query_, "flags|occlusion",
+      "how visibility is asked; default flags, but occlusion\n"
+      "with --depth-format 24 and for s-cullide");
+  add("--clusters", clusters_, "LIST|none",
+      "sizes of clusters of triangles that are asked before\n"
+      "single ones, for far, cullide and quick-cullide; default\n"
+      "32 with occlusion queries and more than 32768 triangles");
+  add("--views", views_, "VIEWS", kViewsHelp);
+  add("--device", device_, "DEVICE", kRunDeviceHelp);
+  add_flag(command, "--self", self_, kSelfHelp);
+  add("--clearance", clearance_, "D", kClearanceHelp);
+  add_flag(command, "--full", full_, kFullHelp);
+}
+
+void RunCommand::add_outputs(CLI::App& command) {
+  const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
+    add_option(command, name, text, type, help);
+  };
+  add("--frames", frames_, "N|A:B",
+      "run N frames (0 to N-1), or those numbered A to B, of\n"
+      "meshes with %d or %04d in their names, or of a\n"
+      "built-in scene that moves (see farcull scenes)");
+  add("--pairs", outputs_.pairs, "FILE",
+      "write the colliding pairs as CSV to this file; - for\n"
+      "standard output, without the table");
+  add("--json", outputs_.json, "FILE", kJsonHelp);
+  add("--certificate", outputs_.certificate, "FILE",
+      "write evidence for every pair to this file, for\n`farcull check`");
+}
+
+RunOptions RunCommand::parse() const {
+  RunOptions out;
+  if (method_) out.method = parse_method(*method_);
+  const bool pairs = chooses_views(out.method);
+  if (resolution_ == "auto") {
+    if (!pairs) {
+      throw Error("--resolution", "auto has no meaning for --method " + to_string(out.method),
+                  "give a number of pixels, or use --method far-pairs");
+    }
+  } else if (resolution_) {
+    out.resolution = parse_resolution(*resolution_);
+  }
+  if (radius_) out.radius = parse_radius(*radius_);
+  if (offset_) out.offset = *offset_;
+  if (depth_) {
+    out.depth = choose<DepthMode>("--depth", *depth_,
+                                  {{"fragment", DepthMode::fragment}, {"fixed", DepthMode::fixed}});
+  }
+  if (depth_format_) {
+    out.depth_format =
+        choose<DepthFormat>("--depth-format", *depth_format_,
+                            {{"32f", DepthFormat::float32}, {"24", DepthFormat::fixed24}});
+  }
+  if (query_) out.query = parse_query(*query_);
+  if (clusters_) out.clusters = parse_clusters(*clusters_);
+  if (views_) out.views = parse_views_option(*views_, pairs);
+  if (clearance_) out.clearance = parse_clearance(*clearance_);
+  out.device = device_of(device_);
+  out.verify = !no_verify_;
+  out.full = full_;
+  out.seed = seed_of(scene_);
+  validate(out);
+  refuse_idle(out.method);
+  return out;
+}
+
+// Refuses an option that the method does not use, so that no result lacks what was asked for.
+void RunCommand::refuse_idle(Method chosen) const {
+  const auto refuse = [&](const char* option, bool given, const std::string& methods) {
+    if (!given) return;
+    throw Error(option, "has no meaning for --method " + to_string(chosen),
+                std::string("leave ") + option + " out, or use --method " + methods);
+  };
+  if (!tests_self(chosen))
+    refuse("--self", self_, method_names([](const Traits& t) { return t.tests_self; }));
+  if (!takes_clearance(chosen))
+    refuse("--clearance", clearance_.has_value(),
+           method_names([](const Traits& t) { return t.takes_clearance; }));
+  if (!fattens(chosen)) {
+    refuse("--radius", radius_.has_value(), "far");
+    refuse("--offset", offset_.has_value(), "far");
+    refuse("--depth", depth_.has_value(), "far");
+  }
+  if (!draws(chosen)) {
+    const std::string drawing = method_names([](const Traits& t) { return t.draws; });
+    refuse("--depth-format", depth_format_.has_value(), drawing);
+    refuse("--query", query_.has_value(), drawing);
+  }
+  if (clusters_ && (!draws(chosen) || tests_self_alone(chosen)))
+    refuse("--clusters", true, "far, cullide or quick-cullide");
+  if (!looks(chosen)) {
+    const std::string others =
+        method_names([](const Traits& t) { return t.draws || t.chooses_views; });
+    refuse("--resolution", resolution_.has_value(), others);
+    refuse("--views", views_.has_value(), others);
+    refuse("--device", device_.has_value(), others);
+  }
+  if (!culls(chosen) && full_)
+    throw Error("--full", "exact leaves nothing out", "leave --full out");
+}
+
+int RunCommand::run() const {
+  const RunOptions options = parse();
+  check_scene(scene_);
+  if (kind_ == Kind::plan) return plan(options);
+  if (outputs_.certificate && options.clearance > 0) {
+    throw Error("--certificate", "is about triangles that meet, not about a clearance",
+                "leave --certificate or --clearance out");
+  }
+  if (outputs_.certificate && frames_) {
+    throw Error("--certificate", "is about one scene, not about frames",
+                "leave --certificate or --frames out");
+  }
+  std::optional<FrameRange> range;
+  if (frames_) range = parse_frames(*frames_);
+  const Outputs outputs = checked(outputs_, scene_files(scene_, range));
+  return range ? run_frames(options, outputs, *range) : run_once(options, outputs);
+}
+
+int RunCommand::plan(const RunOptions& options) const {
+  const Outputs outputs = checked(outputs_, scene_files(scene_));
+  Scene scene = load_scene(scene_);
+  if (self_) make_self(scene);
+  const Plan planned = farcull::plan(scene, options);
+  if (outputs.json) write_json(plan_json(scene, planned), *outputs.json);
+  if (!outputs.to_stdout()) write_output("-", plan_table(scene, planned));
+  return kExitDone;
+}
+
+int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) const {
+  TerminalProgress terminal;
+  const Progress progress = terminal.callback();
+  if (progress) progress("reading the scene");
+  Scene scene = load_scene(scene_);
+  if (self_) make_self(scene);
+  Session session(options.device);
+  const Record record = farcull::run(scene, options, session, progress);
+  terminal.clear();
+  if (outputs.pairs) write_output(*outputs.pairs, pairs_csv(scene, record));
+  if (outputs.certificate) {
+    write_output(*outputs.certificate, to_text(certificate_of(scene, record)));
+  }
+  if (outputs.json) write_json(to_json(scene, record), *outputs.json);
+  if (!outputs.to_stdout()) write_output("-", run_table(scene, record));
+  if (!broken(record, kind_ == Kind::verify)) return kExitDone;
+  complain(missed(record));
+  return kExitBroken;
+}
+
+int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
+                           FrameRange range) const {
+  TerminalProgress terminal;
+  const Progress progress = terminal.callback();
+  FramesQuestion question{.options = options,
+                          .range = range,
+                          .self = self_,
+                          .strict = kind_ == Kind::verify,
+                          .pairs = outputs.pairs.has_value()};
+  if (progress) progress("reading the scene");
+  FrameSource source(scene_, range, self_);
+  if (const std::optional<Error> missing = source.missing()) {
+    terminal.clear();
+    complain(missing->where + ": the file does not exist; the frames before it are run");
+  }
+  std::optional<FrameRecord> json;
+  std::optional<GrowingOutput> pairs;
+  if (outputs.json) json.emplace(*outputs.json);
+  if (outputs.pairs) pairs.emplace(*outputs.pairs);
+  const FramesResult result =
+      farcull::run_frames(source, question, progress, [&](const FrameReport& report) {
+        terminal.clear();
+        if (json) json->add(report);
+        if (pairs) pairs->add(report.pairs_csv, "");
+        if (!outputs.to_stdout()) write_output("-", report.rows);
+      });
+  terminal.clear();
+  if (json) json->finish();
+  if (pairs) pairs->finish();
+  if (!outputs.to_stdout()) write_output("-", result.table);
+  if (result.broken.empty()) return kExitDone;
+  complain(result.broken);
+  return kExitBroken;
+}
+
+}  // namespace farcull

@@ -1,0 +1,41 @@
+// `farcull run`, `farcull verify` and `farcull plan`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/command/options.h"
+#include "experiments/scenes/frames.h"
+
+namespace farcull {
+
+/// Declares one of the three commands on the program's options; run() runs it.
+class RunCommand {
+ public:
+  /// verify asks the guarantee of every method; plan prints what run would do.
+  enum class Kind { run, verify, plan };
+  explicit RunCommand(Kind kind) : kind_(kind) {}
+  CLI::App* add_to(CLI::App& app);
+  /// The exit status: 0 done, 1 a guarantee is broken. Throws Error where the arguments are bad.
+  int run() const;
+
+ private:
+  void add_method_options(CLI::App& command);
+  void add_outputs(CLI::App& command);
+  RunOptions parse() const;
+  void refuse_idle(Method chosen) const;
+  int plan(const RunOptions& options) const;
+  int run_once(const RunOptions& options, const Outputs& outputs) const;
+  int run_frames(const RunOptions& options, const Outputs& outputs, FrameRange range) const;
+
+  Kind kind_;
+  std::vector<std::string> scene_;
+  Text method_, resolution_, radius_, offset_, depth_, depth_format_, query_, clusters_, views_,
+      device_;
+  Text clearance_, frames_;
+  Outputs outputs_;
+  bool self_ = false, no_verify_ = false, full_ = false;
+};
+
+}  // namespace farcull

@@ -1,0 +1,172 @@
+// Lists the built-in scenes, or writes one of them as meshes.
+#include "experiments/command/scenes.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/base/error.h"
+#include "experiments/scenes/builtin/moving_scene.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/frames.h"
+#include "experiments/scenes/scene_file.h"
+#include "experiments/scenes/scene_write.h"
+#include "experiments/system/output_file.h"
+#include "experiments/system/text_table.h"
+
+namespace farcull {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const BuiltinScene& scene) {
+  Json out = {{"name", scene.name},
+              {"objects", scene.objects},
+              {"triangles", scene.triangles},
+              {"needs_meshes", scene.needs_meshes},
+              {"moves", !scene.motion.empty()},
+              {"motion", nullptr},
+              {"topology_changes", scene.topology_changes},
+              {"seed", nullptr},
+              {"size", nullptr},
+              {"second", nullptr},
+              {"description", scene.description}};
+  if (!scene.motion.empty()) out["motion"] = scene.motion;
+  if (scene.seed) out["seed"] = *scene.seed;
+  if (const auto& n = scene.size) {
+    out["size"] = {{"what", n->what}, {"least", n->least}, {"most", n->most}, {"usual", n->usual}};
+  }
+  if (const auto& n = scene.second) {
+    out["second"] = {
+        {"what", n->what}, {"least", n->least}, {"most", n->most}, {"usual", n->usual}};
+  }
+  return out;
+}
+
+std::string sizes_text() {
+  Table table("lrrrl");
+  table.add({"number", "least", "most", "usual", "of"});
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    if (const auto& n = scene.size) {
+      table.add(
+          {scene.name + ":N", grouped(n->least), grouped(n->most), grouped(n->usual), n->what});
+    }
+    if (const auto& n = scene.second) {
+      table.add({scene.name + ":N:X", fmt::format("{:g}", n->least), fmt::format("{:g}", n->most),
+                 fmt::format("{:.3g}", n->usual), n->what});
+    }
+  }
+  return "Some take numbers, as in crowd:3000:0.2:\n" + table.text();
+}
+
+std::string motions_text() {
+  Table table("ll");
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    if (!scene.motion.empty()) table.add({scene.name, scene.motion});
+  }
+  return "These move, as in farcull run two-bunnies --method far-pairs --frames 30:\n" +
+         table.text();
+}
+
+std::string suffixes_text() {
+  Table table("ll");
+  for (const SceneSuffix& suffix : scene_suffixes()) table.add({suffix.suffix, suffix.description});
+  return "Every name takes suffixes, as in two-spheres@far:\n" + table.text();
+}
+
+}  // namespace
+
+CLI::App* ScenesCommand::add_to(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("scenes", "the built-in scenes with their sizes; one of them as meshes");
+  command->add_option("NAME", name_, "the scene to write, with its numbers and suffixes")
+      ->type_name("");
+  add_option(*command, "--write", folder_, "DIR",
+             "write the scene as meshes, one an object, and\nscene.json into this folder, "
+             "which is made if its\nparent is there; files of these names are replaced");
+  add_option(*command, "--frames", frames_, "N|A:B",
+             "with --write: N frames (0 to N-1) or those numbered\nA to B of a scene that "
+             "moves, for\nfarcull run DIR/scene.json --frames N|A:B");
+  add_option(*command, "--json", outputs_.json, "FILE", kJsonHelp);
+  command->footer(
+      "Examples:\n"
+      "  farcull scenes\n"
+      "  farcull run crowd@ground\n"
+      "  farcull scenes crowd:3000:0.2 --write crowd\n"
+      "  farcull scenes tree-leaves --write leaves --frames 60");
+  return command;
+}
+
+int ScenesCommand::run() const {
+  if (!name_) {
+    if (folder_) {
+      throw Error("--write", "no scene is named",
+                  "name one, as in farcull scenes two-spheres --write DIR");
+    }
+    if (frames_) {
+      throw Error("--frames", "nothing is written",
+                  "give a scene and --write DIR, or see farcull run --frames");
+    }
+    list(checked(outputs_, {}));
+    return 0;
+  }
+  parse_scene_name(*name_);
+  if (!folder_) {
+    throw Error(*name_, "is named, but not what to do with it",
+                "give --write DIR, or leave the name out for the list of scenes");
+  }
+  if (folder_->empty()) throw Error("--write", "the folder's name is empty", "name a folder");
+  if (outputs_.json) {
+    throw Error("--json", "is for the list of scenes", "leave --json or the scene's name out");
+  }
+  check_output("-");
+  // Files of the folder may be replaced, the meshes that the scene is made of may not.
+  std::vector<NamedFile> there;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(*folder_, error))
+    there.push_back({"--write", entry.path().string()});
+  require_not_read(scene_files({*name_}), there);
+  write();
+  return 0;
+}
+
+void ScenesCommand::list(const Outputs& outputs) const {
+  Json all = Json::array();
+  Table table("lrrrl");
+  table.add({"scene", "objects", "triangles", "seed", ""});
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    table.add({scene.name, grouped(scene.objects), grouped(scene.triangles),
+               scene.seed ? std::to_string(*scene.seed) : "-", scene.description});
+    all.push_back(to_json(scene));
+  }
+  if (outputs.json) write_json(all, *outputs.json);
+  if (!outputs.to_stdout()) {
+    write_output(
+        "-", table.text() + "\n" + sizes_text() + "\n" + suffixes_text() + "\n" + motions_text());
+  }
+}
+
+void ScenesCommand::write() const {
+  std::optional<FrameRange> range;
+  if (frames_) range = parse_frames(*frames_);
+  TerminalProgress terminal;
+  const Progress progress = terminal.callback();
+  if (progress) progress("making the scene");
+  WrittenScene written;
+  if (range) {
+    MovingScene moving(*name_, range->count(), range->first);
+    const auto at = [&](long frame) -> const Scene& { return moving.at(frame); };
+    written = write_frames(at, *range, parse_scene_name(*name_).entry->topology_changes, *folder_,
+                           progress);
+  } else {
+    written = write_scene(make_builtin_scene(*name_), *folder_);
+  }
+  terminal.clear();
+  write_output("-", fmt::format("{} files, {} bytes\nfarcull run {}{}\n", grouped(written.files),
+                                grouped(written.bytes), written.scene_file,
+                                range ? " --method far-pairs --frames " + *frames_ : ""));
+}
+
+}  // namespace farcull

@@ -1,0 +1,208 @@
+// Options of the studies and of `farcull merge`, and the progress of a run.
+#include "experiments/command/studies.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "experiments/studies/merge.h"
+#include "experiments/studies/run_studies.h"
+#include "experiments/studies/study.h"
+#include "experiments/system/output_file.h"
+
+namespace farcull {
+namespace {
+
+std::string duration(double seconds) {
+  const auto whole = static_cast<long>(seconds + 0.5);
+  if (whole >= 3600) return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
+  if (whole >= 60) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} s", whole);
+}
+
+std::string left_text(const StudiesProgress& p) {
+  return p.remaining_s ? ", " + duration(*p.remaining_s) + " left" : "";
+}
+
+// Progress on a terminal: a bar with the time that is left.
+std::string bar_of(const StudiesProgress& p) {
+  constexpr std::size_t kWidth = 20;
+  const std::size_t full = p.points > 0 ? kWidth * p.done / p.points : kWidth;
+  return fmt::format("[{}{}] {}/{}{}  {}: {}{}", std::string(full, '#'),
+                     std::string(kWidth - full, '.'), p.done, p.points, left_text(p), p.study,
+                     p.point, p.stage.empty() ? "" : ": " + p.stage);
+}
+
+// Progress where there is no terminal: a line when a study begins, and at most one every half
+// minute.
+class PlainProgress {
+ public:
+  void show(const StudiesProgress& p) {
+    const auto now = std::chrono::steady_clock::now();
+    if (p.study == study_ && now - last_ < std::chrono::seconds(30)) return;
+    study_ = p.study;
+    last_ = now;
+    try {
+      write_output("-",
+                   fmt::format("{}: {} of {} points{}\n", p.study, p.done, p.points, left_text(p)));
+    } catch (const Error&) {
+      // The measurement goes on where the progress cannot be written.
+    }
+  }
+
+ private:
+  std::string study_;
+  std::chrono::steady_clock::time_point last_;
+};
+
+constexpr std::uint64_t kMostSeed = 1'000'000'000'000;
+
+}  // namespace
+
+void StudiesCommand::add_to(CLI::App& experiment) {
+  const auto declare = [&](const std::string& name, const std::string& title) {
+    CLI::App* command = experiment.add_subcommand(name, title);
+    command
+        ->add_option(
+            "--out", out_,
+            fmt::format("folder of the results, one SQLite file; default\n{}", kResultsFolder))
+        ->type_name("DIR");
+    command->add_flag("--quick", quick_, "a smaller grid of the same shape: minutes, not hours")
+        ->disable_flag_override();
+    command->add_option("--seed", seed_, "of what is random in the grid; default 1")
+        ->type_name("N");
+    command->add_flag("--resume", resume_, "go on with what is in the folder")
+        ->disable_flag_override();
+    command
+        ->add_option("--shard", shard_,
+                     "measure the Kth of N parts; default the variables of\nSlurm's array jobs and "
+                     "Open MPI, else everything")
+        ->type_name("K/N");
+    command->add_option("--device", device_, kDeviceHelp)->type_name("DEVICE");
+    command->footer(
+        fmt::format("Examples:\n"
+                    "  farcull experiment {0} --quick\n"
+                    "  farcull experiment {0} --out results --resume\n"
+                    "  farcull experiment {0} --out results --shard 2/4\n\n"
+                    "Then: farcull report DIR; for shards farcull merge DIR first.\n"
+                    "Exit status 1: a method that promises missed a pair.",
+                    name));
+    commands_.push_back(command);
+  };
+  for (const Study& study : studies()) declare(study.name, study.title);
+  declare("all", "all of these studies, one after the other");
+}
+
+bool StudiesCommand::named() const {
+  for (CLI::App* command : commands_) {
+    if (*command) return true;
+  }
+  return false;
+}
+
+int StudiesCommand::run() {
+  StudiesRequest request;
+  std::string name;
+  for (std::size_t i = 0; i < commands_.size(); ++i) {
+    if (!*commands_[i]) continue;
+    name = commands_[i]->get_name();
+    if (i < studies().size()) {
+      request.studies = {studies()[i]};
+    } else {
+      request.studies = studies();
+    }
+  }
+  if (out_.empty()) throw Error("--out", "the folder is empty", "name one");
+  if (seed_ < 1 || seed_ > kMostSeed) {
+    throw Error("--seed", fmt::format("{} is out of range", seed_),
+                fmt::format("give 1 to {}", kMostSeed));
+  }
+  request.folder = out_;
+  request.choice = {.quick = quick_, .seed = seed_};
+  request.resume = resume_;
+  request.shard = shard_ ? parse_shard(*shard_)
+                         : shard_from_environment([](const char* v) { return std::getenv(v); });
+  request.device = device_of(device_);
+  const Shard& shard = request.shard;
+  const std::string options = nlohmann::ordered_json{
+      {"experiment", name},
+      {"quick", quick_},
+      {"seed", seed_},
+      {"shard", fmt::format("{}/{}", shard.index, shard.of)},
+      {"device",
+       request.device}}.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  // The device first: without one there is nothing to measure, and no file is made.
+  request.provenance = provenance_now(request.device, options);
+  if (!shard.from.empty()) {
+    write_output("-", fmt::format("shard {} of {}, by {}\n", shard.index, shard.of, shard.from));
+  }
+
+  TerminalProgress terminal;
+  const Progress line = terminal.callback();
+  PlainProgress plain;
+  const StudiesSummary summary = run_studies(request, [&](const StudiesProgress& p) {
+    if (line) {
+      line(bar_of(p));
+    } else {
+      plain.show(p);
+    }
+  });
+  terminal.clear();
+  write_output("-", summary_table(summary));
+  for (const std::string& point : summary.failed) complain(point);
+  if (!summary.failed.empty()) {
+    complain(fmt::format("{} points could not be measured; --resume tries them again",
+                         summary.failed.size()));
+  }
+  for (const std::string& point : summary.broken) complain("a promise is broken: " + point);
+  if (!summary.broken.empty()) return 1;
+  return summary.failed.empty() ? 0 : 2;
+}
+
+CLI::App* MergeCommand::add_to(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("merge", "join what shards of an experiment measured");
+  command
+      ->add_option(
+          "SHARDS", sources_,
+          fmt::format("the folder of the shards, or their files; default\n{}", kResultsFolder))
+      ->type_name("");
+  command
+      ->add_option("-o,--out", out_,
+                   "the file to write; default results.sqlite in the\nfolder of the shards")
+      ->type_name("FILE");
+  command->footer(
+      "Examples:\n"
+      "  farcull merge results\n"
+      "  farcull merge node1/results-1-of-2.sqlite node2/results-2-of-2.sqlite -o "
+      "results.sqlite\n\n"
+      "Refuses shards that are there twice, points without a row, and shards of different\n"
+      "commits, grids or seeds.");
+  return command;
+}
+
+int MergeCommand::run() {
+  std::vector<std::string> files = sources_;
+  if (files.empty()) files = {kResultsFolder};
+  std::string folder = std::filesystem::path(files.front()).parent_path().string();
+  if (files.size() == 1 && std::filesystem::is_directory(files.front())) {
+    folder = files.front();
+    files = shard_files(folder);
+  }
+  const std::string out = out_ ? *out_ : store_path(folder.empty() ? "." : folder);
+  const MergeSummary summary = merge_stores(files, out);
+  write_output("-", fmt::format("{} rows of {} studies from {} shards: {}\n", summary.rows,
+                                summary.studies, summary.files, out));
+  if (summary.machines > 1) {
+    write_output("-", fmt::format("note: the shards are of {} machines that differ: their counts "
+                                  "need not be those of one\n",
+                                  summary.machines));
+  }
+  return 0;
+}
+
+}  // namespace farcull

@@ -1,0 +1,282 @@
+// Probes the device, measures FAR pairs on both back ends, and prints both.
+#include "experiments/lemma/doctor.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "commit.h"
+#include "core/base/error.h"
+#include "core/base/floating_point.h"
+#include "core/base/stopwatch.h"
+#include "core/gl/canvas.h"
+#include "core/gl/probe.h"
+#include "experiments/method/device_verdict.h"
+#include "experiments/method/kernel_probes.h"
+#include "experiments/method/run.h"
+#include "experiments/record/output.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/system/output_file.h"
+
+namespace farcull {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The device that GlContext takes for this option: the list knows why the others were passed over.
+std::optional<int> choose(const std::vector<GlDevice>& devices, const std::string& device) {
+  for (const std::string kind : {"hardware", "software"}) {
+    for (const GlDevice& d : devices) {
+      const bool named = device == std::to_string(d.index);
+      if (d.usable && d.kind == kind && (named || device.empty() || device == kind)) return d.index;
+    }
+  }
+  return std::nullopt;
+}
+
+Json devices_json(const std::vector<GlDevice>& devices) {
+  Json out = Json::array();
+  for (const GlDevice& d : devices) {
+    out.push_back({{"number", d.index},
+                   {"kind", d.kind},
+                   {"usable", d.usable},
+                   {"problem", d.usable ? Json(nullptr) : Json(d.problem)},
+                   {"vendor", d.vendor},
+                   {"renderer", d.renderer},
+                   {"version", d.version},
+                   {"drm", d.drm}});
+  }
+  return out;
+}
+
+// A number of the table: whole where it is whole, else three digits.
+std::string number(double x) {
+  if (x == std::floor(x) && std::abs(x) < 1e9) return fmt::format("{:.0f}", x);
+  return fmt::format("{:.3g}", x);
+}
+
+std::string devices_table(const std::vector<GlDevice>& devices, int chosen) {
+  std::string out = "devices:\n";
+  for (const GlDevice& d : devices) {
+    out += fmt::format("{} {}  {:<8}  {}\n", d.index == chosen ? '*' : ' ', d.index, d.kind,
+                       d.usable ? d.renderer : "not usable: " + d.problem);
+  }
+  return out;
+}
+
+std::string limits_table(const GlInfo& gl, int resolution) {
+  return fmt::format(
+      "\nchosen: {}\n"
+      "  vendor            {}\n"
+      "  OpenGL            {}\n"
+      "  GLSL              {}\n"
+      "  subpixel bits     {}\n"
+      "  largest texture   {}\n"
+      "  largest viewport  {}\n"
+      "  resolution limit  {}\n"
+      "  compute groups    {}\n"
+      "  storage block     {} bytes\n"
+      "  reset detection   {}\n",
+      gl.renderer, gl.vendor, gl.version, gl.glsl, gl.subpixel_bits, gl.max_texture_size,
+      gl.max_viewport, resolution, gl.max_compute_groups, gl.max_storage_block,
+      gl.reset_detection ? "yes" : "no: a reset is seen by lost commands alone (A7)");
+}
+
+// The floating-point environment, found out by arithmetic: the caller's, and the one in force.
+std::string arithmetic_line(const FloatingPoint& callers) {
+  return fmt::format("\narithmetic of the host: {}; the caller's: {}\n",
+                     to_string(floating_point()),
+                     callers == kProved ? "the same" : to_string(callers) + " (set aside)");
+}
+
+std::string probes_table(const std::vector<ProbeResult>& probes) {
+  std::string out = fmt::format("\n    {:<52} {:>9} {:>9}  {:<20} {:>9}\n", "probe", "measured",
+                                "bound", "", "samples");
+  int failed = 0;
+  for (const ProbeResult& p : probes) {
+    out += fmt::format("{}  {:<52} {:>9} {:>9}  {:<20} {:>9}  {}\n", p.assumption, p.name,
+                       number(p.measured), number(p.bound), p.unit, p.samples,
+                       p.pass ? "pass" : "FAIL");
+    if (!p.note.empty()) out += fmt::format("      {}\n", p.note);
+    failed += !p.pass;
+  }
+  out += failed == 0
+             ? fmt::format("\nall {} probes pass\n", probes.size())
+             : fmt::format(
+                   "\n{} of {} probes FAIL: what relies on them promises nothing on this device\n",
+                   failed, probes.size());
+  return out;
+}
+
+// Both verdicts rest on results of one run of the probes.
+struct Verdicts {
+  DeviceVerdict drawing, pairs;
+};
+
+Verdicts keep(const GlInfo& device, const std::vector<ProbeResult>& probes, double ms) {
+  std::vector<ProbeResult> drawing, pairs;
+  for (const ProbeResult& p : probes) {
+    if (p.drawing) drawing.push_back(p);
+    if (p.pairs) pairs.push_back(p);
+  }
+  return {keep_verdict(device, Reliance::drawing, drawing, ms),
+          keep_verdict(device, Reliance::pairs, pairs, ms)};
+}
+
+std::string verdicts_text(const Verdicts& verdicts) {
+  const auto line = [](const char* who, const DeviceVerdict& v, Reliance reliance) {
+    return fmt::format("{}: {}; {}\n", who, to_string(v, reliance),
+                       !v.file.empty()  ? "kept in " + v.file
+                       : v.note.empty() ? "not kept"
+                                        : "not kept: " + v.note);
+  };
+  return "\n" + line("far", verdicts.drawing, Reliance::drawing) +
+         line("far-pairs", verdicts.pairs, Reliance::pairs);
+}
+
+Json probes_json(const std::vector<ProbeResult>& probes) {
+  Json out = Json::array();
+  for (const ProbeResult& p : probes) {
+    // Infinity has no number in JSON.
+    out.push_back({{"assumption", p.assumption},
+                   {"name", p.name},
+                   {"pass", p.pass},
+                   {"measured", std::isfinite(p.measured) ? Json(p.measured) : Json("infinite")},
+                   {"bound", p.bound},
+                   {"unit", p.unit},
+                   {"samples", p.samples},
+                   {"note", p.note}});
+  }
+  return out;
+}
+
+// FAR pairs by both back ends on one scene: which is faster on this machine.
+struct PairAdvice {
+  double cpu_ms = 0;  // median of several runs after a first one
+  double gl_ms = 0;
+  bool equal = false;   // the same candidates
+  std::string problem;  // why the device cannot run it
+  bool gl_is_faster() const { return problem.empty() && gl_ms < cpu_ms; }
+};
+constexpr const char* kPairScene = "field:100000";
+
+PairAdvice advise(const std::string& device) {
+  const Scene scene = make_builtin_scene(kPairScene);
+  const RunOptions options{.method = Method::far_pairs};
+  std::vector<TrianglePair> candidates;
+  const auto measure = [&](const std::string& on) {
+    Session session(on, 0, Say());
+    constexpr int kRuns = 5;
+    std::vector<double> ms;
+    for (int run = 0; run <= kRuns; ++run) {
+      const Stopwatch start;
+      candidates = find(scene, plan(scene, options), session).pairs;
+      ms.push_back(start.ms());
+    }
+    // The first run compiles and allocates.
+    std::nth_element(ms.begin() + 1, ms.begin() + 1 + kRuns / 2, ms.end());
+    return ms[1 + kRuns / 2];
+  };
+  PairAdvice out;
+  out.cpu_ms = measure("cpu");
+  const std::vector<TrianglePair> by_cpu = candidates;
+  try {
+    out.gl_ms = measure(device.empty() ? "gl" : device);
+    out.equal = candidates == by_cpu;
+  } catch (const Error& error) {
+    out.problem = error.what();
+  }
+  return out;
+}
+
+std::string advice_text(const PairAdvice& advice, const std::string& renderer) {
+  std::string out = fmt::format("\nFAR pairs on {}: cpu {:.1f} ms, ", kPairScene, advice.cpu_ms);
+  if (!advice.problem.empty()) {
+    out += fmt::format("not on this device ({})", advice.problem);
+  } else {
+    out += fmt::format("{} {:.1f} ms{}", renderer, advice.gl_ms,
+                       advice.equal ? ""
+                                    : "; other candidates, since its arithmetic differs, which the "
+                                      "proofs allow");
+  }
+  return out +
+         fmt::format("\nrecommended: {}\n", advice.gl_is_faster() ? "this device" : "--device cpu");
+}
+
+Json advice_json(const PairAdvice& advice) {
+  return {{"scene", kPairScene},
+          {"cpu_ms", advice.cpu_ms},
+          {"gl_ms", advice.problem.empty() ? Json(advice.gl_ms) : Json(nullptr)},
+          {"equal_candidates", advice.problem.empty() ? Json(advice.equal) : Json(nullptr)},
+          {"problem", advice.problem.empty() ? Json(nullptr) : Json(advice.problem)},
+          {"recommended", advice.gl_is_faster() ? "gl" : "cpu"}};
+}
+
+}  // namespace
+
+int doctor_command(const DoctorArguments& arguments) {
+  const FloatingPointGuard guard;
+  if (!arguments.json.empty()) check_output(arguments.json);
+  const std::vector<GlDevice> devices = GlContext::list_devices();
+  const std::optional<int> chosen = choose(devices, arguments.device);
+  // Where nothing fits, the context says so in an Error.
+  const GlContext context(chosen ? std::to_string(*chosen) : arguments.device);
+  const GlInfo& gl = context.info();
+  const int resolution = GlCanvas(context, DepthMode::fixed, {}).limits().max_resolution;
+  const bool people = arguments.json != "-";
+  if (people)
+    write_output("-", devices_table(devices, chosen.value_or(-1)) + limits_table(gl, resolution) +
+                          arithmetic_line(callers_floating_point()));
+
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  const Stopwatch probing;
+  const std::vector<ProbeResult> probes =
+      all_probes(context, [terminal](const std::string& assumption) {
+        if (terminal) std::fprintf(stderr, "\r\033[Kprobing %s ...", assumption.c_str());
+      });
+  if (terminal) std::fprintf(stderr, "\r\033[K");
+  const Verdicts verdicts = keep(gl, probes, probing.ms());
+
+  const PairAdvice advice = advise(arguments.device);
+
+  bool pass = true;
+  for (const ProbeResult& p : probes) pass = pass && p.pass;
+  if (!arguments.json.empty()) {
+    const Json arithmetic = floating_point_json(callers_floating_point(), floating_point());
+    const Json report = {
+        {"devices", devices_json(devices)},
+        {"chosen", chosen ? Json(*chosen) : Json(nullptr)},
+        {"gl",
+         {{"vendor", gl.vendor},
+          {"renderer", gl.renderer},
+          {"version", gl.version},
+          {"glsl", gl.glsl}}},
+        {"limits",
+         {{"subpixel_bits", gl.subpixel_bits},
+          {"max_texture_size", gl.max_texture_size},
+          {"max_viewport", gl.max_viewport},
+          {"max_resolution", resolution},
+          {"max_compute_groups", gl.max_compute_groups},
+          {"max_storage_block", gl.max_storage_block},
+          {"reset_detection", gl.reset_detection}}},
+        {"floating_point", arithmetic},
+        {"probes", probes_json(probes)},
+        {"verdict_files", {{"drawing", verdicts.drawing.file}, {"pairs", verdicts.pairs.file}}},
+        {"far_pairs", advice_json(advice)},
+        {"pass", pass},
+        {"commit", FARCULL_COMMIT}};
+    write_output(arguments.json, report.dump(2) + "\n");
+  }
+  if (people)
+    write_output("-",
+                 probes_table(probes) + verdicts_text(verdicts) + advice_text(advice, gl.renderer));
+  return pass ? 0 : 1;
+}
+
+}  // namespace farcull

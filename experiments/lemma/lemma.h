@@ -1,0 +1,61 @@
+// Lemmas 1 and 2 as an experiment: points of triangles that aim at trouble, rasterized with their
+// fattened triangles on a canvas, decided in exact arithmetic.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/canvas/canvas.h"
+#include "core/canvas/fatten.h"
+#include "core/cull/cull.h"
+
+namespace farcull {
+
+/// A row per generator. A point counts once for each pixel that contains it.
+struct LemmaRow {
+  std::string generator;
+  std::uint64_t points = 0;
+  std::uint64_t no_sample = 0;     // the pixel got no sample
+  std::uint64_t not_bounding = 0;  // its samples do not bound the point's depth
+  std::uint64_t rounded = 0;       // nor do these, but by no more than depth_rounding(); only where
+                                   // samples are depths of the buffer
+  double largest_px = 0;           // the most by which a depth is outside its samples, 0: none is
+  double largest_steps = 0;        // the same in steps of the depth buffer
+  std::uint64_t violations() const { return no_sample + not_bounding; }
+};
+
+/// Names of the generators, in the order of the rows.
+std::vector<std::string> lemma_generators();
+
+struct LemmaSettings {
+  std::uint64_t points = 0;    // in all, shared evenly by the generators
+  std::string generator = {};  // of this one alone, the points that it has among all; empty: of all
+  std::uint64_t seed = 0;
+  /// The radius in px for a view's budget and depth step.
+  std::function<double(const Budget& budget, double depth_step)> radius;
+  /// Displaces what is drawn by as much as double arithmetic may (kMaxDoubleError per axis), away
+  /// from the pixel centre: the budget's "double" term at its worst.
+  bool displace = false;
+  /// The samples are what the depth buffer holds (Canvas::depths), the only ones that
+  /// fixed-function depth has. A monotone rounding of both ends costs nothing (docs/reliability.md,
+  /// "Depth"), so what depth_rounding() explains is counted apart.
+  bool stored = false;
+  int side = 0;        // px of the window, even, at least 128; 0: the generator's own
+  double depth = 128;  // px, half the window's depth, at least 128; where it is more, the triangles
+                       // are spread over it
+};
+
+/// Throws std::logic_error for a generator that there is not.
+std::vector<LemmaRow> lemma_experiment(Canvas& canvas, const Fattener& fattener,
+                                       const LemmaSettings& settings,
+                                       const Progress& progress = {});
+
+/// The radius in px by the rule, for a view's budget and depth step.
+double lemma_radius(const RadiusRule& rule, const Budget& budget, double depth_step);
+
+/// The sum of all rows, the largest of the largest, named "all".
+LemmaRow lemma_total(const std::vector<LemmaRow>& rows);
+
+}  // namespace farcull

@@ -1,0 +1,130 @@
+// Cells of methods and resolutions, run in turn.
+#include "experiments/measure/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/scene/members.h"
+#include "core/view/view.h"
+#include "experiments/measure/harness.h"
+#include "experiments/record/output.h"
+
+namespace farcull {
+namespace {
+
+constexpr const char* kAllMethods = "far,cullide,far-pairs,exact";
+constexpr const char* kBeyondCulling = "far-pairs,exact";
+constexpr const char* kUsualResolutions = "128,256,512,1024,2048";
+constexpr const char* kAuto = "auto";
+
+// The resolutions of a method; `exact` has one, 0.
+std::vector<int> resolutions_of(const CompareArguments& arguments, Method method) {
+  const bool pairs = chooses_views(method);
+  if (!pairs && !draws(method)) return {0};
+  const std::string text = arguments.resolutions.value_or(pairs ? kAuto : kUsualResolutions);
+  std::vector<int> out;
+  for (const std::string& resolution : split_list(text)) {
+    if (resolution != kAuto) {
+      out.push_back(parse_resolution(resolution, "--resolutions"));
+      if (pairs) require_pair_resolution(out.back(), "--resolutions");
+    } else if (pairs) {
+      out.push_back(0);
+    }
+  }
+  if (out.empty()) {
+    throw Error("--resolutions", "auto has no meaning for " + to_string(method),
+                "give a number of pixels as well, or --methods far-pairs");
+  }
+  return out;
+}
+
+// self: whether an object is tested against itself.
+std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
+  std::vector<RunOptions> cells;
+  const bool beyond = self || arguments.options.clearance > 0;
+  for (const std::string& method :
+       split_list(arguments.methods.value_or(beyond ? kBeyondCulling : kAllMethods))) {
+    RunOptions options = arguments.options;
+    options.method = parse_method(method, "--methods");
+    if (self && !tests_self(options.method)) {
+      throw Error("--methods",
+                  method + " tests no object against itself, as one of the scene has to be",
+                  "give " + method_names([](const Traits& t) { return t.tests_self; }));
+    }
+    for (const std::string& offset : split_list(arguments.offsets)) {
+      if (fattens(options.method)) options.offset = offset;
+      for (const int resolution : resolutions_of(arguments, options.method)) {
+        options.resolution = resolution;
+        validate(options);
+        cells.push_back(options);
+      }
+      if (!fattens(options.method)) break;
+    }
+  }
+  return cells;
+}
+
+// A resolution beyond the device is refused before the first run, not after an hour of smaller
+// ones. Every OpenGL 4.3 has room for half of its 16384 px, so only beyond that is a device asked.
+void require_room(const std::vector<RunOptions>& cells, Session& session) {
+  int largest = 0;
+  for (const RunOptions& cell : cells) {
+    if (draws(cell.method)) largest = std::max(largest, cell.resolution);
+  }
+  if (largest <= 8192) return;
+  const int limit = GlCanvas(session.context(), DepthMode::fixed, {}).limits().max_resolution;
+  if (largest > limit) {
+    throw Error("--resolutions",
+                fmt::format("{} is outside 1 .. {}, the limit of this device", largest, limit),
+                "choose resolutions in that range");
+  }
+}
+
+}  // namespace
+
+std::vector<Record> Comparison::median_records() const {
+  std::vector<Record> out;
+  for (const std::vector<Record>& repeats : runs) {
+    std::vector<double> ms;
+    for (const Record& record : repeats) ms.push_back(compared_ms(record));
+    out.push_back(repeats[median_run(ms)]);
+  }
+  return out;
+}
+
+void validate(const CompareArguments& arguments) {
+  parse_repeat(arguments.repeat);
+  cells_of(arguments, arguments.self);
+}
+
+Comparison compare(const Scene& scene, const CompareArguments& arguments,
+                   const Progress& progress) {
+  const int repeats = parse_repeat(arguments.repeat);
+  const std::vector<RunOptions> cells = cells_of(arguments, has_self(scene));
+  Comparison out;
+  out.runs.resize(cells.size());
+  Session session(arguments.options.device);
+  require_room(cells, session);
+  measure_in_turns(cells.size(), {.counted = repeats}, [&](std::size_t i, int) {
+    const std::string cell = describe(cells[i]) + ": ";
+    const Progress named =
+        progress ? [&](const std::string& stage) { progress(cell + stage); } : Progress{};
+    out.runs[i].push_back(run(scene, cells[i], session, named));
+    return compared_ms(out.runs[i].back());
+  });
+  return out;
+}
+
+nlohmann::ordered_json to_json(const Scene& scene, const Comparison& comparison) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const std::vector<Record>& repeats : comparison.runs) {
+    for (const Record& record : repeats) rows.push_back(to_json(scene, record));
+  }
+  return {{"runs", rows}};
+}
+
+}  // namespace farcull

@@ -1,0 +1,177 @@
+// Who takes part in a benchmark: methods by the one pipeline, peers by their own set-up.
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/scene/members.h"
+#include "experiments/measure/bench.h"
+#include "experiments/measure/peers/parts.h"
+#include "experiments/method/run.h"
+#include "offsets/obb.h"
+
+namespace farcull {
+namespace {
+
+const std::vector<std::string> kMethods = {"far-pairs", "far", "exact"};
+
+std::vector<std::string> names_of(const std::vector<Peer>& peers) {
+  std::vector<std::string> names;
+  for (const Peer& peer : peers) names.push_back(peer.name);
+  return names;
+}
+
+/// Those of `known` that the text asks for, in their order. Throws Error naming the option.
+std::vector<std::string> chosen(const std::string& option, const std::string& text,
+                                const std::vector<std::string>& known) {
+  if (text == "all") return known;
+  if (text == "none") return {};
+  const std::vector<std::string> asked = split_list(text);
+  for (const std::string& name : asked) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw Error(option, "'" + name + "' is none of them",
+                fmt::format("give all, none, or some of {}", fmt::join(known, ",")));
+  }
+  std::vector<std::string> out;
+  for (const std::string& name : known) {
+    if (std::find(asked.begin(), asked.end(), name) != asked.end()) out.push_back(name);
+  }
+  return out;
+}
+
+// The pipeline, without a record. Neighbours are not asked for: the peers leave them out too.
+BenchRun method_run(Method method, std::shared_ptr<Session> session) {
+  const RunOptions options{.method = method, .verify = false, .neighbours = false};
+  return [=](const Scene& scene) {
+    const Stopwatch watch;
+    const unsigned threads = session->threads();
+    Candidates found = find(scene, plan(scene, options, threads), *session);
+    BenchAnswer answer{.candidates_ms = watch.ms() - found.decided_ms,
+                       .exact_ms = found.decided_ms,
+                       .candidate_pairs = found.count};
+    if (found.decided) {
+      answer.pairs = std::move(found.decided->pairs);
+      return answer;
+    }
+    const Stopwatch exact;
+    answer.pairs = decide(scene, found.pairs, {.threads = threads, .neighbours = false}).pairs;
+    answer.exact_ms = exact.ms();
+    return answer;
+  };
+}
+
+/// The session that the GL methods share. With llvmpipe, the device that there is without a GPU,
+/// rasterizing takes its threads from the environment.
+std::shared_ptr<Session> gl_session(const BenchOptions& options) {
+  ::setenv("LP_NUM_THREADS", std::to_string(options.threads).c_str(), 1);
+  return std::make_shared<Session>(options.device.empty() ? "gl" : options.device, options.threads);
+}
+
+/// Sets up one contestant. What cannot run is left out, or an Error where it was asked for by name.
+class ContestantList {
+ public:
+  explicit ContestantList(const Progress& progress) : progress_(progress) {}
+
+  template <class SetUp>
+  void add(Contestant contestant, bool by_name, const char* option, const SetUp& set_up) {
+    if (progress_) progress_("setting up " + contestant.name);
+    if (contestant.left_out.empty()) {
+      const Stopwatch watch;
+      try {
+        set_up(contestant);
+      } catch (const Error& error) {
+        if (by_name) throw;
+        contestant.left_out = error.where + ": " + error.reason;
+      }
+      contestant.setup_ms = watch.ms();
+    } else if (by_name) {
+      throw Error(option, contestant.name + ": " + contestant.left_out, "leave it out");
+    }
+    all.push_back(std::move(contestant));
+  }
+
+  std::vector<Contestant> all;
+
+ private:
+  const Progress& progress_;
+};
+
+void add_methods(const Scene& scene, const BenchOptions& options, ContestantList& list) {
+  const bool by_name = options.methods != "all";
+  const bool no_gl = options.device == "cpu";
+  // Without --device, GL is measured where there is one.
+  const bool gl_by_name = by_name && !options.device.empty();
+  std::shared_ptr<Session> gl;
+  const auto on_gl = [&](Contestant& c, Method method) {
+    if (!gl) gl = gl_session(options);
+    c.device = gl->context().info().renderer;
+    c.run = method_run(method, gl);
+  };
+  for (const std::string& name : chosen("--methods", options.methods, kMethods)) {
+    const Method method = parse_method(name);
+    if (draws(method)) {
+      Contestant contestant{.name = name, .device = "gl"};
+      if (has_self(scene)) contestant.left_out = "it tests no object against itself";
+      if (no_gl) contestant.left_out = "it needs a GL device, and --device is cpu";
+      list.add(contestant, by_name, "--methods", [&](Contestant& c) {
+        on_gl(c, method);
+        gl->canvas(obb_fattener(), {});
+      });
+      continue;
+    }
+    list.add({.name = name}, by_name, "--methods", [&](Contestant& c) {
+      c.run = method_run(method, std::make_shared<Session>("cpu", options.threads));
+    });
+    if (!chooses_views(method) || no_gl) continue;
+    list.add({.name = name, .device = "gl"}, gl_by_name, "--methods", [&](Contestant& c) {
+      on_gl(c, method);
+      gl->pairs();
+    });
+  }
+}
+
+void add_peers(const Scene& scene, const BenchOptions& options, ContestantList& list) {
+  const std::vector<Peer> peers = all_peers(options.threads);
+  const std::vector<std::string> names = chosen("--peers", options.peers, names_of(peers));
+  const bool by_name = options.peers != "all";
+  for (const Peer& peer : peers) {
+    if (std::find(names.begin(), names.end(), peer.name) == names.end()) continue;
+    Contestant contestant{.name = peer.name, .peer = true, .library = peer.library};
+    contestant.left_out = peer.missing;
+    if (contestant.left_out.empty() && peer.refuses) contestant.left_out = peer.refuses(scene);
+    list.add(contestant, by_name, "--peers",
+             [&](Contestant& c) { c.run = peer.set_up(options.threads); });
+  }
+}
+
+}  // namespace
+
+void validate(const BenchOptions& options) {
+  chosen("--methods", options.methods, kMethods);
+  chosen("--peers", options.peers, names_of(all_peers(options.threads)));
+  if (options.repeat < 1) {
+    throw Error("--repeat", fmt::format("{} is no number of runs", options.repeat),
+                "give 1 or more");
+  }
+  if (!(options.limit_s >= 0)) {
+    throw Error("--limit", fmt::format("{} is no time", options.limit_s),
+                "give seconds, 0 or more");
+  }
+  if (options.methods == "none" && options.peers == "none") {
+    throw Error("--peers", "nobody is left to be measured", "name a peer or a method");
+  }
+}
+
+std::vector<Contestant> contestants(const Scene& scene, const BenchOptions& options,
+                                    const Progress& progress) {
+  ContestantList list(progress);
+  add_methods(scene, options, list);
+  add_peers(scene, options, list);
+  return std::move(list.all);
+}
+
+}  // namespace farcull

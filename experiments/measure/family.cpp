@@ -1,0 +1,360 @@
+// Scenes frame after frame by every method, then the table, the CSV and the JSON.
+#include "experiments/measure/family.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "commit.h"
+#include "core/base/error.h"
+#include "core/scene/members.h"
+#include "experiments/measure/harness.h"
+#include "experiments/record/tables.h"
+#include "experiments/scenes/builtin/motion.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/scene_file.h"
+#include "experiments/system/text_table.h"
+#include "verify/certificate/not_asked.h"
+
+namespace farcull {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The methods of the table, in its order; far once with each offset.
+struct Contestant {
+  Method method;
+  std::string offset;
+};
+
+std::vector<Contestant> contestants(const FamilyArguments& arguments) {
+  std::vector<Method> methods(all_methods().begin(), all_methods().end());
+  if (arguments.methods) {
+    methods.clear();
+    for (const std::string& name : split_list(*arguments.methods))
+      methods.push_back(parse_method(name, "--methods"));
+  }
+  std::vector<Contestant> out;
+  for (const Method method : methods) {
+    out.push_back({method, "obb"});
+    if (fattens(method)) out.push_back({method, "exact"});
+  }
+  return out;
+}
+
+std::string label(const FamilyCell& cell) {
+  return to_string(cell.method) + (cell.offset.empty() ? "" : ", " + cell.offset);
+}
+
+template <class Value>
+double median_of(const FamilyCell& cell, Value value) {
+  std::vector<double> values;
+  for (const FamilyFrame& frame : cell.frames) values.push_back(static_cast<double>(value(frame)));
+  return spread_of(std::move(values)).median;
+}
+
+FamilyFrame frame_of(const Record& record, long frame) {
+  FamilyFrame out{.frame = frame,
+                  .ms = compared_ms(record),
+                  .pcs_objects = record.found.object_count,
+                  .pcs_triangles = record.found.triangle_count,
+                  .object_triangles = record.found.swept_triangles().value_or(0),
+                  .candidates = record.found.count,
+                  .colliding = record.collisions.pairs.size(),
+                  .neighbours = record.collisions.neighbour_pairs.size(),
+                  .missed = {},
+                  .missed_contacts = record.missed,
+                  .broken = broken(record, false)};
+  const Stage work = work_of(record.trace);
+  out.queries = work.queries;
+  out.draws = work.draws;
+  out.queries_saved = work.queries_saved;
+  out.draws_saved = work.draws_saved;
+  if (record.verification) out.missed = record.verification->false_negatives;
+  return out;
+}
+
+std::string device_of(const Record& record) {
+  if (record.found.device.gl) return record.found.device.gl->renderer;
+  return record.found.device.cpu ? "cpu" : "none";
+}
+
+void require_motion(const std::string& scene) {
+  require_known(scene);
+  if (!is_builtin_scene(scene) || has_motion(scene)) return;
+  throw Error("--frames", "nothing in " + scene + " moves", "name one of " + moving_names());
+}
+
+// The frames of a scene for one method after the other: kept where they are not too many bytes,
+// since a simulation may take longer than all methods together; else moved anew for each method.
+class Frames {
+ public:
+  Frames(std::string scene, const FamilyArguments& arguments)
+      : scene_(std::move(scene)), arguments_(arguments) {}
+
+  const Scene& at(long frame) {
+    const FrameRange& range = arguments_.range;
+    const auto index = static_cast<std::size_t>(frame - range.first);
+    if (index < kept_.size()) return kept_[index];
+    // Every method starts at the first frame.
+    if (!source_ || frame == range.first) {
+      source_.emplace(std::vector{scene_}, range, arguments_.self);
+      if (const std::optional<Error> missing = source_->missing()) throw *missing;
+    }
+    const Scene& scene = source_->at(frame);
+    const std::size_t bytes =
+        scene.vertices.size() * sizeof(Vec3) +
+        scene.triangles.size() * (sizeof scene.triangles[0] + sizeof(std::uint32_t));
+    if (index == kept_.size() && bytes * static_cast<std::size_t>(range.count()) <= kMostBytes)
+      kept_.push_back(scene);
+    return scene;
+  }
+
+ private:
+  static constexpr std::size_t kMostBytes = std::size_t{1} << 31;
+
+  std::string scene_;
+  const FamilyArguments& arguments_;
+  std::optional<FrameSource> source_;
+  std::vector<Scene> kept_;
+};
+
+// One scene by one method; nothing where the method has no question to ask of the scene.
+std::optional<FamilyCell> run_cell(const std::string& scene, const Contestant& contestant,
+                                   const FamilyArguments& arguments, Frames& frames,
+                                   Session& session, const Progress& progress) {
+  RunOptions options = arguments.options;
+  options.method = contestant.method;
+  options.offset = fattens(contestant.method) ? contestant.offset : "obb";
+  if (!draws(contestant.method)) {
+    options.resolution = 0;
+    options.views = "";
+    options.query.reset();
+  }
+  FamilyCell cell{.scene = scene,
+                  .method = contestant.method,
+                  .offset = fattens(contestant.method) ? contestant.offset : "",
+                  .device = {},
+                  .frames = {}};
+  session.sweep().forget();
+  for (long frame = arguments.range.first; frame <= arguments.range.last; ++frame) {
+    const std::string name =
+        fmt::format("{}, {}, frame {} of {}: ", scene, label(cell),
+                    frame - arguments.range.first + 1, arguments.range.count());
+    const Progress named =
+        progress ? [&](const std::string& stage) { progress(name + stage); } : Progress{};
+    if (named) named("moving");
+    const Scene& moved = frames.at(frame);
+    Scene unmarked;
+    const bool strip = has_self(moved) && !tests_self(contestant.method);
+    if (!has_self(moved) && tests_self_alone(contestant.method)) return std::nullopt;
+    if (strip) {
+      unmarked = moved;
+      for (Object& object : unmarked.objects) object.self = false;
+    }
+    const Record record = run(strip ? unmarked : moved, options, session, named);
+    if (cell.frames.empty()) {
+      cell.objects = moved.objects.size();
+      cell.triangles = moved.triangles.size();
+      cell.pairs_not_asked = not_asked(strip ? unmarked : moved).pairs;
+    }
+    cell.promises = record.promise.holds;
+    if (cell.device.empty() || record.found.device.gl) cell.device = device_of(record);
+    cell.setup_ms += record.ms.setup;
+    cell.frames.push_back(frame_of(record, frame));
+  }
+  return cell;
+}
+
+// A field of a CSV file, in quotes where it has to be (RFC 4180).
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char ch : text) out += ch == '"' ? std::string("\"\"") : std::string(1, ch);
+  return out + "\"";
+}
+
+std::string rate(double ms) { return ms > 0 ? fmt::format("{:.1f}", 1000 / ms) : "-"; }
+
+}  // namespace
+
+FrameTimes FamilyCell::times() const {
+  std::vector<double> ms;
+  for (const FamilyFrame& frame : frames) ms.push_back(frame.ms);
+  return summary_of(ms);
+}
+
+std::optional<std::uint64_t> FamilyCell::missed() const {
+  std::uint64_t sum = 0;
+  for (const FamilyFrame& frame : frames) {
+    if (!frame.missed) return std::nullopt;
+    sum += *frame.missed;
+  }
+  return sum;
+}
+
+bool FamilyCell::broken() const {
+  return std::any_of(frames.begin(), frames.end(),
+                     [](const FamilyFrame& frame) { return frame.broken; });
+}
+
+PaperRate paper_rate(const std::string& scene) {
+  const std::string base = scene.substr(0, scene.find_first_of(":@"));
+  if (base == "tree-leaves") return {15, "FAR 2004, tree with leaves"};
+  if (base == "bunny-dragon") return {15, "FAR 2004, bunny and dragon"};
+  if (base == "cloth") return {13, "FAR 2004, cloth"};
+  return {};
+}
+
+std::vector<FamilyCell> run_family(const FamilyArguments& arguments, const Progress& progress) {
+  std::vector<std::string> scenes = arguments.scenes;
+  if (scenes.empty()) {
+    for (const BuiltinScene& scene : builtin_scenes()) {
+      if (has_motion(scene.name)) scenes.push_back(scene.name);
+    }
+  }
+  const std::vector<Contestant> methods = contestants(arguments);
+  // All names before the first run, not after an hour of them.
+  for (const std::string& scene : scenes) require_motion(scene);
+  Session session(arguments.options.device);
+  std::vector<FamilyCell> cells;
+  for (const std::string& scene : scenes) {
+    Frames frames(scene, arguments);
+    for (const Contestant& contestant : methods) {
+      std::optional<FamilyCell> cell =
+          run_cell(scene, contestant, arguments, frames, session, progress);
+      if (cell) cells.push_back(std::move(*cell));
+    }
+  }
+  if (cells.empty()) {
+    throw Error("--methods", "none of them has a question to ask of these scenes",
+                "add --self, or name other methods");
+  }
+  return cells;
+}
+
+std::string broken(const std::vector<FamilyCell>& cells) {
+  for (const FamilyCell& cell : cells) {
+    if (cell.broken()) {
+      return fmt::format("{}: {} missed {} pairs", cell.scene, label(cell),
+                         grouped(cell.missed().value_or(0)));
+    }
+  }
+  return "";
+}
+
+std::string family_table(const std::vector<FamilyCell>& cells) {
+  Table table("lrlrrrrrrrrr");
+  table.add({"scene", "triangles", "method", "fps", "p95", "paper", "objects", "triangles", "pairs",
+             "queries", "draws", "missed"});
+  for (const FamilyCell& cell : cells) {
+    const FrameTimes times = cell.times();
+    const PaperRate paper = paper_rate(cell.scene);
+    const auto count = [&](auto value) {
+      return grouped(static_cast<std::uint64_t>(median_of(cell, value)));
+    };
+    const std::optional<std::uint64_t> missed = cell.missed();
+    table.add({cell.scene, grouped(cell.triangles), label(cell), rate(times.median),
+               rate(times.p95), paper.fps > 0 ? fmt::format("{:.0f}", paper.fps) : "",
+               count([](const FamilyFrame& f) { return f.pcs_objects; }),
+               count([](const FamilyFrame& f) { return f.pcs_triangles; }),
+               count([](const FamilyFrame& f) { return f.candidates; }),
+               count([](const FamilyFrame& f) { return f.queries; }),
+               count([](const FamilyFrame& f) { return f.draws; }),
+               missed ? grouped(*missed) + (cell.broken() ? " BROKEN" : "") : "-"});
+  }
+  return table.text() +
+         "\nfps: frames per second from moved vertices to exact pairs, median and at the 95th "
+         "percentile of\n"
+         "the times; paper: as published, on its hardware. objects, triangles, pairs: kept for the "
+         "exact\ntests, queries, draws: of a frame, medians; missed: in all frames together.\n" +
+         (std::any_of(cells.begin(), cells.end(),
+                      [](const FamilyCell& cell) { return cell.pairs_not_asked > 0; })
+              ? "not asked: whether an object meets itself (--self, by the methods that can).\n"
+              : "");
+}
+
+std::string family_csv(const std::vector<FamilyCell>& cells) {
+  std::map<std::pair<std::string, long>, const FamilyFrame*> swept;
+  for (const FamilyCell& cell : cells) {
+    if (cell.method != Method::i_collide) continue;
+    for (const FamilyFrame& frame : cell.frames) swept[{cell.scene, frame.frame}] = &frame;
+  }
+  std::string out =
+      "scene,method,offset,frame,ms,pcs_objects,pcs_triangles,candidate_pairs,colliding_pairs,"
+      "neighbour_pairs,queries,draws,queries_saved,draws_saved,missed,missed_touching,"
+      "missed_penetrating,factor_objects,factor_triangles,factor_pairs\n";
+  for (const FamilyCell& cell : cells) {
+    for (const FamilyFrame& f : cell.frames) {
+      const auto found = swept.find({cell.scene, f.frame});
+      const auto factor = [&](std::uint64_t theirs, std::uint64_t ours) {
+        return ours > 0 && theirs > 0
+                   ? fmt::format("{:.6g}", static_cast<double>(theirs) / static_cast<double>(ours))
+                   : "";
+      };
+      const auto contacts = [&](std::uint64_t ContactCounts::*kind) {
+        return f.missed_contacts ? std::to_string(*f.missed_contacts.*kind) : "";
+      };
+      const FamilyFrame none;
+      const FamilyFrame& box = found == swept.end() ? none : *found->second;
+      out += fmt::format(
+          "{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", field(cell.scene),
+          to_string(cell.method), cell.offset, f.frame, f.ms, f.pcs_objects, f.pcs_triangles,
+          f.candidates, f.colliding, f.neighbours, f.queries, f.draws, f.queries_saved,
+          f.draws_saved, f.missed ? std::to_string(*f.missed) : "",
+          contacts(&ContactCounts::touching), contacts(&ContactCounts::penetrating),
+          factor(box.object_triangles, f.pcs_triangles), factor(box.pcs_triangles, f.pcs_triangles),
+          factor(box.candidates, f.candidates));
+    }
+  }
+  return out;
+}
+
+nlohmann::ordered_json family_json(const std::vector<FamilyCell>& cells,
+                                   const FamilyArguments& arguments) {
+  Json rows = Json::array();
+  for (const FamilyCell& cell : cells) {
+    Json frames = Json::array();
+    for (const FamilyFrame& f : cell.frames) {
+      frames.push_back({{"frame", f.frame},
+                        {"ms", f.ms},
+                        {"pcs", {{"objects", f.pcs_objects}, {"triangles", f.pcs_triangles}}},
+                        {"candidate_pairs", f.candidates},
+                        {"colliding_pairs", f.colliding},
+                        {"neighbour_pairs", f.neighbours},
+                        {"queries", f.queries},
+                        {"draws", f.draws},
+                        {"queries_saved", f.queries_saved},
+                        {"draws_saved", f.draws_saved},
+                        {"missed", f.missed ? Json(*f.missed) : Json(nullptr)},
+                        {"missed_contacts",
+                         f.missed_contacts ? Json{{"touching", f.missed_contacts->touching},
+                                                  {"penetrating", f.missed_contacts->penetrating}}
+                                           : Json(nullptr)}});
+    }
+    const FrameTimes times = cell.times();
+    const PaperRate paper = paper_rate(cell.scene);
+    rows.push_back({{"scene", cell.scene},
+                    {"objects", cell.objects},
+                    {"triangles", cell.triangles},
+                    {"method", to_string(cell.method)},
+                    {"offset", cell.offset.empty() ? Json(nullptr) : Json(cell.offset)},
+                    {"device", cell.device},
+                    {"promises", cell.promises},
+                    {"pairs_not_asked", cell.pairs_not_asked},
+                    {"ms", {{"median", times.median}, {"p95", times.p95}, {"max", times.max}}},
+                    {"setup_ms", cell.setup_ms},
+                    {"paper", paper.fps > 0 ? Json{{"fps", paper.fps}, {"source", paper.source}}
+                                            : Json(nullptr)},
+                    {"frames", frames}});
+  }
+  return {{"experiment", "family"},
+          {"frames", {arguments.range.first, arguments.range.last}},
+          {"resolution", arguments.options.resolution},
+          {"commit", FARCULL_COMMIT},
+          {"cells", rows}};
+}
+
+}  // namespace farcull

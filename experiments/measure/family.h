@@ -1,0 +1,80 @@
+// `farcull experiment family`: moving scenes by all methods in one program, beside the rates of the
+// papers; and how much smaller the sets of the other methods are than those of I-COLLIDE.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/measure/frames.h"
+#include "experiments/method/run.h"
+#include "experiments/scenes/frames.h"
+
+namespace farcull {
+
+struct FamilyArguments {
+  std::vector<std::string> scenes;     // empty: all built-in ones that move
+  std::optional<std::string> methods;  // by commas; empty: all that apply to the scene
+  FrameRange range = {0, 29};
+  bool self = false;   // every object is tested against itself, by the methods that do so
+  RunOptions options;  // resolution, device, verify and so on, of all
+};
+
+/// A frame of a scene by a method.
+struct FamilyFrame {
+  long frame = 0;
+  double ms = 0;  // from moved vertices to exact pairs: cull + exact
+  std::uint64_t pcs_objects = 0, pcs_triangles = 0;
+  std::uint64_t object_triangles = 0;  // of i-collide, Record
+  std::uint64_t candidates = 0, colliding = 0, neighbours = 0;
+  std::uint64_t queries = 0, draws = 0;
+  std::uint64_t queries_saved = 0, draws_saved = 0;  // against plain CULLIDE
+  std::optional<std::uint64_t> missed;
+  std::optional<ContactCounts> missed_contacts;
+  bool broken = false;  // the method promises, whatever its device's verdict, and missed a pair
+};
+
+/// A scene by a method.
+struct FamilyCell {
+  std::string scene;
+  std::uint64_t objects = 0, triangles = 0;  // in the first frame
+  Method method{};
+  std::string offset;     // of far
+  std::string device;     // what answered
+  bool promises = false;  // the method promises, and its device keeps what that rests on
+  std::uint64_t pairs_not_asked = 0;  // in the first frame: of triangles inside objects that the
+                                      // method did not test against themselves
+  double setup_ms = 0;
+  std::vector<FamilyFrame> frames;
+
+  FrameTimes times() const;
+  std::optional<std::uint64_t> missed() const;
+  bool broken() const;  // in any of its frames
+};
+
+/// The frame rate (1/s) that a paper gives for the scene, and where; 0 where there is none.
+struct PaperRate {
+  double fps = 0;
+  std::string source;
+};
+PaperRate paper_rate(const std::string& scene);
+
+/// Runs every scene by every method, frame after frame. Objects that the scene marks `self` are
+/// tested against themselves by the methods that do so; the others see the scene without the marks
+/// (and are said to). Throws Error as run_frames() does, before the first run where it can.
+std::vector<FamilyCell> run_family(const FamilyArguments& arguments, const Progress& progress = {});
+
+/// The first promise that was broken; empty: none.
+std::string broken(const std::vector<FamilyCell>& cells);
+
+std::string family_table(const std::vector<FamilyCell>& cells);
+/// A row for each frame. The columns factor_* are the culling efficiency against I-COLLIDE, where
+/// it was run as well: what I-COLLIDE keeps over what this method keeps. `factor_objects` takes the
+/// triangles of the objects that I-COLLIDE keeps, as published, `factor_triangles` and
+/// `factor_pairs` what its boxes of triangles leave. Empty where either is 0.
+std::string family_csv(const std::vector<FamilyCell>& cells);
+nlohmann::ordered_json family_json(const std::vector<FamilyCell>& cells,
+                                   const FamilyArguments& arguments);
+
+}  // namespace farcull

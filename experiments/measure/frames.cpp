@@ -1,0 +1,301 @@
+// Each frame becomes a row of a table, an element of the JSON record and rows of CSV; a sink gets
+// them as soon as the frame is done.
+#include "experiments/measure/frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/base/stopwatch.h"
+#include "core/scene/members.h"
+#include "experiments/method/run.h"
+#include "experiments/record/output.h"
+#include "experiments/record/tables.h"
+#include "experiments/system/interrupt.h"
+#include "experiments/system/text_table.h"
+
+namespace farcull {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The keys of a run's record that each frame has of its own; the others hold for all frames.
+constexpr std::array kOfFrame = {
+    "views",           "stages",          "pcs",        "object_triangles", "candidate_pairs",
+    "colliding_pairs", "neighbour_pairs", "neighbours", "verification",     "time_ms"};
+
+Json rate_json(double ms) {
+  const std::optional<double> rate = per_second(ms);
+  return rate ? Json(*rate) : Json(nullptr);
+}
+
+Json frame_json(const Scene& scene, const Record& record, long frame, double read_ms,
+                const FrameSource& source) {
+  const Json run = to_json(scene, record);
+  Json out = {{"frame", frame},
+              {"hash", run["scene"]["hash"]},
+              {"objects", scene.objects.size()},
+              {"triangles", scene.triangles.size()},
+              {"topology_changed", source.topology_changed()}};
+  for (const char* key : kOfFrame) out[key] = run[key];
+  out["time_ms"]["read"] = read_ms;
+  out["fps"] = rate_json(record.ms.cull + record.ms.exact);
+  const Stage work = work_of(record.trace);
+  out["draws"] = work.draws;
+  out["queries"] = work.queries;
+  out["motion"] = Json::object();
+  const FrameNotes notes = source.notes();
+  // Null where it is not finite.
+  for (const auto& [name, value] : notes.values) out["motion"][name] = value;
+  out["warning"] = notes.warning.empty() ? Json(nullptr) : Json(notes.warning);
+  return out;
+}
+
+// A line for each frame, made as it comes. Columns appear where a frame has something for them;
+// the names are written again where one appears, or where a cell does not fit any more.
+class FrameTable {
+ public:
+  /// `width` of the first column, if that is more than its name takes.
+  explicit FrameTable(std::size_t width) : first_width_(width) {}
+
+  void add(const std::string& column, const std::string& cell) {
+    auto found = std::find_if(columns_.begin(), columns_.end(),
+                              [&](const Column& known) { return known.name == column; });
+    if (found == columns_.end()) {
+      const std::size_t least = columns_.empty() ? first_width_ : cell.size() + 1;
+      found = columns_.insert(found, Column{column, std::max(least, column.size()), ""});
+      renamed_ = true;
+    }
+    if (cell.size() > found->width) {
+      found->width = cell.size() + 1;
+      renamed_ = true;
+    }
+    found->cell = cell;
+  }
+
+  /// The row, with a line of names before it where it needs one.
+  std::string row() {
+    std::string out;
+    if (std::exchange(renamed_, false)) {
+      if (std::exchange(begun_, true)) out += "\n";
+      out += line([](const Column& column) { return column.name; });
+    }
+    out += line([](const Column& column) { return column.cell; });
+    for (Column& column : columns_) column.cell.clear();
+    return out;
+  }
+
+ private:
+  struct Column {
+    std::string name;
+    std::size_t width;
+    std::string cell;  // of the row that is being made
+  };
+
+  template <class Text>
+  std::string line(const Text& text) const {
+    std::string out;
+    for (const Column& column : columns_) {
+      out += fmt::format("{}{:>{}}", out.empty() ? "" : "  ", text(column), column.width);
+    }
+    return out + "\n";
+  }
+
+  std::size_t first_width_;
+  std::vector<Column> columns_;
+  bool renamed_ = false, begun_ = false;
+};
+
+void add_row(const Scene& scene, const Record& record, long frame, const FrameNotes& notes,
+             FrameTable& table) {
+  table.add("frame", std::to_string(frame));
+  table.add("candidates", grouped(record.found.count));
+  table.add("colliding", grouped(record.collisions.pairs.size()));
+  if (has_self(scene)) table.add("neighbours", grouped(record.collisions.neighbour_pairs.size()));
+  if (record.verification) table.add("missed", grouped(record.verification->false_negatives));
+  table.add("cull ms", fmt::format("{:.1f}", record.ms.cull));
+  table.add("exact ms", fmt::format("{:.1f}", record.ms.exact));
+  const std::optional<double> rate = per_second(record.ms.cull + record.ms.exact);
+  table.add("fps", rate ? fmt::format("{:.1f}", *rate) : "-");
+  table.add("PCS objects", grouped(record.found.object_count));
+  table.add("PCS triangles", grouped(record.found.triangle_count));
+  const Stage work = work_of(record.trace);
+  if (work.queries > 0) table.add("queries", grouped(work.queries));
+  if (work.draws > 0) table.add("draws", grouped(work.draws));
+  for (const auto& [name, value] : notes.values) table.add(name, fmt::format("{:.6g}", value));
+}
+
+// Each warning once, with the frames that had it.
+class Warnings {
+ public:
+  void add(long frame, const std::string& warning) {
+    if (warning.empty()) return;
+    for (Line& line : lines_) {
+      if (line.text != warning) continue;
+      ++line.frames;
+      return;
+    }
+    lines_.push_back({warning, frame, 1});
+  }
+  std::string text() const {
+    std::string out;
+    for (const Line& line : lines_) {
+      out += fmt::format("warning  {} (frame {}{})\n", line.text, line.first,
+                         line.frames > 1 ? fmt::format(" and {} more", line.frames - 1) : "");
+    }
+    return out;
+  }
+
+ private:
+  struct Line {
+    std::string text;
+    long first = 0;
+    long frames = 0;
+  };
+  std::vector<Line> lines_;
+};
+
+FrameTimes summary_of_sorted(const std::vector<double>& ms) {
+  if (ms.empty()) return {};
+  const std::size_t n = ms.size();
+  const auto rank = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(n)));
+  return {.median = 0.5 * (ms[(n - 1) / 2] + ms[n / 2]), .p95 = ms[rank - 1], .max = ms[n - 1]};
+}
+
+// Of the frames up to now.
+struct Totals {
+  std::vector<double> ms;  // ascending
+  double setup_ms = 0;
+  std::uint64_t missed = 0;
+  long topologies = 0;
+
+  void add(const Record& record, bool topology_changed) {
+    const double time = record.ms.cull + record.ms.exact;
+    ms.insert(std::upper_bound(ms.begin(), ms.end(), time), time);
+    setup_ms += record.ms.setup;
+    topologies += topology_changed;
+    if (record.verification) missed += record.verification->false_negatives;
+  }
+
+  Json json(const FramesQuestion& question) const {
+    const FrameTimes times = summary_of_sorted(ms);
+    return {{"frames", ms.size()},
+            {"wanted", question.range.count()},
+            {"ms", {{"median", times.median}, {"p95", times.p95}, {"max", times.max}}},
+            {"fps", {{"median", rate_json(times.median)}, {"p95", rate_json(times.p95)}}},
+            {"setup_ms", setup_ms},
+            {"topology_changes", topologies},
+            {"missed", question.options.verify ? Json(missed) : Json(nullptr)}};
+  }
+
+  std::string text() const {
+    const FrameTimes times = summary_of_sorted(ms);
+    std::string out = fmt::format(
+        "\nper frame  median {:.1f} ms, 95% within {:.1f} ms, at most {:.1f} ms (cull + exact; "
+        "setup {:.1f} ms besides)\n",
+        times.median, times.p95, times.max, setup_ms);
+    if (topologies > 0)
+      out += fmt::format("topology  changed {} times between frames\n", topologies);
+    return out;
+  }
+};
+
+}  // namespace
+
+std::optional<double> per_second(double ms) {
+  const double rate = 1000 / ms;
+  return rate > 0 && std::isfinite(rate) ? std::optional(rate) : std::nullopt;
+}
+
+FrameTimes summary_of(std::vector<double> ms) {
+  std::sort(ms.begin(), ms.end());
+  return summary_of_sorted(ms);
+}
+
+// The text is that of Json::dump(2) of the whole record.
+void FrameRecord::add(const FrameReport& report) {
+  const auto indented = [](const Json& json, const std::string& by) {
+    std::string out;
+    for (const char c : json.dump(2)) {
+      out += c;
+      if (c == '\n') out += by;
+    }
+    return out;
+  };
+  std::string text = ",\n    ";
+  if (!std::exchange(begun_, true)) {
+    text = report.head.dump(2);
+    text.erase(text.rfind("\n}"));
+    text += ",\n  \"frames\": [\n    ";
+  }
+  output_.add(text + indented(report.frame, "    "),
+              "\n  ],\n  \"summary\": " + indented(report.summary, "  ") + "\n}\n");
+}
+
+FramesResult run_frames(const std::vector<std::string>& arguments, const FramesQuestion& question,
+                        const Progress& progress, const FrameSink& sink) {
+  if (progress) progress("reading the scene");
+  FrameSource source(arguments, question.range, question.self);
+  return run_frames(source, question, progress, sink);
+}
+
+FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
+                        const Progress& progress, const FrameSink& sink) {
+  Session session(question.options.device);
+  FramesResult out;
+  Json frames = Json::array();
+  Totals totals;
+  FrameTable table(std::to_string(question.range.last).size());
+  Warnings warnings;
+  Interruptible interruptible(question.range.count(), "frames",
+                              sink ? "what they gave is written" : "nothing was written",
+                              static_cast<bool>(progress));
+  for (long frame = question.range.first; frame <= question.range.last; ++frame) {
+    const std::string name =
+        fmt::format("frame {} of {}", totals.ms.size() + 1, question.range.count());
+    const Progress named =
+        progress ? [&](const std::string& stage) { progress(name + ": " + stage); } : Progress{};
+    if (named) named("reading");
+    const Stopwatch reading;
+    const Scene& scene = source.at(frame);
+    const double read_ms = reading.ms();
+    const Record record = run(scene, question.options, session, named);
+    totals.add(record, source.topology_changed());
+    add_row(scene, record, frame, source.notes(), table);
+    warnings.add(frame, source.notes().warning);
+    std::string rows = table.row(), csv;
+    if (question.pairs) csv = pairs_rows(scene, record, std::to_string(frame) + ",");
+    if (frame == question.range.first) {
+      out.json = to_json(scene, record);
+      for (const char* key : kOfFrame) out.json.erase(key);
+      rows.insert(0, run_heading(scene, record) + "\n");
+      if (question.pairs) csv.insert(0, "frame," + pairs_header(scene));
+    }
+    Json one = frame_json(scene, record, frame, read_ms, source);
+    if (sink) {
+      sink({out.json, one, totals.json(question), std::move(rows), std::move(csv)});
+    } else {
+      frames.push_back(std::move(one));
+      out.table += rows;
+      out.pairs_csv += csv;
+    }
+    if (out.broken.empty() && broken(record, question.strict)) {
+      out.broken =
+          fmt::format("frame {}: {} culled pairs that collide: {}", frame, describe(record.options),
+                      grouped(record.verification->false_negatives));
+    }
+    interruptible.done(static_cast<long>(totals.ms.size()));
+  }
+
+  if (!sink) out.json["frames"] = std::move(frames);
+  out.json["summary"] = totals.json(question);
+  out.table += totals.text();
+  if (!question.options.verify) out.table += "accounted  not at all (--no-verify)\n";
+  out.table += warnings.text();
+  return out;
+}
+
+}  // namespace farcull

@@ -1,0 +1,72 @@
+// Runs one method on every frame of a scene that moves, and records each frame.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/method/run.h"
+#include "experiments/scenes/frames.h"
+#include "experiments/system/output_file.h"
+
+namespace farcull {
+
+struct FramesQuestion {
+  RunOptions options;
+  FrameRange range;
+  bool self = false;
+  bool strict = false;  // farcull verify: ask the guarantee of every method
+  bool pairs = false;   // the CSV is wanted
+};
+
+/// Milliseconds of frames: candidates and exact tests, without reading and accounting.
+struct FrameTimes {
+  double median = 0, p95 = 0, max = 0;  // p95: by nearest rank
+};
+/// Frames per second at so many milliseconds each; empty where that is no positive number.
+std::optional<double> per_second(double ms);
+FrameTimes summary_of(std::vector<double> ms);
+
+/// What a frame that is done adds.
+struct FrameReport {
+  const nlohmann::ordered_json& head;     // of all frames: the record without the next two
+  const nlohmann::ordered_json& frame;    // an element of `frames`
+  const nlohmann::ordered_json& summary;  // of the frames up to this one
+  std::string rows;                       // for people; before the first frame's what was run
+  std::string pairs_csv;  // as pairs_rows(), a column `frame` before; the header before the first
+};
+using FrameSink = std::function<void(const FrameReport&)>;
+
+/// The record of docs/record.md, written frame by frame.
+class FrameRecord {
+ public:
+  explicit FrameRecord(std::string path) : output_(std::move(path)) {}
+  /// Throws Error as GrowingOutput.
+  void add(const FrameReport& report);
+  void finish() { output_.finish(); }
+
+ private:
+  GrowingOutput output_;
+  bool begun_ = false;
+};
+
+struct FramesResult {
+  nlohmann::ordered_json json;  // docs/record.md; of a run with a sink without `frames`
+  std::string table;            // for people; of a run with a sink what follows the rows
+  std::string pairs_csv;        // of a run without a sink
+  std::string broken;           // the first guarantee that was broken; empty: none
+};
+
+/// Runs every frame of the scene; `sink` gets each one as soon as it is done. SIGINT, SIGTERM and
+/// SIGHUP end the program at once, with a line on standard error that says how many frames were
+/// done. Throws Error as FrameSource, run() and the sink do: what the sink has got is all
+/// that there is then.
+FramesResult run_frames(const std::vector<std::string>& scene, const FramesQuestion& question,
+                        const Progress& progress = {}, const FrameSink& sink = {});
+/// The same of a source; question.self is not looked at.
+FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
+                        const Progress& progress = {}, const FrameSink& sink = {});
+
+}  // namespace farcull

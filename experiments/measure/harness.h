@@ -1,0 +1,59 @@
+// The measuring harness under bench, compare, family, savings and the studies: which contestant
+// runs when, how its times are summed up, and how times are written.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <vector>
+
+namespace farcull {
+
+struct Record;
+
+/// Statistics of several values. median: the middle value; of an even number of values the mean of
+/// the two in the middle.
+struct Spread {
+  double median = 0, min = 0, max = 0;
+};
+/// All 0 where there are no values.
+Spread spread_of(std::vector<double> values);
+nlohmann::ordered_json to_json(const Spread& spread);
+
+/// The index of the run with the median time, of an even number the faster of the two in the
+/// middle. Precondition: not empty.
+std::size_t median_run(const std::vector<double>& ms);
+
+/// The time of a run that is compared: culling and exact tests, in ms; neither setup nor
+/// verification.
+double compared_ms(const Record& record);
+
+/// How often each contestant runs.
+struct Rounds {
+  int warm_up = 0;  // rounds before those that count
+  int counted = 1;
+  /// A contestant whose warm-up run takes longer is not run again.
+  double limit_ms = std::numeric_limits<double>::infinity();
+  bool memory = false;  // measure the memory of the first warm-up run
+};
+
+/// Times and memory of the runs of a contestant.
+struct Timed {
+  std::vector<double> ms;          // of the counted runs, in their order
+  double warm_up_ms = 0;           // of the last warm-up run; 0 without one
+  std::optional<double> peak_mib;  // of the first warm-up run, beyond what was there before
+  bool over_limit(const Rounds& rounds) const { return warm_up_ms > rounds.limit_ms; }
+};
+
+/// Runs a contestant (0 .. count - 1) in a round (0 .. counted - 1; negative: warm-up) and returns
+/// its time in ms.
+using TimedRun = std::function<double(std::size_t contestant, int round)>;
+
+/// Runs all contestants in turn, round after round, so that a slow moment of the machine falls on
+/// all of them. What `run` throws ends the measurement.
+std::vector<Timed> measure_in_turns(std::size_t contestants, const Rounds& rounds,
+                                    const TimedRun& run);
+
+}  // namespace farcull

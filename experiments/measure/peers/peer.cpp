@@ -1,0 +1,45 @@
+// The list of peers, with entries for libraries that this build is without.
+#include "experiments/measure/peers/peer.h"
+
+#include <iterator>
+
+namespace farcull {
+namespace {
+
+#if !FARCULL_WITH_FCL || !FARCULL_WITH_EMBREE
+Peer missing(const std::string& name, const std::string& library, const std::string& debian) {
+  return {.name = name,
+          .library = library,
+          .missing = "built without " + library + " (Debian: " + debian + ")"};
+}
+#endif
+
+}  // namespace
+
+#if !FARCULL_WITH_FCL
+std::vector<Peer> fcl_peers() {
+  return {missing("fcl-obbrss", "FCL", "libfcl-dev"), missing("fcl-obb", "FCL", "libfcl-dev"),
+          missing("fcl-aabb", "FCL", "libfcl-dev")};
+}
+
+std::vector<Peer> narrow_peers() {
+  return {missing("fcl-float", "FCL", "libfcl-dev"), missing("fcl-double", "FCL", "libfcl-dev")};
+}
+#endif
+
+#if !FARCULL_WITH_EMBREE
+std::vector<Peer> embree_peers() {
+  return {missing("embree-low", "Embree 3", "libembree-dev"),
+          missing("embree-medium", "Embree 3", "libembree-dev")};
+}
+#endif
+
+std::vector<Peer> all_peers(unsigned threads) {
+  std::vector<Peer> all = cgal_peers(threads);
+  for (std::vector<Peer> some : {fcl_peers(), embree_peers()}) {
+    all.insert(all.end(), std::move_iterator(some.begin()), std::move_iterator(some.end()));
+  }
+  return all;
+}
+
+}  // namespace farcull

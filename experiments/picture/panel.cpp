@@ -1,0 +1,149 @@
+// Parts of every panel: triangles painted over an image, missed triangles with rings around them,
+// and the words above a panel.
+#include "experiments/picture/panel.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "experiments/record/tables.h"
+#include "experiments/system/text_table.h"
+
+namespace farcull {
+namespace {
+
+constexpr Rgba kGood = {0, 98, 84};
+// A disc of 2 sqrt(2) px contains a whole pixel wherever it lies: half a diagonal from its middle
+// to that of the pixel, half a diagonal to its corners. So the colour of a miss is there, unmixed.
+constexpr double kWholePixel = 2.83;
+
+// Groups of missed triangles that lie close together in the picture.
+class Clusters2d {
+ public:
+  explicit Clusters2d(double reach) : reach_(reach) {}
+
+  void add(double x, double y, double radius) {
+    const std::pair cell(std::lround(x / reach_), std::lround(y / reach_));
+    Group& group = cells_[cell];
+    group.add(x - radius, y - radius);
+    group.add(x + radius, y + radius);
+  }
+
+  struct Group {
+    double x0 = HUGE_VAL, y0 = HUGE_VAL, x1 = -HUGE_VAL, y1 = -HUGE_VAL;
+    void add(double x, double y) {
+      x0 = std::min(x0, x), y0 = std::min(y0, y), x1 = std::max(x1, x), y1 = std::max(y1, y);
+    }
+    void add(const Group& other) {
+      add(other.x0, other.y0);
+      add(other.x1, other.y1);
+    }
+  };
+
+  // Cells that touch, corners included, are one group.
+  std::vector<Group> groups() const {
+    std::vector<Group> out;
+    std::map<std::pair<long, long>, bool> done;
+    for (const auto& [cell, group] : cells_) {
+      if (done[cell]) continue;
+      done[cell] = true;
+      Group all = group;
+      std::vector<std::pair<long, long>> open = {cell};
+      while (!open.empty()) {
+        const auto [cx, cy] = open.back();
+        open.pop_back();
+        for (long dx = -1; dx <= 1; ++dx) {
+          for (long dy = -1; dy <= 1; ++dy) {
+            const auto next = cells_.find({cx + dx, cy + dy});
+            if (next == cells_.end() || done[next->first]) continue;
+            done[next->first] = true;
+            all.add(next->second);
+            open.push_back(next->first);
+          }
+        }
+      }
+      out.push_back(all);
+    }
+    return out;
+  }
+
+ private:
+  double reach_;
+  std::map<std::pair<long, long>, Group> cells_;
+};
+
+}  // namespace
+
+double line_of(const Window& window) {
+  return std::clamp(std::min(window.width, window.height) / 380.0, 1.0, 8.0);
+}
+
+Image painted(const GlContext& context, const Scene& scene, const Window& window,
+              const std::vector<PictureTriangle>& triangles) {
+  const int larger = std::max(window.width, window.height);
+  return draw_picture(context, scene, window, triangles,
+                      {.samples = larger <= 1200   ? 4
+                                  : larger <= 2400 ? 3
+                                                   : 2});
+}
+
+std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Window& window,
+                          const std::vector<std::uint32_t>& missed, Image& image) {
+  if (missed.empty()) return 0;
+  const double line = line_of(window);
+  std::vector<PictureTriangle> over;
+  // Misses that are farther apart than a ring is wide get rings of their own.
+  const double ring = 11 * line;
+  Clusters2d clusters(ring);
+  for (const std::uint32_t t : missed) {
+    over.push_back({.triangle = t,
+                    .colour = kMissedColour,
+                    .shaded = false,
+                    .outline = static_cast<float>(std::max(kWholePixel, 1.5 * line))});
+    Box box = Box::empty();
+    for (const Vec3& corner : scene.corners(t)) box.add(to_pixel(window, corner).p);
+    const Vec3 middle = 0.5 * (box.lo + box.hi);
+    if (!(std::abs(middle[0]) <= window.width) || !(std::abs(middle[1]) <= window.height)) continue;
+    const double radius = 0.5 * (box.hi - box.lo).head<2>().maxCoeff();
+    clusters.add(0.5 * window.width + middle[0], 0.5 * window.height - middle[1], radius);
+  }
+  lay_over(image, painted(context, scene, window, over), 1);
+  std::uint64_t rings = 0;
+  for (const Clusters2d::Group& group : clusters.groups()) {
+    const double size = std::max(group.x1 - group.x0, group.y1 - group.y0);
+    if (size > 2 * ring) continue;  // seen without
+    draw_ring(image, 0.5 * (group.x0 + group.x1), 0.5 * (group.y0 + group.y1),
+              0.5 * size + 0.6 * ring, std::max(1.5, line), kMissedColour);
+    ++rings;
+  }
+  return rings;
+}
+
+std::string panel_title(const RunOptions& options) {
+  std::string out = to_string(options.method);
+  if (fattens(options.method)) {
+    if (options.offset != "obb") out += ", " + options.offset + " offset";
+    const std::string radius = radius_text(options.radius);
+    if (radius == "published") out += ", published radius";
+    if (radius != "published" && radius != "budget") out += ", radius " + radius + " of the budget";
+    if (depth_of(options) == DepthMode::fixed) out += ", fixed depth";
+    if (out != to_string(options.method)) out += ",";
+  }
+  const int resolution = resolution_of(options);
+  const bool has = looks(options.method);
+  if (has && resolution > 0) out += fmt::format(" at {} px", resolution);
+  return out;
+}
+
+void set_headline(DrawnPanel& panel, const std::string& verb) {
+  const PanelResult& result = panel.result;
+  panel.result.headline = fmt::format("{} {} of {} colliding pair{}", verb, grouped(result.missed),
+                                      grouped(result.colliding), result.colliding == 1 ? "" : "s");
+  panel.sheet.title = result.title;
+  panel.sheet.headline = panel.result.headline;
+  panel.sheet.headline_colour = result.missed > 0 ? kMissedColour : kGood;
+}
+
+}  // namespace farcull

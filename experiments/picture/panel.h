@@ -1,0 +1,54 @@
+// A panel of a picture with what it shows, and the parts that both kinds of panels are made of.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/gl/picture.h"
+#include "experiments/method/run.h"
+#include "experiments/picture/sheet.h"
+
+namespace farcull {
+
+/// The counts and words of a panel. Pairs of neighbours count with the others.
+struct PanelResult {
+  std::string title;                   // "cullide at 128 px"
+  std::string headline;                // "missed 12 of 4,268 colliding pairs"
+  std::uint64_t colliding = 0;         // pairs, by the exact method
+  std::uint64_t missed = 0;            // of them, not found by the method (in a view of depth_view:
+                                       // with a culled triangle)
+  std::uint64_t missed_triangles = 0;  // in one of those
+  std::uint64_t kept = 0;              // triangles; 0 for exact, which culls none
+  std::uint64_t idle = 0;              // of them, in no collision
+  std::uint64_t rings = 0;             // drawn around misses that are too small to be seen
+  std::uint64_t first_pass = 0, second_pass = 0, culled = 0;  // of depth_view: triangles fully
+                                                              // visible in that pass alone, in both
+  bool broken = false;                           // the method promises, and missed a pair
+  std::string device;                            // what answered: a renderer, "cpu", or "none"
+  int left = 0, top = 0, width = 0, height = 0;  // of its picture in the image, px
+};
+
+/// The colour of missed pairs, with full opacity and unshaded, and of nothing else.
+constexpr Rgba kMissedColour = {220, 0, 90};
+
+/// A panel of the picture, and what it shows.
+struct DrawnPanel {
+  SheetPanel sheet;
+  PanelResult result;
+};
+/// The width of lines, px, which follows the size of the picture.
+double line_of(const Window& window);
+/// The triangles alone, on a transparent image.
+Image painted(const GlContext& context, const Scene& scene, const Window& window,
+              const std::vector<PictureTriangle>& triangles);
+/// Draws the missed triangles over the image, with rings where they are too small to be seen, and
+/// says how many rings.
+std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Window& window,
+                          const std::vector<std::uint32_t>& missed, Image& image);
+/// "far, exact offset, at 128 px".
+std::string panel_title(const RunOptions& options);
+/// "missed 12 of 4,268 colliding pairs", and its colour.
+void set_headline(DrawnPanel& panel, const std::string& verb);
+
+}  // namespace farcull

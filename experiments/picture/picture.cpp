@@ -1,0 +1,271 @@
+// Runs the methods of a picture and draws a panel for each: objects pale, what collides strong,
+// missed pairs in a colour of their own.
+#include "experiments/picture/picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "commit.h"
+#include "core/base/error.h"
+#include "experiments/picture/depth.h"
+#include "experiments/record/output.h"
+#include "experiments/record/tables.h"
+#include "experiments/scenes/scene_file.h"
+#include "experiments/system/output_file.h"
+#include "experiments/system/text_table.h"
+
+namespace farcull {
+namespace {
+
+constexpr Rgba kPaper = {255, 255, 255}, kFound = {0, 128, 116}, kIdle = {240, 176, 32};
+// Of the objects, in turn: pale, so that nothing but what collides has a strong colour.
+constexpr std::array<Rgba, 8> kObjects = {{{176, 190, 210},
+                                           {218, 214, 206},
+                                           {186, 203, 184},
+                                           {216, 204, 180},
+                                           {196, 190, 214},
+                                           {180, 206, 208},
+                                           {222, 190, 168},
+                                           {214, 192, 198}}};
+constexpr double kIdlePart = 0.6;    // of kIdle in what was kept for nothing
+constexpr double kThrough = 0.28;    // how strongly collisions shine through what hides them
+constexpr double kMargin = 0.04;     // around the scene, of the picture's size
+constexpr double kZoomMargin = 0.1;  // around what collides
+
+const Scene& open_scene(const PictureArguments& arguments, Lab& lab) {
+  if (arguments.scene.size() == 1 && !arguments.self && !arguments.frame)
+    return lab.scene(arguments.scene.front());
+  // No name of a scene holds a line feed.
+  std::string key = arguments.self ? "self\n" : "\n";
+  for (const std::string& part : arguments.scene) key += part + "\n";
+  if (arguments.frame) {
+    const FrameRange range = frames_of(arguments);
+    key += fmt::format("{} of {}:{}", *arguments.frame, range.first, range.last);
+  }
+  if (lab.progress()) lab.progress()("reading the scene");
+  return lab.scene(key, [&arguments] {
+    if (arguments.frame) {
+      FrameSource source(arguments.scene, frames_of(arguments), arguments.self);
+      return source.at(*arguments.frame);
+    }
+    Scene scene = load_scene(arguments.scene);
+    for (Object& object : scene.objects) object.self |= arguments.self;
+    return scene;
+  });
+}
+
+std::vector<TrianglePair> found_by(const Record& record) {
+  std::vector<TrianglePair> out;
+  std::set_union(record.collisions.pairs.begin(), record.collisions.pairs.end(),
+                 record.collisions.neighbour_pairs.begin(), record.collisions.neighbour_pairs.end(),
+                 std::back_inserter(out));
+  return out;
+}
+
+std::string device_of(const Record& record) {
+  if (record.found.device.gl) return record.found.device.gl->renderer;
+  return record.found.device.cpu ? "cpu" : "none";
+}
+
+enum : std::uint8_t { kRest, kKept, kCollides };
+
+// The scene with each triangle in the colour of its kind. `hit`, the triangles that collide, shine
+// through what hides them.
+Image scene_image(const Scene& scene, const Window& window, const std::vector<std::uint8_t>& kind,
+                  const std::vector<std::uint32_t>& hit, const GlContext& context) {
+  const double line = line_of(window);
+  std::vector<PictureTriangle> all;
+  all.reserve(scene.triangles.size());
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    const Object& object = scene.objects[o];
+    const Rgba plain = kObjects[o % kObjects.size()];
+    Rgba idle = plain;
+    blend(idle, kIdle, kIdlePart);
+    for (std::uint32_t t = object.first_triangle; t < object.first_triangle + object.triangle_count;
+         ++t) {
+      const bool collides = kind[t] == kCollides;
+      all.push_back({.triangle = t,
+                     .colour = collides           ? kFound
+                               : kind[t] == kKept ? idle
+                                                  : plain,
+                     .shaded = true,
+                     .outline = static_cast<float>(collides ? 0.5 * line : 0),
+                     .lift = static_cast<float>(collides ? line : 0)});
+    }
+  }
+  Image image(window.width, window.height, kPaper);
+  lay_over(image, painted(context, scene, window, all), 1);
+  std::vector<PictureTriangle> through;
+  for (const std::uint32_t t : hit) {
+    through.push_back({.triangle = t,
+                       .colour = kFound,
+                       .shaded = false,
+                       .outline = static_cast<float>(0.5 * line)});
+  }
+  lay_over(image, painted(context, scene, window, through), kThrough);
+  return image;
+}
+
+DrawnPanel panel_of(const RunOptions& options, const Scene& scene, const Window& window,
+                    const Truth& truth, Lab& lab, const GlContext& context) {
+  const Record record = run(scene, options, lab.session(), lab.progress());
+  const std::vector<TrianglePair> found = found_by(record);
+  std::vector<TrianglePair> missed;
+  std::set_difference(truth.pairs.begin(), truth.pairs.end(), found.begin(), found.end(),
+                      std::back_inserter(missed));
+  std::vector<std::uint8_t> kind(scene.triangles.size(), kRest);
+  for (const std::uint32_t t : record.found.triangles) kind[t] = kKept;
+  const std::vector<std::uint32_t> hit = members_of(truth.pairs);
+  for (const std::uint32_t t : hit) kind[t] = kCollides;
+
+  DrawnPanel panel;
+  PanelResult& result = panel.result;
+  result.title = panel_title(options);
+  result.colliding = truth.pairs.size();
+  result.missed = missed.size();
+  result.kept = record.found.triangles.size();
+  result.idle = static_cast<std::uint64_t>(std::count(kind.begin(), kind.end(), kKept));
+  // As in run: whatever the probes of the device say.
+  result.broken = promises(record.options) && !missed.empty();
+  result.device = device_of(record);
+
+  if (lab.progress()) lab.progress()("drawing " + result.title);
+  Image& image = panel.sheet.image;
+  image = scene_image(scene, window, kind, hit, context);
+  const std::vector<std::uint32_t> lost = members_of(missed);
+  result.missed_triangles = lost.size();
+  result.rings = draw_missed(context, scene, window, lost, image);
+
+  set_headline(panel, "missed");
+  const auto entry = [&](Rgba colour, const std::string& text) {
+    panel.sheet.legend.push_back({.sign = LegendEntry::Sign::box, .colour = colour, .text = text});
+  };
+  entry(kFound,
+        fmt::format("collide and found: {} pairs", grouped(truth.pairs.size() - missed.size())));
+  if (!missed.empty()) {
+    entry(kMissedColour, fmt::format("missed: {} pairs of {} triangles", grouped(missed.size()),
+                                     grouped(lost.size())));
+  }
+  if (result.rings > 0) {
+    panel.sheet.legend.push_back({.sign = LegendEntry::Sign::ring,
+                                  .colour = kMissedColour,
+                                  .text = "misses that are easily overlooked"});
+  }
+  if (culls(options.method)) {
+    Rgba idle = kObjects[0];
+    blend(idle, kIdle, kIdlePart);
+    entry(idle, fmt::format("kept, collide with nothing: {} triangle{}", grouped(result.idle),
+                            result.idle == 1 ? "" : "s"));
+  }
+  return panel;
+}
+
+PngTexts provenance(const PictureArguments& arguments, const PictureResult& result,
+                    const GlInfo& drawn_by) {
+  PngTexts out = {
+      {"Title", result.scene + ": collisions by farcull"},
+      {"Software", "farcull"},
+      {"Commit", FARCULL_COMMIT},
+      {"Scene", result.scene},
+      {"Scene hash", result.scene_hash},
+      {"Command", command_of(arguments)},
+      {"Drawn by", drawn_by.vendor + ", " + drawn_by.renderer + ", " + drawn_by.version}};
+  for (std::size_t i = 0; i < result.panels.size(); ++i) {
+    const RunOptions& options = arguments.panels[i];
+    const PanelResult& panel = result.panels[i];
+    const int resolution = resolution_of(options);
+    const bool far = fattens(options.method);
+    out.emplace_back(
+        fmt::format("Panel {}", i + 1),
+        fmt::format("method {}; resolution {}; radius {}; offset {}; device {}; colliding {}; "
+                    "missed {}; kept {}",
+                    to_string(options.method),
+                    resolution > 0 ? std::to_string(resolution) : std::string("none"),
+                    far ? radius_text(options.radius) : "none", far ? options.offset : "none",
+                    panel.device, panel.colliding, panel.missed, panel.kept));
+  }
+  return out;
+}
+
+std::string subtitle(const PictureArguments& arguments, const PictureResult& result,
+                     const Truth& truth) {
+  const auto counted = [](std::uint64_t n, const char* one) {
+    return grouped(n) + " " + one + (n == 1 ? "" : "s");
+  };
+  std::string out = counted(result.objects, "object") + ", " +
+                    counted(result.triangles, "triangle") + ", " +
+                    counted(truth.pairs.size(), "colliding pair");
+  if (arguments.frame) {
+    const FrameRange range = frames_of(arguments);
+    out += fmt::format(", frame {}", *arguments.frame);
+    if (range.count() > 1) out += fmt::format(" of {} to {}", range.first, range.last);
+  }
+  if (arguments.depth_view) out += ", one view of the method's";
+  return out;
+}
+
+Window window_of(const PictureArguments& arguments, const Scene& scene, const Truth& truth) {
+  const View view = camera(arguments);
+  std::vector<Box> boxes = triangle_boxes(scene);
+  if (!arguments.zoom)
+    return picture_window(view, boxes, arguments.width, arguments.height, kMargin, scene.name);
+  std::vector<Box> hit;
+  for (const std::uint32_t t : members_of(truth.pairs)) hit.push_back(boxes[t]);
+  if (hit.empty()) throw Error("--zoom", "nothing collides in " + scene.name, "leave --zoom out");
+  return picture_window(view, hit, arguments.width, arguments.height, kZoomMargin, scene.name);
+}
+
+}  // namespace
+
+PictureResult make_picture(const PictureArguments& arguments, Lab& lab) {
+  validate(arguments);
+  const Scene& scene = open_scene(arguments, lab);
+  if (scene.triangles.empty())
+    throw Error(scene.name, "it has no triangles to draw", "give a scene that has some");
+  for (const RunOptions& options : arguments.panels) require_scene(scene, options.method);
+  const Truth& truth = lab.truth();
+  const Window window = window_of(arguments, scene, truth);
+
+  std::optional<GlContext> own;
+  if (lab.device() == "cpu") own.emplace();
+  const GlContext& context = own ? *own : lab.session().context();
+  PictureResult result;
+  result.scene = scene.name;
+  result.scene_hash = scene_hash(scene);
+  result.objects = scene.objects.size();
+  result.triangles = scene.triangles.size();
+  result.not_asked = not_asked_line(scene);
+  std::vector<SheetPanel> sheets;
+  for (RunOptions options : arguments.panels) {
+    options.verify = false;
+    options.device = lab.device();
+    DrawnPanel panel = arguments.depth_view
+                           ? depth_panel(options, arguments, scene, truth, lab.session(), context)
+                           : panel_of(options, scene, window, truth, lab, context);
+    result.panels.push_back(std::move(panel.result));
+    sheets.push_back(std::move(panel.sheet));
+  }
+  result.image =
+      compose(scene.name, subtitle(arguments, result, truth), sheets,
+              fmt::format("farcull {:.10}, {}", FARCULL_COMMIT, context.info().renderer));
+  for (std::size_t i = 0; i < sheets.size(); ++i) {
+    result.panels[i].left = sheets[i].left;
+    result.panels[i].top = sheets[i].top;
+    result.panels[i].width = sheets[i].image.width;
+    result.panels[i].height = sheets[i].image.height;
+  }
+  result.texts = provenance(arguments, result, context.info());
+  return result;
+}
+
+PictureResult write_picture(const PictureArguments& arguments, Lab& lab, const std::string& path) {
+  check_output(path);
+  PictureResult result = make_picture(arguments, lab);
+  write_output(path, to_png(result.image, result.texts));
+  return result;
+}
+
+}  // namespace farcull

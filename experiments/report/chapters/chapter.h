@@ -1,0 +1,124 @@
+// A chapter of the report: the figures, tables and findings of one study, as values. Chapters are
+// made from the store alone, so no number of a report was typed; report.h writes them as files.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/picture/arguments.h"
+#include "experiments/studies/store.h"
+
+namespace farcull {
+
+/// Points of one line or cloud of a plot. x and y have one length. NaN: a gap in the line.
+struct Series {
+  std::string name;  // in the key of the plot; plain text
+  std::vector<double> x = {}, y = {};
+  enum class Style { lines_points, lines, points } style = Style::lines_points;
+  bool emphasis = false;  // drawn thick: ours, or the one that the figure is about
+};
+
+/// A vertical or horizontal line with a name, such as the budget radius.
+struct Mark {
+  bool vertical = true;
+  double at = 0;
+  std::string name;
+};
+
+/// log10 of what is 0 or less does not exist: on a logarithmic axis `zero` says where zeros are
+/// drawn, on a line of their own below the smallest power that the plot shows, labelled 0.
+struct Axis {
+  std::string label;  // with the unit
+  bool logarithmic = false;
+  bool shows_zero = false;  // of a logarithmic axis: see above
+  std::optional<double> from = {}, to = {};
+};
+
+inline Axis logarithmic(std::string label, bool shows_zero = false) {
+  return {.label = std::move(label), .logarithmic = true, .shows_zero = shows_zero};
+}
+
+/// Panels stand side by side or below each other under one title, and share one key of names where
+/// these agree.
+struct Panel {
+  std::string title;
+  Axis x = {}, y = {};
+  std::vector<Series> series = {};
+  std::vector<Mark> marks = {};
+};
+
+struct Figure {
+  std::string name;  // of its files, such as "accuracy"; [a-z0-9-]
+  std::string title;
+  std::string caption = {};  // what it shows, with numbers from the rows
+  std::vector<Panel> panels = {};
+};
+
+struct Column {
+  std::string name;
+  enum class Side { left, right } side = Side::right;  // where the cells stand
+};
+/// Columns of text stand on the left, columns of numbers on the right.
+inline Column text_column(std::string name) { return {std::move(name), Column::Side::left}; }
+
+struct DataTable {
+  std::string name;  // of its files; [a-z0-9-]
+  std::string caption;
+  std::vector<Column> columns;
+  std::vector<std::vector<std::string>> rows = {};  // for people: numbers grouped and rounded
+  bool in_text = true;  // shown in the page and in LaTeX; false: long, so linked as CSV alone
+};
+
+/// The counts of the rows that a panel of a picture shows.
+struct PanelCounts {
+  std::string method;  // in words
+  std::optional<double> missed, colliding;
+};
+
+struct Picture {
+  std::string name;     // of its PNG
+  std::string caption;  // without its counts: these are of the picture that is drawn
+  PictureArguments arguments = {};
+  std::vector<PanelCounts> panels = {};  // from the left
+};
+
+/// One sentence with numbers from the rows.
+struct Finding {
+  enum class Kind { result, broken } kind = Kind::result;  // broken: a promise was not kept
+  std::string text;
+};
+inline Finding broken_promise(std::string text) { return {Finding::Kind::broken, std::move(text)}; }
+inline bool is_broken(const Finding& finding) { return finding.kind == Finding::Kind::broken; }
+/// As the report prints it: "BROKEN: " stands before a broken promise.
+inline std::string printed(const Finding& finding) {
+  return (is_broken(finding) ? "BROKEN: " : "") + finding.text;
+}
+
+struct Chapter {
+  std::string study;
+  std::string title;
+  std::string question;
+  std::vector<Finding> findings;
+  std::vector<std::string> limits;  // what the study does not show
+  std::vector<Figure> figures;
+  std::vector<DataTable> tables;
+  std::string command;  // that measures it again
+  std::vector<Picture> pictures = {};
+
+  void find(std::string text) { findings.push_back({Finding::Kind::result, std::move(text)}); }
+  void find_broken(std::string text) { findings.push_back(broken_promise(std::move(text))); }
+};
+
+/// The chapter of one study, each in a file of its own, from its rows: all, or those that are
+/// there.
+Chapter accuracy_chapter(const StoredStudy& stored);
+Chapter error_time_chapter(const StoredStudy& stored);
+Chapter radius_chapter(const StoredStudy& stored);
+Chapter offsets_chapter(const StoredStudy& stored);
+Chapter precision_chapter(const StoredStudy& stored);
+Chapter stability_chapter(const StoredStudy& stored);
+Chapter efficiency_chapter(const StoredStudy& stored);
+Chapter scaling_chapter(const StoredStudy& stored);
+
+}  // namespace farcull

@@ -1,0 +1,129 @@
+// Least squares in logarithms, medians, and numbers as text.
+#include "experiments/report/chapters/numbers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace farcull {
+namespace {
+
+std::optional<double> number_in(const nlohmann::ordered_json& values, const std::string& name) {
+  const auto it = values.find(name);
+  if (it == values.end() || !it->is_number()) return {};
+  return it->get<double>();
+}
+
+std::string grouped_digits(std::string digits) {
+  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
+  return digits;
+}
+
+}  // namespace
+
+std::optional<double> count_of(const Row& row, const std::string& name) {
+  return number_in(row.measurement.counts, name);
+}
+
+std::optional<double> time_of(const Row& row, const std::string& name) {
+  return number_in(row.measurement.times, name);
+}
+
+std::string method_label(const PointKey& point) {
+  if (point.method == "far") return point.offset == "exact" ? "FAR (exact)" : "FAR (OBB)";
+  if (point.method == "far-pairs") return "FAR pairs";
+  if (point.method == "cullide") return "CULLIDE";
+  if (point.method == "quick-cullide") return "Quick-CULLIDE";
+  if (point.method == "s-cullide") return "S-CULLIDE";
+  if (point.method == "i-collide") return "I-COLLIDE";
+  return point.method;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
+std::string spread(const std::vector<double>& values, const std::string& unit) {
+  if (values.empty()) return "-";
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  return fmt::format("{}{} ({} to {})", rounded(median(values)), unit, rounded(*least),
+                     rounded(*most));
+}
+
+std::optional<Exponent> exponent_of(const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<double> u, v;
+  Exponent out;
+  for (std::size_t i = 0; i < x.size() && i < y.size(); ++i) {
+    if (!(x[i] > 0) || !(y[i] > 0) || !std::isfinite(x[i]) || !std::isfinite(y[i])) continue;
+    out.from = u.empty() ? x[i] : std::min(out.from, x[i]);
+    out.to = u.empty() ? x[i] : std::max(out.to, x[i]);
+    u.push_back(std::log(x[i]));
+    v.push_back(std::log(y[i]));
+  }
+  const auto n = static_cast<double>(u.size());
+  if (u.size() < 3) return {};
+  double mean_u = 0, mean_v = 0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    mean_u += u[i] / n;
+    mean_v += v[i] / n;
+  }
+  double uu = 0, uv = 0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    uu += (u[i] - mean_u) * (u[i] - mean_u);
+    uv += (u[i] - mean_u) * (v[i] - mean_v);
+  }
+  const auto [least, most] = std::minmax_element(u.begin(), u.end());
+  if (*least == *most) return {};
+  out.value = uv / uu;
+  double residuals = 0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const double r = v[i] - mean_v - out.value * (u[i] - mean_u);
+    residuals += r * r;
+  }
+  out.error = std::sqrt(residuals / (n - 2) / uu);
+  out.points = u.size();
+  return out;
+}
+
+std::string rounded(double value, int digits) {
+  if (!std::isfinite(value)) return "-";
+  const double size = std::abs(value);
+  const std::string sign = value < 0 ? "-" : "";
+  if (size == 0) return "0";
+  if (size >= 1e9 || size < 1e-4) return fmt::format("{:.{}g}", value, digits);
+  if (size == std::floor(size)) return sign + grouped_digits(fmt::format("{:.0f}", size));
+  const int whole = static_cast<int>(std::floor(std::log10(size))) + 1;
+  std::string text = fmt::format("{:.{}f}", size, std::max(0, digits - whole));
+  // 0.9996 rounds to four digits of 1.000.
+  if (const std::size_t dot = text.find('.'); dot != std::string::npos) {
+    return sign + grouped_digits(text.substr(0, dot)) + text.substr(dot);
+  }
+  return sign + grouped_digits(text);
+}
+
+std::string sentence(std::string text) {
+  if (!text.empty() && std::string(".?!").find(text.back()) == std::string::npos) text += '.';
+  return text;
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string out;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) out += i + 1 == words.size() ? " and " : ", ";
+    out += words[i];
+  }
+  return out;
+}
+
+std::string command_of(const Declaration& declaration) {
+  std::string out = "farcull experiment " + declaration.study;
+  if (declaration.choice.quick) out += " --quick";
+  if (declaration.choice.seed != 1) out += fmt::format(" --seed {}", declaration.choice.seed);
+  return out;
+}
+
+}  // namespace farcull

@@ -1,0 +1,58 @@
+// Numbers of rows: medians and exponents of them, and how a report writes them.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/studies/store.h"
+
+namespace farcull {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // a gap in a line
+
+/// A count or a time of a row by its name; empty where the row has none.
+std::optional<double> count_of(const Row& row, const std::string& name);
+std::optional<double> time_of(const Row& row, const std::string& name);
+/// The same; NaN where the row has none.
+inline double count_or_none(const Row& row, const std::string& name) {
+  return count_of(row, name).value_or(kNone);
+}
+inline double time_or_none(const Row& row, const std::string& name) {
+  return time_of(row, name).value_or(kNone);
+}
+
+/// As figures and tables name what a point was measured with: "FAR (OBB)", "CULLIDE", "FAR pairs".
+std::string method_label(const PointKey& point);
+
+/// The middle value, of an even number the mean of the two. Precondition: there is one.
+double median(std::vector<double> values);
+
+/// "2 (1 to 3)": the median with the least and the largest; "-" of no values.
+std::string spread(const std::vector<double>& values, const std::string& unit = "");
+
+/// The exponent b of y = a x^b by least squares in logarithms, with its standard error (from the
+/// residuals; none of the model itself).
+struct Exponent {
+  double value = 0, error = 0;
+  double from = 0, to = 0;  // of x
+  std::size_t points = 0;
+};
+/// Pairs that are not both positive are left out. Empty where fewer than three are left, or x does
+/// not differ.
+std::optional<Exponent> exponent_of(const std::vector<double>& x, const std::vector<double>& y);
+
+/// Three significant digits, all of a whole number, thousands grouped: 0.0123, 1.50, 3, 12,346.
+std::string rounded(double value, int digits = 3);
+
+/// With a point at its end where it has none.
+std::string sentence(std::string text);
+
+/// "a, b and c".
+std::string listed(const std::vector<std::string>& words);
+
+/// "farcull experiment NAME", with --quick and --seed as the study was declared.
+std::string command_of(const Declaration& declaration);
+
+}  // namespace farcull

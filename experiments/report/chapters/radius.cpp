@@ -1,0 +1,327 @@
+// The chapter of the study "radius": violated points of the lemmas and missed pairs of FAR against
+// the radius, with the published radius beside the budget.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "experiments/report/chapters/numbers.h"
+#include "experiments/report/chapters/rows.h"
+#include "experiments/studies/lemma_point.h"
+#include "experiments/system/text_table.h"
+
+namespace farcull {
+namespace {
+
+bool is_published(const Row& row) { return row.point.radius == "published"; }
+
+// The radius over the budget radius; NaN where the row of a published radius lacks one of the two.
+double factor_of(const Row& row) {
+  if (is_published(row)) {
+    const auto radius = count_of(row, "radius_px"), budget = count_of(row, "budget_px");
+    return radius && budget ? *radius / *budget : kNone;
+  }
+  return row.point.radius == "budget" || row.point.radius.empty() ? 1 : std::stod(row.point.radius);
+}
+
+// The canvas and the depth that a lemma was tested with.
+std::string surface_of(const Row& row) {
+  if (row.point.method == "lemma-worst") return "worst canvas";
+  return row.point.depth_mode == "fixed" ? "fixed-function depth" : "fragment depth";
+}
+
+std::string generator_of(const Row& row) { return parse_lemma_scene(row.point.scene).generator; }
+
+double violated(const Rows& rows) {
+  return share(total(rows, "violations"), total(rows, "points"));
+}
+double missed(const Rows& rows) { return share(total(rows, "missed"), total(rows, "colliding")); }
+
+// The rows of a line by factor, and those of the published radius apart.
+struct Line {
+  std::map<double, Rows> at;
+  Rows published;
+};
+using Lines = std::map<std::string, std::map<std::string, Line>>;  // by surface and name
+
+template <class NameOf>
+Lines lines_of(const Rows& rows, const NameOf& name_of) {
+  Lines out;
+  for (const Row* row : rows) {
+    Line& line = out[surface_of(*row)][name_of(*row)];
+    (is_published(*row) ? line.published : line.at[factor_of(*row)]).push_back(row);
+  }
+  return out;
+}
+
+// The published radius over the budget, as the rows of FAR at both say; NaN where one is missing.
+double published_factor(const Line& line) {
+  const auto budget = line.at.find(1);
+  if (line.published.empty() || budget == line.at.end()) return kNone;
+  const auto one = count_of(*line.published.back(), "radius_px"),
+             other = count_of(*budget->second.back(), "radius_px");
+  return one && other && *other > 0 ? *one / *other : kNone;
+}
+
+Series line_series(const std::string& name, const Line& line, double (*value)(const Rows&),
+                   Series::Style style) {
+  Series out{.name = name, .style = style};
+  for (const auto& [factor, rows] : line.at) {
+    out.x.push_back(factor);
+    out.y.push_back(value(rows));
+  }
+  return out;
+}
+
+// A share in per cent against the factor.
+Panel panel_of(const std::string& title, const std::string& share) {
+  Panel out{.title = title,
+            .x = {.label = "radius / budget radius", .from = 0, .to = 1.1},
+            .y = logarithmic(share, true),
+            .marks = {{.vertical = true, .at = 1, .name = "budget radius"}}};
+  out.y.to = 100;
+  return out;
+}
+
+// The second row of panels shows kClose to 2 - kClose.
+constexpr double kClose = 0.96;
+constexpr const char* kAll = "all generators";
+
+Figure lemma_figure(const Lines& generators, const Lines& together, std::uint64_t points) {
+  Figure out{.name = "radius",
+             .title = "Points whose pixel lacks a sample or a bound, against the radius"};
+  for (const auto& [surface, lines] : generators) {
+    Panel panel = panel_of(surface, "violated points (%)");
+    Series published{.name = "published radius, each generator", .style = Series::Style::points};
+    for (const auto& [generator, line] : lines) {
+      panel.series.push_back(line_series(generator, line, violated, Series::Style::lines));
+      if (line.published.empty()) continue;
+      published.x.push_back(factor_of(*line.published.back()));
+      published.y.push_back(violated(line.published));
+    }
+    panel.series.push_back(
+        line_series(kAll, together.at(surface).at(kAll), violated, Series::Style::lines));
+    panel.series.back().emphasis = true;
+    if (!published.x.empty()) panel.series.push_back(std::move(published));
+    out.panels.push_back(std::move(panel));
+  }
+  // The same once more, close to the published radius.
+  const std::size_t surfaces = out.panels.size();
+  for (std::size_t i = 0; i < surfaces; ++i) {
+    Panel close = out.panels[i];
+    close.title = "the same, close to 1";
+    close.x.from = kClose;
+    close.x.to = 2 - kClose;
+    out.panels.push_back(std::move(close));
+  }
+  out.caption = fmt::format(
+      "Lemmas 1 and 2 at {} points of triangles that aim at trouble. The line below the powers is "
+      "0. On the worst canvas a pixel has a fragment only where every device that keeps the "
+      "assumptions gives it one.",
+      grouped(points));
+  return out;
+}
+
+Figure miss_figure(const Lines& depths) {
+  Figure out{.name = "radius-missed", .title = "Missed pairs against the radius"};
+  std::vector<std::string> scenes;
+  for (const auto& [depth, lines] : depths) {
+    Panel panel = panel_of(depth, "missed pairs (%)");
+    Series published{.name = "published radius, each scene", .style = Series::Style::points};
+    for (const auto& [scene, line] : lines) {
+      panel.series.push_back(line_series(scene, line, missed, Series::Style::lines_points));
+      if (!line.published.empty()) {
+        published.x.push_back(published_factor(line));
+        published.y.push_back(missed(line.published));
+      }
+      const Row& any = *(line.published.empty() ? line.at.begin()->second : line.published).back();
+      const std::string words =
+          fmt::format("{} in {}", grouped(number_of(any, "colliding")), scene);
+      if (std::find(scenes.begin(), scenes.end(), words) == scenes.end()) scenes.push_back(words);
+    }
+    if (!published.x.empty()) panel.series.push_back(std::move(published));
+    out.panels.push_back(std::move(panel));
+  }
+  out.caption = fmt::format(
+      "FAR with oriented boxes: colliding pairs that culling loses, of {}. The line below the "
+      "powers is 0.",
+      listed(scenes));
+  return out;
+}
+
+// The least factor from which on no row of the line is violated.
+std::string least_safe(const Line& line) {
+  std::string out = "-";
+  for (auto it = line.at.rbegin(); it != line.at.rend() && total(it->second, "violations") == 0;
+       ++it)
+    out = fmt::format("{:.4g}", it->first);
+  return out;
+}
+
+double px_of(const Rows& rows) { return largest(rows, "largest_px", HUGE_VAL); }
+
+DataTable lemma_table(const std::string& name, const std::string& caption, const Lines& lines) {
+  DataTable out{
+      .name = name,
+      .caption =
+          "Violated points at the published and at the budget radius, and the least "
+          "factor on the budget from which on none is" +
+          caption,
+      .columns = columns({"depth", "generator"}, {"points", "published", "budget", "least factor",
+                                                  "published: farthest outside (px)"})};
+  const auto cell = [](const Rows& rows, const char* count) {
+    return rows.empty() ? "-" : grouped(total(rows, count));
+  };
+  for (const auto& [surface, generators] : lines) {
+    for (const auto& [generator, line] : generators) {
+      const auto found = line.at.find(1);
+      const Rows budget = found == line.at.end() ? Rows{} : found->second;
+      out.rows.push_back({surface, generator, cell(budget, "points"),
+                          cell(line.published, "violations"), cell(budget, "violations"),
+                          least_safe(line),
+                          line.published.empty() ? "-" : rounded(px_of(line.published))});
+    }
+  }
+  return out;
+}
+
+RowColumn radius_column() {
+  return {text_column("radius"), [](const Row& row) { return row.point.radius; }};
+}
+
+DataTable all_table(const Rows& rows) {
+  return table_of_rows("radius-all", "All points of the lemmas", rows,
+                       {{text_column("generator"), generator_of},
+                        {text_column("depth"), surface_of},
+                        radius_column(),
+                        rounded_column("radius px", "radius_px", 6),
+                        count_column("points", "points"),
+                        count_column("no sample", "no_sample"),
+                        count_column("not bounding", "not_bounding"),
+                        count_column("rounded", "rounded"),
+                        rounded_column("farthest outside (px)", "largest_px")});
+}
+
+DataTable miss_table(const Rows& rows) {
+  return table_of_rows("radius-missed", "Missed pairs of FAR at every radius", rows,
+                       {scene_column(),
+                        {text_column("depth"), surface_of},
+                        radius_column(),
+                        count_column("colliding", "colliding"),
+                        count_column("missed", "missed"),
+                        count_column("kept triangles", "kept_triangles")});
+}
+
+// The lemmas at the budget radius and beyond: with fragment depth a proof stands behind them, also
+// where the rows do not say that they promise. Rows for which breaks() holds are said already.
+void add_lemma_findings(Rows rows, Chapter& chapter) {
+  std::erase_if(rows, [](const Row* row) { return is_published(*row) || factor_of(*row) < 1; });
+  bool broken = false;
+  for (const Row* row : rows) {
+    if (row->point.depth_mode == "fixed" || number_of(*row, "violations") == 0) continue;
+    broken = true;
+    if (breaks(*row)) continue;
+    chapter.find_broken(fmt::format(
+        "at {} of the budget radius, {}, {} points of the generator \"{}\" are violated; the "
+        "lemmas say none.",
+        factor_of(*row), surface_of(*row), of_all({row}, "violations", "points"),
+        generator_of(*row)));
+  }
+  for (const auto& [surface, safe] : rows_by(rows, surface_of)) {
+    const bool promised = surface != "fixed-function depth";
+    if (promised && broken && total(safe, "violations") > 0) continue;
+    chapter.find(fmt::format("At the budget radius and beyond, {}: {} points are violated{}.",
+                             surface, of_all(safe, "violations", "points"),
+                             promised ? "" : " (it promises nothing)"));
+  }
+}
+
+void add_published(const Lines& generators, Chapter& chapter) {
+  for (const auto& [surface, lines] : generators) {
+    std::vector<std::string> failing;
+    Rows all;
+    double least = HUGE_VAL, most = 0;
+    for (const auto& [generator, line] : lines) {
+      if (line.published.empty()) continue;
+      all.insert(all.end(), line.published.begin(), line.published.end());
+      least = std::min(least, factor_of(*line.published.back()));
+      most = std::max(most, factor_of(*line.published.back()));
+      if (total(line.published, "violations") == 0) continue;
+      failing.push_back(
+          fmt::format("{} ({})", generator, of_all(line.published, "violations", "points")));
+    }
+    if (all.empty()) continue;
+    const std::string radius =
+        least == most ? fmt::format("{:.4f}", least) : fmt::format("{:.4f} to {:.4f}", least, most);
+    if (failing.empty()) {
+      chapter.find(
+          fmt::format("The published radius, {} of the budget, violates none of {} points, {}.",
+                      radius, grouped(total(all, "points")), surface));
+      continue;
+    }
+    chapter.find(fmt::format(
+        "The published radius, {} of the budget, fails, {}: {} points, {} of them without a sample"
+        "{}; on {}.",
+        radius, surface, of_all(all, "violations", "points"), grouped(total(all, "no_sample")),
+        px_of(all) > 0
+            ? fmt::format(", others up to {} px outside their bounds", rounded(px_of(all)))
+            : "",
+        listed(failing)));
+  }
+}
+
+void add_misses(const Lines& depths, Chapter& chapter) {
+  for (const auto& [depth, lines] : depths) {
+    for (const auto& [scene, line] : lines) {
+      double worst = -1;
+      for (const auto& [factor, rows] : line.at) {
+        if (total(rows, "missed") > 0) worst = std::max(worst, factor);
+      }
+      std::string text = worst < 0 ? fmt::format("{}, {}: no factor misses a pair", scene, depth)
+                                   : fmt::format("{}, {}: pairs are missed up to the factor {:.4g}",
+                                                 scene, depth, worst);
+      if (!line.published.empty()) {
+        text += "; the published radius misses " + of_all(line.published, "missed", "colliding");
+      }
+      chapter.find(text + ".");
+    }
+  }
+}
+
+}  // namespace
+
+Chapter radius_chapter(const StoredStudy& stored) {
+  Chapter out = begin_chapter(stored);
+  Rows lemmas, runs;
+  for (const Row* row : measured(stored)) (is_lemma(*row) ? lemmas : runs).push_back(row);
+  const Lines generators = lines_of(lemmas, generator_of);
+  const Lines together = lines_of(lemmas, [](const Row&) { return kAll; });
+  const Lines misses = lines_of(runs, [](const Row& row) { return row.point.scene; });
+  add_promises(stored, out);
+  add_lemma_findings(lemmas, out);
+  put_broken_first(out);
+  add_published(generators, out);
+  add_misses(misses, out);
+  out.limits = {
+      "The points are drawn to find violations, so a share of violated points is no probability in "
+      "a scene.",
+      "Below the budget a radius that violates nothing here is not thereby safe: another device "
+      "may use the slack that this one leaves.",
+      "Fixed-function depth is read from the depth buffer, and what rounding of the depth map "
+      "explains is no violation (core/canvas/canvas.h, depth_rounding); fragment depth is what the "
+      "shader computes, and must bound exactly."};
+  add_gaps(stored, out);
+  if (!lemmas.empty()) {
+    out.figures.push_back(lemma_figure(generators, together, total(lemmas, "points")));
+    out.tables.push_back(lemma_table("radius", "", together));
+    out.tables.push_back(lemma_table("radius-generators", ", of every generator", generators));
+    out.tables.back().in_text = false;
+  }
+  if (!misses.empty()) out.figures.push_back(miss_figure(misses));
+  if (!lemmas.empty()) out.tables.push_back(all_table(lemmas));
+  if (!runs.empty()) out.tables.push_back(miss_table(runs));
+  return out;
+}
+
+}  // namespace farcull

@@ -1,0 +1,129 @@
+// Scales each panel, leaves room for the longest labels of a column, and puts the key below.
+#include "experiments/report/figure_layout.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/report/style.h"
+
+namespace farcull {
+namespace {
+
+double plot_height(std::size_t columns) { return columns == 1 ? 300 : columns == 2 ? 215 : 150; }
+
+std::vector<double> values_along(const Panel& panel, bool horizontal) {
+  std::vector<double> out;
+  for (const Series& series : panel.series) {
+    // A point that has no place on the other axis is still part of this one's range.
+    const std::vector<double>& values = horizontal ? series.x : series.y;
+    out.insert(out.end(), values.begin(), values.end());
+  }
+  for (const Mark& mark : panel.marks) {
+    if (mark.vertical == horizontal) out.push_back(mark.at);
+  }
+  return out;
+}
+
+// The scales of all panels, and the room for labels left of each column of panels.
+std::vector<double> scale_panels(const Figure& figure, Layout& out) {
+  const std::size_t count = figure.panels.size();
+  const std::size_t columns = columns_for(figure);
+  const double high = plot_height(columns);
+  const double cell = static_cast<double>(kFigureWidth) / static_cast<double>(columns);
+  // Labels that a panel shares with the first of its row, or the last of its column, stand there.
+  const auto same = [&](auto label) {
+    return std::all_of(figure.panels.begin(), figure.panels.end(), [&](const Panel& panel) {
+      return label(panel) == label(figure.panels.front());
+    });
+  };
+  const bool one_x = same([](const Panel& p) { return p.x.label; });
+  const bool one_y = same([](const Panel& p) { return p.y.label; });
+
+  std::vector<double> left(columns, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Panel& panel = figure.panels[i];
+    PlacedPanel placed;
+    const double wide = cell - 70;
+    placed.x =
+        scale_of(panel.x, values_along(panel, true), static_cast<std::size_t>(wide / kCharacter));
+    placed.y = scale_of(panel.y, values_along(panel, false),
+                        static_cast<std::size_t>(8 * high / (2.1 * kLine)));
+    placed.x_label = !one_x || i + columns >= count;
+    placed.y_label = !one_y || i % columns == 0;
+    placed.y_room = kCharacter * static_cast<double>(placed.y.label_width()) + 17 + kLine / 2;
+    left[i % columns] =
+        std::max(left[i % columns], placed.y_room + (placed.y_label ? kLine / 2 : -kLine / 2) + 2);
+    out.panels.push_back(std::move(placed));
+  }
+  return left;
+}
+
+// Lays the key below the panels, which end at `top`, and ends the figure below it.
+void place_key(const Figure& figure, double top, Layout& out) {
+  const std::vector<std::string> names = series_names(figure);
+  std::size_t longest = 1;
+  for (const std::string& name : names) longest = std::max(longest, characters(name));
+  const double entry = 52 + kCharacter * static_cast<double>(longest);
+  out.key_columns = std::clamp<std::size_t>(static_cast<std::size_t>((kFigureWidth - 20) / entry),
+                                            1, std::max<std::size_t>(names.size(), 1));
+  out.key_top = top + 4;
+  if (!names.empty()) {
+    const std::size_t lines = (names.size() + out.key_columns - 1) / out.key_columns;
+    // As even as it goes: four and three rather than six and one.
+    out.key_columns = (names.size() + lines - 1) / lines;
+    top = out.key_top + kLine * static_cast<double>(lines) + 6;
+  }
+  out.height = std::ceil(top);
+}
+
+}  // namespace
+
+std::size_t columns_for(const Figure& figure) {
+  const std::size_t panels = figure.panels.size();
+  if (panels <= 1) return 1;
+  if (panels != 3 && panels < 5) return 2;
+  // Three where every title fits above its panel.
+  return std::all_of(figure.panels.begin(), figure.panels.end(),
+                     [](const Panel& panel) {
+                       return kCharacter * static_cast<double>(characters(panel.title)) <
+                              kFigureWidth / 3.0 - 60;
+                     })
+             ? 3
+             : 2;
+}
+
+Layout layout_of(const Figure& figure) {
+  Layout out;
+  const std::size_t count = figure.panels.size(), columns = columns_for(figure);
+  const std::size_t rows = (count + columns - 1) / columns;
+  const double high = plot_height(columns);
+  const std::vector<double> left = scale_panels(figure, out);
+  const bool titled = std::any_of(figure.panels.begin(), figure.panels.end(),
+                                  [](const Panel& p) { return !p.title.empty(); });
+  // The last label of an x axis reaches beyond it.
+  constexpr double kRight = 20;
+  double wide = kFigureWidth - kRight * static_cast<double>(columns);
+  for (const double l : left) wide -= l;
+  wide /= static_cast<double>(columns);
+
+  double top = 6;
+  for (std::size_t row = 0; row < rows; ++row) {
+    top += titled ? kLine + 5 : 4;
+    double x = 0;
+    bool labelled = false;
+    for (std::size_t column = 0; column < columns; ++column) {
+      const std::size_t i = row * columns + column;
+      x += left[column];
+      if (i < count) {
+        out.panels[i].box = {x, x + wide, top, top + high};
+        labelled = labelled || out.panels[i].x_label;
+      }
+      x += wide + kRight;
+    }
+    top += high + kLine + 6 + (labelled ? kLine : 0) + 10;
+  }
+  place_key(figure, top, out);
+  return out;
+}
+
+}  // namespace farcull

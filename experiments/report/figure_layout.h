@@ -1,0 +1,45 @@
+// Places of panels, labels and the key of a figure, decided here and not by the plotter.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/report/axes.h"
+#include "experiments/report/chapters/chapter.h"
+
+namespace farcull {
+
+/// Width of every figure in CSS pixels, and the size of its text: at the 170 mm that A4 leaves
+/// between margins a pixel is 0.67 pt, so that the text has 8.7 pt.
+constexpr int kFigureWidth = 720;
+constexpr int kFigureText = 13;
+
+/// px of a letter of kFigureText px, on average: names are drawn where they fit by this measure.
+constexpr double kCharacter = 7.3;
+constexpr double kLine = 19;  // px from line to line
+/// In pixels from the top left corner.
+struct PlotBox {
+  double left = 0, right = 0, top = 0, bottom = 0;
+};
+
+struct PlacedPanel {
+  Scale x, y;
+  PlotBox box;
+  bool x_label = true, y_label = true;
+  double y_room = 0;  // from the axis to the middle of its label
+};
+
+struct Layout {
+  std::vector<PlacedPanel> panels;
+  double key_top = 0;
+  std::size_t key_columns = 1;
+  double height = 0;
+};
+
+/// How many panels stand side by side.
+std::size_t columns_for(const Figure& figure);
+
+/// Precondition: the figure has a panel.
+Layout layout_of(const Figure& figure);
+
+}  // namespace farcull

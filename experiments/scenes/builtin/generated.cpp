@@ -1,0 +1,294 @@
+// Scenes of spheres, tori, blobs, slivers and degenerate triangles.
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "experiments/scenes/builtin/generators.h"
+#include "experiments/scenes/builtin/motion.h"
+#include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/mesh/shapes.h"
+
+namespace farcull {
+
+using namespace shapes;
+
+namespace {
+
+Mesh tetrahedron() {
+  return finished({{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}},
+                  {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}});
+}
+
+// A triangle of length 1 and the given width, its long axis in any direction.
+Corners needle(Random& random, double width) {
+  const Vec3 along = random.direction();
+  const Vec3 aside = across(along, width, random);
+  const Vec3 start = -0.5 * along;
+  return {start, start + along, start + random.between(0.2, 0.8) * along + aside};
+}
+
+Scene make_two_spheres() {
+  const Mesh mesh = sphere(4);
+  return two_objects("two-spheres", "first", mesh, "second", mesh,
+                     {.scale = {},
+                      .rotate = Placement::Rotation{Vec3(1, 2, 3), 0.4},
+                      .translate = Vec3(1.1, 0.37, 0.23)});
+}
+
+Scene make_two_tori() {
+  // Moved by 1.5, the second ring passes within 0.5 of the first: linked, and tubes of radius 0.35
+  // cross.
+  const Mesh mesh = torus(1, 0.35, 100, 50);
+  return two_objects("two-tori", "first", mesh, "second", mesh,
+                     {.scale = {},
+                      .rotate = Placement::Rotation{Vec3(1, 0.1, 0.05), std::numbers::pi / 2},
+                      .translate = Vec3(1.5, 0.02, 0.03)});
+}
+
+Scene make_random_soup(std::uint64_t seed) {
+  Random random(seed);
+  SceneBuilder scene("random-soup", "random-soup");
+  for (int object = 0; object < 8; ++object) {
+    std::vector<Corners> list(500);
+    for (Corners& corners : list) {
+      const Vec3 centre = random.in_cube(1);
+      const double size = random.over_octaves(10);
+      for (Vec3& p : corners) p = centre + size * random.in_ball();
+    }
+    scene.add(soup(list), "soup" + std::to_string(object), Split::kNone, {});
+  }
+  return scene.finish();
+}
+
+constexpr std::uint64_t kAxial =
+    0x9e3779b97f4a7c15;  // xor the seed: that of what lies along the axes
+
+Vec3 axis(std::uint32_t k) { return Vec3::Unit(k % 3); }
+
+// A sliver along an axis, its other side along the next one.
+Corners axial_needle(std::uint32_t k, double width, Random& random) {
+  const Vec3 start = -0.5 * axis(k);
+  return {start, start + axis(k), start + random.between(0.2, 0.8) * axis(k) + width * axis(k + 1)};
+}
+
+// The second object turns against the first; the slivers of the fourth slide along themselves.
+Motion turning_and_sliding(const Scene& scene) {
+  return [rest = scene.vertices, objects = scene.objects](const Instant& now, Scene& out,
+                                                          FrameNotes&) {
+    const double swing = std::sin(2 * std::numbers::pi * now.time);
+    const Eigen::AngleAxisd turn(0.2 * swing, Vec3(1, 1, 1).normalized());
+    const Eigen::Matrix3d matrix = turn.toRotationMatrix();
+    const auto corners = [&](const Object& object) {  // in soups, three for each triangle
+      return std::pair(3 * object.first_triangle,
+                       3 * (object.first_triangle + object.triangle_count));
+    };
+    const auto [first, last] = corners(objects[1]);
+    for (std::uint32_t v = first; v < last; ++v) out.vertices[v] = matrix * rest[v];
+    const auto [from, to] = corners(objects[3]);
+    for (std::uint32_t v = from; v < to; ++v) {
+      const std::uint32_t sliver = (v - from) / 3;
+      out.vertices[v] = rest[v] + 0.4 * swing * axis(sliver + sliver / 3);
+    }
+  };
+}
+
+// size: slivers in each of the two oblique objects, bit for bit the same ones in a larger scene;
+// three in eight as many in each of the two along the axes.
+BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Corners> first;
+  std::vector<Corners> second;
+  for (std::uint64_t i = 0; i < parameters.size; ++i) {
+    const double width = random.over_octaves(20);
+    first.push_back(shifted(needle(random, width), random.in_cube(1)));
+    // One in four stands anywhere. The others cross the needle of the first object or pass it
+    // within their width.
+    const double other_width = random.over_octaves(20);
+    const Corners other = needle(random, other_width);
+    if (i % 4 == 3) {
+      second.push_back(shifted(other, random.in_cube(1)));
+      continue;
+    }
+    const Vec3 from = inner_point(other, random);
+    Vec3 to = inner_point(first.back(), random);
+    if (i % 4 == 2) to += 2 * std::min(width, other_width) * random.direction();
+    second.push_back(shifted(other, to - from));
+  }
+  // Along the axes: each of one object along x, y or z, and through it one of the other along each
+  // axis in turn, the same one included.
+  Random axial(seed ^ kAxial);
+  std::vector<Corners> third;
+  std::vector<Corners> fourth;
+  for (std::uint32_t i = 0; i < 3 * (parameters.size / 8); ++i) {
+    const double one_width = axial.over_octaves(20);
+    const Corners one = axial_needle(i, one_width, axial);
+    third.push_back(shifted(one, axial.in_cube(1)));
+    const double width = axial.over_octaves(20);
+    const Corners other = axial_needle(i + i / 3, width, axial);
+    const Vec3 from = inner_point(other, axial);
+    const Vec3 to = inner_point(third.back(), axial);
+    fourth.push_back(shifted(other, to - from));
+  }
+  SceneBuilder scene("needles", "needles");
+  scene.add(soup(first), "first", Split::kNone, {});
+  scene.add(soup(second), "second", Split::kNone, {});
+  scene.add(soup(third), "along axes", Split::kNone, {});
+  scene.add(soup(fourth), "along axes too", Split::kNone, {});
+  BuiltScene built{scene.finish(), {}};
+  built.motion = turning_and_sliding(built.scene);
+  return built;
+}
+
+Scene make_degenerate() {
+  constexpr double kHair = 0x1p-40;
+  const Corners face = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
+  // Every pair touches or crosses, by integers, in the way that the comment beside it names.
+  const std::vector<std::pair<Corners, Corners>> cases = {
+      {face, {Vec3(1, 1, 0), Vec3(1, 1, 0), Vec3(1, 1, 0)}},  // point in face
+      {face, {Vec3(2, 0, 0), Vec3(2, 0, 0), Vec3(2, 0, 0)}},  // point on edge
+      {face, {Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0)}},  // point at vertex
+      {{Vec3(1, 1, 1), Vec3(1, 1, 1), Vec3(1, 1, 1)},
+       {Vec3(1, 1, 1), Vec3(1, 1, 1), Vec3(1, 1, 1)}},  // point at point
+      {{Vec3(1, 1, 1), Vec3(1, 1, 1), Vec3(1, 1, 1)},
+       {Vec3(0, 0, 0), Vec3(2, 2, 2), Vec3(2, 2, 2)}},         // point on segment
+      {face, {Vec3(1, 1, -1), Vec3(1, 1, 1), Vec3(1, 1, 1)}},  // segment through face
+      {face, {Vec3(1, 1, 0), Vec3(1, 1, 2), Vec3(1, 1, 0)}},   // segment ends on face
+      {face, {Vec3(-1, 1, 0), Vec3(5, 1, 0), Vec3(2, 1, 0)}},  // segment in plane
+      {{Vec3(0, 0, 0), Vec3(4, 4, 0), Vec3(2, 2, 0)},
+       {Vec3(0, 4, 0), Vec3(4, 0, 0), Vec3(4, 0, 0)}},  // segment across segment
+      {{Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(4, 0, 0)},
+       {Vec3(2, 0, 0), Vec3(5, 0, 0), Vec3(5, 0, 0)}},                 // segment along segment
+      {face, {Vec3(0, 0, 0), Vec3(-4, 0, 2), Vec3(0, -4, 2)}},         // vertex at vertex
+      {face, {Vec3(2, 0, 0), Vec3(0, -4, 1), Vec3(4, -4, -1)}},        // vertex on edge
+      {face, {Vec3(1, 1, 0), Vec3(0, 1, 3), Vec3(2, 1, 3)}},           // vertex on face
+      {face, {Vec3(2, -1, -1), Vec3(2, 1, 1), Vec3(2, -3, 3)}},        // edge across edge
+      {face, {Vec3(1, 1, 0), Vec3(2, 1, 0), Vec3(1, 1, 3)}},           // edge in face
+      {face, {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(2, -3, 2)}},          // edge along edge
+      {face, {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(2, -4, 0)}},          // coplanar, edge along edge
+      {face, {Vec3(4, 0, 0), Vec3(6, 1, 0), Vec3(6, -1, 0)}},          // coplanar, vertex at vertex
+      {face, {Vec3(1, 1, 0), Vec3(5, 1, 0), Vec3(1, 5, 0)}},           // coplanar, overlapping
+      {face, {Vec3(1, 1, 0), Vec3(2, 1, 0), Vec3(1, 2, 0)}},           // coplanar, inside
+      {face, face},                                                    // the same triangle
+      {face, {Vec3(1, 1, -2), Vec3(1, 1, 2), Vec3(1 + kHair, 1, 2)}},  // sliver through face
+      {face, {Vec3(1, 1, 0), Vec3(1, 3, 4), Vec3(1 + kHair, 3, 4)}},   // sliver, vertex on face
+  };
+  // Each three times in a grid of cells: as it is, and with the second triangle a hair higher and
+  // lower. Cells are apart by integers and a hair is far above an ulp there, so every coordinate is
+  // exact.
+  std::vector<Corners> first;
+  std::vector<Corners> second;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const auto row = static_cast<double>(i);
+    for (int lift = -1; lift <= 1; ++lift) {
+      const Vec3 cell(16 * row, 16.0 * lift, 0);
+      first.push_back(shifted(cases[i].first, cell));
+      second.push_back(shifted(cases[i].second, cell + Vec3(0, 0, lift * kHair)));
+    }
+  }
+  return two_objects("degenerate", "first", soup(first), "second", soup(second));
+}
+
+Scene make_ground(std::uint64_t seed) {
+  Random random(seed);
+  SceneBuilder scene("ground", "ground");
+  for (int i = 0; i < 5; ++i) {
+    // Centres lie about one radius above the ground: some blobs are sunk into it, some touch
+    // nothing.
+    const Vec3 at(1.6 * i - 3.2, random.between(-1, 1), random.between(0.7, 1.5));
+    const Mesh mesh = blob(3, random);
+    scene.add(mesh, "blob" + std::to_string(i), Split::kNone, random.anywhere(at));
+  }
+  const std::array<Vec3, 4> ground = square(Vec3::Zero(), 10000);
+  scene.add(finished({ground.begin(), ground.end()}, {{0, 1, 2}, {0, 2, 3}}), "ground",
+            Split::kNone, {});
+  return scene.finish();
+}
+
+constexpr double kUsualCrowdDensity = 400.0 / (12 * 12 * 12);
+
+// size: objects; second: objects per unit of volume.
+BuiltScene make_crowd(const SceneParameters& parameters, std::uint64_t seed) {
+  // With the usual numbers the factor is exactly 1.
+  const double half = 6 * std::cbrt(static_cast<double>(parameters.size) / 400 *
+                                    (kUsualCrowdDensity / parameters.second));
+  Random random(seed);
+  SceneBuilder scene("crowd", "crowd");
+  for (std::uint64_t i = 0; i < parameters.size; ++i) {
+    const bool is_blob = i % 4 == 3;
+    const Mesh mesh = is_blob ? blob(1, random) : tetrahedron();
+    Placement placement = random.anywhere(random.in_cube(half));
+    placement.scale = Vec3::Constant(random.between(0.2, 0.6));
+    scene.add(mesh, (is_blob ? "blob" : "tetrahedron") + std::to_string(i), Split::kNone,
+              placement);
+  }
+  BuiltScene built{scene.finish(), {}};
+  built.motion = drift(built.scene);
+  return built;
+}
+
+Scene make_far_apart() {
+  const Mesh mesh = sphere(3);
+  return two_objects("far-apart", "first", mesh, "second", mesh,
+                     {.scale = {}, .rotate = {}, .translate = Vec3(100, 30, -20)});
+}
+
+}  // namespace
+
+std::vector<BuiltinScene> generated_scenes() {
+  return {
+      made({.name = "two-spheres",
+            .description = "two interpenetrating spheres",
+            .objects = 2,
+            .triangles = 10240,
+            .motion = "both breathe while waves run along them"},
+           make_two_spheres, pulse),
+      made({.name = "two-tori",
+            .description = "two linked tori whose tubes cross",
+            .objects = 2,
+            .triangles = 20000},
+           make_two_tori),
+      drawn({.name = "random-soup",
+             .description = "random triangles with sizes over three decades, many crossing",
+             .objects = 8,
+             .triangles = 4000},
+            1, make_random_soup),
+      drawn(
+          {.name = "needles",
+           .description =
+               "slivers of aspect up to 2e6 that cross or pass each other closely, oblique in two "
+               "objects and along the axes in two",
+           .objects = 4,
+           .triangles = 1100,
+           .size = SceneSize{"slivers in each oblique object", 8, 1'000'000, 400},
+           .motion = "one oblique object turns, one along the axes slides along them"},
+          2, make_needles),
+      made({.name = "degenerate",
+            .description =
+                "points, segments, slivers and exact contacts of every kind, also missed by 2^-40",
+            .objects = 2,
+            .triangles = 138},
+           make_degenerate),
+      drawn({.name = "ground",
+             .description = "bumpy blobs on a ground of two triangles a thousand times larger",
+             .objects = 6,
+             .triangles = 6402},
+            3, make_ground),
+      drawn({.name = "crowd",
+             .description = "tetrahedra and blobs in a box, some colliding",
+             .objects = 400,
+             .triangles = 9200,
+             .size = SceneSize{"objects", 2, 1'000'000, 400},
+             .second =
+                 SceneSecond{"density in objects per unit of volume", 1e-3, 10, kUsualCrowdDensity},
+             .motion = "each object drifts by up to its diagonal and back"},
+            4, make_crowd),
+      made({.name = "far-apart",
+            .description = "two spheres far from each other",
+            .objects = 2,
+            .triangles = 2560},
+           make_far_apart),
+  };
+}
+
+}  // namespace farcull

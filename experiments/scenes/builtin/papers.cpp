@@ -1,0 +1,284 @@
+// Scenes of the papers, generated: deforming cylinders and torii (CULLIDE: Govindaraju, Redon, Lin
+// and Manocha, Graphics Hardware 2003), leaves that fall from a tree (FAR: Govindaraju, Lin and
+// Manocha, VRST 2004). Shapes, counts and kinds of motion are the papers'; the rest is ours.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "experiments/scenes/builtin/generators.h"
+#include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/mesh/shapes.h"
+
+namespace farcull {
+
+using namespace shapes;
+
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+// The path of an object through a box and back.
+struct Way {
+  Vec3 centre;
+  Vec3 reach;  // from the centre, along each axis
+  Vec3 phase;  // in turns
+  Vec3 axis;   // it turns about
+  double turns = 1;
+  double swell = 0;  // phase of its deformation, in turns
+
+  Vec3 at(double time) const {
+    Vec3 p = centre;
+    for (int k = 0; k < 3; ++k) p[k] += reach[k] * std::sin(kTurn * (time + phase[k]));
+    return p;
+  }
+  Eigen::Matrix3d turned(double time) const {
+    return Eigen::AngleAxisd(kTurn * (turns * time + swell), axis).toRotationMatrix();
+  }
+};
+
+Way draw_way(double room, double reach, Random& random) {
+  Way way;
+  way.centre = random.in_cube(room);
+  way.reach = reach * random.direction();
+  way.phase = random.in_cube(0.5);
+  way.axis = random.direction();
+  way.swell = random.unit();
+  return way;
+}
+
+// Objects of one shape, each on its way; `deformed` gives a vertex of the shape at a time, in the
+// object's own frame.
+template <class Deformed>
+BuiltScene on_their_ways(const std::string& name, const std::string& object, const Mesh& shape,
+                         std::vector<Way> ways, Deformed deformed) {
+  SceneBuilder builder(name, name);
+  for (std::size_t o = 0; o < ways.size(); ++o)
+    builder.add(shape, object + std::to_string(o), Split::kNone, {});
+  BuiltScene built{builder.finish(), {}};
+  built.motion = [shape = shape.vertices, ways = std::move(ways), deformed](
+                     const Instant& now, Scene& out, FrameNotes&) {
+    std::size_t v = 0;
+    for (const Way& way : ways) {
+      const Eigen::Matrix3d turned = way.turned(now.time);
+      const Vec3 at = way.at(now.time);
+      for (std::size_t i = 0; i < shape.size(); ++i)
+        out.vertices[v++] = turned * deformed(i, shape[i], way.swell, now.time) + at;
+    }
+  };
+  return halfway(std::move(built));
+}
+
+// An open tube of radius 1 about the z axis from z = 0 to 1: rings of `around` vertices, 2 * around
+// * along triangles. Vertex i * around + j is at height i / along.
+Mesh tube(std::uint32_t around, std::uint32_t along) {
+  std::vector<Vec3> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (std::uint32_t i = 0; i <= along; ++i) {
+    for (std::uint32_t j = 0; j < around; ++j) {
+      const double u = kTurn * j / around;
+      vertices.emplace_back(std::cos(u), std::sin(u), static_cast<double>(i) / along);
+    }
+  }
+  for (std::uint32_t i = 0; i < along; ++i) {
+    for (std::uint32_t j = 0; j < around; ++j) {
+      const std::uint32_t a = i * around + j;
+      const std::uint32_t b = i * around + (j + 1) % around;
+      triangles.push_back({a, b, b + around});
+      triangles.push_back({a, b + around, a + around});
+    }
+  }
+  return finished(std::move(vertices), std::move(triangles));
+}
+
+// Steps along and around a torus of as nearly `triangles` as a grid of fair cells comes.
+std::pair<std::uint32_t, std::uint32_t> torus_grid(std::uint64_t triangles) {
+  const std::uint64_t cells = triangles / 2;
+  const auto square = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(cells) / 2));
+  std::uint64_t across = square;
+  while (across > square / 2 && cells % across != 0) --across;
+  if (across < 3 || cells % across != 0) across = square;
+  across = std::max<std::uint64_t>(across, 3);
+  const std::uint64_t around = std::max<std::uint64_t>((cells + across / 2) / across, 3);
+  return {static_cast<std::uint32_t>(around), static_cast<std::uint32_t>(across)};
+}
+
+// ---- the tree: a trunk, 7 branches, 6 twigs on each, all tubes of 8 by 5 cells ----
+
+constexpr int kBranches = 7, kTwigs = 6;
+constexpr double kTrunk = 3;  // high
+
+struct Wood {
+  Vec3 from, to;
+  double thick = 0, thin = 0;  // radii at both ends
+
+  Vec3 at(double part) const { return from + part * (to - from); }
+};
+
+void add_wood(const Wood& wood, const Mesh& shape, Mesh& tree) {
+  const Vec3 along = wood.to - wood.from;
+  const Vec3 aside =
+      along.cross(std::abs(along.x()) < std::abs(along.z()) ? Vec3::UnitX() : Vec3::UnitZ())
+          .normalized();
+  const Vec3 other = along.normalized().cross(aside);
+  const auto first = static_cast<std::uint32_t>(tree.vertices.size());
+  for (const Vec3& p : shape.vertices) {
+    const double radius = wood.thick + p.z() * (wood.thin - wood.thick);
+    tree.vertices.push_back(wood.at(p.z()) + radius * (p.x() * aside + p.y() * other));
+  }
+  for (const auto& [a, b, c] : shape.triangles)
+    tree.triangles.push_back({first + a, first + b, first + c});
+}
+
+Mesh make_tree(Random& random) {
+  const Mesh shape = tube(8, 5);
+  Mesh tree;
+  const Wood trunk{Vec3(0, 0, 0), Vec3(0.1, 0.05, kTrunk), 0.2, 0.08};
+  add_wood(trunk, shape, tree);
+  for (int b = 0; b < kBranches; ++b) {
+    const double turn = kTurn * (b + random.between(-0.2, 0.2)) / kBranches;
+    const Vec3 from = trunk.at(random.between(0.35, 0.95));
+    const double rise = random.between(0.2, 0.7);
+    const Vec3 to =
+        from + random.between(1.0, 1.5) * Vec3(std::cos(turn), std::sin(turn), rise).normalized();
+    const Wood branch{from, to, 0.08, 0.03};
+    add_wood(branch, shape, tree);
+    for (int t = 0; t < kTwigs; ++t) {
+      const Vec3 start = branch.at((t + random.between(0.5, 1)) / kTwigs);
+      const Vec3 way = (branch.to - branch.from).normalized() + 0.9 * random.direction();
+      const double length = random.between(0.4, 0.7);
+      add_wood({start, start + length * way.normalized(), 0.025, 0.01}, shape, tree);
+    }
+  }
+  return finished(std::move(tree.vertices), std::move(tree.triangles));
+}
+
+// A leaf of 10 by 10 cells, 0.24 long, arched and with a blunt tip and stem.
+Mesh make_leaf() {
+  Mesh leaf = grid(10);
+  for (Vec3& p : leaf.vertices) {
+    const double u = p.x();          // from stem to tip
+    const double v = 2 * p.y() - 1;  // from side to side
+    const double width = 0.01 + 0.25 * u * (1 - u);
+    p = Vec3(0.24 * (u - 0.5), width * v, 0.03 * (1 - 4 * (u - 0.5) * (u - 0.5)) + 0.02 * v * v);
+  }
+  return leaf;
+}
+
+struct Leaf {
+  Vec3 from;
+  double late = 0;   // when it comes off
+  double sway = 0;   // to the side
+  double phase = 0;  // of the sway, in turns
+  Vec3 axis;
+  double turns = 0;  // while it falls
+};
+
+// size: cylinders.
+BuiltScene make_cylinders(const SceneParameters& parameters, std::uint64_t seed) {
+  constexpr double kRoom = 2.5;  // half of its side for 100 cylinders of length 1
+  const double room = kRoom * std::cbrt(static_cast<double>(parameters.size) / 100);
+  Random random(seed);
+  std::vector<Way> ways;
+  for (std::uint64_t i = 0; i < parameters.size; ++i) ways.push_back(draw_way(room, 1, random));
+  Mesh shape = tube(20, 5);
+  for (Vec3& p : shape.vertices) p = Vec3(0.25 * p.x(), 0.25 * p.y(), p.z() - 0.5);
+  return on_their_ways("cylinders", "cylinder", shape, std::move(ways),
+                       [](std::size_t, const Vec3& p, double swell, double time) {
+                         const double phase = kTurn * (2 * time + swell);
+                         const double breath = 1 + 0.3 * std::sin(phase + 4 * p.z());
+                         const double bend = 0.6 * std::sin(phase) * p.z() * p.z();
+                         return Vec3(breath * p.x() + bend, breath * p.y(), p.z());
+                       });
+}
+
+// size: triangles of a torus, as near as a grid comes.
+BuiltScene make_torii(const SceneParameters& parameters, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Way> ways;
+  for (int i = 0; i < 6; ++i) ways.push_back(draw_way(1.2, 0.8, random));
+  const auto [around, across] = torus_grid(parameters.size);
+  return on_their_ways(
+      "torii", "torus", torus(1, 0.3, around, across), std::move(ways),
+      [around = around, across = across](std::size_t i, const Vec3& p, double swell, double time) {
+        const double u = kTurn * static_cast<double>(i / across) / around;  // along the ring
+        const Vec3 ring(std::cos(u), std::sin(u), 0);
+        const double wave = 1 + 0.25 * std::sin(3 * u + kTurn * (time + swell));
+        const double lift = 0.2 * std::sin(2 * u - kTurn * (time + swell));
+        return Vec3(ring + wave * (p - ring) + Vec3(0, 0, lift));
+      });
+}
+
+// size: leaves.
+BuiltScene make_tree_leaves(const SceneParameters& parameters, std::uint64_t seed) {
+  constexpr double kFall = 4;  // of a leaf, all in all
+  Random random(seed);
+  SceneBuilder builder("tree-leaves", "tree-leaves");
+  const Mesh tree = make_tree(random);
+  builder.add(tree, "tree", Split::kNone, {});
+  const Mesh shape = make_leaf();
+  std::vector<Leaf> leaves;
+  for (std::uint64_t i = 0; i < parameters.size; ++i) {
+    builder.add(shape, "leaf" + std::to_string(i), Split::kNone, {});
+    Leaf leaf;
+    const double turn = kTurn * random.unit();
+    const double far = 1.6 * std::sqrt(random.unit());  // from the trunk
+    const double height = random.between(1.6, 4.6);
+    leaf.from = Vec3(far * std::cos(turn), far * std::sin(turn), height);
+    leaf.late = random.between(0, 0.3);
+    leaf.sway = random.between(0.05, 0.25);
+    leaf.phase = random.unit();
+    leaf.axis = random.direction();
+    leaf.turns = random.between(-2, 2);
+    leaves.push_back(leaf);
+  }
+  BuiltScene built{builder.finish(), {}};
+  built.motion = [shape = shape.vertices, leaves = std::move(leaves), first = tree.vertices.size()](
+                     const Instant& now, Scene& out, FrameNotes&) {
+    std::size_t v = first;
+    for (const Leaf& leaf : leaves) {
+      const double fall = std::max(0.0, now.time - leaf.late);
+      const double side = leaf.sway * std::sin(kTurn * (3 * fall + leaf.phase));
+      const Vec3 at = leaf.from + Vec3(side, 0.5 * side, -kFall * fall);
+      const Eigen::Matrix3d turned =
+          Eigen::AngleAxisd(kTurn * (leaf.phase + leaf.turns * fall), leaf.axis).toRotationMatrix();
+      for (const Vec3& p : shape) out.vertices[v++] = turned * p + at;
+    }
+  };
+  return halfway(std::move(built));
+}
+
+}  // namespace
+
+std::vector<BuiltinScene> paper_scenes() {
+  return {
+      drawn({.name = "cylinders",
+             .description = "open cylinders of 200 triangles in a room (CULLIDE)",
+             .objects = 100,
+             .triangles = 20000,
+             .size = SceneSize{"cylinders", 2, 100'000, 100},
+             .motion = "each goes its own way, turns, bends and breathes"},
+            9, make_cylinders),
+      drawn({.name = "torii",
+             .description = "six torii in a room (CULLIDE)",
+             .objects = 6,
+             .triangles = 120'000,
+             .size = SceneSize{"triangles of each torus", 72, 2'000'000, 20'000},
+             .motion = "each goes its own way and turns while waves run around it",
+             .costly = true},
+            10, make_torii),
+      drawn({.name = "tree-leaves",
+             .description = "a tree of 4,000 triangles and leaves of 200 (FAR)",
+             .objects = 201,
+             .triangles = 44'000,
+             .size = SceneSize{"leaves", 1, 100'000, 200},
+             .motion = "the leaves fall and turn through the branches",
+             .costly = true},
+            11, make_tree_leaves),
+  };
+}
+
+}  // namespace farcull

@@ -1,0 +1,129 @@
+// Lists the scenes of all generators, and reads names with their numbers and suffixes.
+#include "experiments/scenes/builtin/scenes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/view/view.h"
+#include "experiments/scenes/builtin/generators.h"
+#include "experiments/scenes/mesh/text.h"
+
+namespace farcull {
+namespace {
+
+// The first number of a name, or the usual one.
+std::uint64_t size_of(const BuiltinScene& entry, const std::string& name, const std::string& word) {
+  const SceneSize& range = *entry.size;
+  const std::optional<std::uint64_t> size = parse_number<std::uint64_t>(word);
+  if (!size || *size < range.least || *size > range.most) {
+    throw Error(name, quote_token(word) + " is no number of " + range.what,
+                fmt::format("give {} to {}, as in {}:{}", range.least, range.most, entry.name,
+                            range.usual));
+  }
+  return *size;
+}
+
+double second_of(const BuiltinScene& entry, const std::string& name, const std::string& word) {
+  const SceneSecond& range = *entry.second;
+  const std::optional<double> value = parse_number<double>(word);
+  // Written so that NaN is refused.
+  if (!value || !(*value >= range.least && *value <= range.most)) {
+    throw Error(name, quote_token(word) + " is no " + range.what,
+                fmt::format("give {:g} to {:g}, as in {}:{}:{:g}", range.least, range.most,
+                            entry.name, entry.size->usual, range.usual));
+  }
+  return *value;
+}
+
+// The numbers in NAME:SIZE:SECOND. Throws Error naming the scene.
+SceneParameters parameters_of(const BuiltinScene& entry, const std::string& name) {
+  const std::vector<std::string> words = split_list(name.substr(0, name.find('@')), ':');
+  SceneParameters out = entry.usual();
+  if (words.size() > 1 && !entry.size) {
+    throw Error(name, entry.name + " comes in one size", "leave out what follows the colon");
+  }
+  if (words.size() > 2 && !entry.second) {
+    throw Error(name, entry.name + " takes one number", "leave out what follows the second colon");
+  }
+  if (words.size() > 3) {
+    throw Error(name, entry.name + " takes two numbers", "leave out what follows the third colon");
+  }
+  if (words.size() > 1) out.size = size_of(entry, name, words[1]);
+  if (words.size() > 2) out.second = second_of(entry, name, words[2]);
+  return out;
+}
+
+std::string suffix_names() {
+  std::string names;
+  for (const SceneSuffix& suffix : scene_suffixes())
+    names += (names.empty() ? "" : ", ") + suffix.suffix;
+  return names;
+}
+
+}  // namespace
+
+SceneParameters BuiltinScene::usual() const {
+  return {.size = size ? size->usual : 0, .second = second ? second->usual : 0};
+}
+
+const std::vector<BuiltinScene>& builtin_scenes() {
+  static const std::vector<BuiltinScene> scenes = [] {
+    std::vector<BuiltinScene> all;
+    for (const auto group : {generated_scenes, bench_scenes, paper_scenes, sheet_scenes,
+                             cloth_scenes, extreme_scenes, packaged_scenes, dragon_scenes}) {
+      for (BuiltinScene& scene : group()) all.push_back(std::move(scene));
+    }
+    return all;
+  }();
+  return scenes;
+}
+
+const BuiltinScene* find_builtin_scene(const std::string& name) {
+  const std::string_view base = std::string_view(name).substr(0, name.find_first_of(":@"));
+  const auto& scenes = builtin_scenes();
+  const auto found = std::find_if(scenes.begin(), scenes.end(),
+                                  [&](const BuiltinScene& scene) { return scene.name == base; });
+  return found == scenes.end() ? nullptr : &*found;
+}
+
+bool is_builtin_scene(const std::string& name) { return find_builtin_scene(name) != nullptr; }
+
+std::optional<std::uint64_t> builtin_seed(const std::string& name) {
+  const BuiltinScene* const entry = find_builtin_scene(name);
+  return entry == nullptr ? std::nullopt : entry->seed;
+}
+
+SceneRequest parse_scene_name(const std::string& name) {
+  SceneRequest out{.entry = find_builtin_scene(name), .parameters = {}, .suffixes = {}};
+  if (out.entry == nullptr)
+    throw Error(name, "no built-in scene has this name", "see farcull scenes for the names");
+  out.parameters = parameters_of(*out.entry, name);
+  for (std::size_t at = std::min(name.find('@'), name.size()); at < name.size();) {
+    const std::size_t end = std::min(name.find('@', at + 1), name.size());
+    const std::string word = name.substr(at, end - at);
+    const auto& known = scene_suffixes();
+    const auto found = std::find_if(known.begin(), known.end(),
+                                    [&](const SceneSuffix& s) { return s.suffix == word; });
+    if (found == known.end()) {
+      throw Error(name, quote_token(word) + " is no suffix of scenes", "use " + suffix_names());
+    }
+    out.suffixes.push_back(&*found);
+    at = end;
+  }
+  return out;
+}
+
+Scene make_builtin_scene(const std::string& name) {
+  const SceneRequest request = parse_scene_name(name);
+  Scene scene = request.entry->build(request.parameters).scene;
+  scene.name = name;
+  for (const SceneSuffix* suffix : request.suffixes) apply(suffix->change(scene), scene);
+  return scene;
+}
+
+}  // namespace farcull

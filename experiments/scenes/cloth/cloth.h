@@ -1,0 +1,72 @@
+// A square cloth that falls on a fixed sphere: springs along the edges, bending across them,
+// contact with friction; no contact of the cloth with itself, so that folds pass through each other
+// and a scene that moves has triangles of one object that intersect. docs/cloth.md derives it.
+//
+// A step is implicit Euler, as the minimum of a convex function of the new positions (Gast et al.
+// 2015, "Optimization integrator for large time steps", made convex as in Eyre 1998). So it has one
+// solution at every stiffness, and the total energy of a report exceeds that of the report before
+// it by no more than `slack`, but for rounding. The same settings give the same bits on the same
+// machine.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "core/scene/scene.h"
+#include "experiments/scenes/cloth/settings.h"
+
+namespace farcull {
+
+/// The outcome of a step, and the energies (J) after it.
+struct ClothReport {
+  long frame = 0;  // number of steps so far, this one included; 0: before the first
+  double kinetic = 0;
+  double elastic = 0;  // of the springs, stretched or compressed
+  double bending = 0;
+  double gravitational = 0;  // 0 at the centre of the sphere
+  double contact = 0;        // of the sphere's surface; like `elastic`, a trifle below 0
+                             // where all is slack (docs/cloth.md, crimp)
+  double residual = 0;       // largest force on a vertex that the step left unbalanced, N
+  double slack = 0;          // work of the unbalanced forces in the step, J: what the total energy
+                             // may have gained
+  int iterations = 0;        // factorizations
+  bool converged = true;     // residual <= its tolerance
+  std::string warning = {};  // why not, and what was kept instead; empty where it converged
+
+  double total() const { return kinetic + elastic + bending + gravitational + contact; }
+};
+
+class Cloth {
+ public:
+  /// The cloth at rest above the sphere. Throws Error naming "cloth" if a setting is out of range.
+  explicit Cloth(const ClothSettings& settings);
+  ~Cloth();
+  Cloth(Cloth&&) noexcept;
+  Cloth& operator=(Cloth&&) noexcept;
+
+  /// Two objects, "cloth" (self) and "sphere", in this order; the vertices of the cloth come first,
+  /// (m + 1)^2 of them row by row. It always satisfies validate(). The same object throughout:
+  /// step() moves its vertices.
+  const Scene& scene() const;
+
+  /// One time step. A step that does not converge leaves every vertex where it was, at speed 0,
+  /// which loses the kinetic energy and gains none; the report says so.
+  ClothReport step();
+
+  /// The energies now. frame, residual, iterations and so on are those of the last step.
+  const ClothReport& report() const;
+
+  /// m/s, three numbers for each vertex of the cloth.
+  const Eigen::VectorXd& velocity() const;
+  /// Replaces the velocities. Numbers that are not finite make the next step fail as said above.
+  /// Throws std::logic_error if there are not three for each vertex of the cloth.
+  void set_velocity(const Eigen::VectorXd& velocity);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace farcull

@@ -1,0 +1,361 @@
+// Builds springs, hinges and masses of the cloth, and evaluates the terms of a time step with their
+// derivatives.
+#include "experiments/scenes/cloth/model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "core/base/error.h"
+#include "experiments/scenes/mesh/shapes.h"
+
+namespace farcull::cloth {
+namespace {
+
+// In units of the weight of a cell times its side: an edge that is slack by a ten-thousandth of its
+// length pulls with a ten-thousandth of that weight.
+constexpr double kCrimp = 1e-8;
+
+void check(bool good, const char* what, double value, const char* range) {
+  if (good) return;
+  throw Error("cloth", fmt::format("{} is {}", what, value), fmt::format("give {}", range));
+}
+
+void check(const ClothSettings& s) {
+  check(s.triangles >= 8 && s.triangles <= 200000, "triangles", static_cast<double>(s.triangles),
+        "8 to 200000");
+  const auto positive = [](const char* what, double value) {
+    check(std::isfinite(value) && value > 0, what, value, "a finite number above 0");
+  };
+  const auto not_negative = [](const char* what, double value) {
+    check(std::isfinite(value) && value >= 0, what, value, "a finite number, 0 or more");
+  };
+  positive("stiffness", s.stiffness);
+  positive("side", s.side);
+  positive("density", s.density);
+  not_negative("buckling_load", s.buckling_load);
+  not_negative("bending_rigidity", s.bending_rigidity);
+  not_negative("gravity", s.gravity);
+  not_negative("drag", s.drag);
+  not_negative("radius", s.radius);
+  positive("contact_modulus", s.contact_modulus);
+  not_negative("friction", s.friction);
+  positive("stick_speed", s.stick_speed);
+  not_negative("height", s.height);
+  positive("time_step", s.time_step);
+  positive("tolerance", s.tolerance);
+  check(s.max_iterations >= 0, "max_iterations", s.max_iterations, "0 or more");
+}
+
+Vec3 at(const Eigen::VectorXd& x, std::uint32_t vertex) { return x.segment<3>(3 * vertex); }
+
+void add_triangles(Model& model) {
+  const std::uint32_t m = model.cells;
+  const auto id = [m](std::uint32_t i, std::uint32_t j) { return j * (m + 1) + i; };
+  for (std::uint32_t j = 0; j < m; ++j) {
+    for (std::uint32_t i = 0; i < m; ++i) {
+      const std::uint32_t a = id(i, j);
+      const std::uint32_t b = id(i + 1, j);
+      const std::uint32_t c = id(i + 1, j + 1);
+      const std::uint32_t d = id(i, j + 1);
+      // Diagonals alternate, so that no direction of the weave is stiffer than its mirror image.
+      if ((i + j) % 2 == 0) {
+        model.triangles.insert(model.triangles.end(), {{a, b, c}, {a, c, d}});
+      } else {
+        model.triangles.insert(model.triangles.end(), {{a, b, d}, {b, c, d}});
+      }
+    }
+  }
+}
+
+// Flat, above the sphere and a little beside its middle, with an unevenness far below a cell, so
+// that where it folds is not left to rounding.
+void place(Model& model) {
+  const ClothSettings& s = model.settings;
+  const std::uint32_t m = model.cells;
+  const double cell = s.side / m;
+  shapes::Random random(s.seed);
+  model.rest.resize(3 * static_cast<Eigen::Index>(m + 1) * (m + 1));
+  Eigen::Index at = 0;
+  for (std::uint32_t j = 0; j <= m; ++j) {
+    for (std::uint32_t i = 0; i <= m; ++i) {
+      model.rest[at++] = cell * i - 0.5 * s.side + 0.02 * s.side;
+      model.rest[at++] = cell * j - 0.5 * s.side + 0.01 * s.side;
+      model.rest[at++] = s.radius + s.height + random.between(0, 1e-3 * cell);
+    }
+  }
+}
+
+// With the opposite corners c and d of edge a-b in the plane: the weights of the points where the
+// line through c and d and the edge meet. In the grid that is the middle of a diagonal or one end
+// of another edge.
+void add_hinge(Model& model, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+  const std::uint32_t side = model.cells + 1;
+  const bool diagonal = a / side != b / side && a % side != b % side;
+  // At curvature kappa across it, w is kappa cell^2 / 2 for an edge along the grid, one for each
+  // cell, so rigidity = stiffness cell^2 / 4. A twist kappa gives the same w for a diagonal, one
+  // for each cell; a plate has 2 rigidity kappa^2 / 2 per area in it, so its stiffness is twice.
+  const double cell = model.settings.side / model.cells;
+  const double stiffness = 4 * model.settings.bending_rigidity / (cell * cell);
+  Hinge hinge{{a, b, c, d}, {-0.5, -0.5, 0.5, 0.5}, 2 * stiffness};
+  if (!diagonal) {
+    // Two triangles that mirror each other: c and d lie across one end.
+    const bool at_a = a % side == c % side || a / side == c / side;
+    hinge = {{a, b, c, d}, {at_a ? -1.0 : 0.0, at_a ? 0.0 : -1.0, 0.5, 0.5}, stiffness};
+  }
+  model.hinges.push_back(hinge);
+}
+
+void add_springs_and_hinges(Model& model) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> opposite;  // of the first side
+  const std::uint32_t side = model.cells + 1;
+  const double cell = model.settings.side / model.cells;
+  for (const auto& corners : model.triangles) {
+    for (int e = 0; e < 3; ++e) {
+      const auto [a, b] = std::minmax(corners[e], corners[(e + 1) % 3]);
+      const std::uint32_t c = corners[(e + 2) % 3];
+      const auto [entry, is_new] = opposite.try_emplace({a, b}, c);
+      if (!is_new) {
+        add_hinge(model, a, b, entry->second, c);
+        continue;
+      }
+      const bool diagonal = a / side != b / side && a % side != b % side;
+      model.springs.push_back({{a, b}, diagonal ? std::sqrt(2.0) * cell : cell});
+    }
+  }
+}
+
+// Of the convex spring less the thrust T l^2/2; 0 at rest.
+double spring_energy(const Model& model, std::size_t spring, double l) {
+  const ClothSettings& s = model.settings;
+  const double c = s.stiffness + s.buckling_load;
+  const double from = slack_length(model, spring);
+  const double rest = model.springs[spring].length;
+  return smooth_energy(c, model.crimp, l - from) - smooth_energy(c, model.crimp, rest - from) -
+         0.5 * s.buckling_load * (l - rest) * (l + rest);
+}
+
+double depth_energy(const Model& model, std::size_t vertex, double depth) {
+  return smooth_energy(contact_stiffness(model, vertex), model.crimp, depth);
+}
+
+}  // namespace
+
+double smooth_force(double c, double crimp, double e) {
+  const double root = std::sqrt(e * e + 4 * crimp / c);
+  return e < 0 ? 2 * crimp / (root - e) : 0.5 * c * (e + root);
+}
+
+double smooth_stiffness(double c, double crimp, double e) {
+  return smooth_force(c, crimp, e) / std::sqrt(e * e + 4 * crimp / c);
+}
+
+double smooth_energy(double c, double crimp, double e) {
+  const double root = std::sqrt(e * e + 4 * crimp / c);
+  // e^2 + e root, without cancellation below 0.
+  const double sum = e < 0 ? 4 * crimp / c * e / (root - e) : e * (e + root);
+  return 0.25 * c * sum + crimp * std::asinh(0.5 * e * std::sqrt(c / crimp));
+}
+
+double slack_length(const Model& model, std::size_t spring) {
+  const ClothSettings& s = model.settings;
+  return s.stiffness / (s.stiffness + s.buckling_load) * model.springs[spring].length;
+}
+
+double contact_stiffness(const Model& model, std::size_t vertex) {
+  return model.settings.contact_modulus * model.area[vertex];
+}
+
+Model make_model(const ClothSettings& settings) {
+  check(settings);
+  Model model;
+  model.settings = settings;
+  model.cells = static_cast<std::uint32_t>(
+      std::lround(std::sqrt(static_cast<double>(settings.triangles) / 2)));
+  place(model);
+  add_triangles(model);
+  add_springs_and_hinges(model);
+  const double cell = settings.side / model.cells;
+  model.area.assign(static_cast<std::size_t>(model.rest.size() / 3), 0);
+  for (const auto& corners : model.triangles) {
+    for (const std::uint32_t v : corners) model.area[v] += cell * cell / 6;
+  }
+  for (const double area : model.area) model.mass.push_back(settings.density * area);
+  model.crimp = kCrimp * kStandardGravity * settings.density * cell * cell * cell;
+  return model;
+}
+
+Energies energies(const Model& model, const Eigen::VectorXd& x, const Eigen::VectorXd& velocity) {
+  const ClothSettings& s = model.settings;
+  Energies sum;
+  for (std::size_t i = 0; i < model.springs.size(); ++i) {
+    const auto [a, b] = model.springs[i].vertices;
+    sum.elastic += spring_energy(model, i, (at(x, b) - at(x, a)).norm());
+  }
+  for (const Hinge& hinge : model.hinges) {
+    Vec3 w = Vec3::Zero();
+    for (int c = 0; c < 4; ++c) w += hinge.weights[c] * at(x, hinge.vertices[c]);
+    sum.bending += 0.5 * hinge.stiffness * w.squaredNorm();
+  }
+  for (std::uint32_t v = 0; v < model.mass.size(); ++v) {
+    sum.kinetic += 0.5 * model.mass[v] * at(velocity, v).squaredNorm();
+    sum.gravitational += model.mass[v] * s.gravity * x[3 * v + 2];
+    if (s.radius > 0) sum.contact += depth_energy(model, v, s.radius - at(x, v).norm());
+  }
+  return sum;
+}
+
+Step make_step(const Model& model, const Eigen::VectorXd& x0, const Eigen::VectorXd& v0) {
+  const ClothSettings& s = model.settings;
+  Step step{model,
+            x0,
+            v0,
+            std::vector<Vec3>(model.mass.size(), Vec3::Zero()),
+            std::vector<double>(model.mass.size(), 0),
+            s.stiffness + s.buckling_load};
+  for (std::uint32_t v = 0; v < model.mass.size(); ++v) {
+    const double distance = at(x0, v).norm();
+    if (s.radius == 0) continue;
+    step.normal[v] = distance > 0 ? Vec3(at(x0, v) / distance) : Vec3(Vec3::UnitZ());
+    step.friction[v] =
+        s.friction * smooth_force(contact_stiffness(model, v), model.crimp, s.radius - distance);
+  }
+  return step;
+}
+
+double value(const Step& step, const Eigen::VectorXd& x) {
+  const Model& model = step.model;
+  const ClothSettings& s = model.settings;
+  const double h = s.time_step;
+  double sum = 0;
+  for (std::uint32_t v = 0; v < model.mass.size(); ++v) {
+    const Vec3 moved = at(x, v) - at(step.x0, v);
+    sum += 0.5 * model.mass[v] * (moved / h - at(step.v0, v)).squaredNorm();
+    sum += 0.5 * s.drag * model.area[v] / h * moved.squaredNorm();
+    sum += model.mass[v] * s.gravity * x[3 * v + 2];
+    if (step.normal[v].isZero(0)) continue;
+    sum += depth_energy(model, v, s.radius - step.normal[v].dot(at(x, v)));
+    if (step.friction[v] == 0) continue;
+    const double slid = (moved - step.normal[v].dot(moved) * step.normal[v]).norm();
+    const double stick = h * s.stick_speed;
+    sum += step.friction[v] * (slid <= stick ? slid * slid / (2 * stick) : slid - stick / 2);
+  }
+  for (std::size_t i = 0; i < model.springs.size(); ++i) {
+    const auto [a, b] = model.springs[i].vertices;
+    const Vec3 d = at(x, b) - at(x, a);
+    sum += smooth_energy(step.stretch, model.crimp, d.norm() - slack_length(model, i));
+    sum -= s.buckling_load * (at(step.x0, b) - at(step.x0, a)).dot(d);
+  }
+  for (const Hinge& hinge : model.hinges) {
+    Vec3 w = Vec3::Zero();
+    for (int c = 0; c < 4; ++c) w += hinge.weights[c] * at(x, hinge.vertices[c]);
+    sum += 0.5 * hinge.stiffness * w.squaredNorm();
+  }
+  return sum;
+}
+
+void soft_gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result) {
+  const Model& model = step.model;
+  const ClothSettings& s = model.settings;
+  const double h = s.time_step;
+  result.resize(x.size());
+  for (std::uint32_t v = 0; v < model.mass.size(); ++v) {
+    const Vec3 moved = at(x, v) - at(step.x0, v);
+    Vec3 force = model.mass[v] / h * (moved / h - at(step.v0, v));
+    force += s.drag * model.area[v] / h * moved;
+    force.z() += model.mass[v] * s.gravity;
+    if (step.friction[v] != 0) {
+      const Vec3 slid = moved - step.normal[v].dot(moved) * step.normal[v];
+      force += step.friction[v] / std::max(slid.norm(), h * s.stick_speed) * slid;
+    }
+    result.segment<3>(3 * v) = force;
+  }
+  for (const Spring& spring : model.springs) {
+    const auto [a, b] = spring.vertices;
+    const Vec3 thrust = s.buckling_load * (at(step.x0, b) - at(step.x0, a));
+    result.segment<3>(3 * b) -= thrust;
+    result.segment<3>(3 * a) += thrust;
+  }
+  for (const Hinge& hinge : model.hinges) {
+    Vec3 w = Vec3::Zero();
+    for (int c = 0; c < 4; ++c) w += hinge.weights[c] * at(x, hinge.vertices[c]);
+    w *= hinge.stiffness;
+    for (int c = 0; c < 4; ++c) result.segment<3>(3 * hinge.vertices[c]) += hinge.weights[c] * w;
+  }
+}
+
+void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result) {
+  const Model& model = step.model;
+  soft_gradient(step, x, result);
+  for (std::size_t i = 0; i < model.springs.size(); ++i) {
+    const auto [a, b] = model.springs[i].vertices;
+    const Vec3 d = at(x, b) - at(x, a);
+    const double l = d.norm();
+    if (l == 0) continue;  // no direction, and hardly a force
+    const Vec3 force = smooth_force(step.stretch, model.crimp, l - slack_length(model, i)) / l * d;
+    result.segment<3>(3 * b) += force;
+    result.segment<3>(3 * a) -= force;
+  }
+  for (std::uint32_t v = 0; v < model.mass.size(); ++v) {
+    const Vec3& n = step.normal[v];
+    if (n.isZero(0)) continue;
+    const double depth = model.settings.radius - n.dot(at(x, v));
+    result.segment<3>(3 * v) -= smooth_force(contact_stiffness(model, v), model.crimp, depth) * n;
+  }
+}
+
+Block spring_block(const Step& step, std::size_t spring, const Eigen::VectorXd& x) {
+  const auto [a, b] = step.model.springs[spring].vertices;
+  const Vec3 d = at(x, b) - at(x, a);
+  const double l = d.norm();
+  if (l == 0) return Block::Zero();
+  const double e = l - slack_length(step.model, spring);
+  const double across = smooth_force(step.stretch, step.model.crimp, e) / l;
+  const Block outer = d / l * (d / l).transpose();
+  return across * Block::Identity() +
+         (smooth_stiffness(step.stretch, step.model.crimp, e) - across) * outer;
+}
+
+void for_constant_blocks(
+    const Model& model,
+    const std::function<void(std::uint32_t, std::uint32_t, const Block&)>& add) {
+  const ClothSettings& s = model.settings;
+  const double h = s.time_step;
+  for (std::uint32_t v = 0; v < model.mass.size(); ++v) {
+    add(v, v, (model.mass[v] / (h * h) + s.drag * model.area[v] / h) * Block::Identity());
+  }
+  for (const Hinge& hinge : model.hinges) {
+    for (int a = 0; a < 4; ++a) {
+      for (int b = 0; b <= a; ++b) {
+        const double d = hinge.stiffness * hinge.weights[a] * hinge.weights[b];
+        add(hinge.vertices[a], hinge.vertices[b], d * Block::Identity());
+      }
+    }
+  }
+}
+
+Block contact_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x) {
+  const Vec3& n = step.normal[vertex];
+  if (n.isZero(0)) return Block::Zero();
+  const double c = contact_stiffness(step.model, vertex);
+  const double depth = step.model.settings.radius - n.dot(at(x, vertex));
+  return smooth_stiffness(c, step.model.crimp, depth) * n * n.transpose();
+}
+
+Block friction_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x) {
+  if (step.friction[vertex] == 0) return Block::Zero();
+  const ClothSettings& s = step.model.settings;
+  const Vec3& n = step.normal[vertex];
+  const Vec3 moved = at(x, vertex) - at(step.x0, vertex);
+  const Vec3 slid = moved - n.dot(moved) * n;
+  const double way = slid.norm();
+  const double stick = s.time_step * s.stick_speed;
+  Block tangent = Block::Identity() - n * n.transpose();
+  if (way > stick) tangent -= slid / way * (slid / way).transpose();
+  return step.friction[vertex] / std::max(way, stick) * tangent;
+}
+
+}  // namespace farcull::cloth

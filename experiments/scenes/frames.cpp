@@ -1,0 +1,118 @@
+// Frames come from a built-in motion, or from meshes that are read anew for each frame.
+#include "experiments/scenes/frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "core/base/text.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/scene_file.h"
+
+namespace farcull {
+namespace {
+
+constexpr long kMostFrames = 1'000'000;
+constexpr long kLastFrame = 1'000'000'000;
+
+bool same_objects(const std::vector<Object>& a, const std::vector<Object>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Object& x, const Object& y) {
+    return x.triangle_count == y.triangle_count && x.self == y.self;
+  });
+}
+
+}  // namespace
+
+FrameRange parse_frames(const std::string& text) {
+  const Error bad(
+      "--frames", "'" + text + "' is no range of frames",
+      fmt::format("give a number from 1 to {}, or first:last, as in 1:100", kMostFrames));
+  const auto number = [&](const std::string& part) {
+    const std::optional<long> value = parse_number<long>(part);
+    if (!value || *value < 0) throw bad;
+    return *value;
+  };
+  FrameRange range;
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) {
+    range.last = number(text) - 1;
+  } else {
+    range.first = number(text.substr(0, colon));
+    range.last = number(text.substr(colon + 1));
+  }
+  if (range.last < range.first || range.last > kLastFrame ||
+      range.last - range.first >= kMostFrames) {
+    throw bad;
+  }
+  return range;
+}
+
+FrameSource::FrameSource(std::vector<std::string> arguments, FrameRange range, bool self)
+    : arguments_(std::move(arguments)), range_(range), self_(self), meshes_(range.first) {
+  const bool built_in = arguments_.size() == 1 && is_builtin_scene(arguments_[0]);
+  if (built_in && has_motion(arguments_[0])) {
+    built_in_.emplace(arguments_[0], range.count(), range.first, self);
+    return;
+  }
+  if (!built_in) scene_ = load_scene(arguments_, meshes_);
+  const std::vector<std::string> paths = meshes_.numbered_paths();
+  if (paths.empty()) {
+    throw Error("--frames", "nothing in the scene moves",
+                "put %d or %04d in place of the number in the name of a mesh, or name one of " +
+                    moving_names());
+  }
+}
+
+FrameSource::FrameSource(MovingScene moving) : built_in_(std::move(moving)) {}
+
+const Scene& FrameSource::at(long frame) {
+  if (!built_in_) {
+    meshes_.set_frame(frame);
+    if (const std::optional<Error> error = missing_at(frame)) throw *error;
+    Scene now = load_scene(arguments_, meshes_);
+    if (now.triangles == scene_.triangles) now.triangles.swap(scene_.triangles);
+    scene_ = std::move(now);
+    for (Object& object : scene_.objects) object.self = object.self || self_;
+  }
+  const Scene& scene = built_in_ ? built_in_->at(frame) : scene_;
+  const bool same = vertices_ == scene.vertices.size() && triangles_ == scene.triangles &&
+                    same_objects(objects_, scene.objects);
+  changed_ = !same && !first_;
+  first_ = false;
+  if (!same) {
+    vertices_ = scene.vertices.size();
+    triangles_ = scene.triangles;
+    objects_ = scene.objects;
+  }
+  return scene;
+}
+
+std::optional<Error> FrameSource::missing_at(long frame) const {
+  for (const std::string& path : meshes_.numbered_paths()) {
+    const std::string file = numbered(path, frame);
+    std::error_code error;
+    if (std::filesystem::exists(file, error)) continue;
+    return Error(
+        file, "the file does not exist",
+        fmt::format("give the numbers that there are: --frames FIRST:LAST instead of {}:{}",
+                    range_.first, range_.last));
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> FrameSource::missing() const {
+  if (meshes_.numbered_paths().empty()) return std::nullopt;
+  for (long frame = range_.first; frame <= range_.last; ++frame) {
+    if (std::optional<Error> error = missing_at(frame)) return error;
+  }
+  return std::nullopt;
+}
+
+FrameNotes FrameSource::notes() const {
+  if (!built_in_) return {};
+  return {.values = built_in_->notes(), .warning = built_in_->warning()};
+}
+
+}  // namespace farcull

@@ -1,0 +1,75 @@
+// A scene that moves, frame by frame.
+//
+// In most scenes only vertices change from frame to frame. Triangles and objects then stay in the
+// same memory, so that a backend sees what it has to send again. Where the topology changes,
+// nothing of the frame before is reused.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/scene/scene.h"
+#include "experiments/scenes/builtin/moving_scene.h"
+#include "experiments/scenes/mesh/cache.h"
+
+namespace farcull {
+
+/// Frames first to last, both included; 0 <= first <= last.
+struct FrameRange {
+  long first = 0;
+  long last = 0;
+  long count() const { return last - first + 1; }
+};
+/// "N" (0 to N - 1) or "A:B", at most a million frames, numbers up to 1e9. Throws Error naming
+/// --frames.
+FrameRange parse_frames(const std::string& text);
+
+/// A scene that depends on a number.
+class FrameSource {
+ public:
+  /// The arguments of load_scene(): a built-in scene that moves (builtin/moving_scene.h), or meshes
+  /// some of whose names hold %d or %04d, on the command line or in a scene file. self: every
+  /// object is tested against itself. Throws Error where nothing moves, or as load_scene() does for
+  /// the first frame.
+  FrameSource(std::vector<std::string> arguments, FrameRange range, bool self);
+  /// A scene that is not named, whose frames the range has to be.
+  explicit FrameSource(MovingScene moving);
+
+  /// The scene at a frame of the range; the same object each time, and the same memory of triangles
+  /// where the topology is that of the call before. Throws Error naming the file where a mesh
+  /// cannot be read, or as MovingScene does.
+  const Scene& at(long frame);
+
+  /// The error that at() will throw for the first frame of the range whose files do not all exist
+  /// now.
+  std::optional<Error> missing() const;
+
+  /// Whether the triangles, by their indices, the number of vertices or the objects were others in
+  /// the call of at() before the last one. False after the first call.
+  bool topology_changed() const { return changed_; }
+  /// The notes of a built-in motion on the frame.
+  FrameNotes notes() const;
+
+ private:
+  // The error of at() where a mesh of the frame has no file now.
+  std::optional<Error> missing_at(long frame) const;
+
+  std::vector<std::string> arguments_;
+  FrameRange range_;
+  bool self_ = false;
+  std::optional<MovingScene> built_in_;
+  MeshCache meshes_;
+  Scene scene_;  // of meshes, as it is now
+  // Of the call before.
+  std::size_t vertices_ = 0;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+  std::vector<Object> objects_;
+  bool first_ = true;
+  bool changed_ = false;
+};
+
+}  // namespace farcull

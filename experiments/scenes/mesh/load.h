@@ -1,0 +1,36 @@
+// Meshes from files: OBJ, OFF, PLY and STL. Coordinates are the doubles of the file, never rounded
+// through float (text is converted with correct rounding, binary floats widen exactly). What is
+// read is checked here, whatever the file claims: indices, finiteness, sizes; nothing is allocated
+// because a header says so.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "experiments/scenes/mesh/mesh.h"
+
+namespace farcull {
+
+enum class MeshFormat { kObj, kOff, kPly, kStl };
+
+/// The format that the extension of a path names, in any case. Throws Error naming the path for any
+/// other extension.
+MeshFormat mesh_format(const std::string& path);
+/// True iff mesh_format(path) would not throw.
+bool has_mesh_extension(const std::string& path);
+
+/// Reads a mesh. A polygon of n vertices becomes n-2 triangles in place: by ear clipping in its
+/// dominant plane, so a planar simple polygon keeps its area, convex or not; what is neither gets
+/// some triangulation of its corners. OBJ: `o` and `g` name the group of the faces that follow,
+/// whichever came last. Other formats: one group, "default". STL: corners at one exact position
+/// become one vertex (0.0 and -0.0 are one position), the first one read. Throws Error (where =
+/// path, line where the format has lines) if the file is missing, is not a regular file, cannot be
+/// read, is malformed or shorter or longer than it claims, holds NaN, infinity or a value beyond
+/// double, an index out of range, a polygon of fewer than 3 vertices, more than 2^32 - 1 triangles,
+/// or no triangle.
+Mesh load_mesh(const std::string& path);
+
+/// The same on bytes in memory; `name` stands for the path in errors. Any bytes may be given.
+Mesh parse_mesh(std::string_view bytes, MeshFormat format, const std::string& name);
+
+}  // namespace farcull

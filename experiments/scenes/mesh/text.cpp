@@ -1,0 +1,274 @@
+// Reads files and tokens; numbers are converted by std::from_chars, which rounds correctly.
+#include "experiments/scenes/mesh/text.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace farcull {
+namespace {
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// The length of the UTF-8 sequence at `at`, 0 where there is none (overlong forms and surrogates
+// are none).
+std::size_t utf8_length(std::string_view bytes, std::size_t at) {
+  const auto byte = [&](std::size_t i) -> unsigned {
+    return at + i < bytes.size() ? static_cast<unsigned char>(bytes[at + i]) : 0u;
+  };
+  const unsigned first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t length = first >= 0xf5 ? 0 : first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || length == 0) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  }
+  const unsigned second = byte(1);
+  if (first == 0xe0 && second < 0xa0) return 0;
+  if (first == 0xed && second > 0x9f) return 0;
+  if (first == 0xf0 && second < 0x90) return 0;
+  if (first == 0xf4 && second > 0x8f) return 0;
+  return length;
+}
+
+// Whether a well-formed decimal number that no double holds is too small rather than too large.
+// Doubles reach from 5e-324 to 2e308, so for what lies outside the sign of the decimal exponent
+// decides.
+bool underflows(std::string_view digits) {
+  constexpr long kFar = 1'000'000'000;
+  long exponent = 0;
+  const std::size_t e = digits.find_first_of("eE");
+  if (e != std::string_view::npos) {
+    std::string_view text = digits.substr(e + 1);
+    const bool negative = text.starts_with('-');
+    if (negative || text.starts_with('+')) text.remove_prefix(1);
+    for (const char c : text) exponent = std::min(exponent * 10 + (c - '0'), kFar);
+    if (negative) exponent = -exponent;
+    digits = digits.substr(0, e);
+  }
+  const std::size_t point = std::min(digits.find('.'), digits.size());
+  const std::size_t first = digits.find_first_of("123456789");
+  const long leading = static_cast<long>(point) - static_cast<long>(first);
+  return leading + exponent < 0;
+}
+
+}  // namespace
+
+std::string read_file(const std::string& path, std::uint64_t max_bytes) {
+  const std::string remedy = "name a file that exists and that you may read";
+  const auto too_large = [&] {
+    return Error(path, fmt::format("holds more than {} bytes", max_bytes), "split it");
+  };
+  if (path.find('\0') != std::string::npos) {
+    throw Error(clean_name(path), "the path contains a NUL byte", remedy);
+  }
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::not_found) {
+    throw Error(path, "the file does not exist", remedy);
+  }
+  if (error) throw Error(path, "cannot be opened: " + error.message(), remedy);
+  if (std::filesystem::is_directory(status)) throw Error(path, "is a directory", remedy);
+  // A pipe or a device may never end.
+  if (!std::filesystem::is_regular_file(status)) {
+    throw Error(path, "is not a regular file", "copy its contents to a file and name that");
+  }
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                             &std::fclose);
+  if (!file) {
+    throw Error(path, std::string("cannot be opened: ") + std::strerror(errno), remedy);
+  }
+  const std::uintmax_t claimed = std::filesystem::file_size(path, error);
+  if (!error && claimed > max_bytes) throw too_large();
+
+  // The size is a hint: the file may change while it is read, and in /proc it is 0.
+  std::string bytes;
+  if (!error) bytes.reserve(claimed);
+  char chunk[65536];
+  while (const std::size_t n = std::fread(chunk, 1, sizeof chunk, file.get())) {
+    bytes.append(chunk, n);
+    if (bytes.size() > max_bytes) throw too_large();
+  }
+  if (std::ferror(file.get())) {
+    throw Error(path, std::string("cannot be read: ") + std::strerror(errno), remedy);
+  }
+  return bytes;
+}
+
+std::string quote_token(std::string_view token) {
+  std::string text = "'";
+  for (const char c : token.substr(0, 40)) {
+    if (c >= ' ' && c <= '~') {
+      text += c;
+    } else {
+      text += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    }
+  }
+  return text + (token.size() > 40 ? "...'" : "'");
+}
+
+std::string clean_name(std::string_view bytes) {
+  std::string name;
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::size_t length = utf8_length(bytes, at);
+    const bool control = length == 1 && (bytes[at] < ' ' || bytes[at] == '\x7f');
+    if (length == 0 || control) {
+      name += '?';
+      ++at;
+    } else {
+      name += bytes.substr(at, length);
+      at += length;
+    }
+  }
+  return name;
+}
+
+Number parse_number(std::string_view token, double& value) {
+  // from_chars takes no '+', and "+-1" is no number.
+  if (token.starts_with('+')) {
+    token.remove_prefix(1);
+    if (token.starts_with('-')) return Number::kMalformed;
+  }
+  double parsed = 0;
+  const char* const end = token.data() + token.size();
+  const auto [stop, status] = std::from_chars(token.data(), end, parsed);
+  if (status == std::errc::invalid_argument || stop != end) return Number::kMalformed;
+  if (status == std::errc::result_out_of_range) {
+    const bool negative = token.starts_with('-');
+    if (!underflows(token.substr(negative ? 1 : 0))) return Number::kNotFinite;
+    parsed = negative ? -0.0 : 0.0;
+  }
+  if (!std::isfinite(parsed)) return Number::kNotFinite;
+  value = parsed;
+  return Number::kOk;
+}
+
+TextReader::TextReader(std::string_view text, std::string name, Rules rules)
+    : text_(text), name_(std::move(name)), rules_(rules) {
+  if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;
+}
+
+bool TextReader::at_continuation(std::size_t at) const {
+  if (!rules_.continuation || text_[at] != '\\') return false;
+  const std::string_view after = text_.substr(at + 1, 2);
+  return after.starts_with('\n') || after.starts_with("\r\n");
+}
+
+void TextReader::skip_blanks() {
+  while (at_ < text_.size()) {
+    if (is_blank(text_[at_])) {
+      ++at_;
+    } else if (at_continuation(at_)) {
+      at_ = text_.find('\n', at_) + 1;
+      ++line_;
+    } else {
+      return;
+    }
+  }
+}
+
+bool TextReader::next_line() {
+  // A continued line ends where its last part ends, so it is left token by token.
+  if (started_ && rules_.continuation) {
+    while (!token().empty()) {
+    }
+  }
+  bool inside = started_;
+  started_ = true;
+  while (at_ < text_.size()) {
+    if (!inside) {
+      skip_blanks();
+      if (at_ == text_.size()) return false;
+      const bool comment = rules_.comment != '\0' && text_[at_] == rules_.comment;
+      if (text_[at_] != '\n' && !comment) return true;
+    }
+    const std::size_t end = text_.find('\n', at_);
+    if (end == std::string_view::npos) {
+      at_ = text_.size();
+    } else {
+      at_ = end + 1;
+      ++line_;
+    }
+    inside = false;
+  }
+  return false;
+}
+
+std::string_view TextReader::token() {
+  skip_blanks();
+  const std::size_t start = at_;
+  if (start < text_.size() && rules_.comment != '\0' && text_[start] == rules_.comment) return {};
+  while (at_ < text_.size() && text_[at_] != '\n' && !is_blank(text_[at_]) &&
+         !at_continuation(at_)) {
+    ++at_;
+  }
+  return text_.substr(start, at_ - start);
+}
+
+std::string TextReader::rest() {
+  std::string joined;
+  for (std::string_view part = token(); !part.empty(); part = token()) {
+    if (!joined.empty()) joined += ' ';
+    joined += part;
+  }
+  return joined;
+}
+
+double TextReader::number(std::string_view what) {
+  const std::string_view text = token();
+  if (text.empty()) fail(fmt::format("{} is missing", what), "complete the line");
+  double value = 0;
+  switch (parse_number(text, value)) {
+    case Number::kOk:
+      return value;
+    case Number::kMalformed:
+      fail(fmt::format("{} is {}, not a number", what, quote_token(text)),
+           "write a decimal number");
+    case Number::kNotFinite:
+      break;
+  }
+  fail(fmt::format("{} is {}, not a finite double", what, quote_token(text)),
+       "give it a finite value that a double can hold");
+}
+
+std::int64_t TextReader::integer(std::string_view what) {
+  const std::string_view text = token();
+  if (text.empty()) fail(fmt::format("{} is missing", what), "complete the line");
+  std::int64_t value = 0;
+  const char* const end = text.data() + text.size();
+  const char* const begin =
+      text.data() + (text.starts_with('+') && text.size() > 1 && is_digit(text[1]));
+  const auto [stop, status] = std::from_chars(begin, end, value);
+  if (status == std::errc::result_out_of_range) {
+    fail(fmt::format("{} is {}, beyond any index", what, quote_token(text)), "correct the number");
+  }
+  if (status != std::errc() || stop != end) {
+    fail(fmt::format("{} is {}, not an integer", what, quote_token(text)), "write an integer");
+  }
+  return value;
+}
+
+Vec3 TextReader::point() {
+  Vec3 p;
+  p.x() = number("x");
+  p.y() = number("y");
+  p.z() = number("z");
+  return p;
+}
+
+void TextReader::fail(const std::string& reason, const std::string& remedy) const {
+  throw Error(name_, reason, remedy, line_);
+}
+
+}  // namespace farcull

@@ -1,0 +1,77 @@
+// What the readers of text share: a file as one buffer, its tokens line by line with line numbers,
+// and numbers that are rounded once, to double.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+/// All bytes of a regular file. Throws Error naming the path where it is missing, is a directory or
+/// a device, cannot be read, or holds more than max_bytes.
+std::string read_file(const std::string& path, std::uint64_t max_bytes);
+
+/// A token for a message: in quotes, printable ASCII, cut after 40 characters.
+std::string quote_token(std::string_view token);
+
+/// Valid UTF-8 without control characters, each offending byte replaced by '?', so that a name can
+/// go into JSON.
+std::string clean_name(std::string_view bytes);
+
+enum class Number { kOk, kMalformed, kNotFinite };
+
+/// A whole token as a decimal number, correctly rounded; a leading '+' is taken. What underflows
+/// becomes the nearest double (0 included). NaN, infinity and overflow are kNotFinite. value is set
+/// only with kOk.
+Number parse_number(std::string_view token, double& value);
+
+/// A cursor over the lines and tokens of a text that outlives it. Tokens are separated by blanks
+/// (space, tab, CR, VT, FF). Lines without a token are passed over but counted. A byte order mark
+/// at the start is passed over.
+class TextReader {
+ public:
+  struct Rules {
+    char comment = '\0';        // a token that begins with it ends the line; none for '\0'
+    bool continuation = false;  // a backslash before the end of a line joins the next line to it
+  };
+
+  TextReader(std::string_view text, std::string name, Rules rules);
+
+  /// Leaves the current line for the next one that holds a token; false at the end of the text.
+  bool next_line();
+  /// The next token of the current line; empty where there is none.
+  std::string_view token();
+  /// The tokens that are left on the line, joined by single spaces.
+  std::string rest();
+  /// The next token of the line as a finite double. Throws Error calling it `what`.
+  double number(std::string_view what);
+  /// The next token of the line as an integer. Throws Error calling it `what`.
+  std::int64_t integer(std::string_view what);
+  /// The next three tokens of the line as a point. Throws Error.
+  Vec3 point();
+
+  /// 1-based line of the token read last.
+  long line() const { return line_; }
+  /// Offset of the first byte that is not read yet.
+  std::size_t offset() const { return at_; }
+  std::size_t bytes_left() const { return text_.size() - at_; }
+  /// Throws Error with the current line.
+  [[noreturn]] void fail(const std::string& reason, const std::string& remedy) const;
+
+ private:
+  bool at_continuation(std::size_t at) const;
+  void skip_blanks();
+
+  std::string_view text_;
+  std::string name_;
+  Rules rules_;
+  std::size_t at_ = 0;
+  long line_ = 1;
+  bool started_ = false;
+};
+
+}  // namespace farcull

@@ -1,0 +1,331 @@
+// Reads scene files as JSON: the syntax first, for the line of an error, then the values one by
+// one.
+#include "experiments/scenes/scene_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <initializer_list>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/base/error.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/mesh/text.h"
+
+namespace farcull {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uint64_t kMaxSceneFileBytes = std::uint64_t{64} << 20;
+// No file is opened by a longer path (PATH_MAX of Linux), and a byte of one can take 36 in each
+// std::filesystem::path.
+constexpr std::size_t kMaxPathBytes = 4096;
+
+// Reads a text for its syntax alone: the place of the first error, which json::parse does not tell
+// for every error, and keys that occur twice, of which json::parse silently keeps the last.
+class Syntax : public nlohmann::json_sax<json> {
+ public:
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool start_object(std::size_t) override {
+    keys_.emplace_back();
+    return true;
+  }
+  bool end_object() override {
+    keys_.pop_back();
+    return true;
+  }
+  bool key(string_t& name) override {
+    if (!keys_.back().insert(name).second && twice.empty()) twice = name;
+    return true;
+  }
+  bool parse_error(std::size_t position, const std::string&,
+                   const json::exception& error) override {
+    at = position;
+    // The library's text after "[json.exception.parse_error.101] parse error at line 1, column 2:
+    // ".
+    reason = error.what();
+    for (const std::string_view mark : {"] ", "column "}) {
+      const std::size_t found = reason.find(mark);
+      if (found != std::string::npos) reason.erase(0, found + mark.size());
+    }
+    const std::size_t number = reason.find_first_not_of("0123456789");
+    if (number != 0 && reason.find(": ", number) == number) reason.erase(0, number + 2);
+    return false;
+  }
+
+  std::string twice;   // a key that occurs twice in one object
+  std::size_t at = 0;  // bytes read when the error was found, the offending one included
+  std::string reason;
+
+ private:
+  std::vector<std::set<std::string>> keys_;
+};
+
+// A mesh is named relative to the scene file.
+std::string mesh_path(const std::string& scene_file, const std::string& mesh) {
+  return (std::filesystem::path(scene_file).parent_path() / mesh).string();
+}
+
+std::string stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
+
+// The readers of values: each takes the value and its place in the file, as in objects[1].scale.
+class SceneFile {
+ public:
+  SceneFile(std::string path, MeshCache& meshes) : path_(std::move(path)), meshes_(meshes) {}
+
+  Scene read(const json& root) {
+    require(root.is_object(), "", "the file must be a JSON object", "write {\"objects\": [...]}");
+    check_keys(root, "", {"name", "objects"});
+    const std::string name = root.contains("name") ? text(root["name"], "name") : stem(path_);
+    const std::string form = "write \"objects\": [{\"mesh\": FILE}, ...]";
+    require(root.contains("objects"), "objects", "is missing", form);
+    const json& objects = root["objects"];
+    require(objects.is_array(), "objects", "must be an array", form);
+    require(!objects.empty(), "objects", "is empty", form);
+    SceneBuilder builder(clean_name(name), path_);
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      add_object(objects[i], fmt::format("objects[{}]", i), builder);
+    }
+    return builder.finish();
+  }
+
+ private:
+  void add_object(const json& object, const std::string& place, SceneBuilder& builder) const {
+    require(object.is_object(), place, "must be a JSON object", "write {\"mesh\": FILE}");
+    check_keys(object, place, {"name", "mesh", "scale", "rotate", "translate", "split", "self"});
+    require(object.contains("mesh"), place + ".mesh", "is missing", "name a mesh file");
+    const std::string mesh = text(object["mesh"], place + ".mesh");
+    require(!mesh.empty(), place + ".mesh", "is empty", "name a mesh file");
+    require(mesh.size() <= kMaxPathBytes, place + ".mesh",
+            fmt::format("is a path of {} bytes", mesh.size()), "name a mesh file");
+    // The system would end the path there and give a mesh that was read before.
+    require(mesh.find('\0') == std::string::npos, place + ".mesh", "contains a NUL byte",
+            "name a mesh file");
+    std::string name = stem(mesh);
+    if (object.contains("name")) name = text(object["name"], place + ".name");
+    const Placement placement = read_placement(object, place);
+    Split split = Split::kNone;
+    if (object.contains("split")) split = read_split(object["split"], place + ".split");
+    const bool self = object.contains("self") && truth(object["self"], place + ".self");
+    builder.add(meshes_.get(mesh_path(path_, mesh)), name, split, placement, self);
+  }
+
+  Placement read_placement(const json& object, const std::string& place) const {
+    Placement placement;
+    if (object.contains("scale")) {
+      const json& scale = object["scale"];
+      const std::string at = place + ".scale";
+      const std::string form = "give a number or an array of 3 numbers, none of them 0";
+      require(scale.is_number() || scale.is_array(), at, "must be a number or an array of 3", form);
+      placement.scale =
+          scale.is_array() ? vec3(scale, at) : Vec3(Vec3::Constant(number(scale, at)));
+      require((placement.scale->array() != 0).all(), at, "is 0, which leaves no mesh", form);
+    }
+    if (object.contains("rotate")) {
+      const json& rotate = object["rotate"];
+      const std::string at = place + ".rotate";
+      const std::string form = "write {\"axis\": [0, 0, 1], \"angle\": RADIANS}";
+      require(rotate.is_object(), at, "must be a JSON object", form);
+      check_keys(rotate, at, {"axis", "angle"});
+      require(rotate.contains("axis"), at + ".axis", "is missing", form);
+      require(rotate.contains("angle"), at + ".angle", "is missing", form);
+      placement.rotate = Placement::Rotation{vec3(rotate["axis"], at + ".axis"),
+                                             number(rotate["angle"], at + ".angle")};
+      require((placement.rotate->axis.array() != 0).any(), at + ".axis", "is the zero vector",
+              "give a direction of any length");
+    }
+    if (object.contains("translate")) {
+      placement.translate = vec3(object["translate"], place + ".translate");
+    }
+    return placement;
+  }
+
+  Split read_split(const json& value, const std::string& place) const {
+    const std::string word = text(value, place);
+    if (word == "groups") return Split::kGroups;
+    if (word == "components") return Split::kComponents;
+    require(word == "none", place, "is " + quote_token(word),
+            "use \"none\", \"groups\" or \"components\"");
+    return Split::kNone;
+  }
+
+  std::string text(const json& value, const std::string& place) const {
+    require(value.is_string(), place, fmt::format("is {}, not a string", kind(value)),
+            "write it in quotes");
+    return value.get<std::string>();
+  }
+
+  bool truth(const json& value, const std::string& place) const {
+    require(value.is_boolean(), place, fmt::format("is {}, not true or false", kind(value)),
+            "write true or false, without quotes");
+    return value.get<bool>();
+  }
+
+  double number(const json& value, const std::string& place) const {
+    require(value.is_number(), place, fmt::format("is {}, not a number", kind(value)),
+            "give a finite number");
+    const auto x = value.get<double>();
+    require(std::isfinite(x), place, "is not finite", "give a finite number");
+    return x;
+  }
+
+  Vec3 vec3(const json& value, const std::string& place) const {
+    require(value.is_array() && value.size() == 3, place, "must be an array of 3 numbers",
+            "write it as [X, Y, Z]");
+    Vec3 v;
+    for (std::size_t i = 0; i < 3; ++i) {
+      v[static_cast<int>(i)] = number(value[i], fmt::format("{}[{}]", place, i));
+    }
+    return v;
+  }
+
+  static std::string kind(const json& value) {
+    return fmt::format("of type {}", value.type_name());
+  }
+
+  void check_keys(const json& object, const std::string& place,
+                  std::initializer_list<std::string_view> known) const {
+    for (const auto& item : object.items()) {
+      if (std::find(known.begin(), known.end(), item.key()) != known.end()) continue;
+      const std::string at =
+          place.empty() ? clean_name(item.key()) : place + "." + clean_name(item.key());
+      fail(at, "is an unknown key", fmt::format("use only {}", fmt::join(known, ", ")));
+    }
+  }
+
+  void require(bool condition, const std::string& place, const std::string& reason,
+               const std::string& remedy) const {
+    if (!condition) fail(place, reason, remedy);
+  }
+
+  [[noreturn]] void fail(const std::string& place, const std::string& reason,
+                         const std::string& remedy) const {
+    throw Error(path_, place.empty() ? reason : place + " " + reason, remedy);
+  }
+
+  std::string path_;
+  MeshCache& meshes_;
+};
+
+std::string extension(const std::string& path) {
+  std::string text = std::filesystem::path(path).extension().string();
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+Scene parse(const std::string& text, const std::string& path, MeshCache& meshes) {
+  const std::string remedy = "correct the JSON";
+  if (text.empty()) throw Error(path, "the file is empty", "write {\"objects\": [...]}");
+  Syntax syntax;
+  if (!json::sax_parse(text, &syntax)) {
+    const std::size_t before = std::min(syntax.at - (syntax.at > 0), text.size());
+    const long line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(before), '\n');
+    throw Error(path, clean_name(syntax.reason), remedy, line);
+  }
+  if (!syntax.twice.empty()) {
+    throw Error(path, "the key " + quote_token(syntax.twice) + " occurs twice in one object",
+                "delete one of them");
+  }
+  return SceneFile(path, meshes).read(json::parse(text));
+}
+
+Scene scene_of_meshes(const std::vector<std::string>& paths, MeshCache& meshes) {
+  // Every extension first, so that nothing is read for minutes before the last argument is refused.
+  for (const std::string& path : paths) {
+    if (is_scene_file(path) || is_builtin_scene(path)) {
+      throw Error(path, "a scene stands among other arguments",
+                  "name one scene alone, or only mesh files");
+    }
+    mesh_format(path);
+  }
+  std::string name = stem(paths[0]);
+  for (std::size_t i = 1; i < paths.size() && i < 3; ++i) name += "+" + stem(paths[i]);
+  if (paths.size() > 3) name += fmt::format("+{} more", paths.size() - 3);
+  SceneBuilder builder(clean_name(name), paths[0]);
+  for (const std::string& path : paths) builder.add(meshes.get(path), stem(path), Split::kNone, {});
+  return builder.finish();
+}
+
+Scene load_any_scene(const std::vector<std::string>& arguments, MeshCache& meshes) {
+  if (arguments.empty()) {
+    throw Error("SCENE", "no scene is named",
+                "name mesh files, a scene file or a built-in scene (farcull scenes lists them)");
+  }
+  if (arguments.size() > 1) return scene_of_meshes(arguments, meshes);
+  const std::string& name = arguments[0];
+  if (is_builtin_scene(name)) return make_builtin_scene(name);
+  if (is_scene_file(name)) return parse(read_file(name, kMaxSceneFileBytes), name, meshes);
+  if (has_mesh_extension(name)) return scene_of_meshes(arguments, meshes);
+  throw Error(name,
+              "neither a built-in scene nor a file that ends in .obj, .off, .ply, .stl or .json",
+              "correct the name; farcull scenes lists the built-in scenes");
+}
+
+}  // namespace
+
+Scene load_scene(const std::vector<std::string>& arguments) {
+  MeshCache meshes;
+  return load_scene(arguments, meshes);
+}
+
+Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes) {
+  try {
+    return load_any_scene(arguments, meshes);
+  } catch (const std::bad_alloc&) {
+    throw Error(arguments[0], "the scene does not fit into memory",
+                "give fewer or smaller objects, or use a larger machine");
+  }
+}
+
+bool is_scene_file(const std::string& name) { return extension(name) == ".json"; }
+
+std::vector<std::string> meshes_of_scene_file(const std::string& path) {
+  std::vector<std::string> out;
+  json root;
+  try {
+    root = json::parse(read_file(path, kMaxSceneFileBytes), nullptr, false);
+  } catch (const Error&) {
+    return out;
+  }
+  if (!root.is_object() || !root.contains("objects") || !root["objects"].is_array()) return out;
+  for (const json& object : root["objects"]) {
+    if (!object.is_object() || !object.contains("mesh") || !object["mesh"].is_string()) continue;
+    const auto mesh = object["mesh"].get<std::string>();
+    if (mesh.size() <= kMaxPathBytes) out.push_back(mesh_path(path, mesh));
+  }
+  return out;
+}
+
+Scene parse_scene_file(const std::string& text, const std::string& path) {
+  MeshCache meshes;
+  return parse(text, path, meshes);
+}
+
+void require_known(const std::string& name) {
+  if (is_builtin_scene(name)) {
+    parse_scene_name(name);
+    return;
+  }
+  std::error_code error;
+  if (name.find('%') != std::string::npos || std::filesystem::exists(name, error)) return;
+  throw Error(name, "no built-in scene has this name, and there is no such file",
+              "see farcull scenes for the names");
+}
+
+}  // namespace farcull

@@ -1,0 +1,50 @@
+// From what stands on the command line to a scene: mesh files, a built-in scene, or a scene file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "experiments/scenes/mesh/cache.h"
+
+namespace farcull {
+
+/// The scene that the arguments name. They are one of
+/// - one or more mesh files (.obj, .off, .ply, .stl), each an object named by its file without
+/// extension;
+/// - one built-in scene, perhaps with suffixes (builtin_scenes.h);
+/// - one scene file, JSON:
+///     {"name": "two-bunnies", "objects": [
+///       {"name": "a", "mesh": "bunny00.off"},
+///       {"mesh": "bunny00.off", "scale": 1, "rotate": {"axis": [0, 0, 1], "angle": 0.7},
+///        "translate": [0.02, 0.0026, 0.0014], "split": "none",
+///        "self": false}]}
+///   Only `objects` and `mesh` must be there. `mesh` is relative to the scene file. `scale` is a
+///   number or an array of 3, none of them 0; negative ones mirror. Angles are in radians about an
+///   axis through the origin. Scale, then rotate, then translate, in double; what is absent is left
+///   out, so that the doubles of the mesh stay as they are. `split` is "none", "groups" (the groups
+///   of an OBJ) or "components" (what is connected through shared vertices). `self` is true or
+///   false (the default): whether the object's own triangles are tested against each other as well;
+///   with a split, each part's own. Triangles of different parts always are.
+/// A mesh that is named several times is read once. Names are completed as SceneBuilder says.
+/// Throws Error for what cannot be read or is not of this form, naming the file and, in a scene
+/// file, the line (syntax) or the place as in objects[1].rotate.axis (contents).
+Scene load_scene(const std::vector<std::string>& arguments);
+/// The same with the meshes that `meshes` gives, and keeps.
+Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes);
+
+/// Whether load_scene() takes the name for that of a scene file.
+bool is_scene_file(const std::string& name);
+/// The paths of the meshes that a scene file names, each as often as it is named; as many as can be
+/// told, where the file cannot be read or is not of the form above.
+std::vector<std::string> meshes_of_scene_file(const std::string& path);
+
+/// The same for the text of a scene file; `path` stands in errors and is what mesh paths are
+/// relative to.
+Scene parse_scene_file(const std::string& text, const std::string& path);
+
+/// Throws Error where load_scene({name}) could only fail: no built-in scene as parse_scene_name()
+/// takes it, and no file. A name with a number in it (%d) is not looked for.
+void require_known(const std::string& name);
+
+}  // namespace farcull

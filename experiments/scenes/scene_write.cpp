@@ -1,0 +1,306 @@
+// Writes meshes as text with 17 significant digits, and a scene file that names them.
+#include "experiments/scenes/scene_write.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.h"
+#include "experiments/system/output_file.h"
+
+namespace farcull {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kLongestName = 100;  // bytes, well below what file systems take
+
+// A folder and what this call put there, taken away again unless it is kept.
+class Folder {
+ public:
+  explicit Folder(const std::string& path) : path_(path) {
+    std::error_code error;
+    if (std::filesystem::is_directory(path_, error)) return;
+    made_ = std::filesystem::create_directory(path_, error);
+    if (made_) return;
+    const std::string why = error ? error.message() : std::string(std::strerror(EEXIST));
+    throw Error(path, "the folder cannot be made: " + why,
+                "name one in a folder that is there and that you may write to");
+  }
+  ~Folder() {
+    if (kept_) return;
+    std::error_code error;
+    for (const std::filesystem::path& file : added_) std::filesystem::remove(file, error);
+    if (made_) std::filesystem::remove(path_, error);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  void write(const std::string& name, const std::string& text) {
+    const std::filesystem::path file = path_ / name;
+    std::error_code error;
+    const bool there = std::filesystem::exists(std::filesystem::symlink_status(file, error));
+    write_output(file.string(), text);
+    if (!there) added_.push_back(file);
+    ++written_.files;
+    written_.bytes += text.size();
+  }
+  WrittenScene keep(const std::string& scene_file) {
+    kept_ = true;
+    written_.scene_file = (path_ / scene_file).string();
+    return written_;
+  }
+
+ private:
+  std::filesystem::path path_;
+  bool made_ = false;
+  bool kept_ = false;
+  std::vector<std::filesystem::path> added_;
+  WrittenScene written_;
+};
+
+// A name for each object that a file and a group may have, each once; without '_', which stands
+// before the numbers of frames.
+std::vector<std::string> file_names(const Scene& scene) {
+  std::vector<std::string> names;
+  std::set<std::string> used;
+  for (const Object& object : scene.objects) {
+    std::string name = object.name.substr(0, kLongestName);
+    for (char& c : name) {
+      const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                         (c >= '0' && c <= '9') || c == '-' || c == '.';
+      if (!plain) c = '-';
+    }
+    if (name.empty() || name[0] == '.') name.insert(0, "object");
+    std::string free = name;
+    for (int n = 2; !used.insert(free).second; ++n) free = fmt::format("{}-{}", name, n);
+    names.push_back(free);
+  }
+  return names;
+}
+
+// The vertices that an object uses, numbered in order of first mention.
+struct Part {
+  std::vector<std::uint32_t> vertices;                  // of the scene
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // indices into vertices
+};
+
+class Parts {
+ public:
+  Part of(const Scene& scene, const Object& object) {
+    if (object.triangle_count == 0)
+      throw std::logic_error("mesh_write: object '" + object.name + "' has no triangle");
+    number_.resize(std::max(number_.size(), scene.vertices.size()), kNone);
+    Part part;
+    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+      std::array<std::uint32_t, 3> corners = scene.triangles[object.first_triangle + t];
+      for (std::uint32_t& corner : corners) {
+        std::uint32_t& n = number_[corner];
+        if (n == kNone) {
+          n = static_cast<std::uint32_t>(part.vertices.size());
+          part.vertices.push_back(corner);
+        }
+        corner = n;
+      }
+      part.triangles.push_back(corners);
+    }
+    for (const std::uint32_t v : part.vertices) number_[v] = kNone;
+    return part;
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> number_;
+};
+
+// 17 significant digits identify a double.
+void add_vertices(const Scene& scene, const Part& part, const char* before,
+                  fmt::memory_buffer& out) {
+  for (const std::uint32_t v : part.vertices) {
+    const Vec3& p = scene.vertices[v];
+    fmt::format_to(std::back_inserter(out), "{}{:.17g} {:.17g} {:.17g}\n", before, p.x(), p.y(),
+                   p.z());
+  }
+}
+
+std::string off_text(const Scene& scene, const Part& part) {
+  fmt::memory_buffer out;
+  fmt::format_to(std::back_inserter(out), "OFF\n{} {} 0\n", part.vertices.size(),
+                 part.triangles.size());
+  add_vertices(scene, part, "", out);
+  for (const auto& [a, b, c] : part.triangles)
+    fmt::format_to(std::back_inserter(out), "3 {} {} {}\n", a, b, c);
+  return fmt::to_string(out);
+}
+
+// All objects as groups.
+std::string obj_text(const Scene& scene, Parts& parts) {
+  fmt::memory_buffer out;
+  const std::vector<std::string> names = file_names(scene);
+  std::uint64_t first = 1;
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    const Part part = parts.of(scene, scene.objects[o]);
+    fmt::format_to(std::back_inserter(out), "o {}\n", names[o]);
+    add_vertices(scene, part, "v ", out);
+    for (const auto& [a, b, c] : part.triangles)
+      fmt::format_to(std::back_inserter(out), "f {} {} {}\n", first + a, first + b, first + c);
+    first += part.vertices.size();
+  }
+  return fmt::to_string(out);
+}
+
+Json object_json(const Object& object, const std::string& mesh) {
+  Json out = {{"name", object.name}, {"mesh", mesh}};
+  if (object.self) out["self"] = true;
+  return out;
+}
+
+std::string scene_text(const std::string& name, const Json& objects) {
+  return Json({{"name", name}, {"objects", objects}}).dump(2) + "\n";
+}
+
+WrittenScene write_groups(const std::function<const Scene&(long)>& at, FrameRange range,
+                          const std::string& folder, const Progress& progress) {
+  Folder out(folder);
+  Parts parts;
+  std::string name, scene_name;
+  bool self = false;
+  for (long frame = range.first; frame <= range.last; ++frame) {
+    if (progress) progress(fmt::format("writing frame {}", frame));
+    const Scene& scene = at(frame);
+    if (frame == range.first) {
+      scene_name = scene.name;
+      name = scene_name.substr(0, scene_name.find_first_of(":@"));
+      self = !scene.objects.empty() && scene.objects[0].self;
+    }
+    for (const Object& object : scene.objects) {
+      if (object.self == self) continue;
+      throw Error(scene.name, "objects come and go and only some are tested against themselves",
+                  "write single frames, or leave --frames out");
+    }
+    out.write(fmt::format("{}_{:04}.obj", name, frame), obj_text(scene, parts));
+  }
+  Json object = {{"name", name}, {"mesh", name + "_%04d.obj"}, {"split", "groups"}};
+  if (self) object["self"] = true;
+  out.write("scene.json", scene_text(scene_name, Json::array({object})));
+  return out.keep("scene.json");
+}
+
+// The objects of frames, each with a file for every frame, or one file if it never moves.
+class FrameFiles {
+ public:
+  FrameFiles(const std::string& folder, FrameRange range) : out_(folder), range_(range) {}
+
+  void add(const Scene& scene, long frame) {
+    if (frame == range_.first) {
+      scene_name_ = scene.name;
+      objects_ = scene.objects;
+      names_ = file_names(scene);
+      meshes_.resize(names_.size());
+    }
+    const auto same = [](const Object& a, const Object& b) {
+      return a.name == b.name && a.self == b.self;
+    };
+    if (!std::equal(objects_.begin(), objects_.end(), scene.objects.begin(), scene.objects.end(),
+                    same)) {
+      throw std::logic_error("write_frames: the objects change");
+    }
+    for (std::size_t o = 0; o < objects_.size(); ++o)
+      add(o, off_text(scene, parts_.of(scene, scene.objects[o])), frame);
+  }
+
+  WrittenScene finish() {
+    // A scene file of frames has to name a numbered mesh.
+    const bool none =
+        std::none_of(meshes_.begin(), meshes_.end(), [](const Mesh& m) { return m.moves; });
+    Json list = Json::array();
+    for (std::size_t o = 0; o < objects_.size(); ++o) {
+      if (none) number_from_first(o, range_.last + 1);
+      const bool moves = meshes_[o].moves;
+      if (!moves) out_.write(names_[o] + ".off", meshes_[o].first);
+      list.push_back(object_json(objects_[o], names_[o] + (moves ? "_%04d.off" : ".off")));
+    }
+    out_.write("scene.json", scene_text(scene_name_, list));
+    return out_.keep("scene.json");
+  }
+
+ private:
+  // The text of the first frame, until another one differs.
+  struct Mesh {
+    std::string first;
+    bool moves = false;
+  };
+
+  void add(std::size_t object, std::string text, long frame) {
+    Mesh& mesh = meshes_[object];
+    if (frame == range_.first) {
+      mesh.first = std::move(text);
+      return;
+    }
+    if (!mesh.moves) {
+      if (text == mesh.first) return;
+      number_from_first(object, frame);
+    }
+    out_.write(numbered_name(object, frame), text);
+  }
+
+  // Writes the text of the first frame for all frames before `end`.
+  void number_from_first(std::size_t object, long end) {
+    for (long frame = range_.first; frame < end; ++frame)
+      out_.write(numbered_name(object, frame), meshes_[object].first);
+    meshes_[object] = {"", true};
+  }
+
+  std::string numbered_name(std::size_t object, long frame) const {
+    return fmt::format("{}_{:04}.off", names_[object], frame);
+  }
+
+  Folder out_;
+  FrameRange range_;
+  Parts parts_;
+  std::string scene_name_;
+  std::vector<Object> objects_;
+  std::vector<std::string> names_;
+  std::vector<Mesh> meshes_;
+};
+
+}  // namespace
+
+WrittenScene write_scene(const Scene& scene, const std::string& folder) {
+  Folder out(folder);
+  Parts parts;
+  Json objects = Json::array();
+  const std::vector<std::string> names = file_names(scene);
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    const std::string file = names[o] + ".off";
+    out.write(file, off_text(scene, parts.of(scene, scene.objects[o])));
+    objects.push_back(object_json(scene.objects[o], file));
+  }
+  out.write("scene.json", scene_text(scene.name, objects));
+  return out.keep("scene.json");
+}
+
+WrittenScene write_frames(const std::function<const Scene&(long)>& at, FrameRange range,
+                          bool objects_change, const std::string& folder,
+                          const Progress& progress) {
+  if (objects_change) return write_groups(at, range, folder, progress);
+  FrameFiles files(folder, range);
+  for (long frame = range.first; frame <= range.last; ++frame) {
+    if (progress) progress(fmt::format("writing frame {}", frame));
+    files.add(at(frame), frame);
+  }
+  return files.finish();
+}
+
+}  // namespace farcull

@@ -1,0 +1,105 @@
+// Converts typed counts and times to the names under which a store holds them.
+#include "experiments/studies/counts.h"
+
+namespace farcull {
+namespace {
+
+template <class Value>
+void add(NamedCounts& out, const char* name, const std::optional<Value>& value) {
+  if (value) out.push_back({name, *value});
+}
+
+NamedCounts named(std::monostate) { return {}; }
+
+NamedCounts named(const RunCounts& c) {
+  NamedCounts out = {{"colliding", c.colliding},
+                     {"missed", c.missed},
+                     {"missed_penetrating", c.missed_penetrating},
+                     {"colliding_triangles", c.colliding_triangles},
+                     {"missed_triangles", c.missed_triangles},
+                     {"candidates", c.candidates},
+                     {"kept_triangles", c.kept_triangles},
+                     {"kept_objects", c.kept_objects},
+                     {"triangles", c.triangles},
+                     {"objects", c.objects},
+                     {"promises", c.promises},
+                     {"scene_hash", c.scene_hash}};
+  if (c.revoked) out.push_back({"revoked", true});
+  add(out, "object_triangles", c.object_triangles);
+  if (c.drawn) {
+    out.insert(out.end(), {{"queries", c.drawn->queries},
+                           {"draws", c.drawn->draws},
+                           {"queries_saved", c.drawn->queries_saved},
+                           {"draws_saved", c.drawn->draws_saved}});
+  }
+  if (c.radius) {
+    out.insert(out.end(),
+               {{"radius_px", c.radius->radius_px}, {"pixel_size", c.radius->pixel_size}});
+  }
+  if (c.fragments) {
+    add(out, "elements", c.fragments->elements);
+    add(out, "covered", c.fragments->covered);
+    out.push_back({"fragments", c.fragments->fragments});
+    add(out, "tests", c.fragments->tests);
+    add(out, "views", c.fragments->views);
+  }
+  return out;
+}
+
+NamedCounts named(const PeerCounts& c) {
+  NamedCounts out = {{"colliding", c.colliding}, {"missed", c.missed}, {"wrong", c.wrong}};
+  add(out, "colliding_triangles", c.colliding_triangles);
+  out.insert(out.end(), {{"missed_triangles", c.missed_triangles},
+                         {"candidates", c.candidates},
+                         {"triangles", c.triangles},
+                         {"objects", c.objects}});
+  if (!c.library.empty()) out.push_back({"library", c.library});
+  if (!c.scene_hash.empty())
+    out.insert(out.end(), {{"promises", false}, {"scene_hash", c.scene_hash}});
+  return out;
+}
+
+NamedCounts named(const LemmaCounts& c) {
+  NamedCounts out = {{"points", c.points},
+                     {"violations", c.violations},
+                     {"no_sample", c.no_sample},
+                     {"not_bounding", c.not_bounding},
+                     {"rounded", c.rounded},
+                     {"largest_px", c.largest_px},
+                     {"largest_steps", c.largest_steps},
+                     {"step_px", c.step_px},
+                     {"radius_px", c.radius_px},
+                     {"budget_px", c.budget_px},
+                     {"promises", c.promises}};
+  if (c.revoked) out.push_back({"revoked", true});
+  return out;
+}
+
+}  // namespace
+
+NamedCounts named(const Counts& counts) {
+  return std::visit([](const auto& of) { return named(of); }, counts);
+}
+
+Measurement stored(const PointResult& result) {
+  Measurement out{.device = result.device, .left_out = result.left_out};
+  for (const auto& [name, value] : named(result.counts))
+    std::visit([&, &key = name](const auto& of) { out.counts[key] = of; }, value);
+  const PointTimes& t = result.times;
+  const std::pair<const char*, std::optional<double>> times[] = {
+      {"build", t.build}, {"cull", t.cull},           {"exact", t.exact},        {"total", t.total},
+      {"setup", t.setup}, {"total_min", t.total_min}, {"total_max", t.total_max}};
+  for (const auto& [name, ms] : times) {
+    if (ms) out.times[name] = *ms;
+  }
+  return out;
+}
+
+bool breaks_promise(const Measurement& measurement) {
+  const auto& counts = measurement.counts;
+  if (!counts.value("promises", false)) return false;
+  return counts.value("missed", std::uint64_t{0}) > 0 ||
+         counts.value("violations", std::uint64_t{0}) > 0;
+}
+
+}  // namespace farcull

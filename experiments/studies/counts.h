@@ -1,0 +1,108 @@
+// The result of a point: as structures, and as a row of the store.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace farcull {
+
+/// An answer compared with the truth of its scene (measure/lab.h).
+struct AnswerCounts {
+  std::uint64_t colliding = 0, missed = 0;  // pairs
+  std::uint64_t missed_triangles = 0;       // colliding triangles that are in none of its pairs
+  std::uint64_t candidates = 0;             // pairs given to exact tests
+  std::uint64_t triangles = 0, objects = 0;
+};
+
+/// Work of a method that draws.
+struct DrawnCounts {
+  std::uint64_t queries = 0, draws = 0, queries_saved = 0, draws_saved = 0;
+};
+/// Radius and size of a pixel in the view with the widest budget.
+struct RadiusCounts {
+  double radius_px = 0, pixel_size = 0;
+};
+/// FAR: fragments of one drawing (fragments.h). FAR pairs: entries in the lists of pixels
+/// (`fragments`), comparisons (`tests`) and the views that it looked with.
+struct FragmentCounts {
+  std::optional<std::uint64_t> elements = {}, covered = {};
+  std::uint64_t fragments = 0;
+  std::optional<std::uint64_t> tests = {}, views = {};
+};
+
+/// Counts of a RunPoint.
+struct RunCounts : AnswerCounts {
+  std::uint64_t missed_penetrating = 0;   // of `missed` (verify/contact.h); the rest touches
+  std::uint64_t colliding_triangles = 0;  // of the truth
+  std::uint64_t kept_triangles = 0, kept_objects = 0;
+  bool promises = false;  // the method, by its options; a miss then breaks the promise
+  bool revoked = false;   // it promises, and its device does not keep what the promise rests on
+  std::string scene_hash;
+  std::optional<std::uint64_t> object_triangles = {};  // of i-collide
+  std::optional<DrawnCounts> drawn = {};
+  std::optional<RadiusCounts> radius = {};
+  std::optional<FragmentCounts> fragments = {};
+};
+
+/// Counts of a PeerPoint.
+struct PeerCounts : AnswerCounts {
+  std::uint64_t wrong = 0;  // reported pairs that do not collide
+  std::optional<std::uint64_t> colliding_triangles = {};
+  std::string library = {};     // with its version; empty: not said
+  std::string scene_hash = {};  // empty: not said; else `promises` is said as well
+};
+
+/// Counts of a LemmaPoint (lemma/lemma.h, LemmaRow).
+struct LemmaCounts {
+  std::uint64_t points = 0, violations = 0, no_sample = 0, not_bounding = 0, rounded = 0;
+  double largest_px = 0, largest_steps = 0;
+  double step_px = 0;  // of the depth buffer
+  double radius_px = 0, budget_px = 0;
+  bool promises = false;  // fragment depth at the budget radius or more: a violation breaks it
+  bool revoked = false;   // as in RunCounts
+};
+
+/// std::monostate: nothing was measured.
+using Counts = std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts>;
+
+/// The names and values of counts, in the order in which a store holds them.
+using CountValue = std::variant<bool, std::uint64_t, double, std::string>;
+using NamedCounts = std::vector<std::pair<std::string, CountValue>>;
+NamedCounts named(const Counts& counts);
+
+/// Milliseconds, which no two runs share.
+struct PointTimes {
+  std::optional<double> build = {};  // of the hierarchies of a library
+  std::optional<double> cull = {}, exact = {};
+  std::optional<double> total = {};  // without setup
+  std::optional<double> setup = {};
+  std::optional<double> total_min = {}, total_max = {};  // of several runs
+};
+
+/// The result of a point.
+struct PointResult {
+  Counts counts = {};  // the same on every run on the same device and CPU features, bit for bit
+  PointTimes times = {};
+  std::string device = {};    // what answered: a renderer, or "cpu"
+  std::string left_out = {};  // why nothing was measured (a library that this build is without, a
+                              // resolution beyond the device); empty: it was
+};
+
+/// The same as a row of a store holds it. Rows of other versions may have other names.
+struct Measurement {
+  nlohmann::ordered_json counts = nlohmann::ordered_json::object();
+  nlohmann::ordered_json times = nlohmann::ordered_json::object();
+  std::string device;
+  std::string left_out = {};
+};
+Measurement stored(const PointResult& result);
+
+/// True where a promise was not kept: `promises` is true and `missed` or `violations` above 0.
+bool breaks_promise(const Measurement& measurement);
+
+}  // namespace farcull

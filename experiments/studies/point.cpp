@@ -1,0 +1,141 @@
+// Converts typed points to the columns of a store, and to words.
+#include "experiments/studies/point.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "core/base/text.h"
+#include "experiments/record/tables.h"
+
+namespace farcull {
+namespace {
+
+std::string text_of(const std::optional<DepthFormat>& format) {
+  if (!format) return "";
+  return *format == DepthFormat::fixed24 ? "fixed24" : "float32";
+}
+
+std::string text_of(const std::optional<DepthMode>& mode) {
+  if (!mode) return "";
+  return *mode == DepthMode::fixed ? "fixed" : "fragment";
+}
+
+void add_scene(const NamedScene& scene, PointKey& key) { key.scene = scene.name; }
+void add_scene(const MotionFrame& scene, PointKey& key) {
+  key.scene = scene.name;
+  key.frame = scene.frame;
+}
+void add_scene(const ChangedScene& scene, PointKey& key) {
+  const bool offset = scene.change == ChangedScene::Change::offset;
+  key.scene = fmt::format("{}@{}-1e{}", scene.name, offset ? "offset" : "scale", scene.power);
+}
+void add_scene(const ClothApart& scene, PointKey& key) {
+  key.scene = scene.name + "@apart";
+  key.frame = scene.frame;
+}
+void add_scene(const PixelCorners&, PointKey& key) { key.scene = "pixel-corners"; }
+
+void add_scene(const PointScene& scene, PointKey& key) {
+  std::visit([&](const auto& of) { add_scene(of, key); }, scene);
+}
+
+PointKey key_of(const RunPoint& point) {
+  PointKey key;
+  add_scene(point.scene, key);
+  key.method = to_string(point.method);
+  key.offset = point.offset;
+  key.radius = point.radius ? radius_text(*point.radius) : "";
+  key.depth_format = text_of(point.depth_format);
+  key.depth_mode = text_of(point.depth_mode);
+  key.resolution = point.resolution;
+  key.views = point.views;
+  return key;
+}
+
+PointKey key_of(const PeerPoint& point) {
+  PointKey key;
+  add_scene(point.scene, key);
+  key.method = point.peer;
+  return key;
+}
+
+PointKey key_of(const LemmaPoint& point) {
+  PointKey key;
+  key.scene = LemmaScene{point.generator, point.points, point.depth}.name();
+  key.method = point.worst ? "lemma-worst" : "lemma";
+  key.offset = "obb";
+  key.radius = radius_text(point.radius);
+  key.depth_format = text_of(point.depth_format);
+  key.depth_mode = text_of(point.depth_mode);
+  key.resolution = point.side;
+  key.seed = point.seed;
+  return key;
+}
+
+}  // namespace
+
+PointKey key_of(const Point& point) {
+  return std::visit([](const auto& of) { return key_of(of); }, point);
+}
+
+std::vector<PointKey> keys_of(const std::vector<Point>& points) {
+  std::vector<PointKey> out;
+  for (const Point& point : points) out.push_back(key_of(point));
+  return out;
+}
+
+const std::vector<std::string>& axis_names() {
+  static const std::vector<std::string> names = {
+      "scene",      "method",     "offset", "radius", "depth_format",
+      "depth_mode", "resolution", "views",  "frame",  "seed"};
+  return names;
+}
+
+std::vector<std::string> axis_values(const PointKey& key) {
+  return {key.scene,
+          key.method,
+          key.offset,
+          key.radius,
+          key.depth_format,
+          key.depth_mode,
+          key.resolution > 0 ? std::to_string(key.resolution) : "",
+          key.views,
+          key.frame >= 0 ? std::to_string(key.frame) : "",
+          key.seed > 0 ? std::to_string(key.seed) : ""};
+}
+
+std::string describe(const PointKey& key) {
+  std::string out = key.scene;
+  const auto add = [&out](const std::string& text) {
+    if (!text.empty()) out += ", " + text;
+  };
+  add(key.method);
+  add(key.offset);
+  if (!key.radius.empty() && key.radius != "budget") add("radius " + key.radius);
+  if (key.depth_format == "fixed24") add("24-bit depth");
+  if (key.depth_mode == "fixed") add("fixed-function depth");
+  if (key.resolution > 0) add(fmt::format("{} px", key.resolution));
+  if (!key.views.empty()) add("views " + key.views);
+  if (key.frame >= 0) add(fmt::format("frame {}", key.frame));
+  if (key.seed > 0) add(fmt::format("seed {}", key.seed));
+  return out;
+}
+
+std::string describe(const Point& point) { return describe(key_of(point)); }
+
+std::string LemmaScene::name() const {
+  return fmt::format("lemma:{}:{}:{}", generator, points, depth);
+}
+
+LemmaScene parse_lemma_scene(const std::string& text) {
+  const std::vector<std::string> words = split_list(text, ':');
+  if (words.size() == 4 && words[0] == "lemma") {
+    const auto points = parse_number<std::uint64_t>(words[2]);
+    const auto depth = parse_number<double>(words[3]);
+    if (points && depth) return {words[1], *points, *depth};
+  }
+  throw std::logic_error("parse_lemma_scene: " + text);
+}
+
+}  // namespace farcull

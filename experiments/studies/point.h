@@ -1,0 +1,119 @@
+// The points of studies: three kinds, each with the fields that it needs, and the columns by which
+// a store knows them.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "experiments/method/options.h"
+
+namespace farcull {
+
+/// A scene as on the command line.
+struct NamedScene {
+  std::string name;
+};
+/// A frame of a scene that moves. The same motion in more frames moves less from one to the next.
+struct MotionFrame {
+  std::string name;
+  long frame = 0;
+  long frames = 1;  // of the whole motion
+};
+/// A built-in scene whose vertices are all changed by the same number, a power of ten.
+struct ChangedScene {
+  std::string name;
+  enum class Change { offset, scale } change = Change::offset;  // offset: along (1, 1, 1)
+  int power = 0;                                                // the number is 10^power
+};
+/// A frame of the cloth of that name above its sphere, not tested against itself.
+struct ClothApart {
+  std::string name;
+  long frame = 0;
+};
+/// Segments that cross next to corners of pixels (pixel_corners() in point_scene.cpp).
+struct PixelCorners {};
+
+using PointScene = std::variant<NamedScene, MotionFrame, ChangedScene, ClothApart, PixelCorners>;
+
+/// A method of `farcull run`. What is empty is left to the method.
+struct RunPoint {
+  PointScene scene;
+  Method method = Method::far;
+  std::string offset = {};                       // obb or exact; of far
+  std::optional<RadiusRule> radius = {};         // of far
+  std::optional<DepthMode> depth_mode = {};      // how the depth of a fragment is made
+  std::optional<DepthFormat> depth_format = {};  // how the depth buffer holds it
+  int resolution = 0;                            // px; 0: none, or chosen by the scene
+  std::string views = {};
+  int repeat = 1;  // runs, the one with the median time counts; 1 for a MotionFrame
+};
+
+/// A library in place of a method (measure/peers/peer.h).
+struct PeerPoint {
+  PointScene scene;
+  std::string peer;
+  int repeat = 1;
+};
+
+/// The lemma experiment (lemma/lemma.h) with one generator at one radius.
+struct LemmaPoint {
+  std::string generator;     // one of lemma_generators()
+  std::uint64_t points = 0;  // of this generator, at least
+  double depth = 256;        // px, of the window
+  bool worst = false;        // on verify/worst_canvas.h, with what is drawn displaced as far as
+                             // double arithmetic may; else on the lab's device
+  RadiusRule radius = {};
+  DepthMode depth_mode = DepthMode::fragment;  // fixed: the boxes as surfaces
+  /// Given, or with fixed depth: the samples are what a buffer of this format holds; empty: what
+  /// the shader computes.
+  std::optional<DepthFormat> depth_format = {};
+  int side = 0;  // px, of the window; 0: the generator's own
+  std::uint64_t seed = 1;
+};
+
+using Point = std::variant<RunPoint, PeerPoint, LemmaPoint>;
+
+/// The columns by which a store knows a point. What does not apply is empty, 0 or -1; no two points
+/// of a grid have the same key.
+struct PointKey {
+  std::string scene = {};         // as on the command line, or as key_of() writes it
+  std::string method = {};        // as --method, a peer, "lemma" or "lemma-worst"
+  std::string offset = {};        // obb or exact
+  std::string radius = {};        // as --radius
+  std::string depth_format = {};  // float32 or fixed24
+  std::string depth_mode = {};    // fragment or fixed
+  int resolution = 0;             // px
+  std::string views = {};
+  long frame = -1;
+  std::uint64_t seed = 0;
+
+  auto operator<=>(const PointKey&) const = default;
+};
+
+PointKey key_of(const Point& point);
+std::vector<PointKey> keys_of(const std::vector<Point>& points);
+
+/// Names of the columns in the order of PointKey, for tables.
+const std::vector<std::string>& axis_names();
+/// The values of a key as text, in that order; empty where the column does not apply.
+std::vector<std::string> axis_values(const PointKey& key);
+/// In words, for progress and errors: "two-bunnies, cullide, 512 px".
+std::string describe(const PointKey& key);
+std::string describe(const Point& point);
+
+/// The column `scene` of a LemmaPoint: lemma:GENERATOR:POINTS:DEPTH.
+struct LemmaScene {
+  std::string generator;
+  std::uint64_t points = 0;
+  double depth = 256;
+
+  std::string name() const;
+};
+/// Precondition: the text is a name(); std::logic_error otherwise.
+LemmaScene parse_lemma_scene(const std::string& text);
+
+}  // namespace farcull

@@ -1,0 +1,234 @@
+// Writes a file beside its path and renames it, so that a reader sees the old file or the new one.
+// A file that grows is written once in this way; each addition then overwrites its end.
+#include "experiments/system/output_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "experiments/system/signals.h"
+
+namespace farcull {
+namespace {
+
+constexpr const char* kStdoutRemedy = "let it go somewhere, or write to a file with --json FILE";
+constexpr const char* kPathRemedy = "give a path in a folder with room that you may write to";
+
+[[noreturn]] void refuse(const std::string& path, int code) {
+  const bool standard = path == "-";
+  throw Error(standard ? "standard output" : path,
+              std::string("cannot be written: ") + std::strerror(code),
+              standard ? kStdoutRemedy : kPathRemedy);
+}
+
+// Where a path leads. Only a regular file, or none yet, can be put in place by renaming; anything
+// else takes the text as it comes.
+struct Target {
+  std::string path;
+  bool exists = false;
+  bool direct = false;
+  mode_t mode = 0;  // of what exists
+};
+
+Target target_of(const std::string& path) {
+  Target target{.path = path};
+  struct stat link = {}, status = {};
+  target.exists = ::stat(path.c_str(), &status) == 0;
+  const bool is_link = ::lstat(path.c_str(), &link) == 0 && S_ISLNK(link.st_mode);
+  // /dev/stdout is a link to whatever that is, perhaps a file that another program holds open.
+  const bool kernels = path.starts_with("/dev/") || path.starts_with("/proc/");
+  target.mode = status.st_mode;
+  target.direct = (target.exists && !S_ISREG(status.st_mode)) || (is_link && kernels);
+  if (is_link && target.exists && !target.direct)
+    target.path = std::filesystem::canonical(path).string();
+  return target;
+}
+
+std::string folder_of(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
+// Path of the file that is being written; empty between files.
+char half_written[4096] = "";
+
+extern "C" void remove_half_written(int signal) {
+  ::unlink(half_written);
+  SignalGuard::end_by(signal);
+}
+
+// A file that is being written. It is removed unless it is renamed into place: by the destructor,
+// or by the handler where a signal ends the program. One at a time.
+class HalfWritten {
+ public:
+  // Precondition: the path is shorter than half_written.
+  explicit HalfWritten(const std::string& path) : name_(path), signals_(remove_half_written) {}
+  ~HalfWritten() {
+    if (!in_place_) ::unlink(half_written);
+  }
+
+  int put(const std::string& place) {
+    in_place_ = std::rename(half_written, place.c_str()) == 0;
+    return in_place_ ? 0 : errno;
+  }
+
+ private:
+  // Sets half_written before the handler is installed, and clears it after the handler is gone.
+  struct Name {
+    explicit Name(const std::string& path) {
+      path.copy(half_written, path.size());
+      half_written[path.size()] = '\0';
+    }
+    ~Name() { half_written[0] = '\0'; }
+  };
+  Name name_;
+  SignalGuard signals_;
+  bool in_place_ = false;
+};
+
+// Writes all of the text and closes the file; 0 or the errno of the first failure.
+int write_and_close(std::FILE* file, const std::string& text, bool to_disk) {
+  int failure = 0;
+  if (std::fwrite(text.data(), 1, text.size(), file) != text.size() || std::fflush(file) != 0 ||
+      (to_disk && ::fsync(::fileno(file)) != 0)) {
+    failure = errno;
+  }
+  if (std::fclose(file) != 0 && failure == 0) failure = errno;
+  return failure;
+}
+
+// Writes all of the text, at a place of a file where `at` is not negative; 0 or the errno of the
+// first failure.
+int write_all(int file, const std::string& text, long long at) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t n = at < 0 ? ::write(file, text.data() + done, text.size() - done)
+                             : ::pwrite(file, text.data() + done, text.size() - done,
+                                        at + static_cast<long long>(done));
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return n < 0 ? errno : EIO;
+    done += static_cast<std::size_t>(n);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void check_output(const std::string& path) {
+  if (path == "-") {
+    const int flags = ::fcntl(STDOUT_FILENO, F_GETFL);
+    if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY) refuse(path, EBADF);
+    return;
+  }
+  const Target target = target_of(path);
+  if (S_ISDIR(target.mode)) refuse(path, EISDIR);
+  if (target.exists && ::access(target.path.c_str(), W_OK) != 0) refuse(path, errno);
+  if (!target.direct && ::access((folder_of(target.path) + "/").c_str(), W_OK | X_OK) != 0)
+    refuse(path, errno);
+}
+
+int replace_file(const std::string& path, const std::string& text) {
+  const std::string beside = path + ".part-" + std::to_string(::getpid());
+  if (beside.size() >= sizeof half_written) return ENAMETOOLONG;
+  struct stat status = {};
+  const bool exists = ::stat(path.c_str(), &status) == 0;
+  HalfWritten part(beside);
+  std::FILE* file = std::fopen(beside.c_str(), "wb");
+  if (file == nullptr) return errno;
+  if (exists) ::fchmod(::fileno(file), status.st_mode & 07777);
+  const int failure = write_and_close(file, text, true);
+  return failure != 0 ? failure : part.put(path);
+}
+
+void write_output(const std::string& path, const std::string& text) {
+  check_output(path);
+  if (path == "-") {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+      refuse(path, errno);
+    return;
+  }
+  const Target target = target_of(path);
+  int failure = 0;
+  if (target.direct) {
+    std::FILE* file = std::fopen(path.c_str(), "wb");
+    failure = file == nullptr ? errno : write_and_close(file, text, false);
+  } else {
+    failure = replace_file(target.path, text);
+  }
+  if (failure != 0) refuse(path, failure);
+}
+
+GrowingOutput::~GrowingOutput() {
+  try {
+    finish();
+  } catch (const Error&) {
+    // A destructor must not throw, and the text is whole without its last end.
+  }
+  if (file_ >= 0) ::close(file_);
+}
+
+void GrowingOutput::add(const std::string& text, const std::string& end) {
+  if (!begun_) {
+    check_output(path_);
+    streamed_ = path_ == "-" || target_of(path_).direct;
+    if (!streamed_) write_output(path_, text + end);
+    if (path_ != "-") {
+      file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+      if (file_ < 0) refuse(path_, errno);
+    }
+    begun_ = true;
+    if (!streamed_) {
+      kept_ = static_cast<long long>(text.size());
+      end_ = end;
+      return;
+    }
+  }
+  if (streamed_) {
+    end_ = end;
+    if (path_ == "-") {
+      write_output(path_, text);
+    } else if (const int failure = write_all(file_, text, -1)) {
+      refuse(path_, failure);
+    }
+    return;
+  }
+  if (const int failure = write_all(file_, text + end, kept_)) {
+    // The bytes of the end before are the file's own already, so a full disk takes them.
+    (void)write_all(file_, end_, kept_);
+    (void)!::ftruncate(file_, kept_ + static_cast<long long>(end_.size()));
+    refuse(path_, failure);
+  }
+  kept_ += static_cast<long long>(text.size());
+  end_ = end;
+  if (::ftruncate(file_, kept_ + static_cast<long long>(end_.size())) != 0) refuse(path_, errno);
+}
+
+void GrowingOutput::finish() {
+  if (!begun_ || std::exchange(finished_, true)) return;
+  if (!streamed_) {
+    if (::fsync(file_) != 0) refuse(path_, errno);
+  } else if (path_ == "-") {
+    write_output(path_, end_);
+  } else if (const int failure = write_all(file_, end_, -1)) {
+    refuse(path_, failure);
+  }
+}
+
+void prepare_output() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  // The next file that is opened would get the number of a closed stream, and the table would be
+  // written into it. A file that refuses reads or writes takes the number instead.
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) < 0)
+      (void)!::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
+}  // namespace farcull

@@ -1,0 +1,59 @@
+// Files that appear whole or not at all, and texts that grow during a long run and are whole after
+// each addition.
+#pragma once
+
+#include <string>
+#include <utility>
+
+namespace farcull {
+
+/// Throws Error naming the path if write_output would refuse it for what is known before anything
+/// is written: no such folder, a directory, no permission, a closed standard output. So a run of an
+/// hour does not end there.
+void check_output(const std::string& path);
+
+/// Writes the text beside the path and renames it into place; "-" is standard output. A symbolic
+/// link stays and its file is replaced; devices and pipes take the text as it comes. Throws Error
+/// naming the path where the disk, the folder or a closed pipe refuses. Nothing half-written is
+/// left, also where SIGINT, SIGTERM or SIGHUP ends the program meanwhile. SIGPIPE and SIGXFSZ have
+/// to be ignored for that (prepare_output()).
+void write_output(const std::string& path, const std::string& text);
+
+/// Writes the text to a new file beside `path`, an absolute or relative path that is no symbolic
+/// link, and renames it into place; a file that is replaced leaves its permissions. Returns 0 or
+/// the errno of the first failure. Nothing half-written is left, as by write_output(). One at a
+/// time in a process.
+int replace_file(const std::string& path, const std::string& text);
+
+/// Once, at the start of the program: a full disk and a closed pipe answer with an error instead of
+/// a signal, and standard streams that are closed do not let a file take their number.
+void prepare_output();
+
+/// A text that grows by additions and has an end, such as a JSON array with its brackets. After
+/// each addition a file holds everything up to there and the end, so whatever ends the program
+/// leaves a whole text; only a kill or a crash of the machine while an addition is written can cut
+/// it short. The first addition appears as write_output() does: what the path held is there until
+/// then. Standard output, devices and pipes take the additions as they come, and the end once.
+class GrowingOutput {
+ public:
+  /// Nothing is written before the first addition.
+  explicit GrowingOutput(std::string path) : path_(std::move(path)) {}
+  ~GrowingOutput();
+  GrowingOutput(const GrowingOutput&) = delete;
+  GrowingOutput& operator=(const GrowingOutput&) = delete;
+
+  /// Adds `text`; `end` takes the place of the end before. Throws Error as write_output() does; a
+  /// file then holds what it held before.
+  void add(const std::string& text, const std::string& end);
+  /// No addition will follow. The destructor does the same where it can, and says nothing.
+  void finish();
+
+ private:
+  std::string path_;
+  std::string end_;
+  bool begun_ = false, finished_ = false, streamed_ = false;
+  int file_ = -1;       // of a regular file, or of a device or pipe
+  long long kept_ = 0;  // bytes before the end
+};
+
+}  // namespace farcull
