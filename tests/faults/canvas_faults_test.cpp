@@ -9,10 +9,10 @@
 #include <regex>
 #include <sstream>
 
-#include "core/gl_canvas.h"
-#include "offsets/exact.h"
+#include "core/gl/canvas.h"
+#include "offsets/minkowski.h"
 #include "offsets/obb.h"
-#include "tests/core/gl_lab.h"
+#include "tests/core/gl/gl_lab.h"
 #include "tests/faults/outcomes.h"
 
 namespace farcull {
@@ -112,7 +112,7 @@ class CanvasFaults : public testing::TestWithParam<Setting> {
     return out;
   }
   void run_other() {
-    const Setting how{"other", setting.fattener == obb_fattener ? exact_fattener : obb_fattener,
+    const Setting how{"other", setting.fattener == obb_fattener ? minkowski_fattener : obb_fattener,
                       setting.options};
     const Cells cells(how, 32, 5);
     if (!other) open(other, how);
@@ -166,8 +166,8 @@ INSTANTIATE_TEST_SUITE_P(
     , CanvasFaults,
     testing::Values(Setting{"ObbFlags", obb_fattener, {}},
                     Setting{"ObbOcclusion", obb_fattener, kOcclusion},
-                    Setting{"ExactFlags", exact_fattener, {}},
-                    Setting{"ExactOcclusion", exact_fattener, kOcclusion},
+                    Setting{"ExactFlags", minkowski_fattener, {}},
+                    Setting{"ExactOcclusion", minkowski_fattener, kOcclusion},
                     Setting{"ObbOcclusion24", obb_fattener, kOcclusion24},
                     Setting{"RawFlags", raw_triangles, {}},
                     Setting{"RawOcclusion", raw_triangles, kOcclusion},
@@ -177,7 +177,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Setting{"RawOcclusionBehindOnly", raw_triangles, kOcclusion, false}),
     [](const auto& info) { return info.param.name; });
 
-// What the lemmas' tests and pictures read.
+// Depths and samples, which the lemmas' tests and pictures read.
 TEST(CanvasSampleFaults, EveryLostCallIsNoticed) {
   const Setting setting{"obb", obb_fattener, {}};
   const Cells cells(setting, 24, 10);
@@ -239,9 +239,9 @@ std::set<std::string> unlisted_calls(const std::string& text) {
 }
 
 TEST(CanvasFaultList, HasEveryCallOfTheSources) {
-  const std::regex ours("gl_(canvas|objects|pairs|context).*");
+  const std::regex ours("(canvas|objects|pairs|context).*");
   int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(FARCULL_TEST_DIR "/../core")) {
+  for (const auto& entry : std::filesystem::directory_iterator(FARCULL_TEST_DIR "/../core/gl")) {
     const std::string name = entry.path().filename().string();
     if (!std::regex_match(name, ours)) continue;
     ++files;

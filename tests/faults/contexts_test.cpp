@@ -10,9 +10,9 @@
 #include <random>
 #include <thread>
 
-#include "core/error.h"
-#include "core/gl_canvas.h"
-#include "experiments/builtin_scenes.h"
+#include "core/base/error.h"
+#include "core/gl/canvas.h"
+#include "experiments/scenes/builtin/scenes.h"
 #include "tests/faults/flat_scene.h"
 
 namespace farcull {

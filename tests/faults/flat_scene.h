@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "core/scene.h"
-#include "experiments/farcull.h"
+#include "core/scene/scene.h"
+#include "experiments/library/farcull.h"
 #include "verify/exact.h"
 
 namespace farcull::lab {

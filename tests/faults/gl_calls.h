@@ -7,10 +7,13 @@
 
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <type_traits>
 #include <vector>
+
+#include "core/gl/entry_point.h"
 
 namespace farcull::lab {
 
@@ -38,7 +41,7 @@ struct GlCalls {
   }
   static void stop() { fault = GlFault::none; }
 
-  /// Whether this call of `name` does nothing.
+  /// True where this call of `name` does nothing.
   static bool lost(const char* name, bool allocates) {
     const long call = calls++;
     const long allocation = allocates ? allocations++ : -1;
@@ -57,32 +60,21 @@ struct GlHook;
 
 template <auto* Pointer, class Result, class... Arguments>
 struct GlHook<Pointer, Result (*)(Arguments...)> {
-  static inline Result (*original)(Arguments...) = nullptr;
+  using Entry = GlEntryPoint<Pointer>;
+  static inline std::optional<Entry> entry;
   static inline const char* name = nullptr;
   static inline bool allocates = false;
 
   static Result call(Arguments... arguments) {
     if (GlCalls::lost(name, allocates)) return Result();
-    // The first call of a function resolves it: libepoxy puts what it found into its pointer, and
-    // calls it from there.
-    *Pointer = original;
-    struct Again {
-      ~Again() {
-        original = *Pointer;
-        *Pointer = &call;
-      }
-    } again;
-    return original(arguments...);
+    return Entry::original(arguments...);
   }
   static void install(const char* function, bool memory) {
     name = function;
     allocates = memory;
-    original = *Pointer;
-    *Pointer = &call;
+    entry.emplace(&call);
   }
-  static void remove() {
-    if (original != nullptr) *Pointer = original;
-  }
+  static void remove() { entry.reset(); }
 };
 
 // Functions that change GL's state or data, or bring data back.
@@ -143,7 +135,7 @@ inline std::set<std::string> hooked_gl_calls() {
   };
 }
 
-/// What became of one fault.
+/// The outcome of one fault.
 struct GlFaultOutcome {
   long at = 0;
   std::string function;

@@ -1,4 +1,4 @@
-// What a test of faults expects of every outcome, and the numbers it prints.
+// A test of faults expects this of every outcome, and prints these numbers.
 #pragma once
 
 #include <gtest/gtest.h>

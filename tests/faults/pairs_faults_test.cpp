@@ -10,12 +10,12 @@
 #include <set>
 #include <string>
 
-#include "core/gl_context.h"
-#include "core/gl_echo.h"
-#include "core/gl_pairs.h"
-#include "experiments/builtin_scenes.h"
-#include "tests/core/pairs_lab.h"
-#include "tests/core/repeated_scenes.h"
+#include "core/gl/context.h"
+#include "core/gl/echo.h"
+#include "core/gl/pairs.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/core/pairs/pairs_lab.h"
+#include "tests/core/pairs/repeated_scenes.h"
 #include "tests/faults/flat_scene.h"
 #include "tests/faults/outcomes.h"
 
@@ -93,8 +93,8 @@ TEST(PairsFaultsTwin, AnUncheckedProgramGivesWrongAnswers) {
   EXPECT_GE(wrong, 3u);
 }
 
-// What two spheres do not need: crowded pixels that are cut, large triangles, pairs that repeat,
-// and a window in parts, whose triangles are sent piece by piece.
+// Parts that two spheres do not need: crowded pixels that are cut, large triangles, pairs that
+// repeat, and a window in parts, whose triangles are sent piece by piece.
 struct Hard {
   const char* name;
   Scene scene;

@@ -1,8 +1,8 @@
 // A session of runs in which an allocation of a device fails: the runs after it are right.
 #include <gtest/gtest.h>
 
-#include "experiments/builtin_scenes.h"
-#include "experiments/run.h"
+#include "experiments/method/run.h"
+#include "experiments/scenes/builtin/scenes.h"
 #include "tests/faults/outcomes.h"
 
 namespace farcull {
@@ -19,11 +19,11 @@ TEST(SessionFaults, ASessionGoesOnAfterAFailure) {
     options.resolution = 32;
     options.verify = false;
     Session session("software");
-    const auto right = run_scene(scene, options, session).pairs;
+    const auto right = run(scene, options, session).collisions.pairs;
     ASSERT_GT(right.size(), 0u);
     const auto outcomes = lab::try_gl_faults(
         GlFault::out_of_memory, [&] { session.forget_device(); },
-        [&] { return run_scene(scene, options, session).pairs == right; });
+        [&] { return run(scene, options, session).collisions.pairs == right; });
     EXPECT_GT(outcomes.size(), 4u);
     for (const GlFaultOutcome& o : outcomes) EXPECT_TRUE(o.threw) << o.at;
     lab::expect_no_wrong_answer("failed allocations of a session", outcomes);

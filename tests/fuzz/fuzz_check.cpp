@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "tests/fuzz/target.h"
-#include "verify/certificate.h"
+#include "verify/certificate/certificate.h"
+#include "verify/certificate/pair_list.h"
 #include "verify/exact.h"
-#include "verify/pair_list.h"
 
 namespace farcull {
 namespace {

@@ -6,9 +6,9 @@
 #include <set>
 #include <string_view>
 
-#include "experiments/mesh.h"
-#include "experiments/mesh_text.h"
-#include "experiments/scene_build.h"
+#include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/mesh/text.h"
 #include "tests/fuzz/target.h"
 
 namespace farcull {

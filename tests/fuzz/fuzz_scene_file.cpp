@@ -2,8 +2,8 @@
 #include <set>
 #include <string>
 
-#include "experiments/mesh_text.h"
-#include "experiments/scene_file.h"
+#include "experiments/scenes/mesh/text.h"
+#include "experiments/scenes/scene_file.h"
 #include "tests/fuzz/target.h"
 
 namespace farcull {

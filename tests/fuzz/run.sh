@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Fuzzes the readers of meshes and scene files and `check`, with clang's libFuzzer and the address
-# and undefined behaviour sanitizers, one target after the other:
+# Fuzzes the readers of meshes and scene files and `check`, one target after the other, with clang's
+# libFuzzer and the address and undefined behaviour sanitizers:
 #   tests/fuzz/run.sh [SECONDS]   seconds per target (default: 60)
-# It starts from tests/fuzz/corpus and what earlier runs added to build-fuzz/corpus. Exit status:
-# 0 nothing was found; 1 a finding, which is named (minimize it with the printed command, then add
-# it to the corpus); 2 it did not come to fuzzing.
+# It starts from tests/fuzz/corpus and from what earlier runs added to build-fuzz/corpus.
+# Exit status: 0 no error was found; 1 an error was found, and its input is named (minimize it with the
+# printed command, then add it to the corpus); 2 fuzzing did not start.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=../../experiments/setup.sh
@@ -13,7 +13,7 @@ cd "$farcull_root"
 
 seconds=${1:-60}
 if [[ ! $seconds =~ ^[1-9][0-9]{0,5}$ ]]; then
-  echo "fuzz: '$seconds' is no number of seconds" >&2
+  echo "fuzz: '$seconds' is not a number of seconds" >&2
   exit 2
 fi
 
@@ -23,13 +23,13 @@ farcull_build_beside build-fuzz "fuzz_mesh fuzz_scene_file fuzz_check" -DFARCULL
   -DFARCULL_TESTS=OFF -DCMAKE_CXX_COMPILER=clang++ \
   -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE="-O1 -g1"
 
-# fuzz TARGET CORPUS: prints what the target did; status 1 where something was found.
+# fuzz TARGET CORPUS: runs the target and prints its statistics; status 1 if it found an error.
 fuzz() {
   local corpus=build-fuzz/corpus/$2 log=build-fuzz/$1.log
   mkdir -p "$corpus" build-fuzz/findings
   echo "fuzz: $1 for $seconds s (all output: $log)"
-  # Hangs: an input of 4 KiB takes milliseconds. Memory: the targets hold every allocation against
-  # the size of the input; these limits catch what does not pass through operator new.
+  # The time limit finds hangs: an input of 4 KiB takes milliseconds. The targets compare every
+  # allocation with the size of the input; the memory limits find allocations without operator new.
   if ! "build-fuzz/tests/fuzz/$1" "$corpus" "tests/fuzz/corpus/$2" -dict="tests/fuzz/$2.dict" \
     -max_len=4096 -timeout=10 -malloc_limit_mb=64 -rss_limit_mb=2048 -max_total_time="$seconds" \
     -artifact_prefix="build-fuzz/findings/$1-" -print_final_stats=1 >"$log" 2>&1; then

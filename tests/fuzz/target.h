@@ -13,7 +13,7 @@
 #include <string>
 #include <utility>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "tests/fuzz/allocations.h"
 
 namespace farcull {

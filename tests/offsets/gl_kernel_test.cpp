@@ -7,16 +7,16 @@
 #include <cstdio>
 #include <limits>
 
-#include "offsets/exact.h"
+#include "offsets/minkowski.h"
 #include "offsets/obb.h"
-#include "tests/core/gl_lab.h"
-#include "tests/core/rational.h"
-#include "verify/exact_line.h"
+#include "tests/core/base/rational.h"
+#include "tests/core/gl/gl_lab.h"
+#include "verify/minkowski_line.h"
 
 namespace farcull {
 namespace {
 
-using exact_line::Answer;
+using minkowski_line::Answer;
 using rational::Random;
 
 constexpr int kSide = 256;
@@ -55,7 +55,7 @@ Cell random_cell(Random& random, int index, bool box) {
       break;
   }
   const double radius = random.below(8) == 0 ? 0 : 0.72;
-  return {cx, cy, box ? obb_of(t, radius) : exact_of(t[0], t[1], t[2], radius)};
+  return {cx, cy, box ? obb_of(t, radius) : minkowski_solid(t[0], t[1], t[2], radius)};
 }
 
 /// A proxy that is its pixel, a little larger.
@@ -104,7 +104,7 @@ Comparison compare(const Fattener& fattener, const Fattener& reference, std::uin
   }
   for (int i = 0; i < kSide * kSide; ++i) {
     const Cell& cell = out.cells[i];
-    const Answer a = exact_line::answer(reference.solid.interval, cell.cx, cell.cy, cell.solid);
+    const Answer a = minkowski_line::answer(reference.solid.interval, cell.cx, cell.cy, cell.solid);
     const Answer b{!std::isnan(entry[i]), entry[i], exit[i]};
     EXPECT_EQ(std::isnan(entry[i]), std::isnan(exit[i])) << "pixel " << i;
     out.cpp.push_back(a);
@@ -132,19 +132,19 @@ TEST(GlKernel, BoxAnswersTheSameBitsAsCpp) {
 // The exact kernel's normals are chosen in plain float arithmetic, which a device may fuse: then
 // both answers must hold the exact interval.
 TEST(GlKernel, ExactHoldsTheExactIntervalWhereItsBitsDiffer) {
-  const Comparison found = compare(exact_fattener(), exact_fattener(), 802);
+  const Comparison found = compare(minkowski_fattener(), minkowski_fattener(), 802);
   EXPECT_GT(found.hits, kSide * kSide / 4);
   EXPECT_LT(found.hits, kSide * kSide * 9 / 10);
   Random random(803);
-  exact_line::Tally tally;
+  minkowski_line::Tally tally;
   for (std::size_t i = 0; i < found.cells.size(); ++i) {
     const Cell& cell = found.cells[i];
-    const exact_line::Line line(cell.solid, cell.cx, cell.cy);
+    const minkowski_line::Line line(cell.solid, cell.cx, cell.cy);
     for (const Answer& a : {found.cpp[i], found.gl[i]}) {
       check_contacts(line, cell.solid, cell.cx, cell.cy, a, tally);
       const double u = random.uniform(0, 1), v = random.uniform(0, 1);
       check(line, cell.solid, cell.cx, cell.cy,
-            exact_line::weights(std::min(u, v), std::abs(u - v)), a, tally);
+            minkowski_line::weights(std::min(u, v), std::abs(u - v)), a, tally);
     }
   }
   EXPECT_EQ(tally.violations, 0) << "of " << tally.checks;
@@ -166,13 +166,13 @@ TEST(GlKernel, OneFloatMoreIsSeen) {
 
 // The exact kernel's program without its widening, on the device: the check above sees it.
 TEST(GlKernel, ExactWithoutWideningLosesPointsOnTheDevice) {
-  Fattener bare = exact_fattener();
+  Fattener bare = minkowski_fattener();
   bare.solid.glsl = "#define FAR_WIDEN 0.0f\n" + bare.solid.glsl;
-  const Comparison found = compare(bare, exact_fattener(), 802);
-  exact_line::Tally tally;
+  const Comparison found = compare(bare, minkowski_fattener(), 802);
+  minkowski_line::Tally tally;
   for (std::size_t i = 0; i < found.cells.size(); ++i) {
     const Cell& cell = found.cells[i];
-    const exact_line::Line line(cell.solid, cell.cx, cell.cy);
+    const minkowski_line::Line line(cell.solid, cell.cx, cell.cy);
     check_contacts(line, cell.solid, cell.cx, cell.cy, found.gl[i], tally);
   }
   EXPECT_GT(tally.violations, 1000);

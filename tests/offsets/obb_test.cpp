@@ -11,8 +11,8 @@
 #include <iostream>
 #include <limits>
 
-#include "core/glsl_shim.h"
-#include "tests/core/rational.h"
+#include "core/base/glsl_shim.h"
+#include "tests/core/base/rational.h"
 #include "verify/box_line.h"
 
 namespace farcull {
@@ -144,8 +144,8 @@ struct Tally {
   long hits = 0, misses = 0, exact = 0, violations = 0;
 };
 
-/// Whether the kernel's answer holds the exact interval. The double interval decides nearly always,
-/// since the widening is by 2^-20; where it does not, rationals do.
+/// True where the kernel's answer holds the exact interval. The double interval decides nearly
+/// always, since the widening is by 2^-20; where it does not, rationals do.
 void count(Kernel kernel, float cx, float cy, const Solid& solid, Tally& tally) {
   float entry = 0, exit = 0;
   const bool hit = kernel(cx, cy, solid, entry, exit);

@@ -1,3 +1,4 @@
+// Accounting puts every pair into the right class, and notices faults of its own steps.
 #include "verify/accounting.h"
 
 #include <gtest/gtest.h>
@@ -12,9 +13,8 @@
 #include <utility>
 
 #include "tests/verify/reference.h"
-#include "verify/accounting_parts.h"
 #include "verify/answers.h"
-#include "verify/box_pairs.h"
+#include "verify/certificate/box_pairs.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -339,7 +339,7 @@ TEST(AccountingTwin, AnAnswerThatIsNotGivenThrows) {
 
 TEST(AccountingTwin, AClassThatIsNotCountedThrows) {
   const Scene scene = scene_of_every_class();
-  AccountingParts parts{decide, pairs_with_overlapping_boxes};
+  AccountingSteps parts{decide, pairs_with_overlapping_boxes};
   const Accounting right = account(scene, {}, {}, parts);
   ASSERT_GE(right.neighbours, 1u);
   ASSERT_GE(right.certified_by_predicates, 1u);

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <limits>
 
-#include "experiments/pair_generators.h"
+#include "experiments/lemma/pair_generators.h"
 #include "tests/verify/reference.h"
 #include "verify/distance.h"
 #include "verify/exact.h"
 #include "verify/filter.h"
+#include "verify/filter_of_distance.h"
+#include "verify/filter_of_planes.h"
 
 namespace farcull {
 namespace {
@@ -118,7 +120,8 @@ void put_corners_close(PairRandom& random, PairOfTriangles& pair, double& cleara
 
 /// The filters at and around clearances that a pair of points of the triangles is apart by, and
 /// around the distance itself.
-Count count(const FilterBounds& bounds, int pairs, std::uint64_t seed) {
+template <class Bounds>
+Count count(int pairs, std::uint64_t seed) {
   PairRandom random(seed);
   Count out;
   for (int n = 0; n < pairs; ++n) {
@@ -140,25 +143,27 @@ Count count(const FilterBounds& bounds, int pairs, std::uint64_t seed) {
       ++out.decided;
       out.wrong += (triage == Triage::yes) != reference::within(pair.a, pair.b, clearance);
     };
-    check(filter_planes(pair.a, pair.b, clearance, bounds));
-    check(filter_within(pair.a, pair.b, clearance, bounds));
+    check(filters::filter_planes<Bounds>(pair.a, pair.b, clearance));
+    check(filters::filter_within<Bounds>(pair.a, pair.b, clearance));
   }
   return out;
 }
 
 TEST(ClearanceFilter, NeverContradictsExactArithmetic) {
-  const Count c = count(kFilterBounds, 3000, 1);
+  const Count c = count<FilterBounds>(3000, 1);
   EXPECT_EQ(c.wrong, 0);
   EXPECT_GT(c.decided, 1500);
 }
 
+struct NoPoint : FilterBounds {
+  static constexpr double point = 0;
+};
+struct NoGap : FilterBounds {
+  static constexpr double gap = 0;
+};
 TEST(ClearanceFilterTwin, WithoutItsBoundsItIsWrong) {
-  FilterBounds point;
-  point.point = 0;
-  EXPECT_GT(count(point, 3000, 1).wrong, 0);
-  FilterBounds gap;
-  gap.gap = 0;
-  EXPECT_GT(count(gap, 3000, 1).wrong, 0);
+  EXPECT_GT(count<NoPoint>(3000, 1).wrong, 0);
+  EXPECT_GT(count<NoGap>(3000, 1).wrong, 0);
 }
 
 TEST(ClearanceFilter, DecidesWhatIsNotClose) {

@@ -1,3 +1,4 @@
+// Kinds of contact, each from triangles made for it.
 #include "verify/contact.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/core/rational.h"
+#include "tests/core/base/rational.h"
 #include "tests/verify/reference.h"
 #include "verify/exact.h"
 

@@ -1,3 +1,4 @@
+// The exact predicates agree with rational arithmetic, degenerate triangles included.
 #include "verify/exact.h"
 
 #include <gtest/gtest.h>

@@ -9,9 +9,10 @@
 #include <limits>
 #include <string>
 
-#include "experiments/pair_generators.h"
+#include "experiments/lemma/pair_generators.h"
 #include "tests/verify/reference.h"
 #include "verify/exact.h"
+#include "verify/filter_of_planes.h"
 
 namespace farcull {
 namespace {
@@ -157,8 +158,8 @@ std::vector<std::pair<std::string, Make>> generators() {
 /// How the triangles of a generated pair are made to share corners.
 enum class Sharing { none, vertex, edge };
 
-Tally tally(const Make& make, Sharing sharing, int pairs, const FilterBounds& bounds,
-            std::uint64_t seed = 1) {
+template <class Bounds>
+Tally tally(const Make& make, Sharing sharing, int pairs, std::uint64_t seed = 1) {
   PairRandom random(seed);
   Tally out;
   for (int n = 0; n < pairs; ++n) {
@@ -171,15 +172,17 @@ Tally tally(const Make& make, Sharing sharing, int pairs, const FilterBounds& bo
     for (const Vec3& p : a) shared += std::find(b.begin(), b.end(), p) != b.end();
     switch (sharing) {
       case Sharing::none:
-        out.add(filter_planes(a, b, 0, bounds), [&] { return reference::intersects(a, b); });
+        out.add(filters::filter_planes<Bounds>(a, b, 0),
+                [&] { return reference::intersects(a, b); });
         break;
       case Sharing::vertex:
         if (shared == 1) {
-          out.add(filter_beyond_vertex(a[0], a[1], a[2], b[1], b[2], bounds), beyond);
+          out.add(filters::filter_beyond_vertex<Bounds>(a[0], a[1], a[2], b[1], b[2]), beyond);
         }
         break;
       case Sharing::edge:
-        if (shared == 2) out.add(filter_beyond_edge(a[0], a[1], a[2], b[2], bounds), beyond);
+        if (shared == 2)
+          out.add(filters::filter_beyond_edge<Bounds>(a[0], a[1], a[2], b[2]), beyond);
         break;
     }
   }
@@ -189,7 +192,7 @@ Tally tally(const Make& make, Sharing sharing, int pairs, const FilterBounds& bo
 TEST(Filter, NeverContradictsExactArithmetic) {
   for (const auto& [name, make] : generators()) {
     for (const Sharing sharing : {Sharing::none, Sharing::vertex, Sharing::edge}) {
-      const Tally t = tally(make, sharing, 500, kFilterBounds);
+      const Tally t = tally<FilterBounds>(make, sharing, 500);
       EXPECT_EQ(t.contradictions, 0) << name << " " << static_cast<int>(sharing);
     }
   }
@@ -205,7 +208,7 @@ TEST(Filter, DecidesWhatIsNotClose) {
     return pair;
   };
   for (const Sharing sharing : {Sharing::none, Sharing::vertex, Sharing::edge}) {
-    const Tally t = tally(random_pair, sharing, 2000, kFilterBounds);
+    const Tally t = tally<FilterBounds>(random_pair, sharing, 2000);
     EXPECT_EQ(t.decided(), 2000) << static_cast<int>(sharing);
     if (sharing == Sharing::edge) continue;  // where a collision takes four points in one plane
     EXPECT_GT(t.answers[0], 200);
@@ -241,32 +244,36 @@ TEST(Filter, SaysNothingWhereArithmeticOverflows) {
   EXPECT_FALSE(intersects(a, b));
 }
 
-int contradictions(Sharing sharing, const Make& make, const FilterBounds& bounds) {
+template <class Bounds>
+int contradictions(Sharing sharing, const Make& make) {
   int out = 0;
   for (std::uint64_t seed = 1; seed <= 100 && out == 0; ++seed) {
-    out += tally(make, sharing, 200, bounds, seed).contradictions;
+    out += tally<Bounds>(make, sharing, 200, seed).contradictions;
   }
   return out;
 }
 
+struct NoSide : FilterBounds {
+  static constexpr double side = 0;
+};
 TEST(FilterTwin, WithoutTheBoundOfSidesItIsWrong) {
-  FilterBounds bounds;
-  bounds.side = 0;
-  EXPECT_GT(contradictions(Sharing::none, nearly_coplanar, bounds), 0);
-  EXPECT_GT(contradictions(Sharing::vertex, nearly_coplanar, bounds), 0);
-  EXPECT_GT(contradictions(Sharing::edge, coplanar_and_long, bounds), 0);
+  EXPECT_GT(contradictions<NoSide>(Sharing::none, nearly_coplanar), 0);
+  EXPECT_GT(contradictions<NoSide>(Sharing::vertex, nearly_coplanar), 0);
+  EXPECT_GT(contradictions<NoSide>(Sharing::edge, coplanar_and_long), 0);
 }
 
+struct NoNormals : FilterBounds {
+  static constexpr double normals = 0;
+};
 TEST(FilterTwin, WithoutTheBoundOfNormalsItIsWrong) {
-  FilterBounds bounds;
-  bounds.normals = 0;
-  EXPECT_GT(contradictions(Sharing::edge, slivers_on_an_edge, bounds), 0);
+  EXPECT_GT(contradictions<NoNormals>(Sharing::edge, slivers_on_an_edge), 0);
 }
 
+struct NoAbsolute : FilterBounds {
+  static constexpr double absolute = 0;
+};
 TEST(FilterTwin, WithoutTheBoundOfUnderflowItIsWrong) {
-  FilterBounds bounds;
-  bounds.absolute = 0;
-  EXPECT_GT(contradictions(Sharing::none, extreme, bounds), 0);
+  EXPECT_GT(contradictions<NoAbsolute>(Sharing::none, extreme), 0);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What decides about kernels' answers: this CPU's are right, and answers that are a little too
+// The checks of kernels' answers: this CPU's are right, and answers that are a little too
 // narrow, far too wide, or no numbers are not.
 #include "verify/kernel_check.h"
 
@@ -8,8 +8,8 @@
 #include <functional>
 #include <limits>
 
-#include "core/interval.h"
-#include "offsets/exact.h"
+#include "core/pairs/interval.h"
+#include "offsets/minkowski.h"
 #include "offsets/obb.h"
 
 namespace farcull::lab {
@@ -19,7 +19,7 @@ inline float number(float x) { return x; }
 }  // namespace farcull::lab
 
 namespace farcull::interval {
-#include "tests/core/interval_evaluate.h"
+#include "tests/core/pairs/interval_evaluate.h"
 }
 
 namespace farcull {
@@ -49,9 +49,9 @@ KernelTally sums(const Change& change) {
     const bool direct = i % 3 == 0;
     const KernelTriangle t = kernel_triangle(3, i, c.cx, c.cy);
     c.solid = direct ? adversarial_minkowski(3, i, c.cx, c.cy)
-                     : exact_of(t.corners[0], t.corners[1], t.corners[2], t.radius);
+                     : minkowski_solid(t.corners[0], t.corners[1], t.corners[2], t.radius);
     SolidAnswer a{};
-    a.hit = exact_fattener().solid.interval(c.cx, c.cy, c.solid, a.entry, a.exit);
+    a.hit = minkowski_fattener().solid.interval(c.cx, c.cy, c.solid, a.entry, a.exit);
     change(a);
     check_minkowski(c, a, !direct && t.ordinary, tally);
   }

@@ -9,7 +9,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "experiments/pair_generators.h"
+#include "experiments/lemma/pair_generators.h"
 #include "tests/verify/reference.h"
 #include "verify/exact.h"
 

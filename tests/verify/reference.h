@@ -11,7 +11,7 @@
 #include <initializer_list>
 #include <vector>
 
-#include "core/scene.h"
+#include "core/scene/scene.h"
 
 namespace farcull::reference {
 
@@ -267,7 +267,7 @@ inline bool neighbours(const Scene& scene, const TrianglePair& pair) {
          share_position(scene.corners(pair.a), scene.corners(pair.b));
 }
 
-/// Whether a pair collides, as verify/exact.h says.
+/// True where a pair collides, as verify/exact.h says.
 inline bool collides(const Scene& scene, const TrianglePair& pair, double clearance) {
   const Triangle a = scene.corners(pair.a);
   const Triangle b = scene.corners(pair.b);

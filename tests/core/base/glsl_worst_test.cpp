@@ -1,0 +1,298 @@
+// The worst-case arithmetic against floats in all four rounding modes, and against rationals: a
+// Worst must hold every result that a device may give, and stay exact where a device must be.
+#include "core/base/glsl_worst.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <bit>
+#include <cfenv>
+#include <limits>
+
+#include "tests/core/base/rational.h"
+
+namespace farcull {
+namespace {
+
+using glsl_worst::Worst;
+using rational::Q;
+using rational::Random;
+
+constexpr int kModes[] = {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
+constexpr float kSmallest = 0x1p-126f;
+constexpr float kLargest = std::numeric_limits<float>::max();
+
+float flushed(float x) { return std::abs(x) < kSmallest ? 0.0f : x; }
+
+/// The operation on this machine's floats in one rounding mode. Through volatile operands and
+/// results, so that it cannot move out of the mode.
+float rounded(char operation, float a, float b, int mode) {
+  volatile float x = a, y = b, result = 0;
+  std::fesetround(mode);
+  switch (operation) {
+    case '+':
+      result = x + y;
+      break;
+    case '-':
+      result = x - y;
+      break;
+    case '*':
+      result = x * y;
+      break;
+    case '/':
+      result = x / y;
+      break;
+    default:
+      result = std::sqrt(x);
+  }
+  std::fesetround(FE_TONEAREST);
+  return result;
+}
+
+Worst worst(char operation, Worst a, Worst b) {
+  switch (operation) {
+    case '+':
+      return a + b;
+    case '-':
+      return a - b;
+    case '*':
+      return a * b;
+    case '/':
+      return a / b;
+    default:
+      return sqrt(a);
+  }
+}
+
+bool holds(Worst w, float x) { return w.lo() <= x && x <= w.hi(); }
+
+/// Division is only promised for divisors in [2^-126, 2^126], roots for what is not negative.
+bool defined(char operation, float a, float b) {
+  if (operation == '/') return std::abs(b) >= kSmallest && std::abs(b) <= 0x1p126f;
+  return operation != 'r' || a >= 0;
+}
+
+float any_float(Random& random) {
+  for (;;) {
+    const float x = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits() >> 32));
+    if (std::isfinite(x)) return x;
+  }
+}
+
+/// Numbers at the ends of binades, of the range and of the denormals; and any others.
+float operand(Random& random) {
+  static const float kHard[] = {0.0f,  -0.0f,     1.0f,       0x1p-126f,  0x1p-149f,
+                                3.0f,  0x1p-127f, kLargest,   0x1p-23f,   0x1.fffffep-127f,
+                                -1.0f, 0x1p64f,   0x1.8p-24f, 0x1p-100f,  -0x1.fffffep-1f,
+                                0.1f,  0x1p126f,  0x1p-63f,   0x1.8p-75f, 0x1.fffffep+0f};
+  float x = random.below(3) == 0 ? kHard[random.below(static_cast<int>(std::size(kHard)))]
+            : random.coin()      ? any_float(random)
+                                 : static_cast<float>(random.scaled(-30, 30));
+  if (random.below(4) == 0) x = std::nextafter(x, random.coin() ? kLargest : -kLargest);
+  return x;
+}
+
+/// A second operand that makes trouble with the first: cancels, is far smaller, is its neighbour or
+/// a power of two.
+float partner(Random& random, float a) {
+  switch (random.below(6)) {
+    case 0:
+      return -a;
+    case 1:
+      return std::nextafter(-a, random.coin() ? kLargest : -kLargest);
+    case 2:
+      return static_cast<float>(double(a) * random.scaled(-120, -20));
+    case 3:
+      return static_cast<float>(random.sign() * std::exp2(random.below(250) - 125));
+    default:
+      return operand(random);
+  }
+}
+
+/// Counts results of a rounding mode beyond the range that `claimed` says, over random operands.
+template <class Claim>
+long escapes(char operation, std::uint64_t seed, const Claim& claimed) {
+  Random random(seed);
+  long out = 0;
+  for (int n = 0; n < 400'000; ++n) {
+    const float a = operand(random), b = partner(random, a);
+    if (!defined(operation, a, b)) continue;
+    const Worst w = claimed(a, b);
+    for (const int mode : kModes) {
+      const float x = rounded(operation, a, b, mode);
+      if (std::isnan(x)) continue;
+      const bool held = holds(w, x) && holds(w, flushed(x));
+      if (!held && out++ == 0)
+        std::printf("first: %a %c %a = %a, not in [%a, %a]\n", a, operation, b, x, w.lo(), w.hi());
+    }
+  }
+  return out;
+}
+
+class Operations : public testing::TestWithParam<char> {};
+
+TEST_P(Operations, RangeHoldsAllFourRoundingModesAndFlushing) {
+  const char op = GetParam();
+  EXPECT_EQ(escapes(op, 701, [op](float a, float b) { return worst(op, a, b); }), 0);
+}
+
+// A range of one number, however well rounded, does not.
+TEST_P(Operations, TheNearestFloatAloneDoesNot) {
+  const char op = GetParam();
+  EXPECT_GT(escapes(op, 701, [op](float a, float b) { return rounded(op, a, b, FE_TONEAREST); }),
+            100'000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Worst, Operations, testing::Values('+', '-', '*', '/', 'r'),
+                         [](const auto& info) -> std::string {
+                           switch (info.param) {
+                             case '+':
+                               return "Sum";
+                             case '-':
+                               return "Difference";
+                             case '*':
+                               return "Product";
+                             case '/':
+                               return "Quotient";
+                             default:
+                               return "Root";
+                           }
+                         });
+
+// rapidcheck shrinks the bits: a counterexample is two short numbers.
+RC_GTEST_PROP(Worst, HoldsSumsAndProductsOfAnyTwoFloats, ()) {
+  const auto number = [] {
+    return rc::gen::suchThat(
+        rc::gen::map(rc::gen::arbitrary<std::uint32_t>(),
+                     [](std::uint32_t bits) { return std::bit_cast<float>(bits); }),
+        [](float x) { return std::isfinite(x); });
+  };
+  const float a = *number(), b = *number();
+  for (const char op : {'+', '-', '*'}) {
+    for (const int mode : kModes) {
+      const float x = rounded(op, a, b, mode);
+      RC_ASSERT(holds(worst(op, a, b), x));
+      RC_ASSERT(holds(worst(op, a, b), flushed(x)));
+    }
+  }
+}
+
+// The sum of two floats has up to 277 bits: double rounds it too, and must not then call it exact.
+TEST(Worst, ASumThatDoubleRoundsIsNotExact) {
+  for (const float tiny : {0x1p-60f, 0x1p-100f, -0x1p-60f, -0x1p-126f}) {
+    const Worst w = Worst(1.0f) + Worst(tiny);
+    EXPECT_TRUE(holds(w, rounded('+', 1, tiny, FE_UPWARD))) << tiny;
+    EXPECT_TRUE(holds(w, rounded('+', 1, tiny, FE_DOWNWARD))) << tiny;
+    EXPECT_LT(w.lo(), w.hi()) << tiny;
+  }
+}
+
+// A denormal may be flushed where it enters (GLSL 4.50, 4.7.1), before a product makes it large.
+TEST(Worst, ADenormalOperandMayBeZero) {
+  for (const float x : {0x1p-127f, -0x1p-149f, 0x1.8p-130f}) {
+    EXPECT_TRUE(holds(Worst(x), 0)) << x;
+    EXPECT_TRUE(holds(Worst(x) * Worst(0x1p100f), 0)) << x;
+    EXPECT_TRUE(holds(Worst(x) * Worst(0x1p100f), x * 0x1p100f)) << x;
+  }
+}
+
+// sqrt(x) is as good as 1 / inversesqrt(x): two units for the latter, two and a half for the
+// quotient (GLSL 4.50, 4.7.1).
+TEST(Worst, ARootMayErrAsTheReciprocalOfAnInverseRoot) {
+  Random random(702);
+  for (int n = 0; n < 100'000; ++n) {
+    const float a = static_cast<float>(std::abs(random.scaled(-60, 60)));
+    const Worst w = sqrt(Worst(a));
+    for (const int sign : {-1, 1}) {
+      const double inverse = (1 + sign * 2 * 0x1p-23) / std::sqrt(static_cast<double>(a));
+      const double root = (1 - sign * 2.5 * 0x1p-23) / inverse;
+      ASSERT_LE(double(w.lo()), root) << a;
+      ASSERT_GE(double(w.hi()), root) << a;
+    }
+  }
+}
+
+TEST(Worst, AQuotientMayErrByTwoAndAHalfUnits) {
+  Random random(703);
+  for (int n = 0; n < 100'000; ++n) {
+    const float a = static_cast<float>(random.scaled(-60, 60)),
+                b = static_cast<float>(random.scaled(-60, 60));
+    const Worst w = Worst(a) / Worst(b);
+    const Q exact = Q(a) / Q(b);
+    int exponent;
+    std::frexp(exact.get_d(), &exponent);
+    // One unit in the last place of the result's binade.
+    const Q error = Q(2.5) * Q(std::ldexp(1.0, exponent - 24));
+    ASSERT_LE(Q(w.lo()), exact - error) << a << " / " << b;
+    ASSERT_GE(Q(w.hi()), exact + error) << a << " / " << b;
+  }
+}
+
+// A kernel that compares, copies and scales exactly would otherwise lose its exact paths.
+TEST(Worst, ExactResultsStayExact) {
+  Random random(704);
+  long exact = 0;
+  for (int n = 0; n < 400'000; ++n) {
+    // Few bits, so that results are often floats.
+    const float a = std::ldexp(static_cast<float>(random.below(8191) - 4095), random.below(40)),
+                b = std::ldexp(static_cast<float>(random.below(2047) - 1023), random.below(40));
+    for (const char op : {'+', '-', '*'}) {
+      const Q truth = op == '+' ? Q(Q(a) + Q(b)) : op == '-' ? Q(Q(a) - Q(b)) : Q(Q(a) * Q(b));
+      const float x = static_cast<float>(truth.get_d());
+      if (Q(x) != truth) continue;
+      ++exact;
+      const Worst w = worst(op, a, b);
+      ASSERT_EQ(w.lo(), x) << a << op << b;
+      ASSERT_EQ(w.hi(), x) << a << op << b;
+    }
+  }
+  EXPECT_GT(exact, 200'000);
+}
+
+// Ranges as operands: any choice from them, in any mode, is held.
+TEST(Worst, RangesHoldTheResultsOfTheirMembers) {
+  Random random(705);
+  for (int n = 0; n < 200'000; ++n) {
+    const auto range = [&random] {
+      const Worst x(static_cast<float>(random.scaled(-30, 30))),
+          y(static_cast<float>(random.scaled(-30, 30)));
+      return random.coin() ? x * y : x + y * Worst(0.1f);
+    };
+    const auto member = [&random](Worst w) { return random.coin() ? w.lo() : w.hi(); };
+    const Worst a = range(), b = range();
+    const float x = member(a), y = member(b);
+    for (const char op : {'+', '-', '*', '/', 'r'}) {
+      const bool divides_by_zero = op == '/' && b.lo() <= 0 && b.hi() >= 0;
+      if (divides_by_zero || !defined(op, x, y)) continue;
+      for (const int mode : kModes)
+        ASSERT_TRUE(holds(worst(op, a, b), rounded(op, x, y, mode))) << x << op << y;
+    }
+    ASSERT_TRUE(holds(min(a, b), std::min(x, y)));
+    ASSERT_TRUE(holds(max(a, b), std::max(x, y)));
+    ASSERT_TRUE(holds(abs(a), std::abs(x)));
+    ASSERT_TRUE(holds(-a, -x));
+    ASSERT_TRUE(holds(a, fixed(a).lo()));
+    ASSERT_EQ(fixed(a).lo(), fixed(a).hi());
+  }
+}
+
+TEST(Worst, AComparisonIsTrueOnlyForEveryChoice) {
+  const Worst tenth = Worst(1.0f) / Worst(10.0f);
+  EXPECT_FALSE(tenth < Worst(0.1f));
+  EXPECT_FALSE(tenth > Worst(0.1f));
+  EXPECT_FALSE(tenth <= Worst(0.1f));
+  EXPECT_FALSE(tenth >= Worst(0.1f));
+  EXPECT_TRUE(tenth < Worst(0.11f));
+  EXPECT_TRUE(tenth > Worst(0.09f));
+  EXPECT_TRUE(Worst(1.0f) <= Worst(1.0f));
+  EXPECT_FALSE(Worst(1.0f) < Worst(1.0f));
+}
+
+TEST(Worst, RangesBeyondTheLargestFloatHoldInfinity) {
+  const Worst w = Worst(kLargest) * Worst(2.0f);
+  EXPECT_EQ(w.hi(), std::numeric_limits<float>::infinity());
+  EXPECT_EQ(w.lo(), kLargest);
+}
+
+}  // namespace
+}  // namespace farcull

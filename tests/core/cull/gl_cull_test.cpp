@@ -1,0 +1,104 @@
+// The CULLIDE family on the real rasterizer: both kinds of query give the same answers with any
+// primitive and either test, and Quick-CULLIDE is ahead of plain CULLIDE after every step.
+#include <gtest/gtest.h>
+
+#include "tests/core/cull/cull_lab.h"
+#include "tests/core/gl/gl_lab.h"
+
+namespace farcull {
+namespace {
+
+using lab::Drawing;
+using lab::Trace;
+
+Drawing on_gl(const Fattener& fattener, QueryMode query) {
+  return {fattener, std::make_shared<GlCanvas>(lab::context(), fattener.mode, fattener.solid,
+                                               GlCanvasOptions{.query = query})};
+}
+
+const std::vector<Fattener>& fatteners() {
+  static const std::vector<Fattener> all = {raw_triangles(), obb_fattener(), minkowski_fattener(),
+                                            obb_surface_fattener()};
+  return all;
+}
+
+TEST(GlCull, BothKindsOfQueryGiveTheSameAnswers) {
+  for (const Fattener& fattener : fatteners()) {
+    SCOPED_TRACE(fattener.name);
+    const Drawing flags = on_gl(fattener, QueryMode::flags);
+    const Drawing occlusion = on_gl(fattener, QueryMode::occlusion);
+    std::size_t steps = 0;
+    for (int n = 0; n < 12; ++n) {
+      const bool self = n % 3 == 0;
+      const Scene scene = lab::scene_of(lab::random_small(3000 + n, 60), self);
+      CullSettings settings = lab::cull_settings(flags, "x,y,1:2:3", n % 2 ? 24 : 128);
+      settings.self = self;
+      for (const bool touching : {false, true}) {
+        settings.touching = touching;
+        for (const PassRule& rule : {kQuickRule, kPlainRule}) {
+          const Trace a = lab::run_by(rule, scene, flags, settings);
+          const Trace b = lab::run_by(rule, scene, occlusion, settings);
+          ASSERT_EQ(a.steps.size(), b.steps.size());
+          for (std::size_t i = 0; i < a.steps.size(); ++i)
+            ASSERT_EQ(a.steps[i].bits, b.steps[i].bits) << n << ", " << a.steps[i].name;
+          steps += a.steps.size();
+        }
+      }
+    }
+    EXPECT_GT(steps, 200u);
+  }
+}
+
+// Two coplanar triangles: at one depth where they overlap, on any of the canvas's paths.
+TEST(GlCull, TouchingContactsAreKeptOrIgnoredAsAsked) {
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+  for (int i = 0; i < 2; ++i) {
+    objects[i].push_back({Vec3(0, 0, 0.5), Vec3(1, 0.25 * i, 0.5), Vec3(0.25 * i, 1, 0.5)});
+    for (const double z : {0.0, 1.0}) {
+      const Vec3 corner(z, z, z);  // gives the view a depth
+      objects[i].push_back({corner, corner, corner});
+    }
+  }
+  const Scene scene = lab::scene_of(objects);
+  const Fattener raw = raw_triangles();
+  for (const QueryMode query : {QueryMode::flags, QueryMode::occlusion}) {
+    const Drawing drawing = on_gl(raw, query);
+    CullSettings settings = lab::cull_settings(drawing, "z", 64);
+    EXPECT_EQ(lab::run_by(kQuickRule, scene, drawing, settings).result.live,
+              (std::vector<std::uint32_t>{0, 3}));
+    settings.touching = false;
+    EXPECT_TRUE(lab::run_by(kQuickRule, scene, drawing, settings).result.live.empty());
+  }
+}
+
+TEST(GlCull, QuickIsAheadOfPlainAfterEveryStep) {
+  for (const Fattener& fattener : {raw_triangles(), obb_fattener()}) {
+    const Drawing drawing = on_gl(fattener, QueryMode::flags);
+    for (int n = 0; n < 12; ++n) {
+      const Scene scene = lab::scene_of(lab::random_small(3100 + n, 80));
+      CullSettings settings = lab::cull_settings(drawing, "x,y,z", 64);
+      if (n % 2) settings.clusters.sizes = {4};
+      const Trace quick = lab::run_by(kQuickRule, scene, drawing, settings);
+      const Trace plain = lab::run_by(kPlainRule, scene, drawing, settings);
+      EXPECT_EQ(lab::first_step_behind(quick, plain), "") << fattener.name << ", " << n;
+    }
+  }
+}
+
+// Twins: a rule that does not ask FFV where it has something to gain falls behind.
+TEST(GlCull, ABrokenRuleFallsBehind) {
+  PassRule rule = kQuickRule;
+  rule.asks[1][kF] = false;
+  const Drawing drawing = on_gl(raw_triangles(), QueryMode::flags);
+  int behind = 0;
+  for (int n = 0; n < 12; ++n) {
+    const Scene scene = lab::scene_of(lab::random_small(3100 + n, 80));
+    const CullSettings settings = lab::cull_settings(drawing, "x,y,z", 64);
+    behind += lab::first_step_behind(lab::run_by(rule, scene, drawing, settings),
+                                     lab::run_by(kPlainRule, scene, drawing, settings)) != "";
+  }
+  EXPECT_GT(behind, 0);
+}
+
+}  // namespace
+}  // namespace farcull

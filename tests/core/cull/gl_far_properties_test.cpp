@@ -1,0 +1,30 @@
+// FAR as a property on the real rasterizer.
+#include "tests/core/cull/far_properties.h"
+#include "tests/core/gl/gl_lab.h"
+
+namespace farcull {
+namespace {
+
+lab::MakeCanvas canvases(const GlCanvasOptions& options = {}) {
+  return [options](const Fattener& fattener) {
+    return std::make_unique<GlCanvas>(lab::context(), fattener.mode, fattener.solid, options);
+  };
+}
+
+TEST(GlFarProperty, NoFamilyOfExtremeScenesLosesAPair) {
+  lab::expect_far_survives_all_families(canvases(), 250, "gl");
+}
+
+TEST(GlFarProperty, NorWithOcclusionQueriesOn24BitDepth) {
+  lab::expect_far_survives_all_families(
+      canvases({.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}), 15, "gl24");
+}
+
+TEST(GlFarProperty, EveryFamilyLosesPairsAtTheRadiusThatItNames) {
+  lab::expect_every_family_loses_pairs(canvases(), "gl");
+}
+
+TEST(GlFarProperty, KeptCasesStayMended) { EXPECT_GT(lab::replay_cases(canvases()), 0); }
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,261 @@
+// The GL canvas does what core/canvas/canvas.h specifies, and notices every fault of assumption A7.
+#include <gtest/gtest.h>
+
+#include <cfenv>
+#include <cfloat>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/gl/driver_fault.h"
+#include "offsets/obb.h"
+#include "tests/core/gl/gl_lab.h"
+#include "tests/core/gl/reversed_depth.h"
+
+namespace farcull {
+namespace {
+
+using lab::Random;
+
+// Two layers of small triangles, near (z = -10) in item 2i and far (z = 10) in item 2i + 1, on a
+// grid of cells.
+struct Layers {
+  Window window = lab::window(64);
+  std::vector<Patch> patches;
+
+  Layers() {
+    for (int y = -24; y <= 24; y += 8) {
+      for (int x = -24; x <= 24; x += 8) {
+        for (const double z : {-10.0, 10.0}) {
+          patches.push_back(lab::patch({Vec3(x, y, z), Vec3(x + 2, y, z), Vec3(x, y + 2, z)}));
+        }
+      }
+    }
+  }
+  int cells() const { return static_cast<int>(patches.size()) / 2; }
+
+  // Stores one layer, then asks the other, a slot per cell.
+  Pass pass(const Drawables& drawables, int stored, int asked) const {
+    Pass p;
+    for (int i = 0; i < cells(); ++i) lab::add(p.draws, drawables, 2 * i + stored, 0);
+    const auto middle = static_cast<std::uint32_t>(p.draws.size());
+    for (int i = 0; i < cells(); ++i) lab::add(p.draws, drawables, 2 * i + asked, i);
+    p.slots = cells();
+    p.steps = {{Verb::store, 0, middle},
+               {Verb::ask, middle, static_cast<std::uint32_t>(p.draws.size()) - middle}};
+    return p;
+  }
+};
+
+struct Setting {
+  const char* name;
+  Fattener (*fattener)();
+  GlCanvasOptions options;
+};
+
+std::vector<Setting> settings() {
+  return {{"flags", obb_fattener, {}},
+          {"occlusion", obb_fattener, {.query = QueryMode::occlusion}},
+          {"occlusion24",
+           obb_fattener,
+           {.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}},
+          {"raw flags", raw_triangles, {}},
+          {"raw occlusion24",
+           raw_triangles,
+           {.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}},
+          {"surface occlusion", obb_surface_fattener, {.query = QueryMode::occlusion}},
+          {"small blocks flags", obb_fattener, {.storage_limit = 500}},
+          {"small blocks occlusion",
+           obb_surface_fattener,
+           {.query = QueryMode::occlusion, .storage_limit = 500}}};
+}
+
+TEST(GlCanvas, SeesWhatIsBehindAndNotWhatIsInFront) {
+  const Layers layers;
+  for (const Setting& setting : settings()) {
+    SCOPED_TRACE(setting.name);
+    const Fattener fattener = setting.fattener();
+    GlCanvas canvas(lab::context(), fattener.mode, fattener.solid, setting.options);
+    const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
+    canvas.begin(layers.window, drawables);
+    EXPECT_EQ(canvas.run(layers.pass(drawables, 0, 1)),
+              std::vector<std::uint8_t>(layers.cells(), 1));
+    EXPECT_EQ(canvas.run(layers.pass(drawables, 1, 0)),
+              std::vector<std::uint8_t>(layers.cells(), 0));
+    EXPECT_EQ(canvas.run(layers.pass(drawables, 0, 0)),
+              std::vector<std::uint8_t>(layers.cells(), 1))
+        << "equal depths must be seen";
+  }
+}
+
+TEST(GlCanvas, NothingIsSeenWhereNothingIsStored) {
+  const Layers layers;
+  for (const Setting& setting : settings()) {
+    SCOPED_TRACE(setting.name);
+    const Fattener fattener = setting.fattener();
+    GlCanvas canvas(lab::context(), fattener.mode, fattener.solid, setting.options);
+    const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
+    canvas.begin(layers.window, drawables);
+    Pass pass;  // only the first cell is stored
+    lab::add(pass.draws, drawables, 0, 0);
+    const auto middle = static_cast<std::uint32_t>(pass.draws.size());
+    for (int i = 0; i < layers.cells(); ++i) lab::add(pass.draws, drawables, 2 * i + 1, i);
+    pass.slots = layers.cells();
+    pass.steps = {{Verb::store, 0, middle},
+                  {Verb::ask, middle, static_cast<std::uint32_t>(pass.draws.size()) - middle}};
+    const std::vector<std::uint8_t> seen = canvas.run(pass);
+    EXPECT_EQ(seen[0], 1);
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), 1);
+  }
+}
+
+TEST(GlCanvas, StoringEverywhereHidesAll) {
+  const Layers layers;
+  for (const Setting& setting : settings()) {
+    SCOPED_TRACE(setting.name);
+    const Fattener fattener = setting.fattener();
+    GlCanvas canvas(lab::context(), fattener.mode, fattener.solid, setting.options);
+    const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
+    canvas.begin(layers.window, drawables);
+    Pass pass;
+    pass.draws.push_back({kEverywhere, 0});
+    for (int i = 0; i < layers.cells(); ++i) lab::add(pass.draws, drawables, 2 * i, i);
+    pass.slots = layers.cells();
+    pass.steps = {{Verb::store, 0, 1},
+                  {Verb::ask, 1, static_cast<std::uint32_t>(pass.draws.size()) - 1}};
+    EXPECT_EQ(canvas.run(pass), std::vector<std::uint8_t>(layers.cells(), 1));
+  }
+}
+
+TEST(GlCanvas, SeveralStoresAddUp) {
+  const Layers layers;
+  const Fattener fattener = obb_fattener();
+  for (const QueryMode query : {QueryMode::flags, QueryMode::occlusion}) {
+    GlCanvas canvas(lab::context(), fattener.mode, fattener.solid, {.query = query});
+    const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
+    canvas.begin(layers.window, drawables);
+    // Cell after cell: ask the far item of all cells so far, then store the near one of the next.
+    Pass pass;
+    std::vector<std::uint8_t> expected;
+    for (int i = 0; i < layers.cells(); ++i) {
+      auto first = static_cast<std::uint32_t>(pass.draws.size());
+      lab::add(pass.draws, drawables, 2 * i, 0);
+      pass.steps.push_back(
+          {Verb::store, first, static_cast<std::uint32_t>(pass.draws.size()) - first});
+      first = static_cast<std::uint32_t>(pass.draws.size());
+      for (const int cell : {0, i, layers.cells() - 1}) {
+        if (cell == 0 && i == 0) continue;
+        lab::add(pass.draws, drawables, 2 * cell + 1, static_cast<std::uint32_t>(expected.size()));
+        expected.push_back(cell <= i);
+        if (cell == layers.cells() - 1 && i == cell) break;
+      }
+      pass.steps.push_back(
+          {Verb::ask, first, static_cast<std::uint32_t>(pass.draws.size()) - first});
+    }
+    pass.slots = static_cast<std::uint32_t>(expected.size());
+    EXPECT_EQ(canvas.run(pass), expected);
+  }
+}
+
+TEST(GlCanvas, ReversedDepthTestIsADefectThatShows) {
+  const Layers layers;
+  const Fattener fattener = obb_fattener();
+  const lab::ReversedDepth reversed;
+  GlCanvas canvas(lab::context(), fattener.mode, fattener.solid);
+  const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
+  canvas.begin(layers.window, drawables);
+  EXPECT_THROW(canvas.run(layers.pass(drawables, 0, 1)), Error)
+      << "a depth test that stores nothing loses the control item";
+}
+
+TEST(GlCanvas, NoticesEveryFault) {
+  const Layers layers;
+  const Fattener fattener = obb_fattener();
+  const std::pair<QueryMode, DriverFaultKind> faults[] = {
+      {QueryMode::flags, DriverFaultKind::lost_draw},
+      {QueryMode::flags, DriverFaultKind::lost_dispatch},
+      {QueryMode::flags, DriverFaultKind::oversized_dispatch},
+      {QueryMode::flags, DriverFaultKind::unfinished_item},
+      {QueryMode::occlusion, DriverFaultKind::lost_draw},
+      {QueryMode::occlusion, DriverFaultKind::lost_query},
+      {QueryMode::occlusion, DriverFaultKind::blind_queries}};
+  // The fourth dispatch of a pass is past the last one, which packs the flags.
+  for (std::size_t call = 0; call < 4; ++call) {
+    for (const auto& [query, kind] : faults) {
+      const bool of_dispatch = kind == DriverFaultKind::lost_dispatch ||
+                               kind == DriverFaultKind::oversized_dispatch ||
+                               kind == DriverFaultKind::unfinished_item;
+      if (call > 0 && !of_dispatch) continue;
+      SCOPED_TRACE(std::to_string(static_cast<int>(kind)) + " at " + std::to_string(call));
+      std::optional<DriverFault> fault(kind);
+      GlCanvas canvas(lab::context(), fattener.mode, fattener.solid, {.query = query});
+      const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
+      canvas.begin(layers.window, drawables);
+      const Pass pass = layers.pass(drawables, 0, 1);
+      const std::vector<std::uint8_t> right(layers.cells(), 1);
+      EXPECT_EQ(canvas.run(pass), right);
+      fault->strike(call);
+      if (call == 3) {
+        EXPECT_EQ(canvas.run(pass), right) << "a pass has three dispatches when nothing grows";
+        continue;
+      }
+      EXPECT_THROW(canvas.run(pass), Error);
+      fault.reset();
+      EXPECT_THROW(canvas.run(pass), std::logic_error) << "nothing is believed any more";
+      canvas.begin(layers.window, drawables);
+      EXPECT_EQ(canvas.run(pass), right) << "the pass after a fault is a clean one";
+    }
+  }
+}
+
+// A work item that does not finish is seen by the count, not by an echo that differs.
+TEST(GlCanvas, CountsFinishedItems) {
+  const Layers layers;
+  const Fattener fattener = obb_fattener();
+  DriverFault fault(DriverFaultKind::unfinished_item);
+  GlCanvas canvas(lab::context(), fattener.mode, fattener.solid);
+  const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
+  canvas.begin(layers.window, drawables);
+  fault.strike();
+  try {
+    canvas.run(layers.pass(drawables, 0, 1));
+    FAIL() << "the fault was not noticed";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("work items finished"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(GlCanvas, RefusesFlagsOn24BitDepth) {
+  const Fattener fattener = obb_fattener();
+  EXPECT_THROW(GlCanvas(lab::context(), fattener.mode, fattener.solid,
+                        {.depth_format = DepthFormat::fixed24}),
+               Error);
+}
+
+TEST(GlCanvas, LimitsComeFromTheDevice) {
+  const Fattener fattener = obb_fattener();
+  const GlCanvas canvas(lab::context(), fattener.mode, fattener.solid);
+  EXPECT_GE(canvas.limits().subpixel_bits, 4) << "OpenGL 4.3 promises four";
+  EXPECT_GE(canvas.limits().max_resolution, 4096);
+  EXPECT_LE(viewport_side(canvas.limits().max_resolution + 5), lab::context().info().max_viewport);
+}
+
+// Drivers flush subnormals in their own threads; if that leaked into ours, exact predicates and
+// outward rounding would silently lose their premises.
+TEST(GlCanvas, LeavesTheFloatingPointModeAlone) {
+  const Layers layers;
+  const Fattener fattener = obb_fattener();
+  GlCanvas canvas(lab::context(), fattener.mode, fattener.solid);
+  const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
+  canvas.begin(layers.window, drawables);
+  canvas.run(layers.pass(drawables, 0, 1));
+  volatile double smallest = DBL_TRUE_MIN;
+  volatile double two = 2;
+  EXPECT_GT(smallest * two, 0) << "subnormals are flushed";
+  EXPECT_EQ(std::fegetround(), FE_TONEAREST);
+}
+
+}  // namespace
+}  // namespace farcull

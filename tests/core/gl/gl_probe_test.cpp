@@ -1,0 +1,204 @@
+// Every probe of farcull doctor passes on the software device, and every one has a twin: a
+// deliberate defect under which it must fail.
+#include "core/gl/probe.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "tests/core/gl/reversed_depth.h"
+
+namespace farcull {
+namespace {
+
+const GlContext& context() {
+  static const GlContext context("software");
+  return context;
+}
+
+std::vector<ProbeResult> run(ProbeOptions options, const std::string& only) {
+  options.only = only;
+  return run_probes(context(), options);
+}
+
+// The names of the probes that fail.
+std::set<std::string> failures(const ProbeOptions& options, const std::string& only) {
+  std::set<std::string> out;
+  for (const ProbeResult& r : run(options, only)) {
+    EXPECT_EQ(r.assumption, only);
+    if (!r.pass) out.insert(r.name);
+  }
+  return out;
+}
+
+using Names = std::set<std::string>;
+
+TEST(GlProbe, EveryAssumptionIsProbedAndHolds) {
+  std::set<std::string> probed;
+  for (const ProbeResult& r : run({}, "")) {
+    EXPECT_TRUE(r.pass) << r.assumption << " " << r.name << ": " << r.measured << " > " << r.bound
+                        << " " << r.note;
+    EXPECT_GT(r.samples, 0u) << r.name;
+    EXPECT_LE(r.measured, r.bound) << r.name;
+    EXPECT_FALSE(r.name.empty() || r.unit.empty() || r.note.empty()) << r.name;
+    probed.insert(r.assumption);
+  }
+  EXPECT_EQ(probed, (std::set<std::string>{"A1", "A2", "A3", "A4", "A5", "A6", "A7", "A8"}));
+}
+
+TEST(GlProbe, OtherSeedsPassToo) {
+  for (const std::uint64_t seed : {2u, 77u}) {
+    ProbeOptions options;
+    options.seed = seed;
+    for (const ProbeResult& r : run(options, ""))
+      EXPECT_TRUE(r.pass) << "seed " << seed << ": " << r.assumption << " " << r.name << ": "
+                          << r.measured << " > " << r.bound << " " << r.note;
+  }
+}
+
+TEST(GlProbe, SameSeedMeasuresTheSame) {
+  const std::vector<ProbeResult> first = run({}, "A2"), again = run({}, "A2");
+  ASSERT_EQ(first.size(), again.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    EXPECT_EQ(first[i].measured, again[i].measured);
+    EXPECT_EQ(first[i].samples, again[i].samples);
+  }
+}
+
+// Displacements that are never zero: a probe whose edges all keep clear of pixel centres would
+// measure none.
+TEST(GlProbe, EdgesComeNearEnoughToMeasureSnapping) {
+  const std::vector<ProbeResult> snapping = run({}, "A2");
+  ASSERT_EQ(snapping.size(), 1u);
+  EXPECT_GT(snapping[0].measured, 0.9 * 0x1p-9);  // half a step of the 8 bits that llvmpipe has
+}
+
+TEST(GlProbe, FailsWhereSnappingIsCoarserThanTheBound) {
+  ProbeOptions options;
+  options.snap_bits = 12;
+  EXPECT_EQ(failures(options, "A2"), Names{"snapping"});
+  // The sides of large proxies are displaced by snapping, too; the vertex term leaves it out.
+  EXPECT_EQ(failures(options, "A1"), Names{"sides of large proxies"});
+}
+
+TEST(GlProbe, FailsWhereVertexArithmeticErrsMoreThanTheBound) {
+  ProbeOptions options;
+  options.no_vertex_term = true;
+  EXPECT_EQ(failures(options, "A1"), Names{"vertex arithmetic"});
+  options.snap_bits = 12;
+  EXPECT_EQ(failures(options, "A1"), (Names{"vertex arithmetic", "sides of large proxies"}));
+}
+
+TEST(GlProbe, FailsWhereATriangleOfTheSplitIsLost) {
+  ProbeOptions options;
+  options.dropped_triangle = true;
+  const Names failed = failures(options, "A3");
+  EXPECT_TRUE(failed.count("split quadrilaterals cover once"));
+  EXPECT_TRUE(failed.count("large quadrilaterals cover once"));
+  EXPECT_TRUE(failed.count("abutting triangles cover once"));
+  EXPECT_FALSE(failed.count("no area covers nothing"));
+}
+
+TEST(GlProbe, FailsWhereTrianglesWithoutAreaCover) {
+  ProbeOptions options;
+  options.fat_zero_area = true;
+  EXPECT_EQ(failures(options, "A3"), Names{"no area covers nothing"});
+}
+
+TEST(GlProbe, FailsWhereFragCoordNamesAnotherPixel) {
+  ProbeOptions options;
+  options.shifted_pixel = true;
+  EXPECT_TRUE(failures(options, "A3").count("gl_FragCoord names the pixel"));
+}
+
+TEST(GlProbe, FailsWhereArithmeticRoundsMoreThanTheBound) {
+  ProbeOptions options;
+  options.exact_arithmetic = true;
+  EXPECT_EQ(failures(options, "A4"),
+            (Names{"+ - * (fragment)", "+ - * (compute)", "division (fragment)",
+                   "division (compute)", "precise (fragment)", "precise (compute)"}));
+}
+
+TEST(GlProbe, FailsWithoutPrecise) {
+  ProbeOptions options;
+  options.loose_text = true;
+  EXPECT_EQ(failures(options, "A4"), (Names{"precise (fragment)", "precise (compute)"}));
+}
+
+TEST(GlProbe, FailsWhereOneBitIsDamaged) {
+  ProbeOptions options;
+  options.damaged_operand = true;
+  const Names failed = failures(options, "A4");
+  EXPECT_TRUE(failed.count("min, max, abs, comparisons, buffer reads (fragment)"));
+  EXPECT_TRUE(failed.count("min, max, abs, comparisons, buffer reads (compute)"));
+  EXPECT_TRUE(failed.count("flat varyings and uniforms"));
+}
+
+TEST(GlProbe, FailsWhereTheDepthMapIsNotMonotone) {
+  ProbeOptions options;
+  options.reversed_depth_map = true;
+  EXPECT_EQ(failures(options, "A4"), (Names{"depth map, 32F", "depth map, 24 bits"}));
+}
+
+TEST(GlProbe, FailsWhereTheDepthTestKeepsTheFarthest) {
+  const lab::ReversedDepth reversed;
+  EXPECT_EQ(failures({}, "A5"),
+            (Names{"depth test, 32F", "depth test, 24 bits", "canvas, flags, 32F",
+                   "canvas, occlusion queries, 32F", "canvas, occlusion queries, 24 bits"}));
+}
+
+TEST(GlProbe, FailsWhereQueriesAreBlind) {
+  ProbeOptions options;
+  options.blind_queries = true;
+  EXPECT_EQ(failures(options, "A6"),
+            (Names{"queries of single pixels", "areas, flags, 32F", "areas, occlusion queries, 32F",
+                   "areas, occlusion queries, 24 bits"}));
+}
+
+TEST(GlProbe, FailsWhereAFaultGoesUnnoticed) {
+  ProbeOptions options;
+  options.skipped_faults = true;
+  EXPECT_EQ(
+      failures(options, "A7"),
+      (Names{"faults are noticed, flags, 32F", "faults are noticed, occlusion queries, 32F",
+             "faults are noticed, occlusion queries, 24 bits", "faults are noticed, far-pairs"}));
+}
+
+TEST(GlProbe, FailsWhereATexelIsNotWhatWasStored) {
+  ProbeOptions options;
+  options.damaged_texel = true;
+  EXPECT_EQ(failures(options, "A5"), Names{"texels of the depth buffer, 32F"});
+}
+
+TEST(GlProbe, FailsWhereAtomicsLoseOrDouble) {
+  ProbeOptions options;
+  options.plain_atomics = true;
+  EXPECT_EQ(failures(options, "A8"), Names{"atomics"});
+}
+
+TEST(GlProbe, FailsWhereReadsComeBeforeWrites) {
+  ProbeOptions options;
+  options.unordered_reads = true;
+  EXPECT_EQ(failures(options, "A8"), (Names{"dispatch after dispatch", "dispatch after draw"}));
+}
+
+// FAR pairs relies on no rasterizer, and what it relies on is the same either way.
+TEST(GlProbe, PairsAloneRunWhatFarPairsReliesOn) {
+  std::set<std::string> all, alone;
+  for (const ProbeResult& r : run({.brief = true}, ""))
+    if (r.pairs) all.insert(r.assumption + " " + r.name);
+  for (const ProbeResult& r : run({.brief = true, .use = ProbeUse::drawing}, ""))
+    EXPECT_TRUE(r.drawing && r.name != "faults are noticed, far-pairs") << r.name;
+  for (const ProbeResult& r : run({.brief = true, .use = ProbeUse::pairs}, "")) {
+    EXPECT_TRUE(r.pass) << r.name << " " << r.note;
+    EXPECT_TRUE(r.pairs);
+    alone.insert(r.assumption + " " + r.name);
+  }
+  EXPECT_EQ(all, alone);
+  EXPECT_TRUE(alone.count("A8 atomics"));
+  EXPECT_TRUE(alone.count("A7 faults are noticed, far-pairs"));
+}
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,426 @@
+// FAR pairs on a GL device against the CPU's: the same candidates, entry for entry, whatever the
+// memory; nothing missed; and every fault of assumption A7 noticed.
+#include "core/gl/driver_fault.h"
+#include "core/gl/pairs.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/pairs/cpu.h"
+#include "core/pairs/pairs.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/core/cull/far_properties.h"
+#include "tests/core/gl/gl_lab.h"
+#include "tests/core/pairs/repeated_scenes.h"
+#include "tests/core/scene/scenes.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+using lab::Random;
+using lab::random_scene;
+using lab::scene_of;
+
+GlPairs& shared() {
+  static GlPairs backend(lab::context());
+  return backend;
+}
+
+Scene with_self(Scene scene, int every = 1) {
+  for (std::size_t o = 0; o < scene.objects.size(); o += every) scene.objects[o].self = true;
+  return scene;
+}
+
+// Both back ends on each task; counts where they differ.
+class Both final : public PairBackend {
+ public:
+  explicit Both(PairBackend& gl) : gl_(gl), cpu_(cpu_pair_backend(2)) {}
+  std::string name() const override { return "both"; }
+  std::vector<TrianglePair> raw_pairs(const PairTask& task, PairCounts& counts) override {
+    PairCounts on_cpu;
+    std::vector<TrianglePair> expected = cpu_->raw_pairs(task, on_cpu);
+    const std::vector<TrianglePair> found = gl_.raw_pairs(task, counts);
+    ++views;
+    pairs += expected.size();
+    crowded += on_cpu.crowded;
+    large += counts.large;
+    bands += counts.bands;
+    wrong += found != expected;
+    missing += static_cast<std::size_t>(
+        std::count_if(expected.begin(), expected.end(), [&](const TrianglePair& pair) {
+          return !std::binary_search(found.begin(), found.end(), pair);
+        }));
+    wrong_counts += counts.entries != on_cpu.entries || counts.crowded != on_cpu.crowded;
+    return found;
+  }
+
+  std::size_t views = 0, pairs = 0, crowded = 0, large = 0, bands = 0;
+  std::size_t wrong = 0;    // views where the pairs differ
+  std::size_t missing = 0;  // pairs of the CPU's that GL has not
+  std::size_t wrong_counts = 0;
+
+ private:
+  PairBackend& gl_;
+  std::unique_ptr<PairBackend> cpu_;
+};
+
+void expect_same(const Both& both) {
+  EXPECT_EQ(both.wrong, 0u) << both.missing << " pairs are missing";
+  EXPECT_EQ(both.wrong_counts, 0u);
+}
+
+PairSettings settings_of(std::uint64_t k) {
+  static const int resolutions[] = {0, 32, 1, 7, 100, 256, 1024};
+  static const char* views[] = {"", "z", "x,y,z", "1:1:0.5"};
+  static const double clearances[] = {0, 0, 0, 0x1p-10, 0.1};
+  PairSettings out{.resolution = resolutions[k % 7], .clearance = clearances[k % 5]};
+  if (*views[k % 4] != '\0') out.views = parse_views(views[k % 4]);
+  return out;
+}
+
+// Needles and crumbs in one corner of a pixel of a coarse view, deep enough for three cuts.
+Scene crowded_scene(std::uint64_t seed, int count) {
+  Random random(seed);
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(3);
+  for (auto& object : objects) {
+    object.push_back({Vec3(-1, -1, -1), Vec3(-1, -1, -1), Vec3(-1, -1, -1)});
+    object.push_back({Vec3(1, 1, 1), Vec3(1, 1, 1), Vec3(1, 1, 1)});
+    for (int i = 0; i < count; ++i) {
+      const double spread = std::exp2(-2 - 3 * random.below(4));
+      const Vec3 at = Vec3(0.3, 0.3, 0.1) + spread * Vec3(random.unit(), random.unit(), 0) +
+                      Vec3(0, 0, random.between(0, 0.5));
+      const double size = std::exp2(-4 - random.below(9));
+      const auto corner = [&] {
+        return Vec3(
+            at + size * Vec3(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)));
+      };
+      object.push_back({corner(), corner(), corner()});
+      if (i % 4 == 0) object.back()[2] = object.back()[1] + Vec3(1e-6, 0, 0);
+    }
+  }
+  return scene_of(objects);
+}
+
+// A bit of everything that takes programs of its own: rows, crowds, large triangles, self.
+Scene mixed_scene() {
+  Scene scene = crowded_scene(5, 600);
+  const auto v = static_cast<std::uint32_t>(scene.vertices.size());
+  scene.vertices.insert(scene.vertices.end(),
+                        {Vec3(-1, -1, 0.2), Vec3(1, -1, 0.1), Vec3(0, 1, 0.3), Vec3(-1, 0.9, 0),
+                         Vec3(0.9, -1, 0.5), Vec3(0.95, -1, 0.4)});
+  for (std::uint32_t t = 0; t < 2; ++t) {
+    scene.source_face.push_back(static_cast<std::uint32_t>(scene.triangles.size()));
+    scene.triangles.push_back({v + 3 * t, v + 3 * t + 1, v + 3 * t + 2});
+    ++scene.objects.back().triangle_count;
+  }
+  validate(scene, "test");
+  return scene;
+}
+
+TEST(GlPairs, EqualTheCpusOnRandomScenes) {
+  Both both(shared());
+  for (std::uint64_t seed = 0; seed < 140; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Scene scene = random_scene(seed);
+    if (seed % 3 == 1) scene = with_self(std::move(scene));
+    if (seed % 3 == 2) scene = with_self(std::move(scene), 2);
+    find_pairs(scene, settings_of(seed), both);
+    ASSERT_EQ(both.wrong, 0u);
+  }
+  expect_same(both);
+  EXPECT_GT(both.pairs, 10'000u);
+  EXPECT_GT(both.large, 0u);
+}
+
+TEST(GlPairs, EqualTheCpusOnBuiltInScenes) {
+  Both both(shared());
+  for (const char* name :
+       {"two-spheres", "random-soup", "needles", "degenerate", "ground", "crowd", "needles@far",
+        "needles@tiny", "two-spheres@ground", "degenerate@huge"}) {
+    const Scene scene = make_builtin_scene(name);
+    for (const int resolution : {0, 32, 256, 1024}) {
+      SCOPED_TRACE(std::string(name) + " at " + std::to_string(resolution));
+      find_pairs(scene, {.resolution = resolution}, both);
+      if (resolution <= 32) {
+        find_pairs(with_self(scene), {.views = parse_views("x,y,z"), .resolution = resolution},
+                   both);
+        const Box box = object_boxes(scene, triangle_boxes(scene))[0];
+        const double clearance = 0.01 * (box.hi - box.lo).maxCoeff();
+        find_pairs(scene, {.resolution = resolution, .clearance = clearance}, both);
+      }
+      ASSERT_EQ(both.wrong, 0u);
+    }
+  }
+  find_pairs(make_builtin_scene("needles"), {.resolution = 4096}, both);
+  expect_same(both);
+  EXPECT_GT(both.pairs, 10'000u);
+}
+
+TEST(GlPairs, EqualTheCpusInCrowdedPixels) {
+  Both both(shared());
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const Scene scene = crowded_scene(seed, 600 * static_cast<int>(seed));
+    for (const int resolution : {1, 4, 33}) {
+      find_pairs(seed % 2 == 0 ? scene : with_self(scene),
+                 {.views = parse_views("z,x"), .resolution = resolution}, both);
+    }
+  }
+  expect_same(both);
+  EXPECT_GT(both.crowded, 6u);
+}
+
+TEST(GlPairs, LeaveOutNeighboursLikeTheCpu) {
+  const auto cpu = cpu_pair_backend(2);
+  const Scene scene = with_self(make_builtin_scene("two-spheres"));
+  for (const bool neighbours : {true, false}) {
+    const PairSettings settings{.neighbours = neighbours};
+    const auto expected = find_pairs(scene, settings, *cpu).candidates;
+    EXPECT_EQ(find_pairs(scene, settings, shared()).candidates, expected);
+    EXPECT_GT(expected.size(), 100u);
+    GlPairs gathering(lab::context(), {.storage_limit = 100'000});
+    EXPECT_EQ(find_pairs(scene, settings, gathering).candidates, expected);
+  }
+}
+
+// Every pair that counts and collides, neighbours included.
+std::size_t missed(const Scene& scene, const PairSettings& settings, PairBackend& backend) {
+  const ExactResult exact = all_colliding_pairs(scene, {.clearance = settings.clearance});
+  std::vector<TrianglePair> truth = exact.pairs;
+  truth.insert(truth.end(), exact.neighbour_pairs.begin(), exact.neighbour_pairs.end());
+  const std::vector<TrianglePair> found = find_pairs(scene, settings, backend).candidates;
+  return static_cast<std::size_t>(
+      std::count_if(truth.begin(), truth.end(), [&](const TrianglePair& pair) {
+        return !std::binary_search(found.begin(), found.end(), pair);
+      }));
+}
+
+TEST(GlPairs, MissNothing) {
+  for (std::uint64_t seed = 200; seed < 320; ++seed) {
+    Scene scene = random_scene(seed);
+    if (seed % 2 == 0) scene = with_self(std::move(scene));
+    ASSERT_EQ(missed(scene, settings_of(seed), shared()), 0u) << "seed " << seed;
+  }
+}
+
+// Scenes where the error bounds are all that is left: contacts in one point, far from the origin.
+Scene touching_scene(std::uint64_t seed) {
+  Random random(seed);
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+  for (auto& object : objects) {
+    object.push_back({Vec3(-1, -1, -1), Vec3(-1, -1, -1), Vec3(-1, -1, -1)});
+    object.push_back({Vec3(1, 1, 1), Vec3(1, 1, 1), Vec3(1, 1, 1)});
+  }
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 q(random.between(-0.9, 0.9), random.between(-0.9, 0.9), random.between(-0.9, 0.9));
+    const auto away = [&] {
+      return Vec3(q + Vec3(random.between(-0.09, 0.09), random.between(-0.09, 0.09), 0));
+    };
+    Vec3 a = away(), b = away(), c = away(), d = away();
+    a.z() += random.between(0.001, 0.05);
+    b.z() += random.between(0.001, 0.05);
+    c.z() -= random.between(0.001, 0.05);
+    d.z() -= random.between(0.001, 0.05);
+    objects[0].push_back({q, a, b});
+    objects[1].push_back({q, c, d});
+  }
+  return scene_of(objects);
+}
+
+TEST(GlPairs, MissNoContactInOnePoint) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    for (const int resolution : {3, 64, 1000}) {
+      EXPECT_EQ(missed(touching_scene(seed),
+                       {.views = parse_views("1:2:3"), .resolution = resolution}, shared()),
+                0u);
+    }
+  }
+}
+
+// A device that sees every triangle a twentieth of a pixel too small.
+class Shrunk final : public PairBackend {
+ public:
+  std::string name() const override { return "shrunk"; }
+  std::vector<TrianglePair> raw_pairs(const PairTask& task, PairCounts& counts) override {
+    PairTask other = task;
+    other.widening = {-0.05f, -0.05f, -0.05f, 0};
+    return shared().raw_pairs(other, counts);
+  }
+};
+
+// The twin: intervals that are too short miss pairs, and the comparison with the CPU notices.
+TEST(GlPairs, TwinWithShortIntervalsMisses) {
+  Shrunk shrunk;
+  Both both(shrunk);
+  std::size_t lost = 0;
+  for (std::uint64_t seed = 200; seed < 230; ++seed) {
+    const PairSettings settings{.views = parse_views("z"), .resolution = 64};
+    lost += missed(random_scene(seed), settings, shrunk);
+    find_pairs(random_scene(seed), settings, both);
+  }
+  EXPECT_GT(lost, 0u);
+  EXPECT_GT(both.wrong, 0u);
+  EXPECT_GT(both.missing, 0u);
+}
+
+TEST(GlPairs, DoNotDependOnMemoryOrStorageBlocks) {
+  const GlPairOptions few[] = {{.memory = 60'000},
+                               {.memory = 4'000},
+                               {.storage_limit = 60'000},
+                               {.memory = 50'000, .storage_limit = 40'000}};
+  std::vector<Scene> scenes = {with_self(random_scene(11)), random_scene(3),
+                               make_builtin_scene("two-spheres"), crowded_scene(2, 60)};
+  for (const GlPairOptions& options : few) {
+    GlPairs tight(lab::context(), options);
+    Both both(tight);
+    for (const Scene& scene : scenes) {
+      find_pairs(scene, {.views = parse_views("1:1:0.5,z"), .resolution = 40}, both);
+    }
+    EXPECT_EQ(both.wrong, 0u);
+    EXPECT_GT(both.bands, 2 * both.views) << "the window was never split";
+  }
+}
+
+TEST(GlPairs, RefusePixelsBeyondAStorageBlock) {
+  GlPairs tight(lab::context(), {.storage_limit = 2'000});
+  EXPECT_THROW(find_pairs(crowded_scene(1, 100), {.resolution = 1}, tight), Error);
+  // And go on afterwards.
+  GlPairs& free = shared();
+  EXPECT_FALSE(find_pairs(crowded_scene(1, 100), {.resolution = 1}, free).candidates.empty());
+}
+
+// Where pairs repeat from pixel to pixel, each is emitted once, and the answer is that of every
+// pixel by itself: the CPU's with so little memory that it remembers nothing.
+TEST(GlPairs, EqualEveryPixelByItselfWherePairsRepeat) {
+  GlPairs tight(lab::context(), {.memory = 200'000});
+  std::size_t pairs = 0;
+  lab::for_each_task([&](const PairTask& task, const std::string& name) {
+    SCOPED_TRACE(name);
+    PairCounts counts;
+    const std::vector<TrianglePair> expected = cpu_pair_backend(1, 1)->raw_pairs(task, counts);
+    pairs += expected.size();
+    EXPECT_EQ(shared().raw_pairs(task, counts), expected);
+    EXPECT_EQ(tight.raw_pairs(task, counts), expected);
+  });
+  EXPECT_GT(pairs, 1'000'000u);
+}
+
+// The twin: bits of an earlier call make pairs disappear.
+TEST(GlPairsTwin, WithStaleBitsPairsAreLost) {
+  const Scene scene = lab::coincident(150, 0, 3);
+  const PairRegions regions = pair_regions(scene, 0, false, 1);
+  PairScene seen;
+  look(scene, regions, regions.triangles, pair_window(regions, parse_view("z"), 9, 0).value(), 1,
+       seen);
+  PairCounts counts;
+  GlPairs clean(lab::context());
+  EXPECT_EQ(clean.raw_pairs(seen.task, counts).size(), 150u * 150);
+  EXPECT_EQ(clean.raw_pairs(seen.task, counts).size(), 150u * 150);
+  const DriverFault fault(DriverFaultKind::kept_bits);
+  GlPairs stale(lab::context());
+  stale.raw_pairs(seen.task, counts);  // leaves the bits of all pairs
+  EXPECT_EQ(stale.raw_pairs(seen.task, counts).size(), 0u);
+}
+
+TEST(GlPairs, NoticeEveryFault) {
+  const Scene scene = mixed_scene();
+  const PairSettings settings{.views = parse_views("z"), .resolution = 24};
+  GlPairs backend(lab::context());
+  const PairResult clean = find_pairs(scene, settings, backend);
+  ASSERT_GT(clean.views[0].counts.crowded, 0u);
+  ASSERT_GT(clean.views[0].counts.large, 0u);
+  const std::size_t dispatches = backend.dispatches();
+  ASSERT_GT(dispatches, 20u);
+  // The first call grew buffers and repeated what did not fit.
+  find_pairs(scene, settings, backend);
+  const std::size_t again = backend.dispatches();
+  EXPECT_LE(again, dispatches);
+  // Each call of a fresh backend is like the first one.
+  const auto find_under = [&](DriverFaultKind kind, std::size_t at) {
+    DriverFault fault(kind, at);
+    GlPairs faulty(lab::context());
+    fault.strike(at);
+    return find_pairs(scene, settings, faulty).candidates;
+  };
+  for (const DriverFaultKind kind :
+       {DriverFaultKind::lost_dispatch, DriverFaultKind::oversized_dispatch,
+        DriverFaultKind::unfinished_item}) {
+    for (std::size_t at = 0; at < again; ++at) {
+      EXPECT_THROW(find_under(kind, at), Error)
+          << "fault " << static_cast<int>(kind) << " of dispatch " << at;
+    }
+  }
+  for (std::size_t at = 0; at < 50; ++at)
+    EXPECT_THROW(find_under(DriverFaultKind::wrong_count, 37 * at), Error) << "count " << 37 * at;
+  // The twin: a fault beyond the last dispatch is none.
+  EXPECT_EQ(find_under(DriverFaultKind::lost_dispatch, dispatches), clean.candidates);
+  // Nothing of a fault is left after it.
+  {
+    DriverFault fault(DriverFaultKind::lost_dispatch);
+    fault.strike(again / 2);
+    EXPECT_THROW(find_pairs(scene, settings, backend), Error);
+  }
+  EXPECT_EQ(find_pairs(scene, settings, backend).candidates, clean.candidates);
+}
+
+TEST(GlPairs, SendOnlyWhatChanged) {
+  GlPairs backend(lab::context());
+  Scene scene = make_builtin_scene("crowd");
+  const PairSettings settings{.views = parse_views("z"), .resolution = 64};
+  find_pairs(scene, settings, backend);
+  EXPECT_GT(backend.uploaded_bytes(), 20 * scene.triangles.size());
+  const auto before = find_pairs(scene, settings, backend).candidates;
+  EXPECT_EQ(backend.uploaded_bytes(), 0u);
+
+  // A vertex inside its object's box, so that window and limits stay.
+  const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
+  std::uint32_t moved = 0;
+  for (const std::uint32_t v : scene.triangles[0]) {
+    const Vec3& p = scene.vertices[v];
+    if ((p.array() > boxes[0].lo.array()).all() && (p.array() < boxes[0].hi.array()).all())
+      moved = v;
+  }
+  scene.vertices[moved] = 0.5 * (scene.vertices[moved] + 0.5 * (boxes[0].lo + boxes[0].hi));
+  Both both(backend);
+  find_pairs(scene, settings, both);
+  EXPECT_GT(backend.uploaded_bytes(), 0u);
+  EXPECT_LE(backend.uploaded_bytes(), std::size_t{128} << 10);
+  expect_same(both);
+}
+
+TEST(GlPairs, GiveTheSameFromRunToRun) {
+  const Scene scene = with_self(make_builtin_scene("random-soup"));
+  const auto first = find_pairs(scene, {}, shared()).candidates;
+  for (int run = 0; run < 5; ++run) EXPECT_EQ(find_pairs(scene, {}, shared()).candidates, first);
+}
+
+TEST(GlPairs, FindNothingWhereNothingIs) {
+  EXPECT_TRUE(find_pairs(scene_of({{}, {}}), {}, shared()).candidates.empty());
+  EXPECT_TRUE(find_pairs(scene_of({{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}}}), {}, shared())
+                  .candidates.empty());
+}
+
+TEST(GlPairsProperty, EqualTheCpusOnExtremeFamilies) {
+  Both both(shared());
+  for (const lab::Family& family : lab::families()) {
+    EXPECT_TRUE(rc::check(family.name, [&] {
+      const auto specs = *rc::gen::container<std::vector<lab::Spec>>(lab::spec());
+      Scene scene = lab::scene_of(specs, family);
+      const int kind = *rc::gen::inRange(0, 1000);
+      if (kind % 2 == 0) scene = with_self(std::move(scene), 1 + kind % 3);
+      PairSettings settings = settings_of(static_cast<std::uint64_t>(kind));
+      settings.clearance = 0;
+      const std::size_t before = both.wrong + both.wrong_counts;
+      const PairResult result = find_pairs(scene, settings, both);
+      RC_ASSERT(both.wrong + both.wrong_counts == before);
+    }));
+  }
+  expect_same(both);
+  EXPECT_GT(both.pairs, 1000u);
+}
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,128 @@
+// FAR pairs where one rule alone keeps a pair: each scene loses it when that rule is taken away.
+#include <algorithm>
+
+#include "tests/core/pairs/pairs_lab.h"
+
+namespace farcull {
+namespace {
+
+using lab::Changed;
+using lab::missed;
+using lab::Random;
+using lab::scene_of;
+using lab::truth_of;
+using Corners = std::array<Vec3, 3>;
+
+// Two objects with the same box, so that the pixel grid is known.
+std::vector<std::vector<Corners>> two_objects(const Vec3& lo, const Vec3& hi) {
+  return {{{lo, lo, lo}, {hi, hi, hi}}, {{lo, lo, lo}, {hi, hi, hi}}};
+}
+
+// Small triangles in a box, for each object in turn, that fill its pixels.
+void fill(std::vector<std::vector<Corners>>& objects, int count, const Vec3& lo, const Vec3& hi,
+          double size, Random& random) {
+  for (int n = 0; n < count; ++n) {
+    const Vec3 p(random.between(lo.x(), hi.x()), random.between(lo.y(), hi.y()),
+                 random.between(lo.z(), hi.z()));
+    objects[n % 2].push_back({p, p + Vec3(size, 0, size / 2), p + Vec3(0, size, size / 4)});
+  }
+}
+
+TEST(PairsEdges, NoViewResolvesWhatIsBeyondDouble) {
+  constexpr double m = 1.5e308;
+  const Scene scene = scene_of({{{Vec3(-m, 0, 0), Vec3(m, 0, 0), Vec3(0, m, m)}},
+                                {{Vec3(-m, -m, 0), Vec3(m, 1, 0), Vec3(0, m, 0)}}});
+  const auto backend = cpu_pair_backend(2);
+  ASSERT_EQ(truth_of(scene).size(), 1u);
+  EXPECT_EQ(missed(scene, {}, *backend), 0u);
+  EXPECT_EQ(find_pairs(scene, {}, *backend).stages.back().kind, StageKind::join);
+}
+
+TEST(PairsEdges, TheLeastClearanceIsOne) {
+  constexpr double least = 5e-324;
+  const Scene scene = scene_of({{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}},
+                                {{Vec3(0, 0, least), Vec3(1, 0, least), Vec3(0, 1, least)}}});
+  const auto backend = cpu_pair_backend(2);
+  ASSERT_EQ(truth_of(scene, least).size(), 1u);
+  EXPECT_EQ(missed(scene, {.clearance = least}, *backend), 0u);
+}
+
+// Two whole triangles that start in a crowded pixel, where finer intervals part them, and meet in
+// the next one.
+TEST(PairsEdges, APairThatMeetsBesideACrowdedPixel) {
+  Random random(3);
+  auto objects = two_objects(Vec3(0, 0, -1), Vec3(8, 8, 2));
+  fill(objects, 3000, Vec3(3.02, 3.02, 0), Vec3(3.96, 3.96, 1), 0.02, random);
+  objects[0].push_back({Vec3(3.2, 3.2, 0), Vec3(4.8, 3.2, 1), Vec3(4.8, 3.8, 1)});
+  objects[1].push_back({Vec3(3.2, 3.8, 0.9), Vec3(4.8, 3.8, 0.6), Vec3(4.8, 3.2, 0.6)});
+  const auto backend = cpu_pair_backend(2);
+  const Scene scene = scene_of(objects);
+  const PairSettings settings{.views = parse_views("z"), .resolution = 8};
+  EXPECT_EQ(missed(scene, settings, *backend), 0u);
+  EXPECT_GT(find_pairs(scene, settings, *backend).views[0].counts.crowded, 0u);
+}
+
+// Triangles of many sub-pixels that touch in one point, among crumbs that make the pixels crowded.
+TEST(PairsEdges, ContactsInCrowdedPixels) {
+  const auto backend = cpu_pair_backend(2);
+  for (const std::uint64_t seed : {1u, 2u}) {
+    Random random(seed);
+    auto objects = two_objects(Vec3(-1, -1, -1), Vec3(1, 1, 1));
+    constexpr std::uint32_t contacts = 200;
+    for (std::uint32_t n = 0; n < contacts; ++n) {
+      const Vec3 q(random.between(-0.7, 0.7), random.between(-0.7, 0.7), random.between(-0.9, 0.9));
+      const auto away = [&](double sign) {
+        return Vec3(q + Vec3(random.between(-0.16, 0.16), random.between(-0.16, 0.16),
+                             sign * random.between(0.004, 0.2)));
+      };
+      objects[0].push_back({q, away(1), away(1)});
+      objects[1].push_back({q, away(-1), away(-1)});
+    }
+    fill(objects, 40000, Vec3(-0.99, -0.99, -0.9), Vec3(0.98, 0.98, 0.9), 0.005, random);
+    const Scene scene = scene_of(objects);
+    const PairResult result =
+        find_pairs(scene, {.views = parse_views("z"), .resolution = 4}, *backend);
+    EXPECT_GT(result.views[0].counts.crowded, 0u);
+    for (std::uint32_t n = 2; n < 2 + contacts; ++n) {
+      const TrianglePair contact{n, scene.objects[1].first_triangle + n};
+      EXPECT_TRUE(std::binary_search(result.candidates.begin(), result.candidates.end(), contact));
+    }
+  }
+}
+
+// The double term of the widening: vertices may lie anywhere within it.
+std::size_t missed_when_moved(Changed::Change change) {
+  Changed backend(change);
+  std::size_t count = 0;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    Random random(seed);
+    auto objects = two_objects(Vec3(-1, -1, -1), Vec3(1, 1, 1));
+    for (int n = 0; n < 20; ++n) {  // the same sheet, parallel to the image, in both
+      const Vec3 q(random.between(-0.9, 0.9), random.between(-0.9, 0.9), random.between(-0.9, 0.9));
+      for (auto& object : objects)
+        object.push_back({q, q + Vec3(0.05, 0, 0), q + Vec3(0, 0.05, 0)});
+    }
+    count += missed(scene_of(objects), {.views = parse_views("z"), .resolution = 16}, backend);
+  }
+  return count;
+}
+
+void move(PairTask& task) {
+  static std::vector<PixelVertex> moved;
+  moved.assign(task.vertices.begin(), task.vertices.end());
+  for (std::size_t v = 0; v < moved.size(); ++v) moved[v].z += v / 3 % 2 ? 0x1.fp-11f : -0x1.fp-11f;
+  task.vertices = moved;
+}
+
+TEST(PairsEdges, VerticesAnywhereWithinTheDoubleTerm) { EXPECT_EQ(missed_when_moved(move), 0u); }
+
+TEST(PairsTwin, WithoutTheDoubleTermMovedVerticesMiss) {
+  EXPECT_GT(missed_when_moved([](PairTask& task) {
+              move(task);
+              task.widening = {0x1p-40f, 0x1p-40f, 0x1p-40f, 0};
+            }),
+            0u);
+}
+
+}  // namespace
+}  // namespace farcull

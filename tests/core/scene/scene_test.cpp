@@ -1,0 +1,215 @@
+// Validation, boxes, owners and fingerprints of scenes.
+#include "core/scene/scene.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "core/base/error.h"
+#include "tests/verify/reference.h"
+
+namespace farcull {
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+const reference::Triangle kUnit = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+const reference::Triangle kOther = {Vec3(0.5, -1, 2), Vec3(1e300, 5e-324, -0.1), Vec3(3, 3, 3)};
+
+Scene example() { return reference::scene_of({{kUnit, kOther}, {}, {kOther}}); }
+
+Box box(double x0, double y0, double z0, double x1, double y1, double z1) {
+  return {Vec3(x0, y0, z0), Vec3(x1, y1, z1)};
+}
+
+TEST(Box, TouchingIsOverlapAndAnUlpApartIsNot) {
+  const Box unit = box(0, 0, 0, 1, 1, 1);
+  for (int axis = 0; axis < 3; ++axis) {
+    Box next = unit;
+    next.lo[axis] = 1;
+    next.hi[axis] = 2;
+    EXPECT_TRUE(overlap(unit, next) && overlap(next, unit));
+    EXPECT_FALSE(intersection(unit, next).is_empty());
+    next.lo[axis] = std::nextafter(1.0, 2.0);
+    EXPECT_FALSE(overlap(unit, next) || overlap(next, unit));
+    EXPECT_TRUE(intersection(unit, next).is_empty());
+  }
+  EXPECT_TRUE(overlap(box(0, 0, 0, 0, 0, 0), box(-0.0, -0.0, -0.0, -0.0, -0.0, -0.0)));
+  EXPECT_TRUE(overlap(unit, box(1, 1, 1, 1, 1, 1)));
+}
+
+TEST(Box, NothingMeetsTheEmptyBox) {
+  const Box everything = {Vec3::Constant(-kInf), Vec3::Constant(kInf)};
+  EXPECT_TRUE(Box::empty().is_empty());
+  EXPECT_FALSE(overlap(Box::empty(), Box::empty()));
+  EXPECT_FALSE(overlap(Box::empty(), everything));
+  EXPECT_FALSE(overlap(everything, Box::empty()));
+  Box grown = Box::empty();
+  grown.add(Box::empty());
+  EXPECT_TRUE(grown.is_empty());
+  grown.add(Vec3(1, 2, 3));
+  EXPECT_FALSE(grown.is_empty());
+  EXPECT_EQ(grown.lo, grown.hi);
+}
+
+// The common part of disjoint boxes is empty along one axis only.
+TEST(Box, NothingMeetsABoxThatIsEmptyAlongOneAxis) {
+  const Box hollow = intersection(box(0, 0, 0, 1, 5, 5), box(2, 0, 0, 3, 5, 5));
+  ASSERT_TRUE(hollow.is_empty());
+  EXPECT_FALSE(overlap(hollow, box(-9, -9, -9, 9, 9, 9)));
+  EXPECT_FALSE(overlap(box(-9, -9, -9, 9, 9, 9), hollow));
+  EXPECT_FALSE(overlap(hollow, hollow));
+}
+
+RC_GTEST_PROP(BoxProperty, OverlapIsACommonGridPoint, ()) {
+  const auto side = [] {
+    const int lo = *rc::gen::inRange(0, 4);
+    return std::pair(lo, lo + *rc::gen::inRange(-1, 3));
+  };
+  Box a, b;
+  bool common = true;
+  for (int i = 0; i < 3; ++i) {
+    const auto [a_lo, a_hi] = side();
+    const auto [b_lo, b_hi] = side();
+    a.lo[i] = a_lo, a.hi[i] = a_hi, b.lo[i] = b_lo, b.hi[i] = b_hi;
+    bool here = false;
+    for (int x = -2; x < 8; ++x) here |= a_lo <= x && x <= a_hi && b_lo <= x && x <= b_hi;
+    common = common && here;
+  }
+  RC_ASSERT(overlap(a, b) == common);
+  RC_ASSERT(overlap(b, a) == common);
+  RC_ASSERT(intersection(a, b).is_empty() == !common);
+}
+
+TEST(Scene, BoxesComeFromTrianglesAndNotFromUnusedVertices) {
+  Scene scene = example();
+  scene.vertices.push_back(Vec3::Constant(1e308));
+  const std::vector<Box> triangles = triangle_boxes(scene);
+  ASSERT_EQ(triangles.size(), 3u);
+  EXPECT_EQ(triangles[1].lo, Vec3(0.5, -1, -0.1));
+  EXPECT_EQ(triangles[1].hi, Vec3(1e300, 3, 3));
+  const std::vector<Box> objects = object_boxes(scene, triangles);
+  ASSERT_EQ(objects.size(), 3u);
+  EXPECT_EQ(objects[0].lo, Vec3(0, -1, -0.1));
+  EXPECT_TRUE(objects[1].is_empty());
+  EXPECT_EQ(objects[2].hi, triangles[2].hi);
+  EXPECT_EQ(owners(scene), (std::vector<std::uint32_t>{0, 0, 2}));
+}
+
+void expect_refused(const Scene& scene, const std::string& what) {
+  try {
+    validate(scene, "here.off");
+    ADD_FAILURE() << "accepted: " << what;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.where, "here.off");
+    EXPECT_NE(std::string(error.what()).find("here.off"), std::string::npos);
+    EXPECT_NE(error.reason.find(what), std::string::npos) << error.reason;
+  }
+}
+
+TEST(Scene, ValidateAcceptsWhatIsGapless) {
+  EXPECT_NO_THROW(validate(Scene{}, "here"));
+  EXPECT_NO_THROW(validate(example(), "here"));
+  EXPECT_NO_THROW(validate(reference::scene_of({{}, {}, {kUnit}, {}}), "here"));
+}
+
+TEST(Scene, ValidateNamesEveryFault) {
+  for (const double bad : {kInf, -kInf, kNan}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Scene scene = example();
+      scene.vertices[4][axis] = bad;
+      expect_refused(scene, "vertex 4");
+    }
+  }
+  Scene index = example();
+  index.triangles[2][1] = 9;
+  expect_refused(index, "triangle 2");
+  index.triangles[2][1] = 0xffffffff;
+  expect_refused(index, "triangle 2");
+
+  Scene overlapping = example();
+  overlapping.objects[2].first_triangle = 1;
+  expect_refused(overlapping, "does not start");
+  Scene gap = example();
+  gap.objects[0].first_triangle = 1;
+  expect_refused(gap, "does not start");
+  Scene short_of_one = example();
+  short_of_one.objects[2].triangle_count = 0;
+  expect_refused(short_of_one, "do not cover");
+  Scene beyond = example();
+  beyond.objects[2].triangle_count = 2;
+  expect_refused(beyond, "do not cover");
+  Scene no_objects = example();
+  no_objects.objects.clear();
+  expect_refused(no_objects, "do not cover");
+  // Counts that wrap around in 32 bits to the right sum.
+  Scene wrapped = reference::scene_of({{kUnit}, {}});
+  wrapped.objects[0].triangle_count = 0xffffffff;
+  wrapped.objects[1] = {"", 0xffffffff, 2};
+  expect_refused(wrapped, "do not cover");
+  Scene faces = example();
+  faces.source_face.pop_back();
+  expect_refused(faces, "");
+}
+
+TEST(SceneHash, HasSixteenHexDigitsAndDoesNotDependOnNames) {
+  Scene scene = example();
+  const std::string hash = scene_hash(scene);
+  EXPECT_EQ(hash.size(), 16u);
+  EXPECT_EQ(hash.find_first_not_of("0123456789abcdef"), std::string::npos);
+  scene.name = "other";
+  scene.objects[0].name = "someone";
+  scene.vertices.push_back(Vec3(7, 7, 7));  // unused
+  EXPECT_EQ(scene_hash(scene), hash);
+}
+
+// Shared or separate vertices are one scene: only the coordinates of triangles count.
+TEST(SceneHash, DoesNotDependOnHowVerticesAreStored) {
+  Scene scene = reference::scene_of({{kUnit, kUnit}});
+  const std::string hash = scene_hash(scene);
+  scene.triangles[1] = scene.triangles[0];
+  EXPECT_EQ(scene_hash(scene), hash);
+}
+
+TEST(SceneHash, ChangesWithEveryBitOfEveryCoordinate) {
+  const Scene scene = example();
+  std::set<std::string> seen{scene_hash(scene)};
+  for (std::size_t v = 0; v < scene.vertices.size(); ++v) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int bit = 0; bit < 64; ++bit) {
+        Scene other = scene;
+        double& x = other.vertices[v][axis];
+        x = std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) ^ (std::uint64_t{1} << bit));
+        EXPECT_TRUE(seen.insert(scene_hash(other)).second) << v << ", " << axis << ", " << bit;
+      }
+    }
+  }
+}
+
+TEST(SceneHash, ChangesWithOrderAndSplit) {
+  std::set<std::string> seen;
+  const auto is_new = [&](const std::vector<std::vector<reference::Triangle>>& objects) {
+    return seen.insert(scene_hash(reference::scene_of(objects))).second;
+  };
+  EXPECT_TRUE(is_new({}));
+  EXPECT_TRUE(is_new({{}}));
+  EXPECT_TRUE(is_new({{}, {}}));
+  EXPECT_TRUE(is_new({{kUnit}}));
+  EXPECT_TRUE(is_new({{kUnit}, {}}));
+  EXPECT_TRUE(is_new({{}, {kUnit}}));
+  EXPECT_TRUE(is_new({{kUnit, kOther}}));
+  EXPECT_TRUE(is_new({{kOther, kUnit}}));
+  EXPECT_TRUE(is_new({{kUnit}, {kOther}}));
+  EXPECT_TRUE(is_new({{kUnit, kOther}, {}}));
+  EXPECT_TRUE(is_new({{{kUnit[1], kUnit[0], kUnit[2]}}}));
+  EXPECT_FALSE(is_new({{kUnit}, {kOther}}));
+}
+
+}  // namespace
+}  // namespace farcull

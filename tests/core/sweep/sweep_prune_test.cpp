@@ -1,0 +1,672 @@
+// Sweep and prune finds what brute force finds, in every frame; twins with a fault do not.
+#include "core/sweep/sweep_prune.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "core/scene/box_join.h"
+#include "tests/core/base/rational.h"
+
+namespace farcull {
+namespace {
+
+using Boxes = std::vector<Box>;
+using Indices = std::vector<std::uint32_t>;
+using Pairs = std::vector<TrianglePair>;
+using rational::Random;
+
+/// Its own comparison, so that overlap() is not what tests itself.
+bool meet(const Box& a, const Box& b) {
+  for (int i = 0; i < 3; ++i) {
+    if (!(std::max(a.lo[i], b.lo[i]) <= std::min(a.hi[i], b.hi[i]))) return false;
+  }
+  return true;
+}
+
+template <class Counts>
+Pairs brute_force(const Boxes& boxes, const Counts& counts) {
+  Pairs pairs;
+  for (std::uint32_t a = 0; a < boxes.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
+      if (counts(a, b) && meet(boxes[a], boxes[b])) pairs.push_back({a, b});
+    }
+  }
+  return pairs;
+}
+
+Pairs brute_force(const Boxes& boxes) {
+  return brute_force(boxes, [](std::uint32_t, std::uint32_t) { return true; });
+}
+
+Box cube(double lo, double hi) { return {Vec3::Constant(lo), Vec3::Constant(hi)}; }
+Box along_x(double lo, double hi) { return {Vec3(lo, 0, 0), Vec3(hi, 1, 1)}; }
+
+// ---- boxes ----
+
+TEST(BoxSweep, FollowsBoxesThatMeetAndPart) {
+  BoxSweep sweep;
+  EXPECT_TRUE(sweep.update({}).empty());
+  EXPECT_TRUE(sweep.update(Boxes{along_x(0, 1), along_x(3, 4)}).empty());
+  EXPECT_TRUE(sweep.sorted_from_scratch());
+  EXPECT_TRUE(sweep.update(Boxes{along_x(0, 1), along_x(2, 4)}).empty());
+  EXPECT_FALSE(sweep.sorted_from_scratch());
+  EXPECT_EQ(sweep.swaps(), 0u);
+  EXPECT_EQ(sweep.update(Boxes{along_x(0, 1), along_x(0.5, 4)}), (Pairs{{0, 1}}));
+  EXPECT_EQ(sweep.swaps(), 1u);
+  EXPECT_EQ(sweep.update(Boxes{along_x(2, 3), along_x(0.5, 4)}), (Pairs{{0, 1}}));
+  EXPECT_TRUE(sweep.update(Boxes{along_x(5, 6), along_x(0.5, 4)}).empty());
+  EXPECT_FALSE(sweep.sorted_from_scratch());
+}
+
+TEST(BoxSweep, TouchingCountsWhicheverSideComes) {
+  for (const double from : {-2.0, 0.0, 2.0}) {
+    BoxSweep sweep;
+    sweep.update(Boxes{along_x(0, 1), along_x(from, from + 0.5)});
+    EXPECT_EQ(sweep.update(Boxes{along_x(0, 1), along_x(1, 1.5)}), (Pairs{{0, 1}}));
+    EXPECT_EQ(sweep.update(Boxes{along_x(0, 1), along_x(-1, -0.0)}), (Pairs{{0, 1}}));
+    EXPECT_EQ(sweep.update(Boxes{along_x(0, 0), along_x(-0.0, -0.0)}), (Pairs{{0, 1}}));
+    EXPECT_TRUE(sweep.update(Boxes{along_x(5e-324, 1), along_x(-1, -0.0)}).empty());
+    EXPECT_FALSE(sweep.sorted_from_scratch());
+  }
+}
+
+// An empty box that stands where it stood, its sides exchanged along one axis, passes no other end.
+TEST(BoxSweep, ABoxThatBecomesEmptyLeavesItsPairs) {
+  for (int axis = 0; axis < 3; ++axis) {
+    BoxSweep sweep;
+    Boxes boxes = {cube(0, 9), cube(2, 3), cube(4, 5)};
+    EXPECT_EQ(sweep.update(boxes), (Pairs{{0, 1}, {0, 2}}));
+    std::swap(boxes[1].lo[axis], boxes[1].hi[axis]);
+    EXPECT_EQ(sweep.update(boxes), (Pairs{{0, 2}}));
+    boxes[0] = Box::empty();
+    EXPECT_TRUE(sweep.update(boxes).empty());
+    boxes[0] = cube(0, 9);
+    EXPECT_EQ(sweep.update(boxes), (Pairs{{0, 2}}));
+  }
+}
+
+TEST(BoxSweep, EqualPointsAllMeet) {
+  BoxSweep sweep;
+  for (const double at : {1.0, 0.0, -0.0, DBL_MAX, -DBL_MAX, 5e-324}) {
+    EXPECT_EQ(sweep.update(Boxes(20, cube(at, at))).size(), 190u);
+  }
+  EXPECT_FALSE(sweep.sorted_from_scratch());
+}
+
+/// One step of boxes that move: small steps, jumps, coordinates of few values, boxes that are
+/// points or empty, and the ends of the doubles.
+void move(Boxes& boxes, Random& random, int kind) {
+  for (Box& box : boxes) {
+    if (random.below(3) == 0) continue;
+    Vec3 by = random.cube(kind == 3 ? 9 : 0.3);
+    if (kind % 2 == 0) by = Vec3(random.below(3) - 1, random.below(3) - 1, random.below(3) - 1);
+    const bool was_huge = box.hi.cwiseAbs().maxCoeff() > 1e6;
+    if (was_huge || box.is_empty()) box = cube(0, random.below(2));
+    box = {box.lo + by, box.hi + by};
+    const int axis = random.below(3);
+    switch (random.below(40)) {
+      case 0:
+        box.hi[axis] = box.lo[axis];
+        break;
+      case 1:
+        box.lo = box.hi;
+        break;
+      case 2:
+        std::swap(box.lo, box.hi);
+        break;  // empty, or a point
+      case 3:
+        box = cube(-0.0, 0.0);
+        break;
+      case 4:
+        box = cube(-DBL_MAX, DBL_MAX);
+        break;
+      case 5:
+        box.hi[axis] = DBL_MAX;
+        break;
+      case 6:
+        box = boxes[random.below(static_cast<int>(boxes.size()))];
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+Boxes some_boxes(Random& random, int count) {
+  Boxes boxes;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 at(random.below(9), random.below(9), random.below(9));
+    boxes.push_back({at, at + Vec3(random.below(3), random.below(3), random.below(3))});
+  }
+  return boxes;
+}
+
+TEST(BoxSweep, AsBruteForceOverMovingBoxes) {
+  Random random(601);
+  std::uint64_t swaps = 0;
+  int coherent = 0;
+  for (int kind = 0; kind < 4; ++kind) {
+    BoxSweep sweep;
+    Boxes boxes = some_boxes(random, 80);
+    for (int frame = 0; frame < 60; ++frame) {
+      ASSERT_EQ(sweep.update(boxes), brute_force(boxes)) << "kind " << kind << " frame " << frame;
+      swaps += sweep.swaps();
+      coherent += !sweep.sorted_from_scratch();
+      if (frame % 20 == 19) boxes.resize(boxes.size() + 5 - frame / 2, cube(3, 4));
+      if (frame % 20 == 5) std::reverse(boxes.begin(), boxes.end());  // others than before
+      move(boxes, random, kind);
+    }
+  }
+  // The answers came from the lists that were kept, not from beginning again.
+  EXPECT_GT(swaps, 0u);
+  EXPECT_GT(coherent, 20);
+}
+
+TEST(BoxSweep, BeginsAgainWhereTooMuchMoved) {
+  Random random(602);
+  BoxSweep sweep;
+  for (int frame = 0; frame < 4; ++frame) {
+    const Boxes boxes = [&] {
+      Boxes out;
+      for (int i = 0; i < 300; ++i) {
+        const Vec3 at = random.cube(1);
+        out.push_back({at, at + Vec3::Constant(0.1)});
+      }
+      return out;
+    }();
+    EXPECT_EQ(sweep.update(boxes), brute_force(boxes));
+    EXPECT_TRUE(sweep.sorted_from_scratch());
+    // It gave up in time: at most 8 moves for each of 600 ends, and one end's way, in each list.
+    EXPECT_LE(sweep.swaps(), 3 * (8 * 600 + 600u));
+  }
+}
+
+// ---- twins ----
+
+/// The same algorithm in few words, with a fault: what the tests above would find in the sweep.
+enum class SweepFault {
+  none,
+  dropped_swap,  // of the boxes' ends: the first exchange that makes a pair is forgotten
+  open_boxes,    // at equal coordinates an upper end comes before a lower one
+};
+
+class SmallBoxSweep {
+ public:
+  SweepFault fault = SweepFault::none;
+
+  Pairs update(const Boxes& boxes) {
+    const bool first = boxes.size() != before_.size();
+    if (first) {
+      pairs_ = brute_force(boxes);
+      for (auto& ends : ends_) {
+        ends.resize(2 * boxes.size());
+        std::iota(ends.begin(), ends.end(), 0u);
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      auto& ends = ends_[axis];
+      const auto at = [&](std::uint32_t end) {
+        return end % 2 != 0 ? boxes[end / 2].hi[axis] : boxes[end / 2].lo[axis];
+      };
+      const std::uint32_t first_side = fault == SweepFault::open_boxes ? 1 : 0;
+      const auto less = [&](std::uint32_t e, std::uint32_t f) {
+        return at(e) < at(f) || (at(e) == at(f) && e % 2 == first_side && f % 2 != first_side);
+      };
+      for (std::size_t i = 1; i < ends.size(); ++i) {
+        for (std::size_t to = i; to > 0 && less(ends[to], ends[to - 1]); --to) {
+          std::swap(ends[to], ends[to - 1]);
+          if (!first) exchanged(ends[to - 1], ends[to], boxes);
+        }
+      }
+    }
+    before_ = boxes;
+    std::sort(pairs_.begin(), pairs_.end());
+    pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+    return pairs_;
+  }
+  void forget() { before_.clear(); }
+
+ private:
+  // e moved from behind f to before it.
+  void exchanged(std::uint32_t e, std::uint32_t f, const Boxes& boxes) {
+    const std::uint32_t i = e / 2, j = f / 2;
+    if (i == j || e % 2 == f % 2) return;
+    const TrianglePair pair{std::min(i, j), std::max(i, j)};
+    if (e % 2 != 0) {
+      if (!meet(boxes[i], boxes[j])) std::erase(pairs_, pair);
+    } else if (meet(boxes[i], boxes[j])) {
+      if (fault == SweepFault::dropped_swap) {
+        fault = SweepFault::none;
+      } else {
+        pairs_.push_back(pair);
+      }
+    }
+  }
+
+  Boxes before_;
+  Indices ends_[3];
+  Pairs pairs_;
+};
+
+TEST(BoxSweepTwin, WithoutAFaultTheSmallSweepIsRight) {
+  Random random(603);
+  SmallBoxSweep sweep;
+  Boxes boxes = some_boxes(random, 40);
+  for (Box& box : boxes) {
+    if (box.is_empty()) box = cube(0, 1);
+  }
+  for (int frame = 0; frame < 30; ++frame) {
+    ASSERT_EQ(sweep.update(boxes), brute_force(boxes)) << frame;
+    for (Box& box : boxes) {
+      const Vec3 by = random.cube(0.3);
+      box = {box.lo + by, box.hi + by};
+    }
+  }
+}
+
+// Each fault gives an answer that brute force does not, at once and for as long as the boxes stay;
+// forgetting mends it.
+TEST(BoxSweepTwin, ADroppedSwapIsCaught) {
+  SmallBoxSweep sweep;
+  sweep.update(Boxes{along_x(0, 1), along_x(3, 4)});
+  const Boxes met = {along_x(0, 1), along_x(0.5, 4)};
+  sweep.fault = SweepFault::dropped_swap;
+  EXPECT_NE(sweep.update(met), brute_force(met));
+  EXPECT_NE(sweep.update(met), brute_force(met));
+  sweep.forget();
+  EXPECT_EQ(sweep.update(met), brute_force(met));
+}
+
+TEST(BoxSweepTwin, OpenBoxesAreCaught) {
+  SmallBoxSweep sweep;
+  sweep.update(Boxes{along_x(0, 1), along_x(3, 4)});
+  const Boxes touching = {along_x(0, 1), along_x(1, 4)};
+  sweep.fault = SweepFault::open_boxes;
+  EXPECT_NE(sweep.update(touching), brute_force(touching));
+  sweep.fault = SweepFault::none;
+  EXPECT_EQ(sweep.update(touching), brute_force(touching));  // with the order of ties put right
+}
+
+// ---- triangles ----
+
+/// Triangles whose boxes are the given ones, which are not empty.
+Scene scene_of(const Boxes& boxes, const Indices& sizes, const std::vector<bool>& self) {
+  Scene scene;
+  for (const Box& box : boxes) {
+    const auto v = static_cast<std::uint32_t>(scene.vertices.size());
+    scene.vertices.push_back(box.lo);
+    scene.vertices.push_back(box.hi);
+    scene.vertices.emplace_back(box.lo.x(), box.hi.y(), box.lo.z());
+    scene.source_face.push_back(static_cast<std::uint32_t>(scene.triangles.size()));
+    scene.triangles.push_back({v, v + 1, v + 2});
+  }
+  std::uint32_t first = 0;
+  for (std::size_t o = 0; o < sizes.size(); ++o) {
+    scene.objects.push_back({"o", first, sizes[o], self[o]});
+    first += sizes[o];
+  }
+  return scene;
+}
+
+struct Expected {
+  Pairs object_pairs;
+  Indices triangles;
+  Pairs candidates;
+};
+
+Expected expected_of(const Scene& scene, const Boxes& boxes) {
+  const Indices owner = owners(scene);
+  Expected out;
+  out.object_pairs = brute_force(object_boxes(scene, boxes));
+  out.candidates = brute_force(boxes, [&](std::uint32_t a, std::uint32_t b) {
+    return owner[a] != owner[b] || scene.objects[owner[a]].self;
+  });
+  for (const TrianglePair& pair : out.candidates) {
+    out.triangles.insert(out.triangles.end(), {pair.a, pair.b});
+  }
+  std::sort(out.triangles.begin(), out.triangles.end());
+  out.triangles.erase(std::unique(out.triangles.begin(), out.triangles.end()), out.triangles.end());
+  return out;
+}
+
+void expect_right(const SweepPruneResult& found, const Scene& scene) {
+  const Boxes boxes = triangle_boxes(scene);
+  const Expected expected = expected_of(scene, boxes);
+  ASSERT_EQ(found.object_pairs, expected.object_pairs);
+  ASSERT_EQ(found.candidates, expected.candidates);
+  ASSERT_EQ(found.triangles, expected.triangles);
+  EXPECT_EQ(found.counts.object_pairs, expected.object_pairs.size());
+  EXPECT_EQ(found.counts.triangle_pairs, expected.candidates.size());
+  EXPECT_EQ(found.counts.triangles, expected.triangles.size());
+}
+
+/// Objects that are clusters of boxes; `kind` as in move().
+struct Moving {
+  Boxes boxes;
+  Indices sizes;
+  std::vector<bool> self;
+
+  Scene scene() const { return scene_of(boxes, sizes, self); }
+};
+
+Moving some_objects(Random& random, int objects, int kind) {
+  Moving out;
+  for (int o = 0; o < objects; ++o) {
+    const auto size = static_cast<std::uint32_t>(random.below(12));  // some have no triangles
+    const Vec3 at = random.cube(3);
+    for (std::uint32_t i = 0; i < size; ++i) {
+      Vec3 lo = at + random.cube(0.7);
+      Vec3 length = random.cube(0.2).cwiseAbs();
+      if (kind == 0) lo = lo.array().round();
+      if (kind == 0) length = Vec3(random.below(2), random.below(2), random.below(2));
+      if (kind == 2) length[random.below(3)] = 4;  // long in one direction: many columns
+      out.boxes.push_back({lo, lo + length});
+    }
+    out.sizes.push_back(size);
+    out.self.push_back(random.below(5) == 0);
+  }
+  return out;
+}
+
+void move_objects(Moving& moving, Random& random, int kind) {
+  std::size_t first = 0;
+  for (const std::uint32_t size : moving.sizes) {
+    Vec3 by = random.cube(0.05);
+    if (kind == 0) by = Vec3(random.below(3) - 1, random.below(3) - 1, random.below(3) - 1);
+    if (random.below(30) == 0) by = random.cube(5);
+    for (std::size_t t = first; t < first + size; ++t) {
+      moving.boxes[t] = {moving.boxes[t].lo + by, moving.boxes[t].hi + by};
+      switch (random.below(200)) {
+        case 0:
+          moving.boxes[t].lo = moving.boxes[t].hi;
+          break;
+        case 1:
+          moving.boxes[t] = cube(-0.0, 0.0);
+          break;
+        case 2:
+          moving.boxes[t] = moving.boxes[0];
+          break;
+        default:
+          break;
+      }
+    }
+    first += size;
+  }
+}
+
+TEST(SweepPrune, AsBruteForceOverMovingObjects) {
+  Random random(603);
+  std::uint64_t candidates = 0;
+  for (int kind = 0; kind < 3; ++kind) {
+    SweepPrune sweep;
+    Moving moving = some_objects(random, 30, kind);
+    for (int frame = 0; frame < 25; ++frame) {
+      const Scene scene = moving.scene();
+      const SweepPruneResult found = sweep.find(scene);
+      ASSERT_NO_FATAL_FAILURE(expect_right(found, scene)) << "kind " << kind << " frame " << frame;
+      candidates += found.counts.triangle_pairs;
+      move_objects(moving, random, kind);
+    }
+  }
+  EXPECT_GT(candidates, 1000u);
+}
+
+// Pieces that break in two, grow together, appear, vanish and change places between frames.
+TEST(SweepPrune, NothingThatIsKeptOutlivesItsTopology) {
+  Random random(604);
+  SweepPrune sweep;
+  for (int frame = 0; frame < 40; ++frame) {
+    Moving moving = some_objects(random, 5 + random.below(40), frame % 3);
+    if (frame % 4 == 1) {  // all triangles of one object, then each its own
+      moving.sizes = {static_cast<std::uint32_t>(moving.boxes.size())};
+      moving.self = {frame % 8 == 1};
+    } else if (frame % 4 == 2) {
+      moving.sizes.assign(moving.boxes.size(), 1);
+      moving.self.assign(moving.boxes.size(), true);
+    }
+    const Scene scene = moving.scene();
+    ASSERT_NO_FATAL_FAILURE(expect_right(sweep.find(scene), scene)) << "frame " << frame;
+  }
+}
+
+TEST(SweepPrune, NoAnswerDependsOnWhatCameBefore) {
+  Random random(605);
+  SweepPrune kept;
+  Moving moving = some_objects(random, 60, 1);
+  for (int frame = 0; frame < 20; ++frame) {
+    const Scene scene = moving.scene();
+    SweepPrune fresh;
+    const SweepPruneResult a = kept.find(scene);
+    const SweepPruneResult b = fresh.find(scene);
+    EXPECT_EQ(a.object_pairs, b.object_pairs);
+    EXPECT_EQ(a.candidates, b.candidates);
+    EXPECT_EQ(a.triangles, b.triangles);
+    EXPECT_EQ(a.counts.objects, b.counts.objects);
+    if (frame % 7 == 6) kept.forget();
+    move_objects(moving, random, 1);
+  }
+}
+
+// Coherence is there: a scene that stands still is found sorted, whatever it took at first.
+TEST(SweepPrune, WhatStandsStillIsNotSortedAgain) {
+  Random random(606);
+  SweepPrune sweep;
+  Moving moving = some_objects(random, 300, 1);
+  for (Box& box : moving.boxes) box = {box.lo / 3, box.hi / 3};  // all in each other's way
+  const Scene scene = moving.scene();
+  const SweepPruneCounts first = sweep.find(scene).counts;
+  EXPECT_GT(first.sorts, 3u);  // of objects, and at least one more
+  const SweepPruneCounts second = sweep.find(scene).counts;
+  EXPECT_EQ(second.sorts, 0u);
+  EXPECT_EQ(second.swaps, 0u);
+}
+
+TEST(SweepPrune, AsBoxJoinOnManyBoxesOfEveryShape) {
+  Random random(607);
+  for (int n = 0; n < 6; ++n) {
+    Moving moving;
+    for (int o = 0; o < 20; ++o) {
+      for (int k = 0; k < 150; ++k) {
+        const Vec3 at = n % 3 == 2 ? random.scaled3(-300, 300) : random.cube(10);
+        Vec3 size =
+            n % 2 == 0 ? random.scaled3(-12, 3).cwiseAbs() : Vec3(random.cube(1).cwiseAbs());
+        if (n == 4) size[n % 3] = 0;
+        moving.boxes.push_back({at, at + size});
+      }
+      moving.sizes.push_back(150);
+      moving.self.push_back(false);
+    }
+    if (n == 1) moving.boxes[0] = cube(-DBL_MAX, DBL_MAX);
+    const Scene scene = moving.scene();
+    Indices all(scene.triangles.size());
+    std::iota(all.begin(), all.end(), 0u);
+    SweepPrune sweep;
+    const Pairs expected = box_join(triangle_boxes(scene), owners(scene), all);
+    for (int again = 0; again < 2; ++again) ASSERT_EQ(sweep.find(scene).candidates, expected);
+  }
+}
+
+// Extents whose reciprocal overflows, extents that do so themselves, and a mean length of zero.
+TEST(SweepPrune, TheEndsOfTheDoubles) {
+  Random random(610);
+  for (const double unit : {5e-324, 1e-310, 1.0, DBL_MAX / 4}) {
+    for (const bool points : {false, true}) {
+      SweepPrune sweep;
+      for (int frame = 0; frame < 3; ++frame) {
+        Moving moving;
+        for (std::uint32_t o = 0; o < 100; ++o) {
+          const Vec3 lo(random.below(8) - 4, random.below(8) - 4, random.below(8) - 4);
+          const double length = points ? 0 : random.below(2);
+          moving.boxes.push_back({lo * unit, (lo.array() + length).matrix() * unit});
+          moving.sizes.push_back(1);
+          moving.self.push_back(false);
+        }
+        const Scene scene = moving.scene();
+        ASSERT_NO_FATAL_FAILURE(expect_right(sweep.find(scene), scene)) << "unit " << unit;
+      }
+    }
+  }
+}
+
+// More partners than a triangle is compared with one by one.
+TEST(SweepPrune, AGroundUnderManyObjects) {
+  Random random(609);
+  Moving moving;
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 at(k % 20, k / 20, 0);
+    moving.boxes.push_back({at, at + Vec3(0.5, 0.5, 0)});
+  }
+  moving.sizes.push_back(200);
+  for (int o = 0; o < 150; ++o) {
+    const Vec3 at(random.uniform(0, 20), random.uniform(0, 10), random.uniform(-0.3, 0));
+    for (int k = 0; k < 2; ++k) moving.boxes.push_back({at, at + random.cube(0.6).cwiseAbs()});
+    moving.sizes.push_back(2);
+  }
+  moving.self.assign(151, false);
+  SweepPrune sweep;
+  for (int frame = 0; frame < 3; ++frame) {
+    const Scene scene = moving.scene();
+    const SweepPruneResult found = sweep.find(scene);
+    ASSERT_NO_FATAL_FAILURE(expect_right(found, scene));
+    EXPECT_GT(found.counts.object_pairs, 64u);
+    EXPECT_LT(found.counts.triangles, 500u);  // what is kept unasked is not live for that
+    move_objects(moving, random, 1);
+  }
+}
+
+TEST(SweepPrune, CountsWhatSurvives) {
+  // Two that overlap with one triangle each in the other's way, one apart, one apart and `self`.
+  const Boxes boxes = {cube(0, 1),   cube(3, 4),   cube(3.5, 5), cube(9, 9.5),
+                       cube(20, 21), cube(30, 31), cube(31, 32)};
+  const Scene scene = scene_of(boxes, {2, 2, 1, 2}, {false, false, true, true});
+  SweepPrune sweep;
+  const SweepPruneResult found = sweep.find(scene);
+  EXPECT_EQ(found.object_pairs, (Pairs{{0, 1}}));
+  EXPECT_EQ(found.candidates, (Pairs{{1, 2}, {5, 6}}));
+  EXPECT_EQ(found.triangles, (Indices{1, 2, 5, 6}));
+  EXPECT_EQ(found.counts.objects, 3u);
+  EXPECT_EQ(sweep.find(Scene{}).counts.triangle_pairs, 0u);
+}
+
+TEST(SweepPrune, TakesTheBoxesThatAreGiven) {
+  const Boxes boxes = {cube(0, 1), cube(2, 3)};
+  const Scene scene = scene_of(boxes, {1, 1}, {false, false});
+  SweepPrune sweep;
+  EXPECT_TRUE(sweep.find(scene, boxes).candidates.empty());
+  EXPECT_EQ(sweep.find(scene, Boxes{cube(0, 1.5), cube(1.5, 3)}).candidates, (Pairs{{0, 1}}));
+  EXPECT_THROW(sweep.find(scene, Boxes{cube(0, 1)}), std::logic_error);
+}
+
+/// Pairs whose boxes overlap, found by a sweep along x in the given order, which has to be that of
+/// the lower ends.
+Pairs swept(const Scene& scene, const Boxes& boxes, const Indices& order) {
+  const Indices owner = owners(scene);
+  Pairs pairs;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Box& box = boxes[order[i]];
+    for (std::size_t j = i + 1; j < order.size(); ++j) {
+      const Box& other = boxes[order[j]];
+      if (other.lo.x() > box.hi.x()) break;
+      const auto [a, b] = std::minmax(order[i], order[j]);
+      const bool counts = owner[a] != owner[b] || scene.objects[owner[a]].self;
+      if (counts && meet(box, other)) pairs.push_back({a, b});
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+Indices order_along_x(const Boxes& boxes) {
+  Indices order(boxes.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return boxes[a].lo.x() < boxes[b].lo.x(); });
+  return order;
+}
+
+// The twin: an order that is taken as it was, though triangles have passed one another.
+TEST(SweepPruneTwin, AStaleOrderIsCaught) {
+  Random random(608);
+  int caught = 0;
+  for (int n = 0; n < 20; ++n) {
+    Moving moving = some_objects(random, 30, 1);
+    const Indices stale = order_along_x(triangle_boxes(moving.scene()));
+    move_objects(moving, random, 0);
+    const Scene scene = moving.scene();
+    const Boxes boxes = triangle_boxes(scene);
+    const Pairs expected = expected_of(scene, boxes).candidates;
+    caught += swept(scene, boxes, stale) != expected;
+    EXPECT_EQ(swept(scene, boxes, order_along_x(boxes)), expected);
+  }
+  EXPECT_GT(caught, 0);
+}
+
+// The twin: what the lists of objects lose is lost to the triangles as well.
+TEST(SweepPruneTwin, ADroppedSwapIsCaught) {
+  const auto boxes_at = [](double x) { return Boxes{along_x(0, 1), along_x(x, x + 1)}; };
+  const auto candidates = [&](SmallBoxSweep& objects, double x) {
+    const Boxes boxes = boxes_at(x);  // one triangle in each object
+    Pairs out;
+    for (const TrianglePair& pair : objects.update(boxes))
+      if (meet(boxes[pair.a], boxes[pair.b])) out.push_back(pair);
+    return out;
+  };
+  SmallBoxSweep objects;
+  candidates(objects, 2);
+  objects.fault = SweepFault::dropped_swap;
+  EXPECT_NE(candidates(objects, 0.5), (Pairs{{0, 1}}));
+  objects.forget();
+  EXPECT_EQ(candidates(objects, 0.5), (Pairs{{0, 1}}));
+}
+
+// An order that is kept does no lasting harm, and forgetting begins anew.
+TEST(SweepPrune, AnswersAreRightAfterForgetting) {
+  Random random(609);
+  Moving moving = some_objects(random, 30, 1);
+  SweepPrune sweep;
+  for (int frame = 0; frame < 4; ++frame) {
+    const Scene scene = moving.scene();
+    EXPECT_EQ(sweep.find(scene).candidates, expected_of(scene, triangle_boxes(scene)).candidates);
+    if (frame == 1) sweep.forget();
+    move_objects(moving, random, 0);
+  }
+}
+
+RC_GTEST_PROP(SweepPruneProperty, AsBruteForceOnDuplicatedCoordinates, ()) {
+  const int extent = *rc::gen::inRange(1, 9);
+  const int frames = *rc::gen::inRange(1, 5);
+  SweepPrune sweep;
+  for (int frame = 0; frame < frames; ++frame) {
+    Moving moving;
+    const int objects = *rc::gen::inRange(0, 8);
+    for (int o = 0; o < objects; ++o) {
+      const int size = *rc::gen::inRange(0, 7);
+      for (int t = 0; t < size; ++t) {
+        Box box;
+        for (int i = 0; i < 3; ++i) {
+          box.lo[i] = *rc::gen::inRange(0, extent);
+          box.hi[i] = box.lo[i] + *rc::gen::inRange(0, 3);
+        }
+        moving.boxes.push_back(box);
+      }
+      moving.sizes.push_back(static_cast<std::uint32_t>(size));
+      moving.self.push_back(*rc::gen::inRange(0, 3) == 0);
+    }
+    const Scene scene = moving.scene();
+    const SweepPruneResult found = sweep.find(scene);
+    const Expected expected = expected_of(scene, triangle_boxes(scene));
+    RC_ASSERT(found.object_pairs == expected.object_pairs);
+    RC_ASSERT(found.candidates == expected.candidates);
+    RC_ASSERT(found.triangles == expected.triangles);
+  }
+}
+
+}  // namespace
+}  // namespace farcull

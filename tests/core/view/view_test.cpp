@@ -1,0 +1,300 @@
+#include "core/view/view.h"
+
+#include <gtest/gtest.h>
+
+#include <cfloat>
+#include <cmath>
+#include <limits>
+
+#include "core/base/error.h"
+#include "tests/core/base/rational.h"
+
+namespace farcull {
+namespace {
+
+using rational::Q;
+using rational::Q3;
+using rational::Random;
+
+TEST(View, RefusesWhatIsNoDirection) {
+  for (const char* text :
+       {"",        "-",         "--x",    "w",        "X",      "xy",      "x ",
+        " x",      "1",         "1:2",    "1:2:3:4",  "1:2:",   ":1:2",    "1::2",
+        "::",      "1:2:z",     "+1:0:0", "1 :0:0",   "1:0:0 ", "0x1:0:0", "inf:0:0",
+        "1:nan:0", "1e400:0:0", "0:0:0",  "-0:0:0.0", "1:2:3x"}) {
+    EXPECT_THROW(parse_view(text), Error) << "'" << text << "'";
+  }
+  for (const char* text : {"", ",", "x,", ",x", "x,,y", "x,x", "1:1:1,z,1:1:1", "x;y"}) {
+    EXPECT_THROW(parse_views(text), Error) << "'" << text << "'";
+  }
+}
+
+TEST(View, ErrorsNameTheOptionAndTheText) {
+  try {
+    parse_views("x,bogus");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.where, "--views");
+    EXPECT_NE(error.reason.find("bogus"), std::string::npos);
+    EXPECT_FALSE(error.remedy.empty());
+  }
+}
+
+TEST(View, ListsKeepTheirOrderAndNames) {
+  const std::vector<View> views = parse_views("z,-x,1:1:0.5,1e-300:0:0");
+  ASSERT_EQ(views.size(), 4u);
+  EXPECT_EQ(views[0].name, "z");
+  EXPECT_EQ(views[1].name, "-x");
+  EXPECT_EQ(views[2].name, "1:1:0.5");
+  EXPECT_EQ(views[3].rows, parse_view("x").rows);
+}
+
+// One entry of +-1 per row and column, so that the map rounds nothing but the scaling.
+TEST(View, AxesAreExactPermutations) {
+  for (const char* text : {"x", "-x", "y", "-y", "z", "-z", "7:0:0", "0:-1e300:0", "0:0:5e-324"}) {
+    const Eigen::Matrix3d rows = parse_view(text).rows;
+    EXPECT_EQ((rows.array() == 0).count(), 6) << text;
+    EXPECT_EQ((rows.array().abs() == 1).count(), 3) << text;
+    EXPECT_EQ((rows * rows.transpose()), Eigen::Matrix3d::Identity()) << text;
+  }
+  EXPECT_EQ(parse_view("-y").rows.row(2), Eigen::RowVector3d(0, -1, 0));
+}
+
+TEST(View, ObliqueRowsAreUnitAndOrthogonalWhateverTheScale) {
+  Random random(101);
+  for (int n = 0; n < 2000; ++n) {
+    const View view = n == 0   ? parse_view("1e308:1e308:1e308")
+                      : n == 1 ? parse_view("5e-324:5e-324:1e-323")
+                      : n == 2 ? parse_view("1:1e-200:0")
+                               : rational::random_view(random);
+    const Eigen::Matrix3d gram = view.rows * view.rows.transpose();
+    ASSERT_LT((gram - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 0x1p-50) << view.name;
+  }
+}
+
+/// Coordinates that cancel, mix scales, underflow, or lie far from the world's origin.
+double nasty(Random& random) {
+  switch (random.below(8)) {
+    case 0:
+      return 0;
+    case 1:
+      return random.scaled(-1074, -1000);
+    case 2:
+      return random.scaled(-60, 60);
+    case 3:
+      return random.scaled(200, 330);
+    case 4:
+      return 1e9 + random.below(3);
+    case 5:
+      return random.sign() * random.below(5);
+    default:
+      return random.uniform(-10, 10);
+  }
+}
+
+Window nasty_window(Random& random) {
+  Window window{};
+  window.view = rational::random_view(random);
+  for (int i = 0; i < 3; ++i) window.origin[i] = nasty(random);
+  window.map = window.view.rows / std::abs(random.scaled(-300, 300));
+  if (random.coin()) window.map = window.view.rows / std::abs(random.scaled(-10, 10));
+  return window;
+}
+
+/// 0 where the bound holds, else by how much it is exceeded.
+Q excess(const Window& window, const Vec3& x, const PixelPoint& q) {
+  const Q3 truth = rational::image(window, x);
+  Q worst = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Q off = abs(Q(q.p[i]) - truth[i]) - Q(q.error);
+    if (off > worst) worst = off;
+  }
+  return worst;
+}
+
+TEST(ToPixel, IsWithinItsOwnErrorOfTheExactImage) {
+  Random random(102);
+  int finite = 0;
+  for (int n = 0; n < 100'000; ++n) {
+    const Window window = nasty_window(random);
+    Vec3 x(nasty(random), nasty(random), nasty(random));
+    if (random.below(4) == 0) x = window.origin + random.scaled3(-60, 0);
+    const PixelPoint q = to_pixel(window, x);
+    if (!std::isfinite(q.error)) {
+      ASSERT_EQ(q.error, HUGE_VAL);
+      continue;
+    }
+    ++finite;
+    ASSERT_TRUE(q.p.allFinite());
+    ASSERT_EQ(excess(window, x, q), 0) << window.view.name << " of " << x.transpose();
+  }
+  EXPECT_GT(finite, 50'000);
+}
+
+// In an oblique view the sum of large products cancels: a bound relative to the result would be
+// wrong by any factor. Here the point is moved inside the depth direction by 2^k pixels.
+TEST(ToPixel, BoundCountsWhatCancelled) {
+  Random random(103);
+  bool beyond_the_result = false;
+  for (int n = 0; n < 20'000; ++n) {
+    Window window{};
+    window.view = rational::random_view(random);
+    window.origin = random.cube(1);
+    window.map = window.view.rows * 100;
+    const Vec3 depth = window.view.rows.row(2).transpose();
+    const Vec3 x = window.origin + depth * random.scaled(0, 45) + random.cube(0.01);
+    const PixelPoint q = to_pixel(window, x);
+    ASSERT_EQ(excess(window, x, q), 0) << window.view.name;
+    const Q3 truth = rational::image(window, x);
+    for (int i = 0; i < 2; ++i)
+      beyond_the_result |= abs(Q(q.p[i]) - truth[i]) > Q(0x1p-48) * abs(truth[i]);
+  }
+  EXPECT_TRUE(beyond_the_result);  // else the generator does not see what the bound is for
+}
+
+TEST(ToPixel, OverflowIsAnInfiniteErrorAndNeverANumber) {
+  const std::vector<Box> region{{Vec3(-1, -1, -1), Vec3(1, 1, 1)}};
+  for (const char* name : {"z", "1:1:1"}) {
+    const Window window = *fit_window(parse_view(name), region, 5000);
+    for (const Vec3& x : {Vec3(DBL_MAX, 0, 0), Vec3(DBL_MAX, -DBL_MAX, DBL_MAX),
+                          Vec3(-DBL_MAX, DBL_MAX, 1), Vec3(1e306, 1e306, -1e306)}) {
+      EXPECT_EQ(to_pixel(window, x).error, HUGE_VAL) << name << ": " << x.transpose();
+    }
+  }
+}
+
+void expect_fits(const Window& w, std::span<const Box> regions, int resolution) {
+  ASSERT_GT(w.pixel_size, 0);
+  ASSERT_TRUE(std::isfinite(w.pixel_size));
+  ASSERT_EQ(w.width % 2, 0);
+  ASSERT_EQ(w.height % 2, 0);
+  ASSERT_GE(w.width, 2);
+  ASSERT_GE(w.height, 2);
+  ASSERT_LE(std::max(w.width, w.height), resolution + 5);
+  for (int row = 0; row < 3; ++row) {
+    for (int i = 0; i < 3; ++i) ASSERT_EQ(w.map(row, i), w.view.rows(row, i) / w.pixel_size);
+  }
+  const int sides[2] = {w.width, w.height};
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_LE(-0.5 * sides[i], w.lo[i]);
+    ASSERT_LE(w.hi[i], 0.5 * sides[i]);
+  }
+  for (const Box& region : regions) {
+    for (const Vec3& corner : rational::box_corners(region)) {
+      const Q3 q = rational::image(w, corner);
+      for (int i = 0; i < 3; ++i) {
+        ASSERT_GE(Q(q[i] - 1), Q(w.lo[i])) << "axis " << i;
+        ASSERT_LE(Q(q[i] + 1), Q(w.hi[i])) << "axis " << i;
+      }
+    }
+  }
+}
+
+Box random_region(Random& random) {
+  Vec3 at = Vec3::Zero(), size;
+  const int kind = random.below(9);
+  for (int i = 0; i < 3; ++i) {
+    switch (kind) {
+      case 0:
+        size[i] = random.uniform(0, 2);
+        break;
+      case 1:
+        size[i] = std::abs(random.scaled(-40, 40));
+        break;  // any aspect ratio
+      case 2:
+        size[i] = random.coin() ? 0 : 1;
+        break;  // flat, a segment, a point
+      case 3:
+        size[i] = std::abs(random.scaled(-1074, -1010));
+        break;
+      case 4:
+        size[i] = std::abs(random.scaled(900, 1020));
+        break;
+      case 5:
+        size[i] = std::abs(random.scaled(-60, 2));
+        break;
+      default:
+        size[i] = std::abs(random.scaled(-10, 1));
+        break;
+    }
+    if (kind == 5) at[i] = 1e9;                    // on the diagonal, below what doubles resolve
+    if (kind == 6) at[i] = random.scaled(20, 40);  // far, sizes mixed
+    if (kind == 7) at[i] = random.uniform(-5, 5);
+    if (kind == 8) size[i] = 0, at[i] = nasty(random);
+  }
+  return {at, at + size};
+}
+
+TEST(FitWindow, ContainsTheExactRegionWithAPixelAround) {
+  Random random(104);
+  constexpr int kResolutions[] = {1, 2, 3, 7, 16, 63, 64, 100, 333, 1024, 2047, 4096, 5000};
+  for (int n = 0; n < 40'000; ++n) {
+    std::vector<Box> regions{random_region(random)};
+    while (random.below(3) == 0) {
+      Box next = random_region(random);
+      if (random.coin()) {  // near the first
+        const Vec3 shift = regions[0].lo - next.lo;
+        next = {next.lo + shift, next.hi + shift};
+      }
+      regions.push_back(next);
+    }
+    const int resolution = random.coin() ? kResolutions[random.below(13)] : 1 + random.below(5000);
+    const View view = rational::random_view(random);
+    const std::optional<Window> window = fit_window(view, regions, resolution);
+    ASSERT_TRUE(window) << view.name << " at " << resolution;
+    SCOPED_TRACE(view.name + " at " + std::to_string(resolution) + ", case " + std::to_string(n));
+    expect_fits(*window, regions, resolution);
+    if (HasFatalFailure()) return;
+  }
+}
+
+TEST(FitWindow, EveryResolutionKeepsItsLimit) {
+  const std::vector<Box> cube{{Vec3(-1, -2, 0.1), Vec3(3, 5, 0.7)}};
+  // Odd multiples of the spacing of doubles there: the middle is not a double.
+  const std::vector<Box> far_and_small{
+      {Vec3::Constant(1.088e9), Vec3::Constant(1.088e9 + 2.79e-5)}};
+  for (const char* name : {"z", "1:2:3"}) {
+    for (int resolution = 1; resolution <= 5000; resolution += resolution < 300 ? 1 : 37) {
+      expect_fits(*fit_window(parse_view(name), cube, resolution), cube, resolution);
+      expect_fits(*fit_window(parse_view(name), far_and_small, resolution), far_and_small,
+                  resolution);
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+TEST(FitWindow, TheLargerSideHasTheResolutionWherePixelsCanBeResolved) {
+  Random random(105);
+  for (int n = 0; n < 2000; ++n) {
+    const std::vector<Box> regions{{random.cube(1), Vec3::Constant(1 + random.uniform(0, 1))}};
+    const int resolution = 1 + random.below(2000);
+    const Window w = *fit_window(rational::random_view(random), regions, resolution);
+    const Vec3 inner = w.hi - w.lo - Vec3::Constant(2);
+    ASSERT_NEAR(std::max(inner[0], inner[1]), resolution, 1e-9 * resolution) << w.view.name;
+  }
+}
+
+// The largest boxes doubles hold: nothing may be lost, be it that there is no window.
+TEST(FitWindow, AtTheEndOfTheDoublesIsEmptyOrContains) {
+  Random random(106);
+  int empty = 0;
+  for (int n = 0; n < 5000; ++n) {
+    Box region = Box::empty();
+    for (int k = 0; k < 2; ++k) region.add(random.cube(1) * (random.coin() ? DBL_MAX : 1e305));
+    const std::vector<Box> regions{region};
+    const int resolution = 1 + random.below(5000);
+    const std::optional<Window> window =
+        fit_window(rational::random_view(random), regions, resolution);
+    if (!window) {
+      ++empty;
+      ASSERT_GT(std::max(region.lo.cwiseAbs().maxCoeff(), region.hi.cwiseAbs().maxCoeff()), 1e307);
+      continue;
+    }
+    expect_fits(*window, regions, resolution);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(empty, 0);
+}
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,187 @@
+#!/usr/bin/env bash
+# FAR pairs, self-collision, clearance and frames from the command line: bad input and good cases,
+# as cli_test.sh does it for the rest.
+#   tests/experiments/command/cli_pairs_test.sh FARCULL_BINARY
+# Needs bash, Debian's essential tools and a software device of Mesa.
+set -uo pipefail
+
+if [[ $# -ne 1 || ! -x $1 ]]; then
+  echo "usage: cli_pairs_test.sh FARCULL_BINARY" >&2
+  exit 2
+fi
+program=$(realpath -- "$1")
+work=$(mktemp -d) || exit 2
+trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
+
+# shellcheck source-path=SCRIPTDIR source=cli_lab.sh
+source "$(dirname -- "${BASH_SOURCE[0]}")/cli_lab.sh"
+
+echo older >old.json
+obj 'f 1 2 3' 'f 1 2 4' 'f 1 3 4' 'f 2 3 4' >good.obj
+
+# --- bad input ---------------------------------------------------------------------------------
+
+pairs=(two-spheres --method far-pairs)
+bad 'far-pairs beyond its resolution' '--resolution: .*limit of far-pairs' run "${pairs[@]}" \
+  --resolution 16385
+bad 'far-pairs compared beyond it' '--resolutions: .*limit of far-pairs' compare two-spheres \
+  --methods far-pairs --resolutions 16385
+bad 'far at auto' '--resolution: auto .*far-pairs' run two-spheres --resolution auto
+bad 'compare far at auto' '--resolutions: auto ' compare two-spheres --methods far \
+  --resolutions auto
+bad 'far with views auto' '--views: auto .*far-pairs' run two-spheres --views auto
+bad 'compare far with views auto' '--views: auto ' compare two-spheres --methods far --views auto
+for method in far cullide; do
+  bad "$method with self" '--self: .*far-pairs' run two-spheres --method "$method" --self
+  bad "$method with a clearance" '--clearance: .*far-pairs' run two-spheres --method "$method" \
+    --clearance 0
+  bad "$method on the cpu" '--device: .*far-pairs' run two-spheres --method "$method" --device cpu
+  bad "compare $method with self" '--methods: .*far-pairs' compare two-spheres \
+    --methods "$method,exact" --self
+done
+for option in --radius --offset --depth --depth-format --query; do
+  bad "far-pairs with $option" "$option: " run "${pairs[@]}" "$option" 24
+done
+for clearance in -1 -1e-300 nan inf 1e999 '' 1x ' 1' 0x1p3; do
+  bad "clearance '$clearance'" '--clearance: ' run "${pairs[@]}" --clearance "$clearance"
+  bad "compare clearance '$clearance'" '--clearance: ' compare two-spheres \
+    --clearance "$clearance"
+done
+for frames in 0 -1 1.5 '' a 3:2 -1:2 1: :2 1:2:3 1000001 0:1000000 99999999999999999999 ' 1' 1-3 \
+  9223372036854775807:9223372036854775807 1000000001:1000000001; do
+  bad "frames '$frames'" '--frames: ' run "${pairs[@]}" --frames "$frames"
+done
+for option in --clearance --frames; do
+  bad "$option without a value" "$option: " run "${pairs[@]}" "$option"
+  bad "$option twice" "$option: " verify "${pairs[@]}" "$option" 1 "$option" 1
+done
+bad 'a value for --self' '--self: ' run "${pairs[@]}" --self=7
+bad 'frames of what stands still' '--frames: nothing .*%d' run two-tori --method far-pairs --frames 3
+bad 'frames of files without a number' '--frames: nothing .*%d' run good.obj --method far-pairs \
+  --frames 3
+bad 'certificate of frames' '--certificate: ' run "${pairs[@]}" --frames 3 --certificate c.json
+bad 'certificate of a clearance' '--certificate: ' run "${pairs[@]}" --clearance 1 \
+  --certificate c.json
+for i in 3 4 5; do obj 'f 1 2 3' 'f 1 2 4' >"cloth_0$i.obj"; done
+((cases += 1))
+launch run cloth_%02d.obj --method far-pairs --frames 3:6 --json missing.json --pairs missing.csv
+((status == 2)) || fail 'a frame that is missing' "status $status"
+expect 'a frame that is missing' "$err" '^farcull: .*cloth_06\.obj: the file does not exist; give '
+expect 'a frame that is missing' "$out" '^ +5 '
+expect 'a frame that is missing' missing.json '^ +"frame": 5,'
+expect 'a frame that is missing' missing.json '^    "frames": 3,'
+expect 'a frame that is missing' missing.json '^}$'
+expect 'a frame that is missing' missing.csv '^frame,'
+rm -f missing.json missing.csv
+bad 'frames from another number' 'cloth_00\.obj: the file does not exist' run cloth_%02d.obj \
+  --method far-pairs --frames 3
+obj 'f 1 2 3' >cloth_05.obj
+good 'a frame with fewer triangles' 0 run cloth_%02d.obj --method far-pairs --frames 3:5
+expect 'a frame with fewer triangles' "$out" '^topology  changed 1 times between frames$'
+printf 'v 0 0 nan\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n' >cloth_05.obj
+bad 'a first frame that is no mesh' 'cloth_05\.obj:1: ' run cloth_%02d.obj --method far-pairs \
+  --frames 5:5 --json old.json --pairs new.csv
+printf '{"objects": [{"mesh": "good.obj", "self": true}, {"mesh": "good.obj"}]}' >self.json
+bad 'far on a scene that collides with itself' 'self: far tests no object .*far-pairs' run self.json
+bad 'compare far on one' '--methods: far tests no object .*far-pairs' compare self.json \
+  --methods far,exact
+
+# --- good cases --------------------------------------------------------------------------------
+
+good 'far-pairs' 0 run "${pairs[@]}"
+expect 'far-pairs' "$out" '^device     cpu: no --device: '
+expect 'far-pairs' "$out" '^method     far-pairs; promises to miss nothing$'
+expect 'far-pairs' "$out" ' \+ 0 missed$'
+expect 'far-pairs' "$out" '^colliding  298 pairs$'
+good 'far-pairs with a clearance of 0' 0 run "${pairs[@]}" --device cpu --clearance 0 --pairs -
+cp "$out" plain.csv
+good 'far-pairs without' 0 run "${pairs[@]}" --device cpu --pairs -
+((cases += 1))
+cmp -s "$out" plain.csv || fail 'a clearance of 0' 'other pairs than without'
+good 'exact pairs' 0 run two-spheres --method exact --pairs -
+((cases += 1))
+cmp -s "$out" plain.csv || fail 'far-pairs' 'other pairs than exact'
+good 'far-pairs as asked' 0 verify "${pairs[@]}" --device cpu --views x,1:2:3 --resolution 64
+expect 'far-pairs as asked' "$out" '^method     far-pairs at 64 px; '
+expect 'far-pairs as asked' "$out" '^views      x [0-9]+ x [0-9]+, 1:2:3 '
+good 'far-pairs auto' 0 run "${pairs[@]}" --views auto --resolution auto --json -
+for line in '"method": "far-pairs"' '"resolution": "auto"' '"clearance": 0\.0' '"promises": true' \
+  '"cpu": "no --device' '"neighbour_pairs": 0' '"self_objects": 0' '"looked": true'; do
+  expect 'far-pairs auto' "$out" "^ *$line"
+done
+obj 'v 1 1 -1' 'v 1 1 1' 'v 0 0 -1' 'f 1 2 3' 'f 1 2 4' 'f 5 6 7' >folded.obj
+good 'self-collision' 0 verify folded.obj --method far-pairs --self --pairs -
+expect 'self-collision' "$out" '^object_a,triangle_a,object_b,triangle_b,neighbours$'
+expect 'self-collision' "$out" '^0,0,0,2,0$'
+good 'self-collision by exact' 0 verify folded.obj --method exact --self
+expect 'self-collision by exact' "$out" '^colliding  1 pair and 0 neighbour pairs of 1$'
+good 'certificate of self-collision' 0 run folded.obj --method far-pairs --self --certificate c.json
+good 'check of it' 0 check c.json folded.obj --self
+expect 'check of it' "$out" '^proved: '
+((cases += 1))
+launch check c.json folded.obj
+((status == 1)) || fail 'check of it without --self' "status $status instead of 1"
+expect 'check of it without --self' "$out" '^not proved: the certificate is of another scene'
+rm c.json
+good 'no self-collision' 0 verify folded.obj --method far-pairs
+expect 'no self-collision' "$out" '^colliding  0 pairs$'
+good 'scene that collides with itself' 0 verify self.json --method far-pairs
+good 'compare with self' 0 compare folded.obj --self --clearance 0.5
+expect 'compare with self' "$out" '^far-pairs +- +auto'
+expect 'compare with self' "$out" '^method .* neighbours '
+
+# Frames: a triangle that falls through another.
+for i in 1 2 3; do
+  printf 'v 0.1 0.1 %d.5\nv 0.9 0.1 %d.5\nv 0.1 0.1 %d.1\nf 1 2 3\n' $((i - 2)) $((i - 2)) \
+    $((i - 2)) >"fall_$i.obj"
+done
+good 'frames' 0 verify fall_%d.obj good.obj --method far-pairs --frames 1:3 --json - --pairs falls.csv
+for line in '"frame": 3' '"read": ' '"median": ' '"p95": ' '"max": ' '"frames": 3' '"missed": 0'; do
+  expect 'frames' "$out" "^ *$line"
+done
+expect 'frames' falls.csv '^frame,object_a,triangle_a,object_b,triangle_b$'
+expect 'frames' falls.csv '^2,0,0,1,3$'
+rm falls.csv
+printf '{"objects": [{"mesh": "fall_%%d.obj", "self": true}, {"mesh": "good.obj"}]}' >fall.json
+good 'frames of a scene file' 0 run fall.json --method exact --frames 1:3 --no-verify
+expect 'frames of a scene file' "$out" '^frame +candidates +colliding +neighbours +cull ms'
+expect 'frames of a scene file' "$out" '^per frame  median '
+good 'frames of a built-in scene' 0 verify two-spheres@far@ground --method far-pairs --frames 3
+expect 'frames of a built-in scene' "$out" '^ +2 .* 0 +[0-9.]+ +[0-9.]+ +[0-9.]+ +[0-9,]+ +[0-9,]+$'
+good 'frames of one number' 0 run crowd --method far-pairs --frames 1
+
+# Triangles that lie on each other: memory for the pairs that there are, not for each pixel of each.
+for name in first second; do
+  {
+    printf 'v 0 0 0\nv 1 0 0.3\nv 0 1 0.2\n'
+    for ((i = 0; i < 1200; ++i)); do printf 'f 1 2 3\n'; done
+  } >"$name.obj"
+done
+for device in cpu software; do
+  ((cases += 1))
+  limit=400000
+  [[ $device == software ]] && limit=1000000
+  (ulimit -v $limit && exec timeout 60 "$program" run first.obj second.obj --method far-pairs \
+    --device $device --no-verify) >"$out" 2>"$err" || fail "coincident triangles, $device" "status $?"
+  expect "coincident triangles, $device" "$out" '^colliding  1,440,000 pairs$'
+done
+
+# Where memory is the cause, the message says so. A limit too small for the program's own libraries is
+# the loader's to report (status 127), and a driver may crash under it (docs/reliability.md).
+for limit in 75000 80000 100000 150000 200000 300000 350000 400000; do
+  for method in 'far-pairs --device software' 'far-pairs --device cpu' far exact; do
+    ((cases += 1))
+    # shellcheck disable=SC2086  # the method and its device are words
+    (ulimit -v $limit && exec timeout 60 "$program" run two-spheres --method $method) >"$out" 2>"$err"
+    status=$?
+    ((status == 0 || status == 127)) && continue
+    ((status == 2)) || fail "$method in $limit KiB" "status $status"
+    expect "$method in $limit KiB" "$err" '^farcull: .*memory.*; .*memory'
+  done
+done
+
+if ((failed)); then
+  echo "cli_pairs_test: $failed of $cases cases failed"
+  exit 1
+fi
+echo "cli_pairs_test: $cases cases, none failed"

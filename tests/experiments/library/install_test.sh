@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# The installed library as a stranger uses it: docs/example, built by CMake and by pkg-config.
+#   tests/experiments/library/install_test.sh BUILD_FOLDER SOURCE_FOLDER CXX CMAKE
+# Installs to a folder of its own, moves that, and leaves nothing.
+set -euo pipefail
+
+build=$1 source=$2 cxx=$3 cmake=$4
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+fail() {
+  echo "install_test: $1" >&2
+  exit 1
+}
+
+"$cmake" --install "$build" --prefix "$work/first" >/dev/null
+mv "$work/first" "$work/prefix"
+[[ $(cd "$work/prefix/include" && find . -type f) == ./farcull/farcull.h ]] ||
+  fail 'include/ holds more than one header'
+if grep -nE '#include [<"](CGAL|Eigen|GL|epoxy|core|verify|offsets)' \
+  "$work/prefix/include/farcull/farcull.h"; then
+  fail 'the header includes what users do not have'
+fi
+if grep -rnF -e "$build" -e "$source" "$work/prefix" --include='*.cmake' --include='*.pc' \
+  --include='*.h'; then
+  fail 'what is installed names the folder that it was built in'
+fi
+"$work/prefix/bin/farcull" --version >/dev/null
+
+"$cmake" -S "$source/docs/example" -B "$work/by_cmake" -DCMAKE_PREFIX_PATH="$work/prefix" \
+  -DCMAKE_CXX_COMPILER="$cxx" >"$work/log" || fail "$(cat "$work/log")"
+"$cmake" --build "$work/by_cmake" >"$work/log" || fail "$(cat "$work/log")"
+"$work/by_cmake/example" >"$work/cmake.txt"
+
+PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name farcull.pc)")
+export PKG_CONFIG_PATH
+# shellcheck disable=SC2046 # several words
+"$cxx" -std=c++20 -Wall -Wextra -Werror "$source/docs/example/main.cpp" \
+  $(pkg-config --cflags --libs farcull) -o "$work/example"
+"$work/example" >"$work/pkg_config.txt"
+
+cmp "$work/cmake.txt" "$work/pkg_config.txt" || fail 'the two examples differ'
+expected=$'frame 0, on cpu: 1\n  0 and 1
+frame 1, on cpu: 1\n  0 and 1
+frame 2, on cpu: 0'
+[[ $(<"$work/cmake.txt") == "$expected" ]] || fail "the example says: $(<"$work/cmake.txt")"
+echo "install_test: the example was built by CMake and by pkg-config"

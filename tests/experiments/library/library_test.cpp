@@ -1,0 +1,173 @@
+// The library as its users see it, held against the method `exact`.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "experiments/library/farcull.h"
+#include "experiments/method/run.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+/// A scene as flat arrays.
+struct Flat {
+  std::vector<double> vertices;
+  std::vector<std::uint32_t> triangles, starts;
+
+  explicit Flat(const Scene& scene) {
+    for (const Vec3& p : scene.vertices) vertices.insert(vertices.end(), p.data(), p.data() + 3);
+    for (const auto& t : scene.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+    for (const Object& object : scene.objects) starts.push_back(object.first_triangle);
+  }
+  ColliderInput input() const { return {vertices, triangles, starts}; }
+};
+
+std::vector<TrianglePair> pairs_of(const std::vector<ColliderPair>& pairs) {
+  std::vector<TrianglePair> out;
+  for (const ColliderPair& pair : pairs) out.push_back({pair.a, pair.b});
+  return out;
+}
+
+Scene self_scene(const std::string& name) {
+  Scene scene = make_builtin_scene(name);
+  for (Object& object : scene.objects) object.self = true;
+  return scene;
+}
+
+void expect_exact(Collider& collider, const Scene& scene, double clearance = 0) {
+  const Flat flat(scene);
+  const ColliderResult found = collider.find(flat.input());
+  const ExactResult exact = all_colliding_pairs(scene, {.clearance = clearance});
+  EXPECT_EQ(pairs_of(found.pairs), exact.pairs) << scene.name;
+  EXPECT_EQ(pairs_of(found.neighbour_pairs), exact.neighbour_pairs) << scene.name;
+  EXPECT_EQ(found.report.device, "cpu");
+  EXPECT_GE(found.report.candidates, found.pairs.size() + found.neighbour_pairs.size());
+  EXPECT_EQ(found.report.stages.back().out, found.pairs.size() + found.neighbour_pairs.size());
+}
+
+TEST(Library, OneColliderGivesTheExactPairsOfSceneAfterScene) {
+  Collider collider;
+  for (const char* name : {"two-spheres", "degenerate", "far-apart", "needles", "random-soup",
+                           "crowd", "two-spheres@tiny", "two-spheres"}) {
+    expect_exact(collider, make_builtin_scene(name));
+  }
+}
+
+TEST(Library, SelfCollisionWithNeighboursApart) {
+  Collider collider({.self = true});
+  for (const char* name : {"degenerate", "random-soup", "two-tori"})
+    expect_exact(collider, self_scene(name));
+}
+
+TEST(Library, SelfCollisionOfSomeObjects) {
+  Scene scene = make_builtin_scene("random-soup");
+  Collider none, first({.self_objects = {true, false, false, false, false, false, false, false}});
+  const std::size_t without = none.find(Flat(scene).input()).pairs.size();
+  scene.objects[0].self = true;
+  expect_exact(first, scene);
+  EXPECT_GT(first.find(Flat(scene).input()).pairs.size(), without);
+}
+
+TEST(Library, ClearanceFindsWhatIsNear) {
+  const Scene scene = make_builtin_scene("needles");
+  Collider collider({.clearance = 0.05});
+  expect_exact(collider, scene, 0.05);
+  EXPECT_GT(collider.find(Flat(scene).input()).pairs.size(),
+            all_colliding_pairs(scene).pairs.size());
+}
+
+TEST(Library, TheAnswerIsOnlyThatOfTheInput) {
+  const Flat flat(make_builtin_scene("random-soup"));
+  const ColliderResult usual = Collider().find(flat.input());
+  for (const ColliderOptions& options :
+       {ColliderOptions{.threads = 1}, ColliderOptions{.views = "1:2:3,-y"},
+        ColliderOptions{.resolution = 7}, ColliderOptions{.neighbours = false},
+        ColliderOptions{.device = ColliderDevice::best}}) {
+    Collider collider(options);
+    const ColliderResult found = collider.find(flat.input());
+    EXPECT_EQ(found.pairs, usual.pairs);
+    EXPECT_FALSE(found.report.device_reason.empty());
+    if (options.views != "auto") {
+      EXPECT_EQ(found.report.views[0].name, "1:2:3");
+      EXPECT_EQ(found.report.views.size(), 2u);
+    }
+    if (options.resolution > 0) {
+      EXPECT_LE(found.report.views[0].width, options.resolution + 5);
+    }
+  }
+}
+
+TEST(Library, NeighboursAreOnlyCountedWhereNobodyAsksForThem) {
+  const Flat flat(make_builtin_scene("two-spheres"));
+  const ColliderResult all = Collider({.self = true}).find(flat.input());
+  const ColliderResult fewer = Collider({.self = true, .neighbours = false}).find(flat.input());
+  EXPECT_EQ(fewer.pairs, all.pairs);
+  EXPECT_TRUE(fewer.neighbour_pairs.empty());
+  EXPECT_EQ(fewer.report.neighbours, all.report.neighbours);
+  EXPECT_GT(all.report.neighbours, 0u);
+}
+
+TEST(Library, NothingIsNothing) {
+  Collider collider;
+  EXPECT_TRUE(collider.find({}).pairs.empty());
+  const std::vector<double> vertices = {0, 0, 0};
+  const std::vector<std::uint32_t> triangles = {0, 0, 0, 0, 0, 0};
+  EXPECT_TRUE(collider.find({vertices, {}, {}}).pairs.empty());
+  EXPECT_TRUE(collider.find({vertices, triangles, {}}).pairs.empty());  // of one object
+  const std::vector<std::uint32_t> starts = {0, 0, 1, 2, 2};            // empty ones among them
+  EXPECT_EQ(collider.find({vertices, triangles, starts}).pairs,
+            (std::vector<ColliderPair>{{0, 1}}));
+}
+
+template <class Call>
+std::string refused(const Call& call) {
+  try {
+    call();
+  } catch (const ColliderError& error) {
+    EXPECT_FALSE(error.reason.empty());
+    EXPECT_FALSE(error.remedy.empty());
+    EXPECT_NE(std::string(error.what()).find(error.reason), std::string::npos);
+    return error.where;
+  }
+  return "nothing was thrown";
+}
+
+TEST(Library, RefusesBadInputAndGoesOn) {
+  Collider collider;
+  const Flat good(make_builtin_scene("two-spheres"));
+  const auto with = [&](const auto& change) {
+    Flat flat = good;
+    change(flat);
+    return refused([&] { collider.find(flat.input()); });
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(with([&](Flat& f) { f.vertices[7] = nan; }), "vertices");
+  EXPECT_EQ(with([&](Flat& f) { f.vertices[7] = -HUGE_VAL; }), "vertices");
+  EXPECT_EQ(with([&](Flat& f) { f.vertices.pop_back(); }), "vertices");
+  EXPECT_EQ(with([&](Flat& f) { f.triangles.pop_back(); }), "triangles");
+  EXPECT_EQ(with([&](Flat& f) { f.triangles[5] = 5124; }), "triangles");
+  EXPECT_EQ(with([&](Flat& f) { f.starts[0] = 1; }), "object_starts");
+  EXPECT_EQ(with([&](Flat& f) { f.starts[1] = 10241; }), "object_starts");
+  EXPECT_EQ(with([&](Flat& f) { f.starts = {0, 9, 8}; }), "object_starts");
+  expect_exact(collider, make_builtin_scene("two-spheres"));
+  Collider marked({.self_objects = {true}});
+  EXPECT_EQ(refused([&] { marked.find(good.input()); }), "self_objects");
+}
+
+TEST(Library, RefusesBadOptions) {
+  const auto with = [](const ColliderOptions& options) {
+    return refused([&] { Collider collider(options); });
+  };
+  EXPECT_EQ(with({.clearance = -1}), "clearance");
+  EXPECT_EQ(with({.clearance = HUGE_VAL}), "clearance");
+  EXPECT_EQ(with({.views = "q"}), "views");
+  EXPECT_EQ(with({.views = ""}), "views");
+  EXPECT_EQ(with({.resolution = -1}), "resolution");
+  EXPECT_EQ(with({.resolution = kMostPairResolution + 1}), "resolution");
+  EXPECT_EQ(with({.threads = 1025}), "threads");
+}
+
+}  // namespace
+}  // namespace farcull

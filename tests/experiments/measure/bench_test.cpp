@@ -1,0 +1,329 @@
+#include "experiments/measure/bench.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/system/machine.h"
+#include "tests/experiments/system/error_of.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+BenchOptions quick() {
+  BenchOptions options;
+  options.threads = usable_cores();
+  options.repeat = 1;
+  options.device = "cpu";
+  options.methods = "far-pairs,exact";
+  return options;
+}
+
+Scene self_colliding(Scene scene) {
+  for (Object& object : scene.objects) object.self = true;
+  return scene;
+}
+
+// Every pair that counts, without any broad phase.
+std::vector<TrianglePair> brute_force(const Scene& scene) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  std::vector<TrianglePair> all;
+  for (std::uint32_t a = 0; a < owner.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < owner.size(); ++b) {
+      if (owner[a] != owner[b] || scene.objects[owner[a]].self) all.push_back({a, b});
+    }
+  }
+  return decide(scene, all, {.neighbours = false}).pairs;
+}
+
+// Sheets, each crossed by every blade: more candidates than any part that is decided at once.
+Scene sheets_and_blades(std::uint32_t sheets, std::uint32_t blades) {
+  Scene scene;
+  scene.name = "sheets";
+  const auto add = [&scene](const Vec3& a, const Vec3& b, const Vec3& c) {
+    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+    scene.vertices.insert(scene.vertices.end(), {a, b, c});
+    scene.triangles.push_back({first, first + 1, first + 2});
+    scene.source_face.push_back(0);
+  };
+  for (std::uint32_t i = 0; i < sheets; ++i) add({0, 0, i + .5}, {1, 0, i + .5}, {0, 1, i + .5});
+  for (std::uint32_t i = 0; i < blades; ++i) {
+    const double x = 0.1 + 1e-4 * i;
+    add({x, 0.1, 0}, {x, 0.1, sheets + 1.}, {x, 0.3, sheets / 2.});
+  }
+  scene.objects = {{"sheets", 0, sheets}, {"blades", sheets, blades}};
+  validate(scene, scene.name);
+  return scene;
+}
+
+// All contestants that there are agree, and those that must be there are.
+BenchResult expect_agreement(const Scene& scene, bool oriented_boxes = true) {
+  const BenchOptions options = quick();
+  const BenchResult result = bench(scene, contestants(scene, options), options);
+  EXPECT_FALSE(result.disagreement) << describe(scene, *result.disagreement);
+  std::set<std::string> ran;
+  for (const BenchRow& row : result.rows) {
+    ran.insert(row.name);
+    EXPECT_EQ(row.pairs, result.rows[0].pairs) << row.name;
+    EXPECT_GE(row.candidate_pairs, row.pairs) << row.name;
+    EXPECT_EQ(row.repeats, 1);
+  }
+  for (const Peer& peer : all_peers(options.threads)) {
+    const bool oriented = peer.name == "fcl-obb" || peer.name == "fcl-obbrss";
+    EXPECT_EQ(ran.contains(peer.name), peer.missing.empty() && (oriented_boxes || !oriented))
+        << peer.name;
+  }
+  for (const char* name : {"far-pairs", "exact", "cgal-boxes", "cgal-boxes-2000",
+                           "cgal-object-pairs", "cgal-aabb", "cgal-aabb-triangles"}) {
+    EXPECT_TRUE(ran.contains(name)) << name;
+  }
+  EXPECT_TRUE(result.fastest_peer);
+  return result;
+}
+
+TEST(Bench, PeersAgreeOnSmallScenes) {
+  for (const char* name : {"two-spheres", "random-soup", "needles", "crowd", "far-apart",
+                           "field:1000", "two-spheres@far", "needles@huge", "crowd@tiny"}) {
+    SCOPED_TRACE(name);
+    expect_agreement(make_builtin_scene(name));
+  }
+}
+
+TEST(Bench, PeersAgreeWithBruteForceOnDegenerateTriangles) {
+  const Scene scene = make_builtin_scene("degenerate");
+  EXPECT_EQ(expect_agreement(scene, false).rows[0].pairs, brute_force(scene).size());
+  const Scene self = self_colliding(scene);
+  EXPECT_EQ(expect_agreement(self, false).rows[0].pairs, brute_force(self).size());
+}
+
+TEST(Bench, PeersAgreeOnSelfCollisionWithoutNeighbours) {
+  Scene one = make_builtin_scene("random-soup");
+  one.objects = {{"all", 0, static_cast<std::uint32_t>(one.triangles.size()), true}};
+  EXPECT_EQ(expect_agreement(one).rows[0].pairs, brute_force(one).size());
+
+  // A mesh has neighbours, and nothing else that meets; its objects meet each other.
+  Scene some = make_builtin_scene("field:1000");
+  EXPECT_EQ(expect_agreement(self_colliding(some)).rows[0].pairs, brute_force(some).size());
+  some.objects[1].self = true;
+  expect_agreement(some);
+  some.objects = {{"one", 0, static_cast<std::uint32_t>(some.triangles.size())}};
+  EXPECT_EQ(expect_agreement(some).rows[0].pairs, 0u) << "an object that is not self has no pairs";
+}
+
+TEST(Bench, PeersAgreeWhenCandidatesAreDecidedInParts) {
+  const Scene scene = sheets_and_blades(700, 600);
+  EXPECT_EQ(expect_agreement(scene).rows[0].pairs, 420'000u);
+}
+
+TEST(Bench, PeersAgreeOnScenesOfNothing) {
+  Scene scene;
+  scene.name = "nothing";
+  EXPECT_EQ(expect_agreement(scene).rows[0].pairs, 0u);
+  scene.objects = {{"empty"}, {"also empty", 0, 0, true}};
+  EXPECT_EQ(expect_agreement(scene).rows[0].pairs, 0u);
+}
+
+Contestant says(const std::string& name, std::function<std::vector<TrianglePair>()> pairs) {
+  Contestant contestant{.name = name, .peer = true};
+  contestant.run = [pairs](const Scene&) { return BenchAnswer{.pairs = pairs()}; };
+  return contestant;
+}
+
+// The twin of the tests above: one pair less, one more, in any run, and bench must say which.
+TEST(Bench, CatchesACorruptedPeer) {
+  const Scene scene = make_builtin_scene("crowd");
+  BenchOptions options = quick();
+  options.repeat = 3;
+  const std::vector<TrianglePair> right = all_colliding_pairs(scene).pairs;
+  ASSERT_GT(right.size(), 10u);
+  const Contestant good = says("good", [&] { return right; });
+  EXPECT_FALSE(bench(scene, {good, good}, options).disagreement);
+
+  const std::size_t last = right.size() - 1;
+  for (const std::size_t at : {std::size_t{0}, right.size() / 2, last}) {
+    std::vector<TrianglePair> less = right;
+    less.erase(less.begin() + static_cast<std::ptrdiff_t>(at));
+    const Contestant bad = says("bad", [=] { return less; });
+    for (const auto& order : {std::vector{good, bad}, std::vector{bad, good}}) {
+      const BenchResult result = bench(scene, order, options);
+      ASSERT_TRUE(result.disagreement);
+      EXPECT_EQ(result.disagreement->has, "good");
+      EXPECT_EQ(result.disagreement->lacks, "bad");
+      EXPECT_EQ(result.disagreement->pair, right[at]);
+      EXPECT_TRUE(result.disagreement->collides);
+      EXPECT_NE(describe(scene, *result.disagreement).find("bad lacks; "), std::string::npos);
+    }
+  }
+
+  std::vector<TrianglePair> more = right;
+  const TrianglePair wrong = {0, right[0].a == 0 && right[0].b == 1 ? 2u : 1u};
+  more.insert(std::lower_bound(more.begin(), more.end(), wrong), wrong);
+  const BenchResult invented = bench(scene, {good, says("bad", [=] { return more; })}, options);
+  ASSERT_TRUE(invented.disagreement);
+  EXPECT_EQ(invented.disagreement->has, "bad");
+  EXPECT_EQ(invented.disagreement->pair, wrong);
+  EXPECT_FALSE(invented.disagreement->collides);
+
+  const TrianglePair nowhere = {0, 1'000'000'000};
+  std::vector<TrianglePair> outside = right;
+  outside.insert(std::lower_bound(outside.begin(), outside.end(), nowhere), nowhere);
+  const BenchResult beyond = bench(scene, {good, says("bad", [=] { return outside; })}, options);
+  ASSERT_TRUE(beyond.disagreement);
+  EXPECT_FALSE(beyond.disagreement->collides);
+  EXPECT_FALSE(describe(scene, *beyond.disagreement).empty());
+
+  int runs = 0;
+  const Contestant late = says("late", [&] {
+    std::vector<TrianglePair> pairs = right;
+    if (++runs == 4) pairs.pop_back();
+    return pairs;
+  });
+  const BenchResult result = bench(scene, {good, late}, options);
+  EXPECT_EQ(runs, 4) << "once cold and three times";
+  ASSERT_TRUE(result.disagreement);
+  EXPECT_EQ(result.disagreement->lacks, "late");
+}
+
+TEST(Bench, RepeatsNothingBeyondTheLimit) {
+  const Scene scene = make_builtin_scene("far-apart");
+  BenchOptions options = quick();
+  options.repeat = 3;
+  options.limit_s = 0.02;
+  int fast_runs = 0;
+  int slow_runs = 0;
+  const std::vector<Contestant> both = {
+      says("fast", [&] { return ++fast_runs, std::vector<TrianglePair>{}; }), says("slow", [&] {
+        ++slow_runs;
+        std::this_thread::sleep_for(std::chrono::milliseconds(30));
+        return std::vector<TrianglePair>{};
+      })};
+  const BenchResult result = bench(scene, both, options);
+  EXPECT_EQ(fast_runs, 4);
+  EXPECT_EQ(slow_runs, 1);
+  ASSERT_EQ(result.rows.size(), 2u);
+  EXPECT_EQ(result.rows[0].repeats, 3);
+  EXPECT_EQ(result.rows[1].repeats, 0);
+  EXPECT_EQ(result.rows[1].total_ms.median, result.rows[1].cold_ms);
+  EXPECT_GE(result.rows[1].cold_ms, 30);
+  EXPECT_EQ(result.fastest_peer, 0u);
+  EXPECT_NE(bench_table(scene, options, result).find("slow (once)"), std::string::npos);
+}
+
+TEST(Bench, MemoryIsThePeakBeyondWhatWasThere) {
+  const Scene scene = make_builtin_scene("far-apart");
+  const std::vector<char> before(100 << 20, 1);
+  const std::vector<Contestant> both = {says("frugal", [] { return std::vector<TrianglePair>{}; }),
+                                        says("greedy", [] {
+                                          std::vector<char> much(50 << 20, 1);
+                                          return std::vector<TrianglePair>(much[7] - 1);
+                                        })};
+  const BenchResult result = bench(scene, both, quick());
+  ASSERT_TRUE(result.rows[0].peak_mib && result.rows[1].peak_mib) << "VmHWM cannot be reset";
+  EXPECT_LT(*result.rows[0].peak_mib, 10);
+  EXPECT_NEAR(*result.rows[1].peak_mib, 50, 10);
+}
+
+TEST(Bench, JsonHasTheFieldsThatReadersExpect) {
+  const Scene scene = make_builtin_scene("crowd");
+  BenchOptions options = quick();
+  options.repeat = 3;
+  options.peers = "cgal-aabb,cgal-boxes";
+  const BenchResult result = bench(scene, contestants(scene, options), options);
+  const nlohmann::ordered_json json = to_json(scene, options, result);
+  EXPECT_EQ(json["scene"], "crowd");
+  EXPECT_EQ(json["threads"], options.threads);
+  ASSERT_EQ(json["rows"].size(), 4u);
+  std::set<std::string> names;
+  for (const auto& row : json["rows"]) {
+    names.insert(row["name"]);
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : row.items()) keys.push_back(key);
+    keys.resize(10);
+    EXPECT_EQ(keys, (std::vector<std::string>{"name", "device", "total_ms", "setup_ms", "build_ms",
+                                              "candidates_ms", "exact_ms", "candidate_pairs",
+                                              "pairs", "peak_mib"}));
+    EXPECT_EQ(row["device"], "cpu");
+    const auto& total = row["total_ms"];
+    EXPECT_LE(total["min"], total["median"]);
+    EXPECT_LE(total["median"], total["max"]);
+    EXPECT_GT(total["min"], 0);
+    const double parts = row["build_ms"].get<double>() + row["candidates_ms"].get<double>() +
+                         row["exact_ms"].get<double>();
+    EXPECT_LT(parts, 2 * total["max"].get<double>());
+    EXPECT_GT(row["ratio_to_fastest_peer"], 0);
+  }
+  EXPECT_EQ(names, (std::set<std::string>{"far-pairs", "exact", "cgal-boxes", "cgal-aabb"}));
+  const std::string fastest = json["fastest_peer"];
+  EXPECT_TRUE(fastest == "cgal-boxes" || fastest == "cgal-aabb");
+  const auto& ours = json["rows"][0];
+  EXPECT_EQ(ours["name"], "far-pairs");
+  EXPECT_EQ(json["ratio_to_fastest_peer"], ours["ratio_to_peers"][fastest]);
+  EXPECT_EQ(ours["ratio_to_peers"].size(), 2u);
+  EXPECT_TRUE(json["disagreement"].is_null());
+  EXPECT_EQ(json["hash"], scene_hash(scene));
+  for (const char* key : {"cpu", "commit", "seed", "options", "left_out"})
+    EXPECT_TRUE(json.contains(key)) << key;
+
+  options.peers = "none";
+  const auto alone = to_json(scene, options, bench(scene, contestants(scene, options), options));
+  EXPECT_TRUE(alone["fastest_peer"].is_null());
+  EXPECT_TRUE(alone["ratio_to_fastest_peer"].is_null());
+}
+
+TEST(Bench, LeavesOutAloudWhatCannotRun) {
+  Scene scene = make_builtin_scene("degenerate");
+  BenchOptions options = quick();
+  options.methods = "all";
+  const BenchResult result = bench(scene, contestants(scene, options), options);
+  std::set<std::string> out;
+  for (const Contestant& contestant : result.left_out) {
+    out.insert(contestant.name);
+    EXPECT_FALSE(contestant.left_out.empty());
+    EXPECT_NE(bench_table(scene, options, result).find("left out: " + contestant.name + ": "),
+              std::string::npos);
+  }
+  EXPECT_TRUE(out.contains("far")) << "--device cpu";
+  EXPECT_TRUE(out.contains("fcl-obbrss")) << "not exact here, or not in this build";
+  options.methods = "far";
+  EXPECT_EQ(error_of([&] { contestants(scene, options); }).where, "--methods");
+  options = quick();
+  options.peers = "fcl-obb,cgal-aabb";
+  EXPECT_EQ(error_of([&] { contestants(scene, options); }).where, "--peers");
+}
+
+TEST(Bench, RefusesWhatItDoesNotKnow) {
+  const auto refused = [](const std::function<void(BenchOptions&)>& change) {
+    BenchOptions options;
+    change(options);
+    return error_of([&] { validate(options); }).where;
+  };
+  EXPECT_EQ(refused([](BenchOptions& o) { o.peers = "cgal"; }), "--peers");
+  EXPECT_EQ(refused([](BenchOptions& o) { o.peers = ""; }), "--peers");
+  EXPECT_EQ(refused([](BenchOptions& o) { o.peers = "cgal-aabb,"; }), "--peers");
+  EXPECT_EQ(refused([](BenchOptions& o) { o.methods = "cullide"; }), "--methods");
+  EXPECT_EQ(refused([](BenchOptions& o) { o.repeat = 0; }), "--repeat");
+  EXPECT_EQ(refused([](BenchOptions& o) { o.limit_s = -1; }), "--limit");
+  EXPECT_EQ(refused([](BenchOptions& o) { o.peers = o.methods = "none"; }), "--peers");
+  EXPECT_NO_THROW(validate(BenchOptions{}));
+  EXPECT_EQ(error_of([] { confine_to_cores(usable_cores() + 1); }).where, "--threads");
+}
+
+TEST(Bench, ConfinesThreadsToTheirCores) {
+  // In a thread of its own, since there is no way back; what it starts inherits it.
+  unsigned own = 0, inherited = 0;
+  std::jthread([&] {
+    confine_to_cores(1);
+    own = usable_cores();
+    std::jthread([&] { inherited = usable_cores(); }).join();
+  }).join();
+  EXPECT_EQ(own, 1u);
+  EXPECT_EQ(inherited, 1u);
+}
+
+}  // namespace
+}  // namespace farcull

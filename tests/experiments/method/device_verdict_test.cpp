@@ -1,0 +1,331 @@
+// Verdicts about devices: made once, kept with all that they depend on, and never believed where
+// the file is damaged, foreign or about something else. No device is opened here.
+#include "experiments/method/device_verdict.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+
+#include "core/gl/probe.h"
+#include "tests/experiments/method/cache_lab.h"
+
+namespace farcull {
+namespace {
+
+using lab::CacheFolder;
+using lab::read_text;
+using lab::write_text;
+
+GlInfo device() {
+  GlInfo out;
+  out.kind = "software";
+  out.vendor = "vendor";
+  out.renderer = "renderer \xff with an odd byte";
+  out.version = "4.5";
+  out.glsl = "4.50";
+  out.subpixel_bits = 8;
+  return out;
+}
+
+ProbeResult probe(const std::string& assumption, bool pass) {
+  return {.assumption = assumption,
+          .name = "a probe",
+          .measured = pass ? 0.0 : 2.0,
+          .bound = 1,
+          .unit = "px",
+          .samples = 10,
+          .pass = pass,
+          .note = "tried"};
+}
+
+// Asks for a verdict; counts how often the probes run, and keeps what was said.
+struct Asked {
+  std::vector<ProbeResult> results = {probe("A2", true), probe("A4", true)};
+  int runs = 0;
+  std::vector<std::string> said;
+
+  DeviceVerdict operator()(const GlInfo& info, Reliance reliance = Reliance::drawing) {
+    return device_verdict(
+        info, reliance,
+        [this] {
+          ++runs;
+          return results;
+        },
+        [this](const std::string& line) { said.push_back(line); });
+  }
+};
+
+TEST(DeviceVerdict, IsMadeOnceAndKept) {
+  const CacheFolder folder;
+  Asked ask;
+  const DeviceVerdict first = ask(device());
+  EXPECT_TRUE(first.holds);
+  EXPECT_FALSE(first.remembered);
+  EXPECT_EQ(first.probes, 2u);
+  EXPECT_TRUE(first.file.starts_with(folder.path().string() + "/farcull/device-"));
+  ASSERT_EQ(ask.said.size(), 1u);
+  EXPECT_NE(ask.said[0].find("once for this device"), std::string::npos);
+  const DeviceVerdict again = ask(device());
+  EXPECT_TRUE(again.holds);
+  EXPECT_TRUE(again.remembered);
+  EXPECT_EQ(again.probes, 2u);
+  EXPECT_EQ(again.made, first.made);
+  const std::string found = "2 probes of A1 to A8 pass on this device (probed " + first.made;
+  EXPECT_EQ(to_string(first, Reliance::drawing), found + ")");
+  EXPECT_EQ(to_string(again, Reliance::drawing), found + ", remembered)");
+  EXPECT_EQ(ask.runs, 1);
+  EXPECT_EQ(ask.said.size(), 1u);
+}
+
+TEST(DeviceVerdict, AFailureIsKeptAndNamed) {
+  const CacheFolder folder;
+  Asked ask;
+  ask.results[0].pass = false;
+  ask.results[0].measured = 2;
+  for (const bool remembered : {false, true}) {
+    const DeviceVerdict verdict = ask(device());
+    EXPECT_FALSE(verdict.holds);
+    EXPECT_EQ(verdict.remembered, remembered);
+    ASSERT_EQ(verdict.failed.size(), 1u);
+    EXPECT_EQ(verdict.failed[0], "A2 a probe: 2 px, bound 1");
+    EXPECT_EQ(to_string(verdict, Reliance::drawing),
+              "a probe fails on this device: A2 a probe: 2 px, bound 1");
+  }
+  EXPECT_EQ(ask.runs, 1);
+}
+
+TEST(DeviceVerdict, ABrokenOffProbePromisesNothingAndIsNotKept) {
+  const CacheFolder folder;
+  Asked ask;
+  ask.results[1] = {
+      .assumption = "A4", .name = "x", .unit = "", .note = "no memory", .broke_off = true};
+  const DeviceVerdict verdict = ask(device());
+  EXPECT_FALSE(verdict.holds);
+  EXPECT_EQ(verdict.problem, "A4 x: no memory");
+  EXPECT_TRUE(verdict.file.empty());
+  ask.results[1] = probe("A4", true);
+  EXPECT_TRUE(ask(device()).holds);
+  EXPECT_EQ(ask.runs, 2);
+}
+
+TEST(DeviceVerdict, NoProbesAreNoVerdict) {
+  const CacheFolder folder;
+  Asked ask;
+  ask.results.clear();
+  EXPECT_FALSE(ask(device()).holds);
+  EXPECT_FALSE(ask(device()).holds);
+  EXPECT_EQ(ask.runs, 2);
+}
+
+TEST(DeviceVerdict, DependsOnDeviceDriverRelianceAndEnvironment) {
+  const CacheFolder folder;
+  Asked ask;
+  ask(device());
+  int runs = 1;
+  const auto remade = [&](const GlInfo& info, Reliance reliance = Reliance::drawing) {
+    ask(info, reliance);
+    return ask.runs == ++runs;
+  };
+  for (std::string GlInfo::*field :
+       {&GlInfo::kind, &GlInfo::vendor, &GlInfo::renderer, &GlInfo::version, &GlInfo::glsl}) {
+    GlInfo other = device();
+    other.*field += " of another";
+    EXPECT_TRUE(remade(other));
+  }
+  GlInfo other = device();
+  other.subpixel_bits = 4;
+  EXPECT_TRUE(remade(other));
+  EXPECT_TRUE(remade(device(), Reliance::pairs));
+  ::setenv("LP_NATIVE_VECTOR_WIDTH", "128", 1);
+  EXPECT_TRUE(remade(device()));
+  ::unsetenv("LP_NATIVE_VECTOR_WIDTH");
+  // What only says where caches lie changes nothing, and the first verdict is still there.
+  ::setenv("MESA_SHADER_CACHE_DIR", "/elsewhere", 1);
+  EXPECT_TRUE(ask(device()).remembered);
+  ::unsetenv("MESA_SHADER_CACHE_DIR");
+  EXPECT_EQ(ask.runs, runs);
+}
+
+TEST(DeviceVerdict, InputsNameTheSourcesAndTheProcessor) {
+  std::string names;
+  for (const auto& [name, value] : verdict_inputs(device(), Reliance::pairs)) {
+    names += name + ",";
+    if (name == "sources") {
+      EXPECT_EQ(value.size(), 16u);
+    }
+    if (name == "processor") {
+      EXPECT_FALSE(value.empty());
+    }
+  }
+  EXPECT_EQ(names,
+            "relied on,kind,vendor,renderer,version,glsl,subpixel bits,limits,sources,processor,"
+            "environment,");
+}
+
+// Every byte of the file flipped, one at a time, and every length: never believed, made anew.
+TEST(DeviceVerdict, ADamagedFileIsMadeAnew) {
+  const CacheFolder folder;
+  Asked ask;
+  ask.results[0].pass = false;
+  const std::string file = ask(device()).file;
+  const std::string good = read_text(file);
+  ASSERT_GT(good.size(), 200u);
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    std::string bad = good;
+    bad[i] = static_cast<char>(bad[i] ^ (i % 2 ? 1 : 32));
+    if (bad[i] == '\n' || bad[i] == ' ') continue;  // other white space
+    write_text(file, bad);
+    const int runs = ask.runs;
+    const DeviceVerdict verdict = ask(device());
+    EXPECT_FALSE(verdict.holds) << i;
+    // White space outside of strings may become something that breaks the text, never a verdict.
+    if (ask.runs == runs) {
+      EXPECT_TRUE(verdict.remembered && verdict.failed.size() == 1) << i;
+    } else {
+      EXPECT_NE(verdict.note.find(file), std::string::npos) << i;
+    }
+  }
+  for (std::size_t length = 0; length < good.size() - 2; length += 7) {
+    write_text(file, good.substr(0, length));
+    const int runs = ask.runs;
+    ask(device());
+    EXPECT_EQ(ask.runs, runs + 1) << length;
+  }
+  EXPECT_EQ(ask(device()).remembered, true);
+}
+
+TEST(DeviceVerdict, AFileOfAnotherDeviceInItsPlaceIsMadeAnew) {
+  const CacheFolder folder;
+  Asked ask;
+  const std::string file = ask(device()).file;
+  GlInfo other = device();
+  other.version = "9.9";
+  const std::string others = ask(other).file;
+  ASSERT_NE(file, others);
+  write_text(file, read_text(others));
+  const DeviceVerdict verdict = ask(device());
+  EXPECT_FALSE(verdict.remembered);
+  EXPECT_NE(verdict.note.find("about something else"), std::string::npos);
+  EXPECT_EQ(ask.runs, 3);
+  EXPECT_TRUE(ask(device()).remembered);
+}
+
+TEST(DeviceVerdict, ALinkIsNotFollowed) {
+  const CacheFolder folder;
+  Asked ask;
+  const std::string file = ask(device()).file;
+  std::filesystem::rename(file, file + ".elsewhere");
+  std::filesystem::create_symlink(file + ".elsewhere", file);
+  EXPECT_FALSE(ask(device()).remembered);
+  EXPECT_FALSE(std::filesystem::is_symlink(file));
+  EXPECT_TRUE(ask(device()).remembered);
+}
+
+TEST(DeviceVerdict, WithoutAFolderEveryRunProbesAndSaysSo) {
+  const CacheFolder folder;
+  write_text(folder.path() / "farcull", "a file where the folder should be");
+  Asked ask;
+  for (int run = 1; run <= 2; ++run) {
+    const DeviceVerdict verdict = ask(device());
+    EXPECT_TRUE(verdict.holds);
+    EXPECT_TRUE(verdict.file.empty());
+    EXPECT_FALSE(verdict.note.empty());
+    EXPECT_EQ(ask.runs, run);
+  }
+  ASSERT_EQ(ask.said.size(), 2u);
+  EXPECT_NE(ask.said[0].find("cannot be kept, so every run does it"), std::string::npos);
+}
+
+TEST(DeviceVerdict, AResultOfTheDoctorReplacesWhatIsKept) {
+  const CacheFolder folder;
+  Asked ask;
+  ask(device());
+  keep_verdict(device(), Reliance::drawing, {probe("A6", false)}, 5);
+  const DeviceVerdict verdict = ask(device());
+  EXPECT_TRUE(verdict.remembered);
+  EXPECT_FALSE(verdict.holds);
+  EXPECT_EQ(ask.runs, 1);
+}
+
+const ProbeResult kBrokenOff = {
+    .assumption = "A4", .name = "x", .unit = "", .note = "no memory", .broke_off = true};
+
+// A later run of the probes that does not pass leaves nothing of an older promise, whatever becomes
+// of its own verdict. The twin: one that passes leaves it in place where it cannot be written.
+TEST(DeviceVerdict, NoOlderPromiseOutlivesProbesThatBreakOff) {
+  const CacheFolder folder;
+  Asked ask;
+  const std::string file = ask(device()).file;
+  keep_verdict(device(), Reliance::drawing, {probe("A2", true), kBrokenOff}, 5);
+  EXPECT_FALSE(std::filesystem::exists(file));
+  EXPECT_FALSE(ask(device()).remembered);
+  EXPECT_TRUE(ask(device()).remembered);
+  keep_verdict(device(), Reliance::drawing, {}, 5);
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+TEST(DeviceVerdict, AFailureIsKeptThoughAnotherProbeBrokeOff) {
+  const CacheFolder folder;
+  Asked ask;
+  ask(device());
+  const DeviceVerdict now =
+      keep_verdict(device(), Reliance::drawing, {kBrokenOff, probe("A2", false)}, 5);
+  EXPECT_EQ(now.problem, "A4 x: no memory");
+  EXPECT_FALSE(now.file.empty());
+  const DeviceVerdict later = ask(device());
+  EXPECT_TRUE(later.remembered);
+  EXPECT_FALSE(later.holds);
+  EXPECT_EQ(to_string(later, Reliance::drawing), to_string(now, Reliance::drawing));
+  EXPECT_EQ(ask.runs, 1);
+}
+
+// No file of this process takes a byte for its lifetime, as on a full disk.
+class FullDisk {
+ public:
+  FullDisk() : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &old_);
+    const rlimit none{0, old_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &none);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, signal_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  void (*signal_)(int);
+  rlimit old_{};
+};
+
+TEST(DeviceVerdict, NoOlderPromiseOutlivesAFailureThatCannotBeWritten) {
+  for (const bool pass : {false, true}) {
+    const CacheFolder folder;
+    Asked ask;
+    ask(device());
+    DeviceVerdict full;
+    {
+      const FullDisk disk;
+      full = keep_verdict(device(), Reliance::drawing, {probe("A2", pass)}, 5);
+    }
+    EXPECT_TRUE(full.file.empty());
+    EXPECT_FALSE(full.note.empty());
+    EXPECT_EQ(ask(device()).remembered, pass);
+  }
+}
+
+TEST(DeviceVerdict, NothingIsLeftBeside) {
+  const CacheFolder folder;
+  Asked ask;
+  ask(device());
+  std::size_t files = 0;
+  for ([[maybe_unused]] const auto& entry :
+       std::filesystem::directory_iterator(folder.path() / "farcull"))
+    ++files;
+  EXPECT_EQ(files, 1u);
+}
+
+}  // namespace
+}  // namespace farcull

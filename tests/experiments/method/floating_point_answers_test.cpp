@@ -1,0 +1,222 @@
+// Answers in every floating-point environment that a caller may have, from all that decides,
+// accounts and checks. The twins call a predicate without a guard, and it is wrong.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/pairs/cpu.h"
+#include "experiments/lemma/oracles.h"
+#include "experiments/library/farcull.h"
+#include "experiments/method/run.h"
+#include "experiments/record/output.h"
+#include "experiments/record/tables.h"
+#include "tests/core/base/floating_point_lab.h"
+#include "verify/certificate/certificate.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+using lab::Disturbed;
+using lab::Environment;
+using lab::environments;
+
+// Enough pairs that several threads decide.
+constexpr std::size_t kCopies = 48;
+constexpr std::size_t kPairs = kCopies * kCopies;
+
+struct Sample {
+  std::string name;
+  Scene scene;
+  std::size_t colliding;
+};
+
+std::vector<Sample> samples() {
+  return {{"tiny", lab::tiny_scene(kCopies), kPairs},
+          {"huge", lab::huge_scene(kCopies), kPairs},
+          {"subnormal", lab::subnormal_scene(kCopies), 0}};
+}
+
+// test(environment, sample) for each, with what it says about the failure.
+template <class Test>
+void for_all(const Test& test) {
+  for (const Sample& sample : samples()) {
+    for (const Environment& environment : environments()) {
+      SCOPED_TRACE(sample.name + " in the environment: " + environment.name);
+      test(environment, sample);
+      EXPECT_EQ(floating_point(), kProved);
+    }
+  }
+}
+
+// The calls below with the guard left out: each scene is answered wrongly where it is meant to be.
+TEST(FloatingPointAnswers, TwinsWithoutAGuardAreWrong) {
+  const auto wrong_in = [](const Scene& scene) {
+    const auto a = scene.corners(0), b = scene.corners(1);
+    const bool truth = intersects(a, b);
+    std::vector<std::string> out;
+    for (const Environment& environment : environments()) {
+      const Disturbed disturbed(environment);
+      if (intersects(a, b) != truth) out.push_back(environment.name);
+    }
+    return out;
+  };
+  using Names = std::vector<std::string>;
+#ifdef __SSE2__
+  const Names flushing = {"results", "operands", "both", "both, upward"};
+  EXPECT_EQ(wrong_in(lab::tiny_scene()), flushing);
+  EXPECT_EQ(wrong_in(lab::subnormal_scene()), flushing);
+#endif
+  EXPECT_EQ(wrong_in(lab::huge_scene()), (Names{"downward", "toward zero"}));
+}
+
+TEST(FloatingPointAnswers, ExactTestsOfAllPairs) {
+  for_all([](const Environment& environment, const Sample& sample) {
+    ExactResult result;
+    FloatingPoint after;
+    {
+      const Disturbed disturbed(environment);
+      result = all_colliding_pairs(sample.scene, {.threads = 3});
+      after = floating_point();
+    }
+    EXPECT_EQ(result.box_pairs, kPairs);
+    EXPECT_EQ(result.pairs.size(), sample.colliding);
+    EXPECT_EQ(after, environment.found);
+  });
+}
+
+TEST(FloatingPointAnswers, Accounting) {
+  for_all([](const Environment& environment, const Sample& sample) {
+    Accounting result;
+    {
+      const Disturbed disturbed(environment);
+      result = account(sample.scene, {});
+    }
+    EXPECT_TRUE(result.adds_up());
+    EXPECT_EQ(result.certified_by_boxes, 0u);
+    EXPECT_EQ(result.false_negatives, sample.colliding);
+    EXPECT_EQ(result.certified_by_predicates, kPairs - sample.colliding);
+  });
+}
+
+// A certificate is made and checked; a false one, which says the contrary of each pair, is refuted.
+TEST(FloatingPointAnswers, Certificates) {
+  Certificate::Run run;
+  run.method = "exact";
+  for_all([&](const Environment& environment, const Sample& sample) {
+    const ExactResult exact = all_colliding_pairs(sample.scene);
+    Certificate made, refuted;
+    CheckResult right, wrong;
+    {
+      const Disturbed disturbed(environment);
+      made = make_certificate(sample.scene, exact.pairs, exact.pairs, run);
+      right = check_certificate(made, sample.scene);
+      refuted = made;
+      for (std::uint8_t& byte : refuted.evidence) byte = sample.colliding > 0 ? 0 : kKept | kMeets;
+      Certificate::Claims& claims = refuted.claims;
+      std::swap(claims.kept, claims.culled);
+      std::swap(claims.meeting, claims.separated);
+      wrong = check_certificate(refuted, sample.scene);
+    }
+    EXPECT_EQ(made.claims.meeting, sample.colliding);
+    EXPECT_EQ(made.claims.box_pairs, kPairs);
+    EXPECT_EQ(right.verdict, Verdict::proved) << right.reason;
+    EXPECT_EQ(wrong.verdict, Verdict::refuted) << wrong.reason;
+  });
+}
+
+TEST(FloatingPointAnswers, EveryMethodWithoutGlAndItsRecord) {
+  for_all([](const Environment& environment, const Sample& sample) {
+    for (const Method method : {Method::exact, Method::far_pairs, Method::i_collide}) {
+      RunOptions options;
+      options.method = method;
+      if (method == Method::far_pairs) options.device = "cpu";
+      Record record;
+      {
+        const Disturbed disturbed(environment);
+        Session session(options.device);
+        record = run(sample.scene, options, session);
+      }
+      EXPECT_EQ(record.collisions.pairs.size(), sample.colliding) << to_string(method);
+      EXPECT_EQ(record.verification->false_negatives, 0u) << to_string(method);
+      EXPECT_EQ(record.callers, environment.found);
+      EXPECT_EQ(record.used, kProved);
+
+      const nlohmann::ordered_json json = to_json(sample.scene, record)["floating_point"];
+      EXPECT_EQ(json["callers"]["rounding"], to_string(environment.found.rounding));
+      EXPECT_EQ(json["callers"]["flushes_results"], environment.found.flushes_results);
+      EXPECT_EQ(json["callers"]["flushes_operands"], environment.found.flushes_operands);
+      EXPECT_EQ(json["used"]["rounding"], "to nearest");
+      EXPECT_EQ(json["used"]["flushes_results"], false);
+      EXPECT_EQ(json["used"]["flushes_operands"], false);
+      EXPECT_NE(run_table(sample.scene, record)
+                    .find("arithmetic rounds to nearest, keeps subnormals; the caller " +
+                          to_string(environment.found)),
+                std::string::npos);
+    }
+  });
+}
+
+TEST(FloatingPointAnswers, AnOrdinaryCallerIsNotMentionedInText) {
+  Session session("");
+  const Scene scene = lab::tiny_scene();
+  RunOptions options;
+  options.method = Method::exact;
+  const Record record = run(scene, options, session);
+  EXPECT_EQ(run_table(scene, record).find("arithmetic"), std::string::npos);
+  EXPECT_EQ(to_json(scene, record)["floating_point"]["callers"]["rounding"], "to nearest");
+}
+
+// A collider's, and the caller's environment afterwards, also where the call throws.
+TEST(FloatingPointAnswers, Collider) {
+  for_all([](const Environment& environment, const Sample& sample) {
+    std::vector<double> vertices;
+    for (const Vec3& p : sample.scene.vertices)
+      vertices.insert(vertices.end(), p.data(), p.data() + 3);
+    std::vector<std::uint32_t> triangles, starts = {0, kCopies};
+    for (const auto& t : sample.scene.triangles)
+      triangles.insert(triangles.end(), t.begin(), t.end());
+    ColliderResult found;
+    FloatingPoint after_making, after, after_throwing;
+    bool threw = false;
+    {
+      const Disturbed disturbed(environment);
+      farcull::Collider collider({.threads = 3});
+      after_making = floating_point();
+      found = collider.find({vertices, triangles, starts});
+      after = floating_point();
+      try {
+        collider.find({vertices, triangles, std::vector<std::uint32_t>{1}});
+      } catch (const ColliderError&) {
+        threw = true;
+        after_throwing = floating_point();
+      }
+    }
+    EXPECT_EQ(found.pairs.size(), sample.colliding);
+    EXPECT_EQ(found.report.callers_arithmetic, to_string(environment.found));
+    EXPECT_TRUE(threw);
+    for (const FloatingPoint& f : {after_making, after, after_throwing})
+      EXPECT_EQ(f, environment.found);
+  });
+}
+
+TEST(FloatingPointAnswers, AnOrdinaryCallerOfAColliderIsNotMentioned) {
+  farcull::Collider collider;
+  EXPECT_EQ(collider.find({}).report.callers_arithmetic, "");
+}
+
+// The two exact oracles agree in every environment, on subnormal coordinates too.
+TEST(FloatingPointAnswers, OraclesAgree) {
+  for (const Environment& environment : environments()) {
+    std::vector<OracleRow> rows;
+    {
+      const Disturbed disturbed(environment);
+      rows = compare_oracles(200, 7);
+    }
+    for (const OracleRow& row : rows)
+      EXPECT_EQ(row.disagreements, 0u) << environment.name << ", " << row.generator;
+  }
+}
+
+}  // namespace
+}  // namespace farcull

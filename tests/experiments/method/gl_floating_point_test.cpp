@@ -1,0 +1,102 @@
+// What draws, in every floating-point environment that a caller may have; and drivers that change
+// it.
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/gl/context.h"
+#include "experiments/library/farcull.h"
+#include "experiments/method/run.h"
+#include "tests/core/base/floating_point_lab.h"
+
+// As epoxy declares it: an entry point that can be replaced.
+extern "C" void (*epoxy_glDispatchCompute)(unsigned, unsigned, unsigned);
+
+namespace farcull {
+namespace {
+
+using lab::Disturbed;
+using lab::Environment;
+using lab::environments;
+
+TEST(GlFloatingPoint, EveryMethodThatPromises) {
+  RunOptions far;
+  far.resolution = 64;
+  std::vector<RunOptions> ways(4, far);
+  ways[1].query = QueryMode::occlusion;
+  ways[2].offset = "exact";
+  ways[3].method = Method::far_pairs;
+  ways[3].device = "software";
+  for (const Environment& environment : environments()) {
+    std::vector<Record> records;
+    FloatingPoint after;
+    {
+      const Disturbed disturbed(environment);
+      Session session("software");  // its context is opened in this environment
+      for (const Scene& scene : {lab::tiny_scene(4), lab::huge_scene(4), lab::subnormal_scene(4)}) {
+        for (const RunOptions& options : ways) records.push_back(run(scene, options, session));
+      }
+      after = floating_point();
+    }
+    EXPECT_EQ(after, environment.found) << environment.name;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      const Record& record = records[i];
+      SCOPED_TRACE(environment.name + ", run " + std::to_string(i));
+      EXPECT_EQ(record.collisions.pairs.size(), i < 2 * ways.size() ? 16u : 0u);
+      EXPECT_EQ(record.verification->false_negatives, 0u);
+      EXPECT_TRUE(record.found.device.gl);
+      EXPECT_EQ(record.used, kProved);
+    }
+  }
+}
+
+TEST(GlFloatingPoint, AnEnvironmentThatADriverLeavesIsSeenAtTheEndOfItsStage) {
+  const GlContext context("software");
+  const GlCurrent current(context);
+  EXPECT_NO_THROW(check_gl("clean"));
+  for (const Environment& environment : environments()) {
+    std::string where;
+    {
+      const Disturbed disturbed(environment);
+      try {
+        check_gl("disturbed");
+      } catch (const Error& error) {
+        where = error.where;
+      }
+    }
+    EXPECT_EQ(where, "GL disturbed") << environment.name;
+  }
+}
+
+void (*dispatch)(unsigned, unsigned, unsigned) = nullptr;
+void dispatch_and_round_upward(unsigned x, unsigned y, unsigned z) {
+  dispatch(x, y, z);
+  std::fesetround(FE_UPWARD);
+}
+
+// No answer is given that was computed in such an environment; the caller's is as before.
+TEST(GlFloatingPoint, ADriverThatChangesItDuringACallEndsTheCall) {
+  const Scene scene = lab::tiny_scene(8);
+  std::vector<double> vertices;
+  for (const Vec3& p : scene.vertices) vertices.insert(vertices.end(), p.data(), p.data() + 3);
+  std::vector<std::uint32_t> triangles;
+  for (const auto& t : scene.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+  const std::vector<std::uint32_t> starts = {0, 8};
+  Collider collider({.device = ColliderDevice::gl});
+  EXPECT_EQ(collider.find({vertices, triangles, starts}).pairs.size(), 64u);
+
+  dispatch = epoxy_glDispatchCompute;
+  epoxy_glDispatchCompute = dispatch_and_round_upward;
+  std::string what = "no error";
+  try {
+    collider.find({vertices, triangles, starts});
+  } catch (const ColliderError& error) {
+    what = error.what();
+  }
+  epoxy_glDispatchCompute = dispatch;
+  EXPECT_NE(what.find("this thread rounds upward"), std::string::npos) << what;
+  EXPECT_EQ(floating_point(), kProved);
+  EXPECT_EQ(collider.find({vertices, triangles, starts}).pairs.size(), 64u);
+}
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,247 @@
+// The methods that draw, end to end on a GL device: the planner changes no answer, both query modes
+// give the same, and the CULLIDE family is ordered as it should be.
+#include <gtest/gtest.h>
+
+#include "experiments/measure/family.h"
+#include "experiments/method/plan.h"
+#include "experiments/method/run.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/core/scene/scenes.h"
+#include "tests/experiments/method/plan_lab.h"
+
+namespace farcull {
+namespace {
+
+using lab::not_followed;
+
+Session& session() {
+  static Session shared("");
+  return shared;
+}
+
+RunOptions options_of(Method method, int resolution = 64) {
+  RunOptions options;
+  options.method = method;
+  options.resolution = resolution;
+  return options;
+}
+
+constexpr Method kDrawing[] = {Method::far, Method::cullide, Method::quick_cullide,
+                               Method::s_cullide};
+
+Scene scene_for(const std::string& name, Method method) {
+  Scene scene = make_builtin_scene(name);
+  if (tests_self_alone(method)) {
+    for (Object& object : scene.objects) object.self = true;
+  }
+  return scene;
+}
+
+TEST(GlMethods, RunsFollowThePlan) {
+  for (const Method method : kDrawing) {
+    for (const char* name : {"far-apart", "crowd"}) {
+      // Each triangle of S-CULLIDE is drawn by itself.
+      const Scene scene = scene_for(method == Method::s_cullide ? "degenerate" : name, method);
+      for (const bool full : {false, true}) {
+        RunOptions options = options_of(method);
+        options.full = full;
+        for (const QueryMode query : {QueryMode::flags, QueryMode::occlusion}) {
+          options.query = query;
+          EXPECT_EQ(not_followed(run(scene, options, session())), "")
+              << scene.name << " " << to_string(method) << " full " << full;
+        }
+      }
+    }
+  }
+}
+
+TEST(GlMethods, FullFindsTheSamePairsByFarWithEitherOffset) {
+  for (int seed = 0; seed < 12; ++seed) {
+    const Scene scene = lab::random_scene(seed);
+    RunOptions exact;
+    exact.method = Method::exact;
+    const Record truth = run(scene, exact, session());
+    for (const char* offset : {"obb", "exact"}) {
+      for (const bool full : {false, true}) {
+        RunOptions options = options_of(Method::far);
+        options.offset = offset;
+        options.full = full;
+        const Record record = run(scene, options, session());
+        EXPECT_EQ(record.collisions.pairs, truth.collisions.pairs)
+            << seed << " " << offset << " full " << full;
+        EXPECT_EQ(record.verification->false_negatives, 0u);
+      }
+    }
+  }
+}
+
+bool ran(const Record& record, const std::string& part) {
+  return std::any_of(record.trace.begin(), record.trace.end(), [&](const Stage& s) {
+    return s.ran && name_of(s).find(part) != std::string::npos;
+  });
+}
+
+TEST(GlMethods, ASessionKeepsCanvasesOfDifferentOptionsApart) {
+  const Scene scene = make_builtin_scene("crowd");
+  RunOptions options = options_of(Method::cullide);
+  EXPECT_EQ(run(scene, options, session()).found.device.depth_bits, 32);
+  options.depth_format = DepthFormat::fixed24;
+  EXPECT_EQ(run(scene, options, session()).found.device.depth_bits, 24);
+}
+
+// OBBs first, then exact offsets on what they have left, from the bits that they have set.
+TEST(GlMethods, ExactOffsetsSeeWhatBoxesHaveLeft) {
+  const Scene scene = make_builtin_scene("two-tori");
+  RunOptions options = options_of(Method::far, 128);
+  options.verify = false;
+  const Record boxes = run(scene, options, session());
+  options.offset = "exact";
+  const Record both = run(scene, options, session());
+  options.full = true;
+  const Record alone = run(scene, options, session());
+  ASSERT_GT(boxes.found.triangle_count, kFewTriangles);
+  EXPECT_LT(both.found.triangle_count, boxes.found.triangle_count);
+  EXPECT_LE(both.found.triangle_count, alone.found.triangle_count);
+  std::uint64_t draws = 0, first_in = 0;
+  bool second = false;
+  for (const Stage& stage : both.trace) {
+    second |= stage.kind == StageKind::setup && stage.detail == "exact";
+    if (second && first_in == 0 && stage.kind == StageKind::fatten) first_in = stage.in;
+    if (second) draws += stage.draws;
+  }
+  EXPECT_EQ(first_in, boxes.found.triangle_count);
+  std::uint64_t alone_draws = 0;
+  for (const Stage& stage : alone.trace) alone_draws += stage.draws;
+  EXPECT_GT(draws, 0u);
+  // Those with bit F or L are asked and stored in one pass of a view, not in both.
+  EXPECT_LT(draws, alone_draws / 2);
+}
+
+// Without a promise the exact offset stands alone, as a study of it means.
+TEST(GlMethods, BoxesComeFirstOnlyWhereTheyCannotMiss) {
+  const Scene scene = make_builtin_scene("crowd");
+  RunOptions options = options_of(Method::far);
+  options.offset = "exact";
+  options.verify = false;
+  const auto setups = [&] {
+    const Record record = run(scene, options, session());
+    return std::count_if(record.trace.begin(), record.trace.end(),
+                         [](const Stage& s) { return s.kind == StageKind::setup; });
+  };
+  EXPECT_EQ(setups(), 2);
+  options.radius.factor = 0.9;
+  EXPECT_EQ(setups(), 1);
+}
+
+TEST(GlMethods, ExactOffsetsAreLeftOutWhereFewTrianglesAreLeft) {
+  RunOptions options = options_of(Method::far, 128);
+  options.offset = "exact";
+  const Scene scene = make_builtin_scene("degenerate");
+  const Record record = run(scene, options, session());
+  EXPECT_FALSE(ran(record, "offset exact"));
+  const bool said = std::any_of(record.trace.begin(), record.trace.end(), [](const Stage& s) {
+    return name_of(s) == "offset exact" && !s.ran;
+  });
+  EXPECT_TRUE(said);
+  EXPECT_LE(record.found.triangle_count, kFewTriangles);
+}
+
+TEST(GlMethods, ContactsOfAllThatIsMissedAreCounted) {
+  const Record record =
+      run(make_builtin_scene("two-spheres"), options_of(Method::cullide), session());
+  ASSERT_GT(record.verification->false_negatives, kExamples);
+  EXPECT_EQ(record.verification->examples.size(), kExamples);
+  EXPECT_EQ(record.missed->touching + record.missed->penetrating,
+            record.verification->false_negatives);
+}
+
+TEST(GlMethods, BothQueryModesGiveTheSame) {
+  for (const Method method : kDrawing) {
+    const Scene scene = scene_for("degenerate", method);
+    RunOptions options = options_of(method, 128);
+    options.full = true;  // to the fixed point
+    options.query = QueryMode::flags;
+    const Record flags = run(scene, options, session());
+    options.query = QueryMode::occlusion;
+    if (method != Method::s_cullide) options.clusters = {16, 4};
+    const Record queries = run(scene, options, session());
+    EXPECT_EQ(queries.found.pairs, flags.found.pairs) << to_string(method);
+    EXPECT_EQ(ran(queries, "clusters of 4"), method != Method::s_cullide);
+    EXPECT_FALSE(ran(flags, "clusters of 4"));
+  }
+}
+
+std::uint64_t total(const Record& record, std::uint64_t Stage::*count) {
+  std::uint64_t sum = 0;
+  for (const Stage& stage : record.trace) sum += stage.*count;
+  return sum;
+}
+
+TEST(GlMethods, QuickCullideKeepsNoMoreAndSaysWhatItSaved) {
+  for (const char* name : {"two-spheres", "crowd", "random-soup"}) {
+    const Scene scene = make_builtin_scene(name);
+    const Record plain = run(scene, options_of(Method::cullide, 128), session());
+    const Record quick = run(scene, options_of(Method::quick_cullide, 128), session());
+    EXPECT_TRUE(std::includes(plain.found.pairs.begin(), plain.found.pairs.end(),
+                              quick.found.pairs.begin(), quick.found.pairs.end()))
+        << name;
+    EXPECT_GT(total(quick, &Stage::draws_saved), 0u) << name;
+    EXPECT_GT(total(quick, &Stage::queries_saved), 0u) << name;
+    EXPECT_EQ(total(plain, &Stage::draws_saved), 0u) << name;
+    EXPECT_FALSE(plain.promise.holds);
+    EXPECT_FALSE(quick.promise.holds);
+  }
+}
+
+// One object: a sheet, and in it a triangle that only touches it and one that goes through.
+Scene contacts() {
+  Scene scene = lab::scene_of({{{Vec3(0, 0, 0), Vec3(8, 0, 0), Vec3(0, 8, 0)},
+                                {Vec3(2, 2, 0), Vec3(3, 2, 1), Vec3(2, 3, 1)},
+                                {Vec3(1, 1, -1), Vec3(1.5, 1, 1), Vec3(1, 1.5, 1)}}});
+  scene.objects[0].self = true;
+  return scene;
+}
+
+TEST(GlMethods, SCullideMissesWhatOnlyTouchesAndSaysSo) {
+  const Scene scene = contacts();
+  RunOptions options = options_of(Method::s_cullide, 256);
+  options.views = "-z";
+  const Record record = run(scene, options, session());
+  EXPECT_EQ(record.collisions.pairs, (std::vector<TrianglePair>{{0, 2}}));
+  ASSERT_TRUE(record.verification);
+  EXPECT_EQ(record.verification->false_negatives, 1u);
+  EXPECT_EQ(record.missed, (ContactCounts{.touching = 1, .penetrating = 0}));
+  EXPECT_FALSE(broken(record, false));
+  EXPECT_TRUE(broken(record, true));
+  // The reliable answer beside it.
+  RunOptions pairs = options_of(Method::far_pairs);
+  EXPECT_EQ(run(scene, pairs, session()).collisions.pairs,
+            (std::vector<TrianglePair>{{0, 1}, {0, 2}}));
+}
+
+TEST(GlMethods, TheFamilyOfASceneInMotion) {
+  FamilyArguments arguments;
+  // far does not test objects against themselves: it sees a scene that asks for it without that.
+  arguments.scenes = {"cloth:200"};
+  arguments.methods = "far";
+  arguments.range = {0, 0};
+  arguments.options.resolution = 64;
+  EXPECT_EQ(run_family(arguments).size(), 2u);
+  arguments.scenes = {"crowd"};
+  arguments.methods.reset();
+  arguments.range = {0, 2};
+  const std::vector<FamilyCell> cells = run_family(arguments);
+  // far twice (obb, exact), the others once, S-CULLIDE not: nothing is tested against itself.
+  ASSERT_EQ(cells.size(), all_methods().size());
+  for (const FamilyCell& cell : cells) {
+    if (cell.promises) {
+      EXPECT_EQ(cell.missed(), 0u) << to_string(cell.method);
+    }
+    if (draws(cell.method)) {
+      EXPECT_GT(cell.frames[0].queries, 0u);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace farcull

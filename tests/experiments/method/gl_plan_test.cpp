@@ -1,0 +1,46 @@
+// Runs of the methods that draw follow their plans, on every built-in scene.
+#include <gtest/gtest.h>
+
+#include "tests/experiments/method/plan_lab.h"
+
+namespace farcull {
+namespace {
+
+TEST(GlPlan, RunsFollowIt) {
+  Session session("software");
+  for (const std::string& name : lab::scene_names(false)) {
+    Scene scene = make_builtin_scene(name);
+    for (const Method method : all_methods()) {
+      if (!draws(method)) continue;
+      for (Object& object : scene.objects) object.self = tests_self_alone(method);
+      // S-CULLIDE asks triangle by triangle.
+      if (tests_self_alone(method) && scene.triangles.size() > 2000) continue;
+      for (const bool full : {false, true}) {
+        if (full && scene.triangles.size() > 5000) continue;
+        RunOptions options;
+        options.method = method;
+        options.device = "software";
+        options.resolution = 64;
+        options.full = full;
+        options.verify = false;
+        if (fattens(method)) options.offset = "exact";
+        EXPECT_EQ(lab::not_followed(run(scene, options, session)), "")
+            << name << " " << to_string(method) << " full " << full;
+      }
+    }
+  }
+}
+
+TEST(GlPlan, FarPairsOnGlFollowsIt) {
+  Session session("software");
+  for (const char* name : {"two-spheres", "far-apart", "crowd", "random-soup"}) {
+    RunOptions options;
+    options.method = Method::far_pairs;
+    options.device = "software";
+    options.verify = false;
+    EXPECT_EQ(lab::not_followed(run(make_builtin_scene(name), options, session)), "") << name;
+  }
+}
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,149 @@
+// What a run and the library promise on a device: what the verdict about it allows. Twins: the same
+// run where a probe has failed.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/gl/probe.h"
+#include "experiments/library/farcull.h"
+#include "experiments/method/run.h"
+#include "experiments/record/output.h"
+#include "experiments/record/tables.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/core/gl/gl_lab.h"
+#include "tests/experiments/method/cache_lab.h"
+
+namespace farcull {
+namespace {
+
+RunOptions on_software(Method method) {
+  RunOptions options;
+  options.method = method;
+  options.device = "software";
+  options.resolution = method == Method::far ? 64 : 0;
+  return options;
+}
+
+GlInfo software() {
+  static const GlInfo info = GlContext("software").info();
+  return info;
+}
+
+const std::vector<ProbeResult> kFailed = {{.assumption = "A4",
+                                           .name = "a probe",
+                                           .measured = 3,
+                                           .bound = 1,
+                                           .unit = "lost",
+                                           .samples = 10,
+                                           .pass = false,
+                                           .note = "made to fail"}};
+
+Scene scene() { return make_builtin_scene("two-spheres"); }
+
+TEST(GlVerdict, RunsPromiseWhereTheProbesPass) {
+  for (const Method method : {Method::far, Method::far_pairs}) {
+    Session session("software");
+    const Record record = run(scene(), on_software(method), session);
+    EXPECT_TRUE(record.promise.holds) << record.promise.reason;
+    ASSERT_TRUE(record.promise.verdict);
+    EXPECT_TRUE(record.promise.verdict->holds);
+    EXPECT_GT(record.promise.verdict->probes, 5u);
+    const nlohmann::ordered_json json = to_json(scene(), record);
+    EXPECT_EQ(json["promises"], true);
+    EXPECT_EQ(json["verdict"]["holds"], true);
+    const std::string table = run_table(scene(), record);
+    EXPECT_NE(table.find("; promises to miss nothing\n"), std::string::npos);
+    EXPECT_NE(table.find(" pass on this device ("), std::string::npos);
+  }
+}
+
+TEST(GlVerdict, RunsPromiseNothingWhereAProbeFails) {
+  const lab::CacheFolder folder;
+  for (const Method method : {Method::far, Method::far_pairs}) {
+    const Reliance reliance = method == Method::far ? Reliance::drawing : Reliance::pairs;
+    keep_verdict(software(), reliance, kFailed, 1);
+    Session session("software");
+    Record record = run(scene(), on_software(method), session);
+    EXPECT_FALSE(record.promise.holds);
+    EXPECT_FALSE(record.collisions.pairs.empty());
+    const nlohmann::ordered_json json = to_json(scene(), record);
+    EXPECT_EQ(json["promises"], false);
+    EXPECT_EQ(json["promise_reason"], "a probe fails on this device: A4 a probe: 3 lost, bound 1");
+    EXPECT_EQ(json["verdict"]["failed"][0], "A4 a probe: 3 lost, bound 1");
+    const std::string table = run_table(scene(), record);
+    EXPECT_EQ(table.find("promises to miss nothing"), std::string::npos);
+    EXPECT_NE(table.find("\npromise    none: a probe fails on this device: A4 a probe"),
+              std::string::npos);
+    // A miss still counts as one: the exit status asks the method, not the device. The twin: a
+    // method that promises nothing by itself.
+    EXPECT_FALSE(broken(record, false));
+    record.verification->false_negatives = 1;
+    EXPECT_TRUE(broken(record, false));
+    record.options.method = Method::cullide;
+    EXPECT_FALSE(broken(record, false));
+    EXPECT_TRUE(broken(record, true));
+  }
+}
+
+// The twin: without a failure the session keeps what it knows.
+TEST(GlVerdict, ASessionThatForgetsItsDeviceForgetsItsVerdict) {
+  const lab::CacheFolder folder;
+  Session session("software");
+  EXPECT_TRUE(session.verdict(Reliance::pairs).holds);
+  keep_verdict(software(), Reliance::pairs, kFailed, 1);
+  EXPECT_TRUE(session.verdict(Reliance::pairs).holds);
+  session.forget_device();
+  EXPECT_FALSE(session.verdict(Reliance::pairs).holds);
+}
+
+// FAR pairs does not rely on the rasterizer.
+TEST(GlVerdict, FarPairsDoesNotAskForWhatFarReliesOn) {
+  const lab::CacheFolder folder;
+  keep_verdict(software(), Reliance::drawing, kFailed, 1);
+  Session session("software");
+  EXPECT_TRUE(run(scene(), on_software(Method::far_pairs), session).promise.holds);
+  EXPECT_FALSE(run(scene(), on_software(Method::far), session).promise.holds);
+}
+
+TEST(GlVerdict, WhatUsesNoDeviceOrPromisesNothingAsksForNone) {
+  const lab::CacheFolder folder;
+  Session session("software"), cpu("cpu");
+  EXPECT_FALSE(run(scene(), on_software(Method::cullide), session).promise.verdict);
+  RunOptions published = on_software(Method::far);
+  published.radius.published = true;
+  const Record record = run(scene(), published, session);
+  EXPECT_FALSE(record.promise.verdict);
+  EXPECT_FALSE(record.promise.holds);
+  RunOptions pairs = on_software(Method::far_pairs);
+  pairs.device = "cpu";
+  const Record on_cpu = run(scene(), pairs, cpu);
+  EXPECT_FALSE(on_cpu.promise.verdict);
+  EXPECT_TRUE(on_cpu.promise.holds);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "farcull"));
+}
+
+ColliderReport report_of(ColliderDevice device) {
+  const std::vector<double> vertices = {0,   0,   0,  1,   0,   0, 0,   1,   0,
+                                        0.2, 0.2, -1, 0.2, 0.3, 1, 0.3, 0.2, 1};
+  const std::vector<std::uint32_t> triangles = {0, 1, 2, 3, 4, 5}, starts = {0, 1};
+  Collider collider({.device = device});
+  const ColliderResult result = collider.find({vertices, triangles, starts});
+  EXPECT_EQ(result.pairs.size(), 1u);
+  return result.report;
+}
+
+TEST(GlVerdict, TheLibraryReportsWhatItPromises) {
+  const lab::CacheFolder folder;
+  const ColliderReport cpu = report_of(ColliderDevice::cpu);
+  EXPECT_TRUE(cpu.promises);
+  EXPECT_EQ(cpu.promises_reason, "on the CPU nothing rests on a device");
+  const ColliderReport gl = report_of(ColliderDevice::gl);
+  EXPECT_TRUE(gl.promises) << gl.promises_reason;
+  keep_verdict(GlContext("").info(), Reliance::pairs, kFailed, 1);
+  const ColliderReport failed = report_of(ColliderDevice::gl);
+  EXPECT_FALSE(failed.promises);
+  EXPECT_EQ(failed.promises_reason, "a probe fails on this device: A4 a probe: 3 lost, bound 1");
+}
+
+}  // namespace
+}  // namespace farcull

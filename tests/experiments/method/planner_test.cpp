@@ -1,0 +1,359 @@
+// The planner without a GL device: what is left out, that it is said, and that it changes no
+// answer.
+#include "experiments/method/plan.h"
+#include "experiments/record/plan.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/measure/family.h"
+#include "experiments/measure/savings.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/core/scene/scenes.h"
+#include "tests/experiments/method/plan_lab.h"
+#include "tests/experiments/system/error_of.h"
+
+namespace farcull {
+namespace {
+
+using lab::not_followed;
+
+RunOptions on_cpu(Method method, bool full = false) {
+  RunOptions options;
+  options.method = method;
+  options.device = "cpu";
+  options.full = full;
+  return options;
+}
+
+Record run(const Scene& scene, const RunOptions& options) {
+  Session session(options.device);
+  return run(scene, options, session);
+}
+
+Stage stage_named(const Plan& plan, const std::string& name) {
+  for (const Stage& stage : plan.stages()) {
+    if (name_of(stage) == name) return stage;
+  }
+  ADD_FAILURE() << name << " is not in the plan";
+  return {};
+}
+
+std::string decision(const Plan& plan, const std::string& name) {
+  return decision_of(stage_named(plan, name));
+}
+
+bool has(const Plan& plan, StageKind kind) {
+  const std::vector<Stage> stages = plan.stages();
+  return std::any_of(stages.begin(), stages.end(),
+                     [&](const Stage& stage) { return stage.kind == kind; });
+}
+
+TEST(Planner, LeavesTheDeviceOutWhereBoxesDecide) {
+  const Scene scene = make_builtin_scene("far-apart");
+  RunOptions far;
+  EXPECT_EQ(decision(plan(scene, far), "draw"), "left out");
+  EXPECT_FALSE(has(plan(scene, far), StageKind::setup));
+  far.full = true;
+  EXPECT_EQ(decision(plan(scene, far), "setup"), "runs");
+  EXPECT_EQ(decision(plan(scene, on_cpu(Method::far_pairs)), "setup"), "left out");
+  const Record record = run(scene, on_cpu(Method::far_pairs));
+  EXPECT_FALSE(record.found.device.cpu);
+  EXPECT_FALSE(record.found.device.gl);
+  EXPECT_FALSE(record.found.device.note.empty());
+}
+
+TEST(Planner, SaysWhatItLeavesOut) {
+  const Scene scene = make_builtin_scene("two-spheres");
+  RunOptions far;
+  EXPECT_FALSE(has(plan(scene, far), StageKind::offset));
+  EXPECT_EQ(decision(plan(scene, far), "sub-object level"), "left out");
+  EXPECT_EQ(decision(plan(scene, far), "fatten x, round 1"), "runs");
+  EXPECT_EQ(decision(plan(scene, far), "cull objects x, round 1"), "runs");
+  EXPECT_EQ(decision(plan(scene, far), "cull triangles x, round 1"), "depends");
+  EXPECT_EQ(decision(plan(scene, far), "fatten y, round 1"), "depends");
+  far.offset = "exact";
+  EXPECT_EQ(decision(plan(scene, far), "offset exact"), "depends");
+  far.verify = false;
+  EXPECT_EQ(decision(plan(scene, far), "verify"), "left out");
+  // A method that promises nothing leaves out no view that could cull: its answer would change.
+  far = {};
+  far.method = Method::cullide;
+  EXPECT_EQ(reason_of(stage_named(plan(scene, far), "fatten y, round 1")),
+            "if any triangle is left");
+  far.full = true;
+  EXPECT_EQ(decision(plan(scene, far), "fatten y, round 1"), "runs");
+}
+
+TEST(Planner, IsTheSameTwiceAndNamesEveryStageInJson) {
+  const Scene scene = make_builtin_scene("crowd");
+  for (const Method method : all_methods()) {
+    if (tests_self_alone(method)) continue;
+    RunOptions options;
+    options.method = method;
+    const Plan planned = plan(scene, options);
+    const nlohmann::ordered_json once = plan_json(scene, planned);
+    EXPECT_EQ(once, plan_json(scene, plan(scene, options)));
+    EXPECT_EQ(once["steps"].size(), planned.stages().size());
+    for (const auto& s : once["steps"]) EXPECT_FALSE(s["reason"].get<std::string>().empty());
+  }
+}
+
+TEST(Planner, RefusesWhatTheMethodHasNoUseFor) {
+  Scene scene = make_builtin_scene("two-spheres");
+  RunOptions options;
+  options.method = Method::s_cullide;
+  EXPECT_EQ(error_of([&] { plan(scene, options); }).where, "two-spheres");
+  for (Object& object : scene.objects) object.self = true;
+  EXPECT_NO_THROW(plan(scene, options));
+  options.method = Method::far;
+  EXPECT_EQ(error_of([&] { plan(scene, options); }).where, "two-spheres");
+}
+
+// The methods that need no GL, on every built-in scene; gl_plan_test.cpp has the others.
+void expect_runs_follow(bool of_packaged_meshes) {
+  for (const std::string& name : lab::scene_names(of_packaged_meshes)) {
+    Scene scene = make_builtin_scene(name);
+    for (const bool self : {false, true}) {
+      for (Object& object : scene.objects) object.self = self;
+      for (const Method method : {Method::far_pairs, Method::i_collide, Method::exact}) {
+        for (const bool full : {false, true}) {
+          RunOptions options = on_cpu(method, full);
+          options.verify = full;
+          if (full && scene.triangles.size() > 5000) continue;
+          EXPECT_EQ(not_followed(run(scene, options)), "")
+              << name << " " << to_string(method) << " full " << full << " self " << self;
+        }
+      }
+    }
+  }
+}
+
+TEST(Planner, RunsFollowIt) { expect_runs_follow(false); }
+TEST(PackagedScenes, RunsFollowTheirPlans) { expect_runs_follow(true); }
+
+TEST(PlannerTwin, ARunThatDoesNotFollowIsNoticed) {
+  const Scene scene = make_builtin_scene("two-spheres");
+  const Record good = run(scene, on_cpu(Method::far_pairs));
+  ASSERT_EQ(not_followed(good), "");
+  const auto spoilt = [&](auto change) {
+    Record record = good;
+    change(record);
+    return not_followed(record);
+  };
+  EXPECT_NE(spoilt([](Record& r) { r.trace.erase(r.trace.begin()); }), "");
+  EXPECT_NE(spoilt([](Record& r) { r.plan.erase(r.plan.begin()); }), "");
+  EXPECT_NE(spoilt([](Record& r) { ++r.plan.front().n; }), "");
+  EXPECT_NE(spoilt([](Record& r) { r.trace.front().reason = Reason::full; }), "");
+  EXPECT_NE(spoilt([](Record& r) { r.trace.back().ran = false; }), "");
+  EXPECT_NE(spoilt([](Record& r) { r.plan.push_back({.kind = StageKind::sweep, .ran = true}); }),
+            "");
+  // A stage that only pixels may decide, though the plan has none of its kind.
+  EXPECT_NE(spoilt([](Record& r) {
+              r.trace.push_back({.kind = StageKind::sweep, .ran = true, .depends = true});
+            }),
+            "");
+}
+
+// The guarantee of the planner: what is left out changes no answer.
+RC_GTEST_PROP(Planner, FullFindsTheSamePairs, ()) {
+  Scene scene = lab::random_scene(*rc::gen::arbitrary<std::uint64_t>());
+  const bool self = *rc::gen::arbitrary<bool>();
+  for (Object& object : scene.objects) object.self = self;
+  const Record exact = run(scene, on_cpu(Method::exact));
+  for (const Method method : {Method::far_pairs, Method::i_collide}) {
+    for (const bool full : {false, true}) {
+      const Record record = run(scene, on_cpu(method, full));
+      RC_ASSERT(record.collisions.pairs == exact.collisions.pairs);
+      RC_ASSERT(record.collisions.neighbour_pairs == exact.collisions.neighbour_pairs);
+      RC_ASSERT(record.verification->false_negatives == 0u);
+    }
+  }
+}
+
+TEST(Planner, FullTakesEverything) {
+  const Scene scene = make_builtin_scene("far-apart");
+  const Record record = run(scene, on_cpu(Method::far_pairs, true));
+  EXPECT_EQ(record.trace.front().kind, StageKind::boxes);
+  EXPECT_EQ(record.trace.front().out, scene.triangles.size());
+  EXPECT_EQ(record.found.pair_views().size(), 3u);
+}
+
+TEST(ICollide, FindsThePairsOfExactAndKeepsEveryBoxPair) {
+  for (const char* name : {"two-spheres", "crowd", "degenerate", "far-apart"}) {
+    for (const bool self : {false, true}) {
+      Scene scene = make_builtin_scene(name);
+      for (Object& object : scene.objects) object.self = self;
+      const Record swept = run(scene, on_cpu(Method::i_collide));
+      const Record exact = run(scene, on_cpu(Method::exact));
+      EXPECT_EQ(swept.collisions.pairs, exact.collisions.pairs) << name;
+      EXPECT_EQ(swept.collisions.neighbour_pairs, exact.collisions.neighbour_pairs) << name;
+      EXPECT_EQ(swept.found.count, exact.found.count) << name;
+      EXPECT_TRUE(swept.promise.holds);
+      EXPECT_FALSE(broken(swept, true));
+    }
+  }
+}
+
+TEST(ICollide, CountsTheTrianglesThatBoxesOfObjectsLeave) {
+  const Scene scene = make_builtin_scene("crowd");
+  const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
+  std::uint64_t triangles = 0;
+  for (std::size_t a = 0; a < boxes.size(); ++a) {
+    bool meets = false;
+    for (std::size_t b = 0; b < boxes.size(); ++b) meets |= a != b && overlap(boxes[a], boxes[b]);
+    if (meets) triangles += scene.objects[a].triangle_count;
+  }
+  EXPECT_GT(triangles, 0u);
+  EXPECT_EQ(run(scene, on_cpu(Method::i_collide)).found.swept_triangles(), triangles);
+}
+
+TEST(ICollide, TheSweepOfASessionServesAnyScene) {
+  Session session("cpu");
+  for (const char* name : {"crowd", "two-spheres", "crowd", "far-apart", "crowd"}) {
+    const Scene scene = make_builtin_scene(name);
+    const Record kept = run(scene, on_cpu(Method::i_collide), session);
+    EXPECT_EQ(kept.collisions.pairs, run(scene, on_cpu(Method::exact)).collisions.pairs) << name;
+  }
+}
+
+TEST(Savings, ComparesTheSamePairsAndCountsEveryRun) {
+  SavingsArguments arguments;
+  arguments.scenes = {"far-apart", "crowd"};
+  arguments.methods = "far-pairs,i-collide";
+  arguments.repeat = 3;
+  arguments.options.device = "cpu";
+  const std::vector<SavingsRow> rows = run_savings(arguments);
+  ASSERT_EQ(rows.size(), 4u);
+  for (const SavingsRow& row : rows) {
+    EXPECT_TRUE(row.same_pairs);
+    EXPECT_EQ(row.planned_ms.size(), 3u);
+    EXPECT_EQ(row.full_ms.size(), 3u);
+  }
+  EXPECT_EQ(savings_json(rows, arguments)["rows"].size(), 4u);
+}
+
+TEST(Savings, OtherPairsOfAMethodThatPromisesAreBroken) {
+  Record some, other;
+  some.collisions.pairs = {{0, 1}};
+  EXPECT_TRUE(same_pairs(some, some));
+  EXPECT_FALSE(same_pairs(some, other));
+  other.collisions.pairs = some.collisions.pairs;
+  other.collisions.neighbour_pairs = {{2, 3}};
+  EXPECT_FALSE(same_pairs(some, other));
+  std::vector<SavingsRow> rows = {{.scene = "s",
+                                   .method = Method::cullide,
+                                   .planned_ms = {},
+                                   .full_ms = {},
+                                   .same_pairs = false}};
+  EXPECT_EQ(broken(rows, {}), "");
+  rows[0].method = Method::far_pairs;
+  EXPECT_EQ(broken(rows, {}), "s: far-pairs finds other pairs with --full");
+  rows[0].same_pairs = true;
+  EXPECT_EQ(broken(rows, {}), "");
+}
+
+TEST(Savings, RefusesWhatLeavesNothingOutAndUnknownNamesAtOnce) {
+  SavingsArguments arguments;
+  arguments.scenes = {"far-apart", "nosuch"};
+  arguments.methods = "exact";
+  EXPECT_EQ(error_of([&] { run_savings(arguments); }).where, "--methods");
+  arguments.methods = "s-cullide";
+  arguments.scenes = {"far-apart"};
+  EXPECT_EQ(error_of([&] { run_savings(arguments); }).where, "--methods");
+}
+
+TEST(Savings, PaysUpToTheMarginAndNotBeyond) {
+  SavingsRow row{.scene = "", .planned_ms = {102.9, 107, 200}, .full_ms = {50, 100, 300}};
+  EXPECT_TRUE(row.pays());  // 1.05 * 100 + 2
+  row.planned_ms[1] = 107.1;
+  EXPECT_FALSE(row.pays());
+}
+
+FamilyArguments small_family() {
+  FamilyArguments arguments;
+  arguments.scenes = {"two-spheres"};
+  arguments.methods = "far-pairs,i-collide,exact,s-cullide";
+  arguments.range = {0, 3};
+  arguments.options.device = "cpu";
+  return arguments;
+}
+
+TEST(Family, HasARowForEachFrameAndTheFactorAgainstBoxes) {
+  const FamilyArguments arguments = small_family();
+  const std::vector<FamilyCell> cells = run_family(arguments);
+  ASSERT_EQ(cells.size(), 3u);  // s-cullide has no question to ask
+  for (const FamilyCell& cell : cells) {
+    ASSERT_EQ(cell.frames.size(), 4u);
+    EXPECT_EQ(cell.missed(), 0u);
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_EQ(cell.frames[i].colliding, cells.back().frames[i].colliding);
+      EXPECT_GT(cell.frames[i].ms, 0);
+    }
+  }
+  const std::string csv = family_csv(cells);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 13);
+  // far-pairs first, frame 0: i-collide keeps at least as much.
+  const std::string row = csv.substr(csv.find('\n') + 1, csv.find('\n', csv.find('\n') + 1));
+  EXPECT_TRUE(row.starts_with("two-spheres,far-pairs,,0,"));
+  const FamilyFrame &ours = cells[0].frames[0], &boxes = cells[1].frames[0];
+  EXPECT_GE(boxes.pcs_triangles, ours.pcs_triangles);
+  EXPECT_GE(boxes.candidates, ours.candidates);
+  EXPECT_EQ(family_json(cells, arguments)["cells"].size(), 3u);
+  EXPECT_NE(family_table(cells).find("i-collide"), std::string::npos);
+}
+
+TEST(Family, FactorsAreWhatBoxesKeepOverWhatTheMethodKeeps) {
+  FamilyCell boxes{
+      .scene = "a,b", .method = Method::i_collide, .offset = "", .device = "", .frames = {}};
+  boxes.frames.push_back({.frame = 0,
+                          .pcs_triangles = 40,
+                          .object_triangles = 600,
+                          .candidates = 90,
+                          .missed = {},
+                          .missed_contacts = {}});
+  FamilyCell ours{
+      .scene = "a,b", .method = Method::far, .offset = "obb", .device = "", .frames = {}};
+  ours.frames.push_back({.frame = 0,
+                         .pcs_triangles = 10,
+                         .candidates = 30,
+                         .missed = 2,
+                         .missed_contacts = ContactCounts{.touching = 2, .penetrating = 0},
+                         .broken = true});
+  const std::string csv = family_csv({boxes, ours});
+  EXPECT_NE(csv.find("\n\"a,b\",far,obb,0,0.000,0,10,30,0,0,0,0,0,0,2,2,0,60,4,3\n"),
+            std::string::npos)
+      << csv;
+  EXPECT_NE(csv.find("\n\"a,b\",i-collide,,0,0.000,0,40,90,0,0,0,0,0,0,,,,15,1,1\n"),
+            std::string::npos)
+      << csv;
+  EXPECT_EQ(broken({boxes, ours}), "a,b: far, obb missed 2 pairs");
+  ours.frames[0].broken = false;
+  EXPECT_EQ(broken({boxes, ours}), "");
+}
+
+TEST(Family, ScenesOfThePapersCarryTheirRates) {
+  EXPECT_EQ(paper_rate("tree-leaves:10").fps, 15);
+  EXPECT_EQ(paper_rate("bunny-dragon").fps, 15);
+  EXPECT_EQ(paper_rate("cloth:800:1e4").fps, 13);
+  EXPECT_EQ(paper_rate("two-spheres").fps, 0);
+}
+
+TEST(Family, RefusesWhatDoesNotMove) {
+  FamilyArguments arguments = small_family();
+  arguments.scenes = {"two-tori"};
+  EXPECT_EQ(error_of([&] { run_family(arguments); }).where, "--frames");
+}
+
+TEST(Methods, NamesGoBothWaysAndUnknownOnesAreRefused) {
+  for (const Method method : all_methods()) EXPECT_EQ(parse_method(to_string(method)), method);
+  const Error error = error_of([] { parse_method("nope"); });
+  EXPECT_EQ(error.where, "--method");
+  for (const Method method : all_methods())
+    EXPECT_NE(error.remedy.find(to_string(method)), std::string::npos);
+}
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,185 @@
+// FAR pairs as a method of farcull run, on the CPU.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "experiments/measure/compare.h"
+#include "experiments/method/run.h"
+#include "experiments/record/output.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/experiments/system/error_of.h"
+#include "verify/accounting.h"
+
+namespace farcull {
+namespace {
+
+RunOptions on_cpu(Method method, double clearance = 0) {
+  RunOptions options;
+  options.method = method;
+  options.device = "cpu";
+  options.clearance = clearance;
+  return options;
+}
+
+Record run(const Scene& scene, const RunOptions& options) {
+  Session session(options.device);
+  return run(scene, options, session);
+}
+
+Scene self_scene(const std::string& name) {
+  Scene scene = make_builtin_scene(name);
+  for (Object& object : scene.objects) object.self = true;
+  return scene;
+}
+
+/// One object: 0 and 1 share an edge and lie on one side of it in one plane, so they are neighbours
+/// that collide; 2 crosses both.
+Scene folded() {
+  Scene scene;
+  scene.name = "folded";
+  scene.vertices = {{0, 0, 0},      {1, 0, 0},     {0, 1, 0},    {0.5, 0.5, 0},
+                    {0.3, 0.2, -1}, {0.3, 0.2, 1}, {0.4, 0.2, 1}};
+  scene.triangles = {{0, 1, 2}, {0, 1, 3}, {4, 5, 6}};
+  scene.source_face = {0, 1, 2};
+  scene.objects = {{"folded", 0, 3, true}};
+  return scene;
+}
+
+void expect_as_exact(const Scene& scene, double clearance = 0) {
+  const Record pairs = run(scene, on_cpu(Method::far_pairs, clearance));
+  const Record exact = run(scene, on_cpu(Method::exact, clearance));
+  EXPECT_EQ(pairs.collisions.pairs, exact.collisions.pairs) << scene.name;
+  EXPECT_EQ(pairs.collisions.neighbour_pairs, exact.collisions.neighbour_pairs) << scene.name;
+  for (const Record* record : {&pairs, &exact}) {
+    ASSERT_TRUE(record->verification);
+    EXPECT_TRUE(record->verification->adds_up());
+    EXPECT_EQ(record->verification->false_negatives, 0u) << scene.name;
+    EXPECT_FALSE(broken(*record, true));
+  }
+  EXPECT_TRUE(pairs.promise.holds);
+  // No device is opened where boxes decide.
+  EXPECT_EQ(pairs.found.device.cpu, scene.name != "far-apart");
+  EXPECT_FALSE(pairs.found.device.gl);
+  if (pairs.found.device.cpu) {
+    EXPECT_EQ(pairs.found.device.note, "--device cpu");
+  }
+  EXPECT_EQ(pairs.found.count, pairs.found.pairs.size());
+}
+
+TEST(RunPairs, GivesTheExactPairs) {
+  for (const char* name : {"two-spheres", "degenerate", "needles", "random-soup", "crowd",
+                           "far-apart", "two-spheres@ground"}) {
+    expect_as_exact(make_builtin_scene(name));
+  }
+}
+
+TEST(RunPairs, GivesTheExactPairsOfObjectsAgainstThemselves) {
+  expect_as_exact(folded());
+  for (const char* name : {"degenerate", "needles", "random-soup"})
+    expect_as_exact(self_scene(name));
+}
+
+TEST(RunPairs, GivesTheExactPairsOfAClearance) {
+  expect_as_exact(make_builtin_scene("needles"), 0.02);
+  expect_as_exact(self_scene("degenerate"), 0.25);
+}
+
+TEST(RunPairs, AClearanceOfZeroIsAPlainRun) {
+  const Scene scene = self_scene("random-soup");
+  const Record plain = run(scene, on_cpu(Method::far_pairs));
+  const Record zero = run(scene, on_cpu(Method::far_pairs, 0.0));
+  EXPECT_EQ(plain.found.pairs, zero.found.pairs);
+  EXPECT_EQ(plain.collisions.pairs, zero.collisions.pairs);
+  EXPECT_EQ(plain.collisions.neighbour_pairs, zero.collisions.neighbour_pairs);
+}
+
+// The twin: what the accounting is told was kept, without one of the pairs that collide.
+TEST(RunPairs, ALostCandidateIsABrokenGuarantee) {
+  for (const bool neighbour : {false, true}) {
+    const Scene scene = folded();
+    Record record = run(scene, on_cpu(Method::far_pairs));
+    const auto& collide = neighbour ? record.collisions.neighbour_pairs : record.collisions.pairs;
+    ASSERT_FALSE(collide.empty());
+    std::erase(record.found.pairs, collide[collide.size() / 2]);
+    record.verification = account(scene, record.found.pairs);
+    EXPECT_EQ(record.verification->false_negatives, 1u);
+    EXPECT_TRUE(broken(record, false));
+  }
+}
+
+// The other twin: candidates of a smaller clearance miss pairs of a larger one.
+TEST(RunPairs, CandidatesWithoutTheClearanceMissItsPairs) {
+  const Scene scene = make_builtin_scene("needles");
+  const Record plain = run(scene, on_cpu(Method::far_pairs));
+  EXPECT_GT(account(scene, plain.found.pairs, {.clearance = 0.02}).false_negatives, 0u);
+}
+
+TEST(RunPairs, ViewsAndResolutionAreTakenAsGiven) {
+  RunOptions options = on_cpu(Method::far_pairs);
+  options.views = "x,1:1:0";
+  options.resolution = 40;
+  const Record record = run(make_builtin_scene("two-spheres"), options);
+  ASSERT_EQ(record.found.pair_views().size(), 2u);
+  EXPECT_EQ(record.found.pair_views()[1].name, "1:1:0");
+  for (const PairView& view : record.found.pair_views()) {
+    EXPECT_LE(std::max(view.width, view.height), 45);
+    EXPECT_GE(std::max(view.width, view.height), 40);
+  }
+}
+
+TEST(RunPairs, FarAndCullideRefuseObjectsAgainstThemselves) {
+  const Scene scene = self_scene("two-spheres");
+  for (const Method method : {Method::far, Method::cullide}) {
+    RunOptions options;
+    options.method = method;
+    const Error error = error_of([&] { run(scene, options); });
+    EXPECT_EQ(error.where, "two-spheres");
+    EXPECT_NE(error.remedy.find("far-pairs"), std::string::npos);
+  }
+}
+
+TEST(RunPairs, JsonAndCsvHoldWhatIsNew) {
+  const Scene scene = folded();
+  const Record record = run(scene, on_cpu(Method::far_pairs, 0.125));
+  const nlohmann::ordered_json json = to_json(scene, record);
+  EXPECT_EQ(json["method"], "far-pairs");
+  EXPECT_EQ(json["resolution"], "auto");
+  EXPECT_EQ(json["clearance"], 0.125);
+  EXPECT_EQ(json["device"]["cpu"], "--device cpu");
+  EXPECT_EQ(json["scene"]["self_objects"], scene.objects.size());
+  EXPECT_EQ(json["colliding_pairs"], record.collisions.pairs.size());
+  EXPECT_EQ(json["neighbour_pairs"], record.collisions.neighbour_pairs.size());
+  EXPECT_EQ(json["neighbours"], record.collisions.neighbours);
+  EXPECT_EQ(json["views"].size(), record.found.pair_views().size());
+  EXPECT_EQ(json["radius"], nullptr);
+
+  const std::string csv = pairs_csv(scene, record);
+  EXPECT_TRUE(csv.starts_with("object_a,triangle_a,object_b,triangle_b,neighbours\n"));
+  const auto lines = static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n'));
+  EXPECT_EQ(record.collisions.neighbour_pairs.size(), 1u);
+  EXPECT_EQ(lines, 1 + record.collisions.pairs.size() + record.collisions.neighbour_pairs.size());
+  std::size_t neighbours = 0;
+  for (std::size_t at = csv.find(",1\n"); at != std::string::npos; at = csv.find(",1\n", at + 1))
+    ++neighbours;
+  EXPECT_EQ(neighbours, record.collisions.neighbour_pairs.size());
+}
+
+TEST(RunPairs, CompareTakesItAtItsOwnResolution) {
+  CompareArguments arguments;
+  arguments.methods = "far-pairs,exact";
+  arguments.options.device = "cpu";
+  const Scene scene = make_builtin_scene("two-spheres");
+  EXPECT_EQ(compare(scene, arguments).runs.size(), 2u);
+  arguments.resolutions = "32,auto";
+  const Comparison comparison = compare(scene, arguments);
+  ASSERT_EQ(comparison.runs.size(), 3u);
+  EXPECT_EQ(comparison.runs[0][0].options.resolution, 32);
+  EXPECT_EQ(comparison.runs[1][0].options.resolution, 0);
+  for (const auto& repeats : comparison.runs) {
+    EXPECT_EQ(repeats[0].collisions.pairs, comparison.runs[2][0].collisions.pairs);
+  }
+}
+
+}  // namespace
+}  // namespace farcull

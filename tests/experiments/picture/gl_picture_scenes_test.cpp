@@ -1,0 +1,210 @@
+// farcull picture on scenes: what is missed is seen, what is not is not claimed, and the file says
+// where it came from.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "core/base/error.h"
+#include "experiments/command/picture.h"
+#include "experiments/picture/picture.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/core/gl/gl_lab.h"
+#include "tests/experiments/picture/png_read.h"
+#include "tests/experiments/system/error_of.h"
+
+namespace farcull {
+namespace {
+
+Lab& shared_lab() {
+  static Lab lab("");
+  return lab;
+}
+
+// The arguments of a command line without -o; the name of the program before it does no harm.
+PictureArguments picture_arguments(const std::string& words) {
+  CLI::App app("farcull picture");
+  PictureCommand command;
+  command.add_to(app);
+  app.parse(words.starts_with("farcull ") ? words.substr(8) : "picture " + words, false);
+  return command.arguments();
+}
+
+PictureResult made(const std::string& words) {
+  return make_picture(picture_arguments(words), shared_lab());
+}
+
+// Pixels of that colour in the picture of a panel: the legend and the headline are outside.
+std::size_t pixels(const PictureResult& result, std::size_t panel, const Rgba& colour) {
+  const PanelResult& p = result.panels[panel];
+  std::size_t count = 0;
+  for (int y = p.top; y < p.top + p.height; ++y) {
+    for (int x = p.left; x < p.left + p.width; ++x) count += result.image.at(x, y) == colour;
+  }
+  return count;
+}
+
+TEST(GlPictureScenes, MissedPairsAreSeenForCullideAndNotForFar) {
+  const PictureResult r =
+      made("two-tori --compare cullide,far,exact --resolution 64 --size 300x300");
+  ASSERT_EQ(r.panels.size(), 3u);
+  EXPECT_GT(r.panels[0].missed, 0u);
+  EXPECT_GT(pixels(r, 0, kMissedColour), 100u);
+  for (const std::size_t panel : {1u, 2u}) {
+    EXPECT_EQ(r.panels[panel].missed, 0u);
+    EXPECT_EQ(pixels(r, panel, kMissedColour), 0u);
+  }
+  EXPECT_EQ(r.panels[0].headline, "missed " + std::to_string(r.panels[0].missed) + " of " +
+                                      std::to_string(r.panels[0].colliding) + " colliding pairs");
+}
+
+TEST(GlPictureScenes, CountsAreThoseOfTheAccounting) {
+  const PictureResult r = made("two-tori --method cullide --resolution 1024 --size 200x200");
+  RunOptions options;
+  options.method = Method::cullide;
+  options.resolution = 1024;
+  const Record record = run(make_builtin_scene("two-tori"), options, shared_lab().session());
+  EXPECT_EQ(r.panels[0].missed, record.verification->false_negatives);
+  EXPECT_EQ(r.panels[0].colliding - r.panels[0].missed, record.collisions.pairs.size());
+  EXPECT_EQ(r.panels[0].kept, record.found.triangle_count);
+  EXPECT_EQ(record.found.triangles.size(), record.found.triangle_count);
+  EXPECT_EQ(r.scene_hash, record.scene_hash);
+}
+
+// A triangle of a tenth of a pixel, behind a wall of 20,000.
+struct Hidden {
+  Scene scene = make_builtin_scene("two-tori");
+  std::uint32_t tiny = 0;
+  Window window;
+  Hidden() {
+    std::vector<Box> boxes = triangle_boxes(scene);
+    window = picture_window(parse_view("-1:-1:-1"), boxes, 300, 300, 0.04, "two-tori");
+    const double s = 0.1 * window.pixel_size;
+    const Vec3 at = 0.5 * boxes[0].lo + 0.5 * boxes[0].hi;
+    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+    scene.vertices.insert(scene.vertices.end(), {at, at + Vec3(s, 0, 0), at + Vec3(0, s, 0)});
+    tiny = static_cast<std::uint32_t>(scene.triangles.size());
+    scene.triangles.push_back({first, first + 1, first + 2});
+    scene.source_face.push_back(0);
+    ++scene.objects.back().triangle_count;
+  }
+};
+
+TEST(GlPictureScenes, ASingleTinyMissIsSeenAndRinged) {
+  const Hidden hidden;
+  const GlContext& context = shared_lab().session().context();
+  Image image(300, 300, {255, 255, 255});
+  EXPECT_EQ(draw_missed(context, hidden.scene, hidden.window, {hidden.tiny}, image), 1u);
+  EXPECT_GE(std::count(image.pixels.begin(), image.pixels.end(), kMissedColour), 1);
+  const auto red = [](const Rgba& p) { return p.r > 200 && p.g < 140 && p.b < 190; };
+  EXPECT_GE(std::count_if(image.pixels.begin(), image.pixels.end(), red), 30);  // most of a ring
+  // The twin: as the scene is drawn, without outline and ring, nobody would see it.
+  const Image plain =
+      painted(context, hidden.scene, hidden.window,
+              {{.triangle = hidden.tiny, .colour = kMissedColour, .shaded = false}});
+  EXPECT_TRUE(std::none_of(plain.pixels.begin(), plain.pixels.end(),
+                           [](const Rgba& p) { return p.a > 128; }));
+}
+
+TEST(GlPictureScenes, ManyMissesInOnePlaceHaveNoRing) {
+  const Hidden hidden;
+  std::vector<std::uint32_t> all(5'000);
+  for (std::uint32_t t = 0; t < all.size(); ++t) all[t] = t;
+  Image image(300, 300, {255, 255, 255});
+  EXPECT_EQ(draw_missed(shared_lab().session().context(), hidden.scene, hidden.window, all, image),
+            0u);
+}
+
+TEST(GlPictureScenes, AViewOfFarLosesNothingAndOneOfCullideDoes) {
+  const PictureResult r =
+      made("two-tori --compare cullide,far --resolution 64 --view-depth x --size 300x300");
+  EXPECT_GT(r.panels[0].missed, 0u);
+  EXPECT_GT(pixels(r, 0, kMissedColour), 100u);
+  EXPECT_EQ(r.panels[1].missed, 0u);
+  EXPECT_EQ(pixels(r, 1, kMissedColour), 0u);
+  EXPECT_GT(r.panels[1].culled, 0u);
+  EXPECT_EQ(r.panels[0].headline.substr(0, 15), "this view loses");
+}
+
+TEST(GlPictureScenes, TheFileSaysWhereItCameFrom) {
+  const ScratchFolder folder;
+  const std::string path = folder.path("a picture.png");
+  const PictureResult r = write_picture(
+      picture_arguments(
+          "two-spheres --method far --resolution 64 --radius published --size 200x160"),
+      shared_lab(), path);
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  const PngContent back = png_content(bytes.str());
+  EXPECT_EQ(back.image.pixels, r.image.pixels);
+  EXPECT_EQ(back.texts, r.texts);
+  const auto text = [&](const std::string& key) {
+    const auto found = std::find_if(back.texts.begin(), back.texts.end(),
+                                    [&](const auto& entry) { return entry.first == key; });
+    return found == back.texts.end() ? "absent" : found->second;
+  };
+  EXPECT_EQ(text("Scene hash"), r.scene_hash);
+  EXPECT_EQ(
+      text("Command"),
+      "farcull picture two-spheres --method far --resolution 64 --radius published --size 200x160");
+  EXPECT_NE(text("Commit"), "absent");
+  EXPECT_NE(text("Drawn by").find(shared_lab().session().context().info().version),
+            std::string::npos);
+  EXPECT_NE(text("Panel 1").find("radius published"), std::string::npos);
+}
+
+TEST(GlPictureScenes, TheCommandInTheFileAsksForTheSame) {
+  for (const char* words :
+       {"two-tori --compare cullide:64,far:32,exact --offset exact --zoom --view -x --up z",
+        "mannequin-devil --method s-cullide --self --view-depth 1:1:0 --resolution 128",
+        "'a b.obj' c.off --method far-pairs --device cpu --size 301x200",
+        "two-bunnies --frame 3 --frames 2:9 --radius 0.5 --depth fixed"}) {
+    const std::string once = command_of(picture_arguments(words));
+    EXPECT_EQ(command_of(picture_arguments(once)), once) << words;
+  }
+}
+
+TEST(GlPictureScenes, IsTheSamePictureEachTime) {
+  const std::string words = "two-spheres --compare cullide,far --resolution 64 --size 200x160";
+  EXPECT_EQ(made(words).image.pixels, made(words).image.pixels);
+}
+
+TEST(GlPictureScenes, AMovedSceneLooksLikeTheSceneItself) {
+  const auto inked = [](const PictureResult& r) { return pixels(r, 0, {255, 255, 255}); };
+  const std::size_t here = inked(made("two-spheres --method exact --size 200x200"));
+  // Rounding moves an edge by less than a sample here and there.
+  EXPECT_NEAR(static_cast<double>(inked(made("two-spheres@far --method exact --size 200x200"))),
+              static_cast<double>(here), 0.02 * static_cast<double>(here));
+  EXPECT_LT(here, 40'000u);
+}
+
+TEST(GlPictureScenes, FramesOfAMotionDiffer) {
+  const PictureResult a = made("two-spheres --method exact --frame 0 --frames 10 --size 200x200");
+  const PictureResult b = made("two-spheres --method exact --frame 5 --frames 10 --size 200x200");
+  EXPECT_NE(a.scene_hash, b.scene_hash);
+}
+
+TEST(GlPictureScenes, RefusesWhatCannotBeShown) {
+  EXPECT_EQ(error_of([] { made("far-apart --method exact --zoom"); }).where, "--zoom");
+  EXPECT_EQ(error_of([] { made("two-spheres --method i-collide --view-depth"); }).where,
+            "--view-depth");
+  EXPECT_EQ(error_of([] { made("far-apart --method far --view-depth"); }).where, "far-apart");
+  EXPECT_EQ(error_of([] { made("two-spheres --method s-cullide"); }).where, "two-spheres");
+  EXPECT_EQ(error_of([] { made("two-spheres --method cullide --self"); }).where, "two-spheres");
+  EXPECT_EQ(error_of([] { made("two-spheres --frame 30"); }).where, "--frame");
+  EXPECT_EQ(error_of([] { made("two-spheres --view y --up y"); }).where, "--up");
+  const ScratchFolder folder;
+  const std::string empty = folder.write("empty.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+  EXPECT_NE(message_of([&] { made(empty + " --method exact"); }), "");
+}
+
+TEST(GlPictureScenes, DegenerateTrianglesAreDrawn) {
+  const PictureResult r = made("degenerate --compare exact,cullide:64 --size 200x200");
+  EXPECT_GT(r.panels[0].colliding, 0u);
+  EXPECT_EQ(r.panels[1].missed > 0, pixels(r, 1, kMissedColour) > 0);
+}
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,157 @@
+// farcull_report_fixture DIR [PART]: a store in DIR as the quick grids of all studies would leave
+// it, with made-up numbers of the size of true ones, the same on every run. For tests of the
+// report: they take a second instead of minutes, and no device. PART: `some` (each third point
+// only), `shard` (a shard of two, with its own name), `foreign` (a study that no program has),
+// `broken` (in each study the first row that promises missed something).
+//
+// What is made up says so: the commit is "made-up".
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "experiments/studies/store.h"
+#include "experiments/studies/study.h"
+
+namespace {
+
+using namespace farcull;
+
+// 0 to 1, from the point and the name of the number.
+double unit(const PointKey& point, const std::string& name) {
+  std::uint64_t hash = 1469598103934665603ULL;
+  const auto mix = [&hash](const std::string& text) {
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+    hash = (hash ^ (hash >> 29)) * 0xbf58476d1ce4e5b9ULL;
+  };
+  for (const std::string& value : axis_values(point)) mix(value);
+  mix(name);
+  return static_cast<double>(hash >> 11) * 0x1p-53;
+}
+
+// Of 10^from to 10^to.
+std::uint64_t between(const PointKey& point, const std::string& name, double from, double to) {
+  return static_cast<std::uint64_t>(std::pow(10, from + (to - from) * unit(point, name)));
+}
+
+bool reliable(const PointKey& point) {
+  return point.method != "cullide" && point.method != "quick-cullide" &&
+         point.method != "s-cullide" && point.radius != "published" &&
+         point.method.find("float") == std::string::npos && point.depth_mode != "fixed";
+}
+
+Measurement made_up(const PointKey& point) {
+  PointKey scene;  // what depends on the scene alone
+  scene.scene = point.scene;
+  scene.frame = point.frame;
+  const std::uint64_t colliding = between(scene, "colliding", 2, 4);
+  const int pixels = std::max(point.resolution, 64);
+  const std::uint64_t missed =
+      reliable(point) ? 0
+                      : std::min<std::uint64_t>(colliding, 30000 / static_cast<unsigned>(pixels));
+  const double violations = reliable(point) ? 0 : 1000.0 * unit(point, "violations");
+  // Exact offsets keep what boxes keep, or less.
+  PointKey boxes = point;
+  if (point.method == "far") boxes.offset = "obb";
+  const std::uint64_t kept = between(boxes, "kept", 1, 3) / (point.offset == "exact" ? 2 : 1);
+  Measurement out;
+  out.device = "made-up renderer";
+  out.counts = {{"colliding", colliding},
+                {"missed", missed},
+                {"colliding_triangles", colliding / 2},
+                {"missed_triangles", missed / 2},
+                {"wrong", reliable(point) ? 0 : missed / 7},
+                {"candidates", colliding + between(point, "candidates", 2, 4)},
+                {"kept_triangles", colliding / 2 + kept},
+                {"kept_objects", 2},
+                {"object_triangles", colliding * 4},
+                {"triangles", between(scene, "triangles", 4, 5)},
+                {"objects", between(scene, "objects", 1, 3)},
+                {"queries", between(point, "queries", 3, 5)},
+                {"draws", between(point, "draws", 4, 6)},
+                {"queries_saved", 10},
+                {"draws_saved", 10},
+                {"radius_px", 0.75},
+                {"pixel_size", 0.01},
+                {"promises", reliable(point)},
+                {"scene_hash", "0123456789abcdef"},
+                {"elements", between(point, "elements", 3, 4)},
+                {"covered", between(point, "covered", 3, 4)},
+                {"fragments", between(point, "fragments", 4, 6)},
+                {"tests", between(point, "tests", 3, 5)},
+                {"views", 3},
+                {"points", 10000},
+                {"violations", static_cast<std::uint64_t>(violations)},
+                {"no_sample", static_cast<std::uint64_t>(violations / 3)},
+                {"not_bounding", static_cast<std::uint64_t>(violations / 3)},
+                {"rounded", static_cast<std::uint64_t>(violations / 3)},
+                {"largest_px", violations > 0 ? unit(point, "largest") : 0.0},
+                {"largest_steps", violations > 0 ? 2 * unit(point, "largest") : 0.0},
+                {"step_px", 0.001},
+                {"budget_px", 0.75}};
+  const double ms = 0.5 * std::pow(10, 3 * unit(point, "ms"));
+  out.times = {
+      {"cull", ms}, {"exact", ms / 10}, {"build", ms / 10}, {"total", 1.1 * ms}, {"setup", 1.0}};
+  return out;
+}
+
+int make(const std::string& folder, const std::string& part) {
+  std::filesystem::create_directories(folder);
+  const bool shard = part == "shard";
+  Store store(shard ? store_path(folder, 1, 2) : store_path(folder), Store::Access::write);
+  Provenance provenance;
+  provenance.started = "2001-02-03T04:05:06Z";
+  provenance.commit = "made-up";
+  provenance.gl_vendor = "made-up vendor";
+  provenance.gl_renderer = "made-up renderer";
+  provenance.gl_version = "4.5 <made-up> & \"quoted\"";
+  provenance.cpu = "made-up processor";
+  provenance.cpu_features = "fpu sse sse2 avx avx2";
+  provenance.cores = 2;
+  provenance.options = R"({"quick": true})";
+  const std::int64_t run = store.begin_run(provenance);
+  for (const Study& study : studies()) {
+    Declaration declaration;
+    declaration.study = part == "foreign" ? "unheard-of" : study.name;
+    declaration.choice = {.quick = true, .seed = 1};
+    if (shard) declaration.of = 2;
+    declaration.points = keys_of(study.grid(declaration.choice));
+    store.declare(declaration);
+    bool broken = part != "broken";
+    store.together([&] {
+      for (std::size_t i = 0; i < declaration.points.size(); ++i) {
+        if (part == "some" && i % 3 != 0) continue;
+        if (shard && i % 2 != 0) continue;
+        Measurement measurement = made_up(declaration.points[i]);
+        // As a machine without the packaged meshes has it.
+        if (declaration.points[i].scene == "mannequin-devil") {
+          measurement = {};
+          measurement.left_out = "the packaged meshes are not there <made-up>";
+        }
+        if (!broken && measurement.counts.value("promises", false)) {
+          measurement.counts["missed"] = 1;
+          measurement.counts["violations"] = 1;
+          broken = true;
+        }
+        store.add(declaration.study, run, i, measurement);
+      }
+    });
+    if (part == "foreign") break;
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2 || argc > 3) {
+    std::fputs("usage: farcull_report_fixture DIR [some|shard|foreign|broken]\n", stderr);
+    return 2;
+  }
+  try {
+    return make(argv[1], argc > 2 ? argv[2] : "");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+}

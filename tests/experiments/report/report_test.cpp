@@ -1,0 +1,374 @@
+// What figures, tables and the page are made of. The whole report in a browser: report_test.sh.
+#include "experiments/report/report.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <set>
+
+#include "core/base/base64.h"
+#include "experiments/report/axes.h"
+#include "experiments/report/chapters/numbers.h"
+#include "experiments/report/figures.h"
+#include "experiments/report/gnuplot.h"
+#include "experiments/report/html.h"
+#include "experiments/report/markdown.h"
+#include "experiments/report/pictures.h"
+#include "experiments/report/style.h"
+#include "experiments/report/tables.h"
+#include "experiments/system/shell_word.h"
+#include "tests/experiments/system/error_of.h"
+
+namespace farcull {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<std::string> labels_of(const Scale& scale) {
+  std::vector<std::string> out;
+  for (const Tick& tick : scale.ticks) {
+    if (!tick.label.empty()) out.push_back(tick.label);
+  }
+  return out;
+}
+
+Axis logarithmic(bool zero = false) {
+  Axis axis;
+  axis.label = "pairs";
+  axis.logarithmic = true;
+  axis.shows_zero = zero;
+  return axis;
+}
+
+TEST(ReportAxis, ZerosHaveAPlaceOfTheirOwnBelowThePowers) {
+  const Scale scale = scale_of(logarithmic(true), {0, 3, 5000}, 100);
+  EXPECT_GT(scale.zero, scale.from);
+  EXPECT_LT(scale.zero, 1);
+  EXPECT_EQ(scale.place(0), scale.zero);
+  EXPECT_EQ(scale.place(3), 3);
+  EXPECT_EQ(labels_of(scale).front(), "0");
+  // A tick below the smallest power would be taken for a value.
+  for (const Tick& tick : scale.ticks)
+    EXPECT_TRUE(tick.at == scale.zero || tick.at >= 1) << tick.at;
+}
+
+TEST(ReportAxis, ZerosAreNoValuesOfALogarithmicAxisThatDoesNotShowThem) {
+  const Scale scale = scale_of(logarithmic(), {0, 3, 5000}, 100);
+  EXPECT_TRUE(std::isnan(scale.place(0)));
+  EXPECT_EQ(scale.zero, 0);
+}
+
+TEST(ReportAxis, ZerosAloneStillHaveAnAxis) {
+  const Scale scale = scale_of(logarithmic(true), {0, 0, 0}, 100);
+  EXPECT_LT(scale.from, scale.to);
+  EXPECT_GT(scale.zero, 0);
+}
+
+TEST(ReportAxis, HoldsEveryValueOfAnySize) {
+  for (const bool log : {false, true}) {
+    Axis axis;
+    axis.logarithmic = log;
+    for (int exponent = -300; exponent <= 300; exponent += 7) {
+      for (const double m : {1.0, 1.9999999, 2.0, 4.2, 9.999999}) {
+        const double value = m * std::pow(10, exponent);
+        const Scale scale = scale_of(axis, {value, value * 3, kNone}, 60);
+        EXPECT_LT(scale.from, scale.to) << value;
+        EXPECT_LE(scale.from, value) << value;
+        EXPECT_GE(scale.to, value * 3) << value;
+        EXPECT_FALSE(scale.ticks.empty()) << value;
+        EXPECT_LE(scale.ticks.size(), 60u) << value;
+      }
+    }
+  }
+}
+
+TEST(ReportAxis, PowersOfTwoAreTicksThemselves) {
+  EXPECT_EQ(labels_of(scale_of(logarithmic(), {64, 128, 256, 512}, 100)),
+            (std::vector<std::string>{"64", "128", "256", "512"}));
+}
+
+TEST(ReportAxis, LessThanADecadeHasTicksAsWell) {
+  EXPECT_GE(labels_of(scale_of(logarithmic(), {112, 131, 190}, 60)).size(), 3u);
+}
+
+TEST(ReportAxis, LabelsThatDoNotFitAreLeftOut) {
+  const Scale wide = scale_of(logarithmic(), {1e-9, 1e9}, 200);
+  const Scale narrow = scale_of(logarithmic(), {1e-9, 1e9}, 30);
+  EXPECT_GT(labels_of(wide).size(), labels_of(narrow).size());
+  EXPECT_GE(labels_of(narrow).size(), 2u);
+}
+
+TEST(ReportAxis, LabelsAreForPeople) {
+  EXPECT_EQ(tick_label(1000), "1,000");
+  EXPECT_EQ(tick_label(0.1), "0.1");
+  EXPECT_EQ(tick_label(0), "0");
+  EXPECT_EQ(tick_label(1e9), "10⁹");
+  EXPECT_EQ(power_label(-12), "10⁻¹²");
+  EXPECT_EQ(characters("10⁻¹²"), 5u);
+}
+
+TEST(ReportAxis, ANarrowRangeHasTicksAsWell) {
+  Axis axis;
+  axis.from = 0.96;
+  axis.to = 1.04;
+  EXPECT_GE(labels_of(scale_of(axis, {0.5, 1, 1.1}, 20)).size(), 3u);
+  // The twin: no more than fit, and none added where there are enough.
+  EXPECT_LT(labels_of(scale_of(axis, {0.5, 1, 1.1}, 8)).size(), 4u);
+  axis.from = 0;
+  EXPECT_EQ(labels_of(scale_of(axis, {0.5, 1, 1.1}, 20)),
+            (std::vector<std::string>{"0", "0.5", "1"}));
+}
+
+TEST(ReportStyle, AMethodLooksTheSameInEveryFigure) {
+  const auto alone = styles_of({"CULLIDE"});
+  const auto among = styles_of({"FAR (OBB)", "FAR pairs", "Quick-CULLIDE", "CULLIDE"});
+  EXPECT_EQ(alone[0].colour, among[3].colour);
+  EXPECT_EQ(alone[0].point, among[3].point);
+  std::set<std::string> colours;
+  for (const SeriesStyle& style : among) colours.insert(style.colour);
+  EXPECT_EQ(colours.size(), 4u);
+}
+
+TEST(ReportStyle, WordsThatHoldAMethodsNameAreNone) {
+  EXPECT_NE(styles_of({"farther"})[0].colour, styles_of({"far"})[0].colour);
+}
+
+TEST(ReportStyle, TwoOfOneMethodDifferInDashAndPoint) {
+  const auto styles = styles_of({"far, obb, 64 px", "far, obb, 128 px"});
+  EXPECT_EQ(styles[0].colour, styles[1].colour);
+  EXPECT_NE(styles[0].dash, styles[1].dash);
+  EXPECT_NE(styles[0].point, styles[1].point);
+}
+
+TEST(ReportNumbers, ExponentOfAPowerIsThePower) {
+  std::vector<double> x, y;
+  for (const double v : {2.0, 8.0, 32.0, 128.0}) {
+    x.push_back(v);
+    y.push_back(3 * v * std::sqrt(v));  // exact, but for logarithms
+  }
+  const auto e = exponent_of(x, y);
+  ASSERT_TRUE(e);
+  // Logarithms and sums of four terms: some tens of units of roundoff of values below 10.
+  EXPECT_NEAR(e->value, 1.5, 1e-13);
+  EXPECT_NEAR(e->error, 0, 1e-13);
+  EXPECT_EQ(e->points, 4u);
+  EXPECT_EQ(e->from, 2);
+  EXPECT_EQ(e->to, 128);
+}
+
+TEST(ReportNumbers, StandardErrorIsThatOfTheTextbook) {
+  // log y = 0, 1, 0 over log x = 0, 1, 2: slope 0, residuals -1/3, 2/3, -1/3, so that the error is
+  // sqrt((6/9) / 1 / 2).
+  const double e = std::exp(1.0);
+  const auto fit = exponent_of({1, e, e * e}, {1, e, 1});
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->value, 0, 1e-14);
+  EXPECT_NEAR(fit->error, std::sqrt(1.0 / 3), 1e-14);
+}
+
+TEST(ReportNumbers, TwoPointsAreNoFit) {
+  EXPECT_FALSE(exponent_of({1, 2}, {1, 2}));
+  EXPECT_FALSE(exponent_of({1, 2, 0}, {1, 2, 3}));
+  EXPECT_FALSE(exponent_of({2, 2, 2}, {1, 2, 3}));
+}
+
+TEST(ReportNumbers, AreRoundedForPeople) {
+  EXPECT_EQ(rounded(12345.6), "12,346");
+  EXPECT_EQ(rounded(0.01234), "0.0123");
+  EXPECT_EQ(rounded(0), "0");
+  EXPECT_EQ(rounded(10), "10");
+  EXPECT_EQ(rounded(1234567), "1,234,567");
+  EXPECT_EQ(rounded(-1.5), "-1.50");
+  EXPECT_EQ(listed({"a", "b", "c"}), "a, b and c");
+  EXPECT_EQ(median({3, 1, 2}), 2);
+  EXPECT_EQ(median({4, 1, 2, 3}), 2.5);
+}
+
+TEST(ReportText, IsNoMarkup) {
+  EXPECT_EQ(html_text("<b>&\"'\n\x01"), "&lt;b&gt;&amp;&quot;&#39;\n ");
+  EXPECT_EQ(html_prose("run `a<b` `"), "run <code>a&lt;b</code> `");
+  EXPECT_EQ(latex_text("50 % of a_b & 10⁻³ ± 1"), "50 \\% of a\\_b \\& 10$^{-}$$^3$ $\\pm$ 1");
+  EXPECT_EQ(gnuplot_text("it's\n\"x\" \\ `rm`"), "'it''s \"x\" \\ `rm`'");
+}
+
+TEST(ReportTables, CellsStayCells) {
+  const DataTable table{.name = "t",
+                        .caption = "c",
+                        .columns = {text_column("a,b"), {"n"}},
+                        .rows = {{"say \"so\"", "1,234"}}};
+  EXPECT_EQ(table_csv(table), "\"a,b\",n\r\n\"say \"\"so\"\"\",\"1,234\"\r\n");
+  EXPECT_NE(table_html(table).find("<td class=\"r\">1,234</td>"), std::string::npos);
+  EXPECT_NE(table_latex(table).find("\\begin{tabular}{lr}"), std::string::npos);
+}
+
+TEST(ReportFigures, IdsOfTwoDrawingsDiffer) {
+  const std::string svg =
+      "<?xml version=\"1.0\"?>\n<svg><g id=\"a\"><use xlink:href='#p' clip=\"url(#q)\"/></g></svg>";
+  EXPECT_EQ(inline_svg(svg, "x-"),
+            "<svg><g id=\"x-a\"><use xlink:href='#x-p' clip=\"url(#x-q)\"/></g></svg>");
+}
+
+TEST(ReportText, CodeOfMarkdownEndsWhereItEnds) {
+  EXPECT_EQ(markdown_code("farcull report results"), "`farcull report results`");
+  EXPECT_EQ(markdown_code("a `b` ``c``"), "``` a `b` ``c`` ```");
+  EXPECT_EQ(markdown_code("a\nb"), "`a b`");
+  EXPECT_EQ(quoted("my results; rm `x`"), "'my results; rm `x`'");
+  EXPECT_EQ(quoted("it's"), "'it'\\''s'");
+  EXPECT_EQ(quoted("results/a-1"), "results/a-1");
+}
+
+Page page_with(const std::vector<Finding>& findings) {
+  Page page;
+  DrawnChapter drawn;
+  drawn.chapter.study = "accuracy";
+  drawn.chapter.title = "Accuracy";
+  drawn.chapter.findings = findings;
+  drawn.stored.declaration.study = "accuracy";
+  page.chapters = {drawn};
+  return page;
+}
+
+TEST(ReportPage, ClaimsNothingThatItsChaptersDeny) {
+  const Page broken =
+      page_with({broken_promise("first"), broken_promise("second"), {.text = "fine"}});
+  const std::string html = page_html(broken);
+  EXPECT_EQ(html.find("never misses"), std::string::npos);
+  const std::string summary = html.substr(0, html.find("<nav"));
+  for (const char* part : {"BROKEN: first", "BROKEN: second", "fine"})
+    EXPECT_NE(summary.find(part), std::string::npos) << part;
+  const std::string text = page_markdown(broken, "my results");
+  EXPECT_LT(text.find("BROKEN: second"), text.find("All of this page"));
+  EXPECT_NE(text.find("`farcull report 'my results'`"), std::string::npos);
+  // The twin.
+  const Page good = page_with({{.text = "fine"}});
+  EXPECT_NE(page_html(good).find("never misses"), std::string::npos);
+  EXPECT_EQ(page_html(good).find("Broken."), std::string::npos);
+  EXPECT_EQ(page_markdown(good, "r").find("Broken."), std::string::npos);
+}
+
+TEST(ReportPictures, SayWhatTheyShowThemselves) {
+  Picture picture;
+  picture.name = "p";
+  picture.caption = "Two panels";
+  picture.panels = {{"CULLIDE", 12, 40}, {"FAR", 0, 40}};
+  std::vector<PanelResult> drawn(2);
+  drawn[0].missed = 12;
+  drawn[0].colliding = drawn[1].colliding = 40;
+  Picture same = picture;
+  EXPECT_TRUE(add_counts(same, drawn).empty());
+  EXPECT_EQ(same.caption,
+            "Two panels. Here CULLIDE misses 12 of 40 colliding pairs and FAR misses 0 of 40 "
+            "colliding pairs.");
+  // The twin: another device, other counts, a promise that was not kept.
+  drawn[0].missed = 13;
+  drawn[1].missed = 1;
+  drawn[1].broken = true;
+  Picture other = picture;
+  const std::vector<Finding> broken = add_counts(other, drawn);
+  ASSERT_EQ(broken.size(), 1u);
+  EXPECT_EQ(printed(broken[0]),
+            "BROKEN: in the picture p, FAR misses 1 of 40 colliding pairs, and promises to miss "
+            "none.");
+  EXPECT_NE(other.caption.find("CULLIDE misses 13 of 40"), std::string::npos);
+  EXPECT_NE(other.caption.find("say otherwise: 12 of 40 by CULLIDE and 0 of 40 by FAR missed."),
+            std::string::npos);
+  drawn.pop_back();
+  EXPECT_THROW(add_counts(other, drawn), std::logic_error);
+}
+
+class Folder {
+ public:
+  Folder() {
+    path_ = (std::filesystem::temp_directory_path() / "farcull-report-XXXXXX").string();
+    if (::mkdtemp(path_.data()) == nullptr) std::abort();
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+bool has_gnuplot() {
+  try {
+    require_gnuplot();
+  } catch (const Error&) {
+    return false;
+  }
+  return true;
+}
+
+// All that has made a plotter stumble: quotes, markup, gaps, zeros, nothing, one point, no end.
+Figure trap() {
+  Figure figure{.name = "trap",
+                .title = "it's a \"trap\" & <b> \\ `date` $(date) 100 %",
+                .caption = "`x` @macro",
+                .panels = {}};
+  for (const bool log : {false, true}) {
+    for (const std::vector<double>& y :
+         {std::vector<double>{1, kNone, 3}, std::vector<double>{0, 0, 0},
+          std::vector<double>{kNone, kNone, kNone}, std::vector<double>{5, 5, 5},
+          std::vector<double>{1e-300, 1, 1e300},
+          std::vector<double>{-1, 0, std::numeric_limits<double>::infinity()}}) {
+      Panel panel;
+      panel.title = "%s a_b^{c} 'q' @x";
+      panel.x = logarithmic(true);
+      panel.x.label = "%g 'x'";
+      panel.y = logarithmic(true);
+      panel.y.logarithmic = log;
+      for (const auto style :
+           {Series::Style::lines_points, Series::Style::lines, Series::Style::points}) {
+        Series series{
+            .name = "s'" + std::to_string(static_cast<int>(style)), .x = {0, 1, 2}, .y = y};
+        series.style = style;
+        series.emphasis = style == Series::Style::lines;
+        panel.series.push_back(series);
+      }
+      panel.marks = {{true, 1, "it's"}, {false, 0, "%d"}};
+      figure.panels.push_back(panel);
+    }
+  }
+  figure.panels.emplace_back();
+  return figure;
+}
+
+TEST(ReportFigures, AreDrawnWithoutAWarningWhateverTheyHold) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const Folder folder;
+  draw_figure(trap(), folder.path());
+  for (const char* kind : {".svg", ".pdf", ".gp", ".dat"}) {
+    EXPECT_GT(std::filesystem::file_size(folder.path() + "/trap" + kind), 0u) << kind;
+  }
+}
+
+TEST(ReportFigures, AWarningOfThePlotterIsAnError) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const Folder folder;
+  // Nothing but a warning comes of it: all points of the data are the same.
+  std::ofstream(folder.path() + "/warns.gp")
+      << "set terminal svg\nset output 'x.svg'\n$d << end\n1 1\n1 1\nend\nplot $d\n";
+  EXPECT_NE(error_of([&] { run_gnuplot(folder.path(), "warns.gp", "svg"); }).reason.find("warned"),
+            std::string::npos);
+  std::ofstream(folder.path() + "/fails.gp") << "no command of this name\n";
+  EXPECT_EQ(error_of([&] { run_gnuplot(folder.path(), "fails.gp", "svg"); }).reason.find("failed"),
+            0u);
+}
+
+TEST(ReportFigures, ThatBreakTheirHeaderAreMistakesOfTheProgram) {
+  EXPECT_THROW(figure_script({.name = "a b", .title = {}, .caption = {}, .panels = {Panel{}}}),
+               std::logic_error);
+  EXPECT_THROW(figure_script({.name = "a", .title = {}, .caption = {}, .panels = {}}),
+               std::logic_error);
+  Figure figure = trap();
+  figure.panels[0].series[0].x.pop_back();
+  EXPECT_THROW(figure_script(figure), std::logic_error);
+}
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,355 @@
+// What a step of the cloth is made of: derivatives against differences, the inequalities that the
+// bound of the energy rests on, and the factorization.
+#include "experiments/scenes/cloth/model.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "experiments/scenes/cloth/interior.h"
+#include "experiments/scenes/cloth/solver.h"
+#include "experiments/scenes/mesh/shapes.h"
+
+namespace farcull::cloth {
+namespace {
+
+using Eigen::VectorXd;
+
+// Strong thrust, so that what it adds is not lost beside the inertia.
+ClothSettings settings_of(std::uint64_t triangles) {
+  ClothSettings s;
+  s.triangles = triangles;
+  s.stiffness = 500;
+  s.buckling_load = 300;
+  s.bending_rigidity = 0.5;
+  s.contact_modulus = 1e5;
+  s.drag = 3;
+  return s;
+}
+
+VectorXd shaken(const VectorXd& x, double by, shapes::Random& random) {
+  VectorXd result = x;
+  for (Eigen::Index i = 0; i < x.size(); ++i) result[i] += random.between(-by, by);
+  return result;
+}
+
+// A state with springs stretched, pressed and buckled, and vertices inside the sphere and outside.
+struct Sample {
+  std::unique_ptr<const Model> owned;
+  const Model& model;
+  Step step;
+  VectorXd x;
+};
+// Every third is pressed together, so that most springs are buckled, and every other of these more
+// so by the end of the step.
+Sample sample(std::uint64_t seed, const ClothSettings& settings = settings_of(32)) {
+  shapes::Random random(seed);
+  auto owned = std::make_unique<const Model>(make_model(settings));
+  const Model& model = *owned;
+  VectorXd x0 = model.rest;
+  for (Eigen::Index i = 2; i < x0.size(); i += 3) x0[i] -= random.between(0, 0.05);
+  if (seed % 3 == 0) x0 *= 0.5;
+  x0 = shaken(x0, 0.3 * settings.side / model.cells, random);
+  const VectorXd v0 = shaken(VectorXd::Zero(x0.size()), 1, random);
+  VectorXd x = shaken(x0, 0.3 * settings.side / model.cells, random);
+  if (seed % 6 == 0) x *= 0.5;
+  Step step = make_step(model, x0, v0);
+  return {std::move(owned), model, step, x};
+}
+
+// The central difference of f along a line, at 0, and how far it may be off. With steps d and 2d
+// its errors are e and 4e but for higher orders, so 3e is what they differ by: three times that
+// leaves room for those. Rounding: f is off by `sizes` * u, which is divided by d.
+struct Difference {
+  VectorXd value;
+  double allowed = 0;
+};
+Difference difference(const auto& f, double d, double sizes) {
+  const VectorXd near = (f(d) - f(-d)) / (2 * d);
+  const VectorXd far = (f(2 * d) - f(-2 * d)) / (4 * d);
+  return {near, (near - far).norm() + sizes * 0x1p-53 / d};
+}
+
+TEST(ClothModel, GradientIsThatOfTheValue) {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    const Sample s = sample(seed);
+    shapes::Random random(seed + 100);
+    const VectorXd p = shaken(VectorXd::Zero(s.x.size()), 1, random);
+    VectorXd g;
+    gradient(s.step, s.x, g);
+    const auto along = [&](double t) { return VectorXd::Constant(1, value(s.step, s.x + t * p)); };
+    // The value is a sum of less than 1000 terms, of either sign, none larger than 1000 J.
+    const Difference d = difference(along, 1e-6, 1e3 * 1e3 * 1e3);
+    EXPECT_LE(std::abs(d.value[0] - g.dot(p)), d.allowed) << seed;
+    EXPECT_LT(d.allowed, 1e-2 * std::abs(g.dot(p)) + 1) << "the bound says nothing";
+    // The twin: one force that is a little too large.
+    Step wrong = s.step;
+    wrong.stretch *= 1.02;
+    gradient(wrong, s.x, g);
+    EXPECT_GT(std::abs(d.value[0] - g.dot(p)), d.allowed) << seed;
+  }
+}
+
+TEST(ClothModel, HessianIsThatOfTheGradient) {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    const Sample s = sample(seed);
+    shapes::Random random(seed + 100);
+    Solver solver(s.model);
+    const Eigen::SparseMatrix<double>& lower = solver.hessian(s.step, s.x);
+    const Eigen::SparseMatrix<double> whole = lower.selfadjointView<Eigen::Lower>();
+    const VectorXd p = shaken(VectorXd::Zero(s.x.size()), 1, random);
+    VectorXd permuted(p.size());
+    for (std::size_t v = 0; v < solver.places().size(); ++v) {
+      permuted.segment<3>(3 * solver.places()[v]) = p.segment<3>(3 * static_cast<Eigen::Index>(v));
+    }
+    const VectorXd product = whole * permuted;
+    VectorXd hp(p.size());
+    for (std::size_t v = 0; v < solver.places().size(); ++v) {
+      hp.segment<3>(3 * static_cast<Eigen::Index>(v)) = product.segment<3>(3 * solver.places()[v]);
+    }
+    const auto along = [&](double t) {
+      VectorXd g;
+      gradient(s.step, s.x + t * p, g);
+      return g;
+    };
+    // A force is a sum of less than 100 terms, none larger than 1000 N, on less than 100 numbers.
+    const Difference d = difference(along, 1e-7, 1e2 * 1e2 * 1e3);
+    EXPECT_LE((d.value - hp).norm(), d.allowed) << seed;
+    EXPECT_LT(d.allowed, 1e-2 * hp.norm()) << "the bound says nothing";
+    EXPECT_GT((d.value - 1.02 * hp).norm(), d.allowed) << seed;  // the twin
+  }
+}
+
+// (grad F(x) - grad F(y)).(x - y) >= m/h^2 |x - y|^2, which is convexity with room: twin below.
+double monotony(const Sample& s, const VectorXd& y, bool thrust_at_x) {
+  VectorXd gx;
+  VectorXd gy;
+  gradient(s.step, s.x, gx);
+  gradient(s.step, y, gy);
+  double sum = (gx - gy).dot(s.x - y);
+  const double h = s.model.settings.time_step;
+  for (std::size_t v = 0; v < s.model.mass.size(); ++v) {
+    const auto i = static_cast<Eigen::Index>(3 * v);
+    sum -= s.model.mass[v] / (h * h) * (s.x - y).segment<3>(i).squaredNorm();
+  }
+  if (thrust_at_x) {
+    for (const Spring& spring : s.model.springs) {
+      const auto [a, b] = spring.vertices;
+      const Vec3 d = (s.x - y).segment<3>(3 * b) - (s.x - y).segment<3>(3 * a);
+      sum -= s.model.settings.buckling_load * d.squaredNorm();
+    }
+  }
+  return sum;
+}
+
+TEST(ClothModel, AStepIsStrictlyConvex) {
+  int not_convex = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const Sample s = sample(seed);
+    shapes::Random random(seed + 200);
+    const VectorXd y = shaken(s.x, 0.1 * random.over_octaves(10), random);
+    // 100 forces of at most 1e4 N, each off by 100 u of itself, on ways of at most 0.1 m.
+    EXPECT_GE(monotony(s, y, false), -100 * 100 * 1e4 * 0.1 * 0x1p-53) << seed;
+    not_convex += monotony(s, y, true) < 0 ? 1 : 0;
+  }
+  EXPECT_GT(not_convex, 0);  // the twin: buckled springs as they are
+}
+
+// With U the potential energies and V the same parts of a step: V(x) - V(x0) >= U(x) - U(x0).
+// That and convexity are all that the bound of the energy needs.
+TEST(ClothModel, AStepBoundsThePotentialEnergiesFromAbove) {
+  int below_without_thrust = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    ClothSettings settings = settings_of(32);
+    settings.drag = 0;
+    settings.friction = 0;
+    const Sample s = sample(seed, settings);
+    const auto potential = [&](const VectorXd& x) {
+      const Energies e = energies(s.model, x, VectorXd::Zero(x.size()));
+      return e.elastic + e.bending + e.gravitational + e.contact;
+    };
+    const auto of_step = [&](const VectorXd& x) {
+      double inertia = 0;
+      for (std::size_t v = 0; v < s.model.mass.size(); ++v) {
+        const auto i = static_cast<Eigen::Index>(3 * v);
+        const Vec3 off =
+            (x - s.step.x0).segment<3>(i) / settings.time_step - s.step.v0.segment<3>(i);
+        inertia += 0.5 * s.model.mass[v] * off.squaredNorm();
+      }
+      return value(s.step, x) - inertia;
+    };
+    const double above = of_step(s.x) - of_step(s.step.x0);
+    const double is = potential(s.x) - potential(s.step.x0);
+    // Four sums of less than 1000 terms, none larger than 1000 J.
+    EXPECT_GE(above, is - 4 * 1e3 * 1e3 * 1e3 * 0x1p-53) << seed;
+    double thrust = 0;
+    for (const Spring& spring : s.model.springs) {
+      const auto [a, b] = spring.vertices;
+      const VectorXd moved = s.x - s.step.x0;
+      const Vec3 d0 = s.step.x0.segment<3>(3 * b) - s.step.x0.segment<3>(3 * a);
+      thrust -= settings.buckling_load * d0.dot(moved.segment<3>(3 * b) - moved.segment<3>(3 * a));
+    }
+    below_without_thrust += above - thrust < is ? 1 : 0;
+  }
+  EXPECT_GT(below_without_thrust, 0);  // the twin
+}
+
+// f (f/c - e) = crimp, to a few roundings of each of the two products where these do not cancel,
+// and of c e^2 where they do; the derivative and the energy by differences that halve their errors.
+TEST(ClothModel, ASmoothSpringIsWhatItSays) {
+  for (const double c : {1.0, 1e4, 1e8}) {
+    const double crimp = 1e-12;
+    const double width = std::sqrt(4 * crimp / c);
+    for (const double e : {-1e3 * width, -3 * width, -width, 0.0, width, 3 * width, 1e3 * width}) {
+      const double f = smooth_force(c, crimp, e);
+      EXPECT_GT(f, 0);
+      EXPECT_LE(std::abs(f * (f / c - e) - crimp), 16 * 0x1p-53 * (f * f / c + f * std::abs(e)));
+      const auto slope = [&](const auto& of, double d) {
+        return (of(e + d) - of(e - d)) / (2 * d);
+      };
+      const auto force = [&](double at) { return smooth_force(c, crimp, at); };
+      const auto energy = [&](double at) { return smooth_energy(c, crimp, at); };
+      // Central differences at d = width/100: of the third derivatives, which are at most c/width^2
+      // and c/width, a sixth of d^2; and rounding over d.
+      const double d = width / 100;
+      const double big = std::max(std::abs(e), width);
+      EXPECT_LE(std::abs(slope(force, d) - smooth_stiffness(c, crimp, e)),
+                c * (1e-4 / 6 + 100 * 0x1p-53 * big / d));
+      EXPECT_LE(std::abs(slope(energy, d) - f),
+                c * (width * 1e-4 / 6 + 100 * 0x1p-53 * big * big / d));
+      // The twin: the force of another crimp.
+      if (std::abs(e) <= 3 * width) {
+        const double other = smooth_force(c, 1.1 * crimp, e);
+        EXPECT_GT(std::abs(other * (other / c - e) - crimp),
+                  16 * 0x1p-53 * (f * f / c + f * std::abs(e)));
+      }
+    }
+  }
+}
+
+TEST(ClothInterior, RoomEndsAtTheCone) {
+  shapes::Random random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const ConePoint u{1.01 + random.unit(), random.direction()};
+    const ConePoint du{random.between(-1, 1), random.in_cube(1)};
+    const double way = reach(u, du);
+    const auto inside = [&](double a) {
+      const ConePoint at{u.t + a * du.t, u.d + a * du.d};
+      return at.t > 0 && determinant(at) > 0;
+    };
+    for (const double part : {0.1, 0.5, 0.9, 0.999}) {
+      EXPECT_TRUE(inside(part * std::min(way, 1e6))) << i;
+    }
+    if (std::isfinite(way)) {
+      EXPECT_FALSE(inside(1.001 * way)) << i;
+    }
+  }
+}
+
+TEST(ClothInterior, EndsAtTheMinimum) {
+  ClothSettings settings = settings_of(98);
+  settings.triangles = 98;
+  settings.stiffness = 1e6;
+  settings.buckling_load = 1;
+  settings.height = 0;
+  const Model model = make_model(settings);
+  const VectorXd thrown = VectorXd::Constant(model.rest.size(), -0.5);
+  const Step step = make_step(model, model.rest, thrown);
+  const Minimum minimum = Solver(model).minimize(step);
+  ASSERT_TRUE(minimum.converged) << minimum.reason;
+  VectorXd g;
+  gradient(step, minimum.x, g);
+  EXPECT_EQ(g, minimum.gradient);
+  // Strong convexity: a point with gradient g is within |g| h^2/m of the minimum and no lower than
+  // it by more than |g|^2 h^2/(2 m); so no other point may be lower than this one by more.
+  double lightest = model.mass[0];
+  for (const double mass : model.mass) lightest = std::min(lightest, mass);
+  const double h = settings.time_step;
+  const double gap = g.squaredNorm() * h * h / (2 * lightest);
+  shapes::Random random(5);
+  for (const double by : {1e-12, 1e-9, 1e-6, 1e-3}) {
+    const VectorXd other = shaken(minimum.x, by, random);
+    EXPECT_GE(value(step, other) - value(step, minimum.x), -gap - 1e3 * 1e3 * 0x1p-53) << by;
+  }
+  EXPECT_LT(value(step, minimum.x), value(step, step.x0));
+}
+
+TEST(ClothModel, BendingHasTheRigidityOfAPlate) {
+  ClothSettings settings = settings_of(20000);
+  settings.bending_rigidity = 1;
+  const Model model = make_model(settings);
+  const double cell = settings.side / model.cells;
+  // z = (p x^2 + 2 q x y + r y^2)/2: (p^2 + 2 q^2 + r^2)/2 per area at rigidity 1.
+  for (const auto& [p, q, r] : std::vector<std::array<double, 3>>{
+           {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0.5, 0.5}, {1, 0, -1}}) {
+    VectorXd x = model.rest;
+    for (Eigen::Index i = 0; i < x.size(); i += 3) {
+      const double s = x[i];
+      const double t = x[i + 1];
+      x[i + 2] = 0.5 * (p * s * s + 2 * q * s * t + r * t * t);
+    }
+    const double energy = energies(model, x, VectorXd::Zero(x.size())).bending;
+    const double plate = 0.5 * (p * p + 2 * q * q + r * r) * settings.side * settings.side;
+    // w is exact for such a surface; the edges of the cloth, 4 rows of cells, have no hinges.
+    EXPECT_LE(energy, plate * (1 + 1e-9));
+    EXPECT_GE(energy, plate * (1 - 4 * cell / settings.side));
+  }
+}
+
+TEST(ClothFactor, SolvesAsTheSimplicialOne) {
+  for (const std::uint64_t triangles : {8, 18, 32, 98, 450, 2048}) {
+    const Sample s = sample(triangles, settings_of(triangles));
+    Solver solver(s.model);
+    const Eigen::SparseMatrix<double> lower = solver.hessian(s.step, s.x);
+    Factor factor(dissect(s.model.cells + 1), lower);
+    ASSERT_TRUE(factor.factorize(lower));
+    shapes::Random random(7);
+    const VectorXd b = shaken(VectorXd::Zero(s.x.size()), 1, random);
+    VectorXd x = b;
+    factor.solve_in_place(x);
+    const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> simplicial(lower);
+    const VectorXd y = simplicial.solve(b);
+    // Backward errors of two factorizations (Higham, theorem 10.4): each leaves a residual of at
+    // most 4 n (3 n + 1) u |H| |x|; times the inverse, whose norm is at most 1/min(m/h^2).
+    const double n = static_cast<double>(b.size());
+    const Eigen::SparseMatrix<double> whole = lower.selfadjointView<Eigen::Lower>();
+    const double residual = 4 * n * (3 * n + 1) * 0x1p-53 * whole.norm() * x.norm();
+    EXPECT_LE((whole * x - b).norm(), residual);
+    EXPECT_LE((whole * y - b).norm(), residual);
+    EXPECT_LE((x - y).norm(), 1e-9 * y.norm()) << triangles;
+    // Again, on the same memory.
+    VectorXd again = b;
+    ASSERT_TRUE(factor.factorize(lower));
+    factor.solve_in_place(again);
+    EXPECT_EQ(again, x);
+    // The twin: an entry that is not what it was.
+    Eigen::SparseMatrix<double> other = lower;
+    other.coeffRef(0, 0) *= 1.01;
+    ASSERT_TRUE(factor.factorize(other));
+    again = b;
+    factor.solve_in_place(again);
+    EXPECT_GT((again - y).norm(), 1e-9 * y.norm());
+    other.coeffRef(other.rows() - 1, other.rows() - 1) = -1;
+    EXPECT_FALSE(factor.factorize(other));
+  }
+}
+
+TEST(ClothFactor, NumbersEveryVertexOnce) {
+  for (std::uint32_t side = 2; side < 40; ++side) {
+    const Dissection d = dissect(side);
+    std::vector<int> seen(d.places.size(), 0);
+    for (const std::uint32_t place : d.places) ++seen[place];
+    EXPECT_EQ(seen, std::vector<int>(d.places.size(), 1));
+    for (std::uint32_t p = 0; p + 1 < d.parts.size(); ++p) {
+      EXPECT_GT(d.parts[p].parent, p);
+      EXPECT_EQ(d.parts[p].end, d.parts[p + 1].begin);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace farcull::cloth

@@ -1,0 +1,331 @@
+// Numbers, files, polygons, and damaged bytes in every format; mesh_formats_test.cpp has the
+// formats one by one.
+#include "experiments/scenes/mesh/load.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "experiments/scenes/mesh/builder.h"
+#include "experiments/scenes/mesh/text.h"
+#include "tests/experiments/scenes/mesh/mesh_samples.h"
+
+namespace farcull {
+namespace {
+
+double twice_area(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
+
+// ---- numbers and text
+
+TEST(ParseNumber, RoundsOnceToTheNearestDouble) {
+  double x = 0;
+  ASSERT_EQ(parse_number("0.1", x), Number::kOk);
+  EXPECT_EQ(x, 0.1);
+  // Between two floats and needing all 17 digits.
+  ASSERT_EQ(parse_number("+16777217.000000004", x), Number::kOk);
+  EXPECT_EQ(x, 0x1.0000010000001p+24);
+  // Halfway cases: ties go to even, and the digit far behind decides.
+  ASSERT_EQ(parse_number("9007199254740993", x), Number::kOk);
+  EXPECT_EQ(x, 9007199254740992.0);
+  ASSERT_EQ(parse_number("9007199254740993.00000000000000000000000000000000001", x), Number::kOk);
+  EXPECT_EQ(x, 9007199254740994.0);
+  ASSERT_EQ(parse_number("4.9e-324", x), Number::kOk);
+  EXPECT_EQ(x, std::numeric_limits<double>::denorm_min());
+}
+
+TEST(ParseNumber, UnderflowIsZeroButOverflowIsNot) {
+  double x = 1;
+  ASSERT_EQ(parse_number("-1e-400", x), Number::kOk);
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(x), std::bit_cast<std::uint64_t>(-0.0));
+  x = 1;
+  ASSERT_EQ(parse_number("0.000001e-99999999999999999999", x), Number::kOk);
+  EXPECT_EQ(x, 0);
+  EXPECT_EQ(parse_number("1e309", x), Number::kNotFinite);
+  EXPECT_EQ(parse_number("0.001e99999999999999999999", x), Number::kNotFinite);
+  EXPECT_EQ(parse_number("1" + std::string(400, '0'), x), Number::kNotFinite);
+  EXPECT_EQ(parse_number("nan", x), Number::kNotFinite);
+  EXPECT_EQ(parse_number("-inf", x), Number::kNotFinite);
+}
+
+TEST(ParseNumber, RefusesWhatIsOnlyNearlyANumber) {
+  double x = 0;
+  for (const char* text : {"", "+", "-", "+-1", "1e", "1.0x", "0x10", "1,5", "--1", ".", "1d5"}) {
+    EXPECT_EQ(parse_number(text, x), Number::kMalformed) << text;
+  }
+}
+
+TEST(CleanName, KeepsUtf8AndReplacesWhatJsonCannotHold) {
+  EXPECT_EQ(clean_name("b\xc3\xa4r \xf0\x9f\x90\x87"), "b\xc3\xa4r \xf0\x9f\x90\x87");
+  EXPECT_EQ(clean_name("a\xff"
+                       "b\xc0\x80"
+                       "c\n"),
+            "a?b??c?");
+  EXPECT_EQ(clean_name("\xed\xa0\x80"), "???");  // a surrogate
+  EXPECT_EQ(clean_name("\xe2\x82"), "??");       // cut off
+}
+
+// ---- files
+
+TEST(LoadMesh, NamesTheFormatByExtensionInAnyCase) {
+  EXPECT_EQ(mesh_format("a/b.OBJ"), MeshFormat::kObj);
+  EXPECT_EQ(mesh_format("b.Off"), MeshFormat::kOff);
+  EXPECT_EQ(mesh_format("b.x.ply"), MeshFormat::kPly);
+  EXPECT_EQ(mesh_format("b.STL"), MeshFormat::kStl);
+  EXPECT_TRUE(has_mesh_extension("b.STL"));
+  EXPECT_FALSE(has_mesh_extension("b.gltf"));
+  expect_error(error_of([] { mesh_format("b.gltf"); }), "b.gltf", 0, "'.gltf'");
+  expect_error(error_of([] { mesh_format("b"); }), "b", 0, "extension");
+}
+
+TEST(LoadMesh, ReadsAFile) {
+  const ScratchFolder folder;
+  EXPECT_EQ(load_mesh(folder.write("a.obj", kThree + "f 1 2 3\n")).triangles.size(), 1u);
+}
+
+TEST(LoadMesh, RefusesMissingEmptyAndDirectory) {
+  const ScratchFolder folder;
+  const std::string missing = folder.path("missing.obj");
+  expect_error(error_of([&] { load_mesh(missing); }), missing, 0, "does not exist");
+  for (const char* name : {"e.obj", "e.off", "e.ply", "e.stl"}) {
+    const std::string empty = folder.write(name, "");
+    expect_error(error_of([&] { load_mesh(empty); }), empty, 0, "empty");
+  }
+  const std::string directory = folder.path("d.obj");
+  std::filesystem::create_directory(directory);
+  expect_error(error_of([&] { load_mesh(directory); }), directory, 0, "directory");
+}
+
+TEST(LoadMesh, RefusesWhatCannotBeOpenedOrRead) {
+  const ScratchFolder folder;
+  const std::string closed = folder.write("c.obj", kThree + "f 1 2 3\n");
+  ASSERT_EQ(chmod(closed.c_str(), 0), 0);
+  if (access(closed.c_str(), R_OK) != 0) {  // root may read everything
+    expect_error(error_of([&] { load_mesh(closed); }), closed, 0, "cannot be opened");
+  }
+  // This file opens, but its first page cannot be read.
+  const std::string broken = folder.path("b.obj");
+  std::filesystem::create_symlink("/proc/self/mem", broken);
+  expect_error(error_of([&] { load_mesh(broken); }), broken, 0, "cannot be read");
+}
+
+TEST(LoadMesh, RefusesDevicesAndPipesThatMayNeverEnd) {
+  const ScratchFolder folder;
+  const std::string endless = folder.path("z.off");
+  std::filesystem::create_symlink("/dev/zero", endless);
+  expect_error(error_of([&] { load_mesh(endless); }), endless, 0, "regular");
+  const std::string pipe = folder.path("p.off");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  expect_error(error_of([&] { load_mesh(pipe); }), pipe, 0, "regular");
+}
+
+TEST(LoadMesh, RefusesAFileOfATerabyteWithoutReadingIt) {
+  const ScratchFolder folder;
+  const std::string path = folder.write("t.off", "OFF\n");
+  std::error_code error;
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 40, error);
+  ASSERT_FALSE(error) << "this folder must hold sparse files: " << error.message();
+  expect_error(error_of([&] { load_mesh(path); }), path, 0, "bytes");
+}
+
+// ---- polygons
+
+double covered(const std::vector<Vec3>& corners, std::size_t& triangle_count) {
+  std::vector<Triangle> triangles;
+  EXPECT_TRUE(triangulate(corners, triangles));
+  triangle_count = triangles.size();
+  double area = 0;
+  for (const auto& [a, b, c] : triangles) {
+    EXPECT_TRUE(a < corners.size() && b < corners.size() && c < corners.size());
+    const double part = twice_area(corners[a], corners[b], corners[c]);
+    EXPECT_GE(part, 0) << "a triangle is turned over";
+    area += part;
+  }
+  return area;
+}
+
+double shoelace(const std::vector<Vec3>& corners) {
+  double area = 0;
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+    area += twice_area(corners[0], corners[i], corners[i + 1]);
+  }
+  return area;
+}
+
+TEST(Triangulate, KeepsTheAreaOfSimplePolygons) {
+  const std::vector<std::vector<Vec3>> polygons = {
+      {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}},  // square
+      {{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}},  // dart
+      {{4, 0, 0}, {1, 1, 0}, {0, 4, 0}, {0, 0, 0}},  // dart from a sharp corner
+      {{1, 1, 0}, {0, 4, 0}, {0, 0, 0}, {4, 0, 0}},  // dart from its notch
+      {{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, 4, 0}, {0, 4, 0}},  // corners on edges
+      {{0, 0, 0},
+       {6, 0, 0},
+       {6, 4, 0},
+       {5, 4, 0},
+       {5, 1, 0},
+       {1, 1, 0},
+       {1, 4, 0},
+       {0, 4, 0}},                                                                    // U
+      {{0, 0, 0}, {1, 3, 0}, {2, 0, 0}, {3, 3, 0}, {4, 0, 0}, {4, 5, 0}, {0, 5, 0}},  // teeth
+      // A square with a hole, cut open along a seam that is walked twice.
+      {{0, 0, 0},
+       {6, 0, 0},
+       {6, 6, 0},
+       {0, 6, 0},
+       {0, 0, 0},
+       {2, 2, 0},
+       {2, 4, 0},
+       {4, 4, 0},
+       {4, 2, 0},
+       {2, 2, 0}},
+  };
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    std::size_t triangles = 0;
+    EXPECT_EQ(covered(polygons[i], triangles), shoelace(polygons[i])) << i;
+    EXPECT_EQ(triangles, polygons[i].size() - 2) << i;
+  }
+}
+
+TEST(Triangulate, KeepsTheAreaOfRandomStars) {
+  std::mt19937_64 words(11);
+  for (int round = 0; round < 200; ++round) {
+    const std::size_t n = 4 + words() % 40;
+    std::vector<Vec3> star;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double r = 1.0 + static_cast<double>(words() % 100) / 10;
+      const double angle = 2 * 3.14159265358979 * static_cast<double>(i) / static_cast<double>(n);
+      star.emplace_back(r * std::cos(angle), r * std::sin(angle), 0);
+    }
+    std::size_t triangles = 0;
+    EXPECT_NEAR(covered(star, triangles), shoelace(star), 1e-11);
+    EXPECT_EQ(triangles, n - 2);
+  }
+}
+
+TEST(Triangulate, SeesAnyPlaneEitherSideAndAnySize) {
+  const std::vector<Vec3> dart = {{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}};
+  std::vector<Triangle> expected;
+  ASSERT_TRUE(triangulate(dart, expected));
+  for (const double size : {1.0, 1e-300, 4e307}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<Vec3> turned;
+      for (const Vec3& p : dart) {
+        turned.push_back(Vec3(p[(3 - axis) % 3], p[(4 - axis) % 3], p[(5 - axis) % 3]) * size / 4);
+      }
+      std::vector<Triangle> triangles;
+      ASSERT_TRUE(triangulate(turned, triangles));
+      EXPECT_EQ(triangles, expected) << size << " " << axis;
+    }
+  }
+  // Backwards the notch is still the corner that both triangles share.
+  const std::vector<Vec3> back = {dart[3], dart[2], dart[1], dart[0]};
+  std::vector<Triangle> triangles;
+  ASSERT_TRUE(triangulate(back, triangles));
+  for (const auto& t : triangles) EXPECT_EQ(std::count(t.begin(), t.end(), 1u), 1);
+}
+
+TEST(Triangulate, GivesTwoLessThanCornersHoweverDegenerate) {
+  const double big = std::numeric_limits<double>::max();
+  const std::vector<std::vector<Vec3>> polygons = {
+      std::vector<Vec3>(5, Vec3(1, 2, 3)),                      // a point
+      {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}},             // a segment
+      {{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}},             // a bow tie
+      {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}},  // walks back
+      {{-big, -big, 0},
+       {big, -big, 0},
+       {-big / 2, -big / 2, 0},
+       {-big, big, 0}},                              // differences overflow
+      {{0, 0, 0}, {1, 0, 1}, {1, 1, 0}, {0, 1, 1}},  // not planar
+  };
+  for (const std::vector<Vec3>& polygon : polygons) {
+    std::vector<Triangle> triangles;
+    EXPECT_TRUE(triangulate(polygon, triangles));
+    EXPECT_EQ(triangles.size(), polygon.size() - 2);
+  }
+}
+
+TEST(Triangulate, ConvexOfAnySizeButConcaveOnlyToItsLimit) {
+  const auto wheel = [](std::size_t n, bool notched) {
+    std::string text;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double angle = 2 * 3.14159265358979 * static_cast<double>(i) / static_cast<double>(n);
+      const double r = notched && i % 2 == 0 ? 0.5 : 1;
+      text += "v " + std::to_string(r * std::cos(angle) * 1e9) + " " +
+              std::to_string(r * std::sin(angle) * 1e9) + " 0\n";
+    }
+    text += "f";
+    for (std::size_t i = 1; i <= n; ++i) text += " " + std::to_string(i);
+    return text;
+  };
+  EXPECT_EQ(obj(wheel(20000, false)).triangles.size(), 19998u);
+  EXPECT_EQ(obj(wheel(2000, true)).triangles.size(), 1998u);
+  expect_error(error_of([&] { obj(wheel(20000, true)); }), "m.obj", 20001, "20000 vertices");
+}
+
+TEST(MeshReaders, TriangulatePolygonsInPlaceAndKeepTheirFace) {
+  const Mesh mesh =
+      off("OFF\n5 3 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n-1 0.5 0\n3 0 1 2\n5 0 1 2 3 4\n3 2 1 0\n");
+  EXPECT_EQ(mesh.source_face, (std::vector<std::uint32_t>{0, 1, 1, 1, 2}));
+  EXPECT_EQ(mesh.group, (std::vector<std::uint32_t>(5, 0)));
+}
+
+// Whatever a few flipped, lost or repeated bytes make of a file, it is read or refused with an
+// Error.
+TEST(MeshReaders, SurviveDamagedBytes) {
+  const std::vector<std::pair<MeshFormat, std::string>> seeds = {
+      {MeshFormat::kObj, kThree + "o a\nf 1/1/1 2//2 -1 \\\n 1\nusemtl x\nf 1 2 3\n"},
+      {MeshFormat::kOff, kOff + "3 0 1 2 255 0 0\n4 0 1 2 3\n"},
+      {MeshFormat::kPly, kPlyHeader + kPlyVertices + "4 0 1 2 3\n"},
+      {MeshFormat::kPly, binary_ply(false)},
+      {MeshFormat::kPly, binary_ply(true)},
+      {MeshFormat::kStl, "solid\n" + kFacet + "endsolid"},
+      {MeshFormat::kStl, binary_stl("b", {{0, 0, 0, 1, 0, 0, 0, 1, 0}})},
+  };
+  std::mt19937_64 words(5);
+  int refused = 0;
+  for (int round = 0; round < 20000; ++round) {
+    const auto& [format, seed] = seeds[words() % seeds.size()];
+    std::string bytes = seed;
+    for (std::size_t edits = 1 + words() % 4; edits > 0; --edits) {
+      const std::size_t at = words() % (bytes.size() + 1);
+      switch (words() % 4) {
+        case 0:
+          bytes.insert(at, 1, static_cast<char>(words()));
+          break;
+        case 1:
+          bytes.erase(at, 1 + words() % 8);
+          break;
+        case 2:
+          bytes.insert(at, bytes.substr(words() % (bytes.size() + 1), words() % 16));
+          break;
+        default:
+          if (at < bytes.size()) bytes[at] = static_cast<char>(words());
+      }
+    }
+    try {
+      const Mesh mesh = parse_mesh(bytes, format, "damaged");
+      ASSERT_EQ(mesh.source_face.size(), mesh.triangles.size());
+      ASSERT_EQ(mesh.group.size(), mesh.triangles.size());
+      for (const Vec3& p : mesh.vertices) ASSERT_TRUE(p.allFinite());
+      for (const Triangle& t : mesh.triangles) {
+        for (const std::uint32_t v : t) ASSERT_LT(v, mesh.vertices.size());
+      }
+    } catch (const Error& error) {
+      ++refused;
+      ASSERT_FALSE(error.remedy.empty());
+    }
+  }
+  EXPECT_GT(refused, 1000);
+  EXPECT_LT(refused, 20000);
+}
+
+}  // namespace
+}  // namespace farcull

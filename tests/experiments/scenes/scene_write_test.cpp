@@ -1,0 +1,164 @@
+#include "experiments/scenes/scene_write.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/scene_file.h"
+#include "tests/experiments/scenes/builtin/moving_lab.h"
+#include "tests/experiments/system/error_of.h"
+
+namespace farcull {
+namespace {
+
+std::size_t files_in(const std::string& folder) {
+  std::size_t count = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) ++count;
+  return count;
+}
+
+std::string text_of(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+void expect_round_trip(const Scene& scene) {
+  const ScratchFolder folder;
+  const WrittenScene written = write_scene(scene, folder.path("s"));
+  EXPECT_EQ(written.scene_file, folder.path("s/scene.json"));
+  EXPECT_EQ(written.files, scene.objects.size() + 1);
+  EXPECT_EQ(files_in(folder.path("s")), written.files);
+  const Scene read = load_scene({written.scene_file});
+  EXPECT_EQ(scene_hash(read), scene_hash(scene)) << scene.name;
+  EXPECT_EQ(read.name, scene.name);
+  ASSERT_EQ(read.objects.size(), scene.objects.size());
+  for (std::size_t o = 0; o < read.objects.size(); ++o)
+    EXPECT_EQ(read.objects[o].self, scene.objects[o].self);
+}
+
+TEST(MeshWrite, ReadsBackAsItWas) {
+  for (const char* name : {"two-tori", "random-soup", "degenerate", "ground@ground",
+                           "far-apart@huge", "crowd:30:2@far@tiny"})
+    expect_round_trip(make_builtin_scene(name));
+  for (const std::string& name : lab::moving_scenes(false))
+    expect_round_trip(make_builtin_scene(name));
+}
+TEST(PackagedScenes, ReadBackAsTheyWere) {
+  expect_round_trip(make_builtin_scene("mannequin-devil"));
+  expect_round_trip(make_builtin_scene("breaking-dragon:19994"));
+}
+
+// Every kind of double, vertices that are shared, unused and repeated, odd names, objects that
+// collide with themselves.
+TEST(MeshWrite, KeepsEveryBit) {
+  Scene scene;
+  scene.name = "odd";
+  const double tiny = std::numeric_limits<double>::denorm_min();
+  scene.vertices = {
+      {0.1, -0.0, tiny},
+      {1.0 / 3, std::nextafter(1.0, 2), -tiny},
+      {std::numeric_limits<double>::max(), std::numeric_limits<double>::min(), 1e-300},
+      {9, 9, 9},
+      {std::nextafter(0.3, 0), 1e22, 123456789.123456789}};
+  scene.triangles = {{0, 1, 2}, {2, 1, 4}, {4, 4, 4}, {0, 0, 1}};
+  scene.source_face = {0, 1, 0, 0};
+  scene.objects = {{"../a%04d b", 0, 2, true}, {"../a%04d b", 2, 1, false}, {"", 3, 1, true}};
+  expect_round_trip(scene);
+}
+
+TEST(MeshWrite, ReplacesFilesAndTakesItsOwnBackWhereItFails) {
+  const ScratchFolder folder;
+  const Scene scene = make_builtin_scene("two-tori");
+  EXPECT_EQ(error_of([&] { write_scene(scene, folder.path("no/s")); }).where, folder.path("no/s"));
+  const std::string file = folder.write("file", "x");
+  EXPECT_EQ(error_of([&] { write_scene(scene, file); }).where, file);
+  EXPECT_EQ(text_of(file), "x");
+
+  // The second mesh cannot be written: the first one goes, or stays where one was before.
+  const std::string place = folder.path("s");
+  std::filesystem::create_directories(place + "/second.off");
+  EXPECT_EQ(error_of([&] { write_scene(scene, place); }).where, place + "/second.off");
+  EXPECT_EQ(files_in(place), 1u);
+  folder.write("s/first.off", "old");
+  EXPECT_THROW(write_scene(scene, place), Error);
+  EXPECT_EQ(files_in(place), 2u);
+  EXPECT_FALSE(std::filesystem::exists(place + "/scene.json"));
+  std::filesystem::remove(place + "/second.off");
+  write_scene(scene, place);
+  EXPECT_EQ(scene_hash(load_scene({place + "/scene.json"})), scene_hash(scene));
+  write_scene(make_builtin_scene("far-apart"), place);
+  EXPECT_EQ(scene_hash(load_scene({place + "/scene.json"})),
+            scene_hash(make_builtin_scene("far-apart")));
+}
+
+WrittenScene write_moving(const std::string& name, FrameRange range, const std::string& folder) {
+  MovingScene moving(name, range.count(), range.first);
+  return write_frames([&](long frame) -> const Scene& { return moving.at(frame); }, range,
+                      parse_scene_name(name).entry->topology_changes, folder);
+}
+
+void expect_frames(const std::string& name, FrameRange range) {
+  SCOPED_TRACE(name);
+  const ScratchFolder folder;
+  const WrittenScene written = write_moving(name, range, folder.path("s"));
+  EXPECT_EQ(files_in(folder.path("s")), written.files);
+  FrameSource read({written.scene_file}, range, false), built({name}, range, false);
+  for (long frame = range.first; frame <= range.last; ++frame) {
+    EXPECT_EQ(scene_hash(read.at(frame)), scene_hash(built.at(frame))) << frame;
+    EXPECT_EQ(read.topology_changed(), built.topology_changed());
+  }
+}
+
+TEST(MeshWrite, FramesReadBackAsTheyWere) {
+  for (const std::string& name : lab::moving_scenes(false)) expect_frames(name, {0, 1});
+  expect_frames("cylinders:2@far@ground", {9998, 10001});
+  expect_frames("crowd:5:1", {7, 7});  // one frame, in which nothing moves
+}
+TEST(PackagedScenes, FramesReadBackAsTheyWere) { expect_frames("breaking-dragon:19994", {3, 6}); }
+
+TEST(MeshWrite, WhatStandsStillIsWrittenOnce) {
+  const ScratchFolder folder;
+  const WrittenScene written = write_moving("tree-leaves:2", {0, 3}, folder.path("s"));
+  EXPECT_EQ(written.files, 1u + 2 * 4 + 1);
+  const auto json = nlohmann::json::parse(text_of(written.scene_file));
+  EXPECT_EQ(json["objects"][0]["mesh"], "tree.off");
+  EXPECT_EQ(json["objects"][1]["mesh"], "leaf0_%04d.off");
+}
+
+// The twin: a frame that is lost is seen, in the round trip and by who reads it.
+TEST(MeshWrite, ALostFrameIsNoticed) {
+  const ScratchFolder folder;
+  const WrittenScene written = write_moving("cylinders:2", {0, 3}, folder.path("s"));
+  std::filesystem::copy_file(folder.path("s/cylinder1_0001.off"),
+                             folder.path("s/cylinder1_0002.off"),
+                             std::filesystem::copy_options::overwrite_existing);
+  FrameSource read({written.scene_file}, {0, 3}, false), built({"cylinders:2"}, {0, 3}, false);
+  EXPECT_EQ(scene_hash(read.at(1)), scene_hash(built.at(1)));
+  EXPECT_NE(scene_hash(read.at(2)), scene_hash(built.at(2)));
+  std::filesystem::remove(folder.path("s/cylinder1_0003.off"));
+  EXPECT_EQ(FrameSource({written.scene_file}, {0, 3}, false).missing()->where,
+            folder.path("s/cylinder1_0003.off"));
+}
+
+TEST(MeshWrite, GroupsCannotSayThatSomeCollideWithThemselves) {
+  const ScratchFolder folder;
+  Scene scene = make_builtin_scene("two-tori");
+  scene.objects[1].self = true;
+  const auto at = [&](long) -> const Scene& { return scene; };
+  EXPECT_EQ(error_of([&] { write_frames(at, {0, 1}, true, folder.path("s")); }).where, "two-tori");
+  EXPECT_FALSE(std::filesystem::exists(folder.path("s")));
+  scene.objects[0].self = true;
+  const WrittenScene written = write_frames(at, {0, 1}, true, folder.path("s"));
+  EXPECT_EQ(scene_hash(FrameSource({written.scene_file}, {0, 1}, false).at(1)), scene_hash(scene));
+}
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,219 @@
+#include "experiments/studies/merge.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <map>
+#include <numeric>
+
+#include "core/base/error.h"
+#include "experiments/studies/shard.h"
+#include "tests/experiments/studies/store_lab.h"
+#include "tests/experiments/system/error_of.h"
+
+namespace farcull {
+namespace {
+
+std::vector<Study> two_studies() { return {counting_study(23), counting_study(6, {}, "second")}; }
+
+// Measures shard K/N of both studies into the folder.
+std::string measure_shard(const std::string& folder, int index, int of,
+                          const Provenance& provenance = lab_provenance()) {
+  StudiesRequest request = lab_request(folder, two_studies());
+  request.shard = {index, of, "test"};
+  request.provenance = provenance;
+  return run_studies(request).store;
+}
+
+TEST(Merge, ShardsMakeTheUndividedResult) {
+  const ScratchFolder whole, parts;
+  run_studies(lab_request(whole.folder(), two_studies()));
+  for (int shard = 1; shard <= 4; ++shard) measure_shard(parts.folder(), shard, 4);
+  const MergeSummary summary =
+      merge_stores(shard_files(parts.folder()), store_path(parts.folder()));
+  EXPECT_EQ(summary.files, 4u);
+  EXPECT_EQ(summary.studies, 2u);
+  EXPECT_EQ(summary.rows, 29u);
+  EXPECT_EQ(difference(store_path(whole.folder()), store_path(parts.folder())), "");
+}
+
+TEST(Merge, RefusesAHoleADuplicateAndAMissingShard) {
+  const ScratchFolder folder;
+  std::vector<std::string> files;
+  for (int shard = 1; shard <= 3; ++shard)
+    files.push_back(measure_shard(folder.folder(), shard, 3));
+  const std::string out = folder.path("out.sqlite");
+  EXPECT_NE(message_of([&] {
+              merge_stores({files[0], files[2]}, out);
+            }).find("shard 2/3"),
+            std::string::npos);
+  EXPECT_NE(message_of([&] {
+              merge_stores({files[0], files[1], files[1]}, out);
+            }).find("is shard 2/3 of counting, and so is"),
+            std::string::npos);
+
+  // A shard that was not finished.
+  const ScratchFolder other;
+  StudiesRequest request = lab_request(other.folder(), two_studies());
+  request.shard = {2, 3, "test"};
+  request.studies[0].measure = [right = request.studies[0].measure](const Point& p, Lab& lab) {
+    if (number_of(p) == 5) throw Error("device", "is lost", "try again");
+    return right(p, lab);
+  };
+  const std::string unfinished = run_studies(request).store;
+  const std::string message = message_of([&] {
+    merge_stores({files[0], unfinished, files[2]}, out);
+  });
+  EXPECT_NE(message.find(unfinished + ": has no row of counting"), std::string::npos) << message;
+  EXPECT_FALSE(std::filesystem::exists(out));
+  for (const auto& entry : std::filesystem::directory_iterator(folder.folder()))
+    EXPECT_EQ(entry.path().string().find(".part-"), std::string::npos);
+  EXPECT_NO_THROW(merge_stores(files, out));
+  EXPECT_NE(message_of([&] { merge_stores(files, out); }).find("is there already"),
+            std::string::npos);
+}
+
+// A file whose shard number was made another one by hand: the rows tell.
+TEST(Merge, RefusesAPointThatTwoFilesHold) {
+  const ScratchFolder folder;
+  std::vector<std::string> files;
+  for (int shard = 1; shard <= 2; ++shard)
+    files.push_back(measure_shard(folder.folder(), shard, 2));
+  {
+    Store store(files[1], Store::Access::write);
+    store.add("counting", store.runs().front().first, 0, {});
+  }
+  EXPECT_NE(message_of([&] { merge_stores(files, folder.path("out")); }).find("holds a point of"),
+            std::string::npos);
+}
+
+// A run that was ended before its first row says nothing of the rows.
+TEST(Merge, TakesNoOffenceAtARunWithoutRows) {
+  const ScratchFolder folder;
+  std::vector<std::string> files;
+  for (int shard = 1; shard <= 2; ++shard)
+    files.push_back(measure_shard(folder.folder(), shard, 2));
+  { Store(files[1], Store::Access::write).begin_run(lab_provenance("decade")); }
+  EXPECT_NO_THROW(merge_stores(files, folder.path("out")));
+}
+
+TEST(Merge, DoesNotPutAFileBesideAJournalThatIsNotItsOwn) {
+  const ScratchFolder folder;
+  const std::string file = measure_shard(folder.folder(), 1, 1);
+  for (const char* beside : {"out-journal", "out-wal"}) {
+    const std::string journal = folder.write(beside, "of another file");
+    EXPECT_NE(message_of([&] { merge_stores({file}, folder.path("out")); }).find(beside),
+              std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(folder.path("out")));
+    std::filesystem::remove(journal);
+  }
+  EXPECT_NO_THROW(merge_stores({file}, folder.path("out")));
+}
+
+TEST(Merge, CountsTheMachinesThatDiffer) {
+  const ScratchFolder folder;
+  Provenance other = lab_provenance();
+  other.cpu_features = "a b c";
+  const std::vector<std::string> files = {measure_shard(folder.folder(), 1, 2),
+                                          measure_shard(folder.folder(), 2, 2, other)};
+  EXPECT_EQ(merge_stores(files, folder.path("out")).machines, 2u);
+  EXPECT_EQ(merge_stores({measure_shard(folder.folder(), 1, 1)}, folder.path("one")).machines, 1u);
+}
+
+TEST(Merge, RefusesWhatWasMeasuredOtherwise) {
+  const ScratchFolder folder, second, third;
+  const std::string first = measure_shard(folder.folder(), 1, 2);
+  const std::string other_commit = measure_shard(second.folder(), 2, 2, lab_provenance("decade"));
+  EXPECT_NE(message_of([&] {
+              merge_stores({first, other_commit}, folder.path("out"));
+            }).find("of another commit (decade)"),
+            std::string::npos);
+  StudiesRequest seeded = lab_request(third.folder(), two_studies());
+  seeded.shard = {2, 2, "test"};
+  seeded.choice.seed = 2;
+  const std::string other_seed = run_studies(seeded).store;
+  EXPECT_NE(message_of([&] {
+              merge_stores({first, other_seed}, folder.path("out"));
+            }).find("another grid or seed"),
+            std::string::npos);
+}
+
+TEST(Shards, CoverEveryPointOnce) {
+  rc::check("every position is in one shard", [] {
+    const int of = *rc::gen::inRange(1, 50);
+    const auto position = *rc::gen::inRange<std::size_t>(0, 100000);
+    int held = 0;
+    for (int index = 1; index <= of; ++index) held += Shard{index, of, ""}.holds(position);
+    RC_ASSERT(held == 1);
+  });
+}
+
+TEST(Shards, AreReadAsGiven) {
+  const Shard shard = parse_shard("2/4");
+  EXPECT_EQ(shard.index, 2);
+  EXPECT_EQ(shard.of, 4);
+  for (const char* bad : {"", "2", "2/", "/4", "0/4", "5/4", "-1/4", "1/0", "1/4/2", "1.0/4", "a/b",
+                          "1/100001", " 1/4", "99999999999999999999/4"})
+    EXPECT_NE(message_of([&] { parse_shard(bad); }).find("--shard"), std::string::npos) << bad;
+}
+
+Shard from(const std::map<std::string, std::string>& variables) {
+  return shard_from_environment([&](const char* name) -> const char* {
+    const auto found = variables.find(name);
+    return found == variables.end() ? nullptr : found->second.c_str();
+  });
+}
+
+TEST(Shards, ComeFromSlurmOrOpenMpi) {
+  EXPECT_EQ(from({}).of, 1);
+  const Shard slurm = from({{"SLURM_ARRAY_TASK_ID", "3"},
+                            {"SLURM_ARRAY_TASK_MIN", "1"},
+                            {"SLURM_ARRAY_TASK_MAX", "6"},
+                            {"SLURM_ARRAY_TASK_COUNT", "6"}});
+  EXPECT_EQ(slurm.index, 3);
+  EXPECT_EQ(slurm.of, 6);
+  const Shard mpi = from({{"OMPI_COMM_WORLD_RANK", "0"}, {"OMPI_COMM_WORLD_SIZE", "4"}});
+  EXPECT_EQ(mpi.index, 1);
+  EXPECT_EQ(mpi.of, 4);
+  // A single process under mpirun divides nothing.
+  EXPECT_EQ(from({{"OMPI_COMM_WORLD_RANK", "0"}, {"OMPI_COMM_WORLD_SIZE", "1"}}).of, 1);
+}
+
+TEST(Shards, RefuseAnEnvironmentThatDoesNotAddUp) {
+  // --array=1-7:2
+  EXPECT_NE(message_of([] {
+              from({{"SLURM_ARRAY_TASK_ID", "3"},
+                    {"SLURM_ARRAY_TASK_MIN", "1"},
+                    {"SLURM_ARRAY_TASK_MAX", "7"},
+                    {"SLURM_ARRAY_TASK_COUNT", "4"}});
+            }).find("gaps"),
+            std::string::npos);
+  // --array=3: one task of an array, submitted again.
+  EXPECT_NE(message_of([] {
+              from({{"SLURM_ARRAY_TASK_ID", "3"},
+                    {"SLURM_ARRAY_TASK_MIN", "3"},
+                    {"SLURM_ARRAY_TASK_MAX", "3"},
+                    {"SLURM_ARRAY_TASK_COUNT", "1"}});
+            }).find("begins at 3"),
+            std::string::npos);
+  EXPECT_NE(message_of([] {
+              from({{"SLURM_ARRAY_TASK_ID", "x"}});
+            }).find("is no number"),
+            std::string::npos);
+  EXPECT_NE(message_of([] {
+              from({{"OMPI_COMM_WORLD_RANK", "4"}, {"OMPI_COMM_WORLD_SIZE", "4"}});
+            }).find("part 5 of 4"),
+            std::string::npos);
+  EXPECT_NE(message_of([] {
+              from({{"SLURM_ARRAY_TASK_ID", "1"},
+                    {"SLURM_ARRAY_TASK_MIN", "1"},
+                    {"SLURM_ARRAY_TASK_MAX", "2"},
+                    {"SLURM_ARRAY_TASK_COUNT", "2"},
+                    {"OMPI_COMM_WORLD_RANK", "0"},
+                    {"OMPI_COMM_WORLD_SIZE", "2"}});
+            }).find("both"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace farcull

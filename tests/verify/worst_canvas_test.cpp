@@ -1,0 +1,115 @@
+// The reliability lemmas, and culling end to end, on the canvas that keeps the device assumptions
+// and nothing more.
+#include "verify/worst_canvas.h"
+
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/core/canvas/lemma_suite.h"
+#include "tests/core/cull/far_properties.h"
+#include "tests/core/scene/scenes.h"
+
+namespace farcull {
+namespace {
+
+using lab::Random;
+
+lab::MakeCanvas canvases(const WorstCanvasOptions& options = {}) {
+  return [options](const Fattener& fattener) {
+    return std::make_unique<WorstCanvas>(fattener.solid, options);
+  };
+}
+
+TEST(WorstLemma, Lemmas1And2HoldAtTheBudgetRadius) { lab::expect_lemmas(canvases(), 60'000); }
+
+TEST(WorstLemma, LemmasHoldForAnySubpixelGrid) {
+  for (const int bits : {4, 6, 12}) {
+    const auto budget = [](const Budget& b, double) { return b.radius(); };
+    const auto rows =
+        lab::lemma_rows(canvases({.subpixel_bits = bits}), obb_fattener(), 20'000, true, budget);
+    EXPECT_EQ(lemma_total(rows).violations(), 0u) << bits;
+  }
+}
+
+TEST(WorstLemma, Lemma1FailsAtNineTenthsOfTheBudget) {
+  const auto radius = [](const Budget& b, double) { return 0.9 * b.radius(); };
+  EXPECT_GT(lab::violation_rate(canvases(), "pixel corners", radius), 0.5);
+}
+
+TEST(WorstLemma, Lemma1FailsAtThePublishedRadiusNearPixelCorners) {
+  const auto radius = [](const Budget&, double step) { return published_radius(step); };
+  EXPECT_GT(lab::violation_rate(canvases(), "pixel corners", radius), 0.9);
+}
+
+TEST(WorstLemma, LemmasFailWithoutTheSamplingTerm) {
+  lab::expect_term_needed(canvases(), "sampling", 20'000);
+}
+TEST(WorstLemma, LemmasFailWithoutTheInputTerm) {
+  lab::expect_term_needed(canvases(), "input", 100'000);
+}
+TEST(WorstLemma, LemmasFailWithoutTheDoubleTerm) {
+  lab::expect_term_needed(canvases(), "double", 20'000);
+}
+TEST(WorstLemma, LemmasFailWithoutTheVertexTerm) {
+  lab::expect_term_needed(canvases(), "vertex", 20'000);
+}
+TEST(WorstLemma, LemmasFailWithoutTheSnapTerm) {
+  lab::expect_term_needed(canvases(), "snap", 20'000);
+}
+
+TEST(WorstLemma, Theorem1IntersectingTrianglesSeeEachOther) {
+  lab::expect_theorem1(canvases(), 6);
+  lab::expect_theorem1(canvases({.depth_bits = 24}), 3);
+}
+
+TEST(WorstLemma, Corollary1UnseenMeansDisjoint) { lab::expect_corollary1(canvases(), 12); }
+
+using lab::far_on;
+using lab::Outcome;
+
+TEST(WorstFar, MissesNothingOnRandomScenes) {
+  std::uint64_t culled = 0;
+  for (std::uint64_t seed = 1001; seed <= 1040; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Scene scene = lab::random_scene(seed);
+    for (const Fattener& fattener : lab::fatteners()) {
+      WorstCanvas canvas(fattener.solid, {.depth_bits = seed % 3 ? 32 : 24});
+      const Outcome out = far_on(canvas, scene, fattener, seed % 4 ? "x,y,z" : "1:2:0.5,-x",
+                                 1 + static_cast<int>(seed * seed % 61));
+      EXPECT_EQ(out.accounting.false_negatives, 0u);
+      culled += scene.triangles.size() - out.live;
+    }
+  }
+  EXPECT_GT(culled, 300u) << "a method that keeps everything would pass";
+}
+
+TEST(WorstFar, MissesNothingOnHardScenesAndTheirCopiesElsewhere) {
+  for (const char* name : {"degenerate", "needles", "far-apart", "ground"}) {
+    for (const char* suffix : {"", "@far", "@tiny", "@huge"}) {
+      SCOPED_TRACE(std::string(name) + suffix);
+      const Scene scene = make_builtin_scene(std::string(name) + suffix);
+      if (find_regions(scene).triangles.empty()) continue;  // nothing to draw
+      const Fattener fattener = obb_fattener();
+      WorstCanvas canvas(fattener.solid);
+      EXPECT_EQ(far_on(canvas, scene, fattener, "x,y,z", 48).accounting.false_negatives, 0u);
+    }
+  }
+}
+
+TEST(WorstFar, UndrawableItemKeepsItsSmallPartner) {
+  const Fattener fattener = obb_fattener();
+  WorstCanvas canvas(fattener.solid);
+  EXPECT_EQ(
+      far_on(canvas, lab::undrawable_scene(), fattener, "1:1:1", 64).accounting.false_negatives,
+      0u);
+}
+
+TEST(WorstFar, MissesPairsNearPixelCornersAtNineTenthsOfTheRadius) {
+  const Scene scene = lab::corner_scene(128);
+  for (const Fattener& fattener : lab::fatteners()) {
+    WorstCanvas canvas(fattener.solid);
+    EXPECT_EQ(far_on(canvas, scene, fattener, "z", 128).accounting.false_negatives, 0u);
+    EXPECT_GT(far_on(canvas, scene, fattener, "z", 128, 0.9).accounting.false_negatives, 100u);
+  }
+}
+
+}  // namespace
+}  // namespace farcull
