@@ -133,6 +133,7 @@ std::string reason_of(const Stage& stage) {
     case Reason::keeps_sample:
       return "it keeps all of a sample of the candidates";
     case Reason::sweep:
+      if (stage.detail.empty()) return "boxes of objects, then of their triangles";
       return "boxes of " + n + " objects overlap, which have " + m + " triangles; " + stage.detail;
     case Reason::join_kept:
       return "boxes of what is kept";

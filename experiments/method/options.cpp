@@ -1,9 +1,8 @@
 // Parsing of option values, defaults, and which options go together.
 #include "experiments/method/options.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -18,6 +17,18 @@ const std::vector<std::string> kOffsets = {
     "obb", "exact",
     // A new offset goes here.
 };
+
+std::string offset_names() {
+  std::string names;
+  for (const std::string& name : kOffsets) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
+// The shortest text that gives the same double back.
+std::string number(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
 
 }  // namespace
 
@@ -67,10 +78,10 @@ int parse_repeat(const std::string& text) {
 
 void require_pair_resolution(int resolution, const std::string& option) {
   if (resolution <= kMostPairResolution) return;
-  throw Error(
-      option,
-      fmt::format("{} is outside 1 .. {}, the limit of far-pairs", resolution, kMostPairResolution),
-      "give a number in that range, or auto");
+  throw Error(option,
+              std::to_string(resolution) + " is outside 1 .. " +
+                  std::to_string(kMostPairResolution) + ", the limit of far-pairs",
+              "give a number in that range, or auto");
 }
 
 int resolution_of(const RunOptions& options) {
@@ -110,17 +121,17 @@ bool promises(const RunOptions& options) {
 std::string describe(const RunOptions& options) {
   const int resolution = resolution_of(options);
   if (!looks(options.method) || resolution == 0) return to_string(options.method);
-  return fmt::format("{} at {} px", to_string(options.method), resolution);
+  return to_string(options.method) + " at " + std::to_string(resolution) + " px";
 }
 
 void validate(const RunOptions& options) {
   if (options.resolution < 0) {
-    throw Error("--resolution", fmt::format("{} is no resolution", options.resolution),
+    throw Error("--resolution", std::to_string(options.resolution) + " is no resolution",
                 "give 1 px or more");
   }
   if (chooses_views(options.method)) require_pair_resolution(options.resolution);
   if (!(options.clearance >= 0) || !std::isfinite(options.clearance)) {
-    throw Error("--clearance", fmt::format("{} is no distance", options.clearance),
+    throw Error("--clearance", number(options.clearance) + " is no distance",
                 "give a finite distance in world units, 0 or more");
   }
   if (options.clearance > 0 && !takes_clearance(options.method)) {
@@ -129,7 +140,7 @@ void validate(const RunOptions& options) {
   }
   if (std::find(kOffsets.begin(), kOffsets.end(), options.offset) == kOffsets.end()) {
     throw Error("--offset", "'" + options.offset + "' is no offset",
-                fmt::format("give {}", fmt::join(kOffsets, " or ")));
+                "give one of " + offset_names());
   }
   if (!options.neighbours && options.verify) {
     throw Error("neighbours", "are not asked for, and the accounting asks for every pair",

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "experiments/record/tables.h"
@@ -20,10 +21,17 @@ std::string plan_table(const Scene& scene, const Plan& plan) {
   for (const Stage& stage : plan.stages())
     table.add({name_of(stage), decision_of(stage), reason_of(stage)});
   const RunOptions& options = plan.options;
+  const auto self =
+      static_cast<std::uint64_t>(std::count_if(scene.objects.begin(), scene.objects.end(),
+                                               [](const Object& object) { return object.self; }));
+  const std::string tested = self == 0 ? ""
+                                       : fmt::format("self       {} tested against {}\n",
+                                                     counted(self, "object is", "objects are"),
+                                                     self == 1 ? "itself" : "themselves");
   return fmt::format("{}: {} objects, {} triangles, {}{}\n{}\n{}", scene.name,
                      grouped(scene.objects.size()), grouped(scene.triangles.size()),
-                     describe(options), options.full ? ", --full" : "", not_asked_line(scene),
-                     table.text());
+                     describe(options), options.full ? ", --full" : "",
+                     tested + not_asked_line(scene), table.text());
 }
 
 nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan) {
