@@ -74,15 +74,15 @@ bad 'savings by no method' '--methods: ' experiment savings far-apart --methods 
 # --- good cases --------------------------------------------------------------------------------
 
 good 'plan' 0 plan far-apart --method far
-expect 'plan' "$out" '^device +left out +boxes decide'
-expect 'plan' "$out" '^self +left out +not asked for'
+expect 'plan' "$out" '^draw +left out +no two objects'
+expect 'plan' "$out" '^not asked +whether an object meets itself: '
 good 'plan of everything' 0 plan far-apart --method far --full --no-verify
-expect 'plan of everything' "$out" '^device +runs '
-expect 'plan of everything' "$out" '^accounting +left out '
+expect 'plan of everything' "$out" '^setup +runs '
+expect 'plan of everything' "$out" '^verify +left out '
 good 'plan as JSON' 0 plan two-spheres --method far-pairs --json -
 expect 'plan as JSON' "$out" '"decision": "depends"'
 good 'plan of self-collision' 0 plan folded.obj --method far-pairs --self
-expect 'plan of self-collision' "$out" '^self +runs '
+expect 'plan of self-collision' "$out" '^self +1 object is tested against itself'
 
 good 'quick-cullide' 0 run crowd --method quick-cullide --resolution 64 --device software --json -
 expect 'quick-cullide' "$out" '"draws_saved": [1-9]'

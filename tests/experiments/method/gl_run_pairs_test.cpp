@@ -32,6 +32,10 @@ TEST(GlRunPairs, GivesTheCandidatesOfTheCpuAndSaysWhatAnswered) {
       EXPECT_EQ(there.collisions.neighbour_pairs, here.collisions.neighbour_pairs) << name;
       EXPECT_EQ(there.verification->false_negatives, 0u) << name;
       EXPECT_FALSE(there.found.device.cpu);
+      if (!self && scene.name == "far-apart") {  // boxes decide: no device is needed
+        EXPECT_FALSE(there.found.device.gl);
+        continue;
+      }
       ASSERT_TRUE(there.found.device.gl);
       EXPECT_EQ(there.found.device.gl->kind, "software");
       const nlohmann::ordered_json json = to_json(scene, there);
