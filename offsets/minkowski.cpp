@@ -7,8 +7,9 @@
 
 #include "embedded/minkowski_glsl.h"
 #include "embedded/slab_glsl.h"
+#include "offsets/fit.h"
 #include "offsets/kernel.h"
-#include "offsets/round.h"
+#include "offsets/lanes.h"
 
 namespace farcull {
 namespace glsl::minkowski {
@@ -53,34 +54,14 @@ bool interval_worst(float cx, float cy, const Solid& s, float& entry, float& exi
 
 }  // namespace
 
-Solid minkowski_solid(const Vec3& a, const Vec3& b, const Vec3& c, double radius) {
-  const std::array<Vec3, 3> corners = {a, b, c};
-  const Vec3 lo = a.cwiseMin(b).cwiseMin(c), hi = a.cwiseMax(b).cwiseMax(c);
-  const Vec3 middle = 0.5 * lo + 0.5 * hi;
-  Solid solid{};
-  for (int k = 0; k < 3; ++k) solid[0][k] = nearest(middle[k]);
-  solid[0][3] = outward_lower(lo[2], radius);
-  double displaced = 0;
-  for (int i = 0; i < 3; ++i) {
-    Vec3 d, lost;
-    for (int k = 0; k < 3; ++k) {
-      d[k] = corners[i][k] - double(solid[0][k]);
-      solid[1 + i][k] = nearest(d[k]);
-      lost[k] = d[k] - double(solid[1 + i][k]);
-    }
-    // The subtraction rounds too: 2^-53 of |d| per axis, within the second term. Components below
-    // 2^-511 square to less than a normal double: the third.
-    displaced = std::max(displaced, lost.norm() + 0x1p-50 * d.norm() + 0x1p-500);
-  }
-  solid[1][3] = round_up((radius + displaced) * (1 + 0x1p-48));
-  solid[2][3] = outward_upper(hi[2], radius);
-  return solid;
-}
-
 Fattener minkowski_fattener() {
-  const SolidProgram solid{"exact", std::string(embedded::slab_glsl) + embedded::minkowski_glsl,
-                           kernel_interval<glsl::minkowski::solid_interval>, interval_worst};
-  return {"exact", DepthMode::fragment, solid, fatten_minkowski};
+  const SolidProgram solid{"exact",
+                           std::string(embedded::slab_glsl) + embedded::minkowski_glsl,
+                           kernel_interval<glsl::minkowski::solid_interval>,
+                           interval_worst,
+                           draw_minkowski_native,
+                           follow_minkowski_native};
+  return {"exact", DepthMode::fragment, solid, fatten_minkowski, fatten_minkowski_inside};
 }
 
 }  // namespace farcull

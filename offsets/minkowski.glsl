@@ -12,7 +12,7 @@
 // the parameters through which a function gives one back (docs/budget.md, "One normal").
 
 // An upper bound of the solid's extent along n, from the origin m.
-float far_extent(vec4 n, vec4 v0, vec4 v1, vec4 v2) {
+FAR_KERNEL float far_extent(vec4 n, vec4 v0, vec4 v1, vec4 v2) {
   FAR_PRECISE float a0 = abs(n.x * v0.x) + abs(n.y * v0.y) + abs(n.z * v0.z);
   FAR_PRECISE float a1 = abs(n.x * v1.x) + abs(n.y * v1.y) + abs(n.z * v1.z);
   FAR_PRECISE float a2 = abs(n.x * v2.x) + abs(n.y * v2.y) + abs(n.z * v2.z);
@@ -30,69 +30,72 @@ float far_extent(vec4 n, vec4 v0, vec4 v1, vec4 v2) {
 }
 
 // Cuts [lo, hi] with the solid's halfspace of normal n; false: the line misses it. Normals far from unit length say nothing.
-bool far_touch(vec2 d, float mz, vec4 n, vec4 v0, vec4 v1, vec4 v2, float reach, FAR_INOUT(float) lo,
-               FAR_INOUT(float) hi) {
+FAR_KERNEL FAR_BOOL far_touch(vec2 d, float mz, vec4 n, vec4 v0, vec4 v1, vec4 v2, float reach, FAR_INOUT(float) lo,
+                   FAR_INOUT(float) hi) {
   float squared = n.x * n.x + n.y * n.y + n.z * n.z;
-  if (squared > 0.25f && squared < 4.0f) {
-    return far_halfspace(d, mz, n, far_extent(n, v0, v1, v2), reach, lo, hi);
-  }
-  return true;
+  FAR_BOOL usable = squared > 0.25f && squared < 4.0f;
+  float cut_lo = lo;
+  float cut_hi = hi;
+  FAR_BOOL hit = far_halfspace(d, mz, n, far_extent(n, v0, v1, v2), reach, cut_lo, cut_hi);
+  lo = FAR_SELECT(usable, cut_lo, lo);
+  hi = FAR_SELECT(usable, cut_hi, hi);
+  return !usable || hit;
 }
 
 // The contact of the line with the capsule about the edge a, a + e, first (sign -1) or last (sign 1). Keeps the normal there
 // in n (w: its z) where sign * z is beyond that of the contacts so far.
-void far_edge(vec2 d, vec4 a, vec4 b, float r, float sign, FAR_PRECISE FAR_INOUT(vec4) n) {
+FAR_KERNEL void far_edge(vec2 d, vec4 a, vec4 b, float r, float sign, FAR_PRECISE FAR_INOUT(vec4) n) {
   float fx = b.x - a.x;
   float fy = b.y - a.y;
   float fz = b.z - a.z;
   float px = a.x - d.x;
   float py = a.y - d.y;
   float along2 = fx * fx + fy * fy;
-  float t = sign * fz > 0.0f ? 1.0f : 0.0f;
-  if (along2 > 1e-12f) {
+  float t = FAR_SELECT(sign * fz > 0.0f, 1.0f, 0.0f);
+  FAR_BOOL met = FAR_BOOL(true);
+  if (FAR_UNIFORM(along2 > 1e-12f)) {
     float cross = px * fy - py * fx;
     float rho2 = r * r - cross * cross / along2;
-    if (rho2 <= 0.0f) return;
+    met = !(rho2 <= 0.0f);
     float foot = -(px * fx + py * fy) / along2;
-    float shift = sign * fz * sqrt(rho2 / (along2 + fz * fz)) / sqrt(along2);
+    float shift = sign * fz * sqrt(max(rho2, 0.0f) / (along2 + fz * fz)) / sqrt(along2);
     t = min(max(foot + shift, 0.0f), 1.0f);
   }
   float cx = px + t * fx;
   float cy = py + t * fy;
   float q = r * r - cx * cx - cy * cy;
-  if (q < 0.0f) return;
-  float root = sqrt(q);
+  met = met && !(q < 0.0f);
+  float root = sqrt(max(q, 0.0f));
   float z = a.z + t * fz + sign * root;
-  if (sign * z > sign * n.w) {
-    float scale = 1.0f / max(r, 1e-20f);
-    n.x = -cx * scale;
-    n.y = -cy * scale;
-    n.z = sign * root * scale;
-    n.w = z;
-  }
+  FAR_BOOL beyond = met && sign * z > sign * n.w;
+  float scale = 1.0f / max(r, 1e-20f);
+  n.x = FAR_SELECT(beyond, -cx * scale, n.x);
+  n.y = FAR_SELECT(beyond, -cy * scale, n.y);
+  n.z = FAR_SELECT(beyond, sign * root * scale, n.z);
+  n.w = FAR_SELECT(beyond, z, n.w);
 }
 
 // Keeps in n the direction in the image from the edge a, b to the pixel centre, where that is nearer (w: distance squared).
-void far_outward(vec2 d, vec4 a, vec4 b, FAR_PRECISE FAR_INOUT(vec4) n) {
+FAR_KERNEL void far_outward(vec2 d, vec4 a, vec4 b, FAR_PRECISE FAR_INOUT(vec4) n) {
   float fx = b.x - a.x;
   float fy = b.y - a.y;
   float px = a.x - d.x;
   float py = a.y - d.y;
   float along2 = fx * fx + fy * fy;
-  float t = along2 > 1e-12f ? min(max(-(px * fx + py * fy) / along2, 0.0f), 1.0f) : 0.0f;
+  float t = 0.0f;
+  if (FAR_UNIFORM(along2 > 1e-12f)) t = min(max(-(px * fx + py * fy) / along2, 0.0f), 1.0f);
   float cx = px + t * fx;
   float cy = py + t * fy;
   float distance2 = cx * cx + cy * cy;
-  if (distance2 < n.w && distance2 > 1e-12f) {
-    float scale = 1.0f / sqrt(distance2);
-    n.x = -cx * scale;
-    n.y = -cy * scale;
-    n.z = 0.0f;
-    n.w = distance2;
-  }
+  FAR_BOOL nearer = distance2 < n.w && distance2 > 1e-12f;
+  float scale = 1.0f / sqrt(max(distance2, 1e-12f));
+  n.x = FAR_SELECT(nearer, -cx * scale, n.x);
+  n.y = FAR_SELECT(nearer, -cy * scale, n.y);
+  n.z = FAR_SELECT(nearer, 0.0f, n.z);
+  n.w = FAR_SELECT(nearer, distance2, n.w);
 }
 
-bool solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT(float) entry, FAR_OUT(float) exit) {
+FAR_KERNEL FAR_BOOL solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT(float) entry, FAR_OUT(float) exit) {
   FAR_PRECISE vec2 d = c;
   d.x = c.x - s0.x;
   d.y = c.y - s0.y;
@@ -123,11 +126,11 @@ bool solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT
   plane.x = FAR_FIXED(plane.x * scale);
   plane.y = FAR_FIXED(plane.y * scale);
   plane.z = FAR_FIXED(plane.z * scale);
-  if (!far_touch(d, mz, plane, s1, s2, s3, reach, entry, exit)) return false;
+  FAR_BOOL hit = far_touch(d, mz, plane, s1, s2, s3, reach, entry, exit);
   plane.x = -plane.x;
   plane.y = -plane.y;
   plane.z = -plane.z;
-  if (!far_touch(d, mz, plane, s1, s2, s3, reach, entry, exit)) return false;
+  hit = far_touch(d, mz, plane, s1, s2, s3, reach, entry, exit) && hit;
 
   // Aside of the triangle's image.
   FAR_PRECISE vec4 aside = s4;
@@ -140,7 +143,7 @@ bool solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT
   far_outward(d, s3, s1, aside);
   aside.x = FAR_FIXED(aside.x);
   aside.y = FAR_FIXED(aside.y);
-  if (!far_touch(d, mz, aside, s1, s2, s3, reach, entry, exit)) return false;
+  hit = far_touch(d, mz, aside, s1, s2, s3, reach, entry, exit) && hit;
 
   // The spheres and cylinders, first and last contact.
   FAR_PRECISE vec4 first = s4;
@@ -165,7 +168,7 @@ bool solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT
   last.x = FAR_FIXED(last.x);
   last.y = FAR_FIXED(last.y);
   last.z = FAR_FIXED(last.z);
-  if (!far_touch(d, mz, first, s1, s2, s3, reach, entry, exit)) return false;
-  if (!far_touch(d, mz, last, s1, s2, s3, reach, entry, exit)) return false;
-  return entry <= exit;
+  hit = far_touch(d, mz, first, s1, s2, s3, reach, entry, exit) && hit;
+  hit = far_touch(d, mz, last, s1, s2, s3, reach, entry, exit) && hit;
+  return hit && entry <= exit;
 }

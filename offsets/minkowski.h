@@ -11,9 +11,4 @@ namespace farcull {
 /// their union contains the fattened polygon.
 Fattener minkowski_fattener();
 
-/// The solid that contains the triangle a, b, c (px) fattened by a ball of `radius` px, rounded
-/// outward: its corners are rounded to floats relative to a float centre, its radius grows by the
-/// largest of their displacements.
-Solid minkowski_solid(const Vec3& a, const Vec3& b, const Vec3& c, double radius);
-
 }  // namespace farcull

@@ -1,16 +1,14 @@
-// The box is fitted in doubles, and its extents are measured and rounded outward. The kernel of
-// obb.glsl is compiled as scalar C++ and for the worst device.
+// The kernel of obb.glsl as scalar C++ and on the worst device, and the primitives that carry it.
 #include "offsets/obb.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "embedded/obb_glsl.h"
 #include "embedded/slab_glsl.h"
+#include "offsets/fit.h"
 #include "offsets/kernel.h"
-#include "offsets/round.h"
+#include "offsets/lanes.h"
 
 namespace farcull {
 namespace glsl::obb {
@@ -28,86 +26,6 @@ namespace glsl_worst::obb {
 
 namespace {
 
-// Directions of the box: the longest edge, the farthest point's distance from it, and their normal.
-// Any directions are sound, since the extents are measured afterwards; these make the box tight.
-Eigen::Matrix3d directions(std::span<const Vec3> points) {
-  Vec3 along = Vec3::UnitX();
-  double longest = 1e-100;  // shorter edges square to nothing
-  std::size_t base = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3 edge = points[(i + 1) % points.size()] - points[i];
-    const double length = edge.norm();
-    if (length > longest) {
-      longest = length;
-      along = edge / length;
-      base = i;
-    }
-  }
-  Vec3 across = Vec3::Zero();
-  double farthest = 1e-100;
-  for (const Vec3& p : points) {
-    const Vec3 d = p - points[base];
-    const Vec3 off = d - along * along.dot(d);
-    const double distance = off.norm();
-    if (distance > farthest) {
-      farthest = distance;
-      across = off / distance;
-    }
-  }
-  const Vec3 residue = across - along * along.dot(across);
-  if (farthest < 0x1p-40 * longest || residue.norm() < 0.5) {
-    int smallest = 0;
-    along.cwiseAbs().minCoeff(&smallest);
-    across = along.cross(Vec3::Unit(smallest));
-  } else {
-    across = residue;
-  }
-  across.normalize();
-  Eigen::Matrix3d rows;
-  rows << along.transpose(), across.transpose(), along.cross(across).transpose();
-  return rows;
-}
-
-// The box as three float slabs about a float centre, see obb.glsl.
-struct Slabs {
-  Eigen::Vector3f centre;
-  Eigen::Matrix3f normals;  // rows
-  Eigen::Vector3d half;     // >= |normal . (p - centre)| + radius |normal| for every point, before
-                            // rounding to float
-};
-
-Slabs slabs_of(std::span<const Vec3> points, double radius) {
-  const Eigen::Matrix3d rows = directions(points);
-  Slabs out;
-  Vec3 middle = Vec3::Zero();
-  for (int i = 0; i < 3; ++i) {
-    double lo = HUGE_VAL, hi = -HUGE_VAL;
-    for (const Vec3& p : points) {
-      const double s = rows.row(i) * p;
-      lo = std::min(lo, s);
-      hi = std::max(hi, s);
-    }
-    middle += rows.row(i).transpose() * (0.5 * lo + 0.5 * hi);
-  }
-  for (int i = 0; i < 3; ++i) {
-    out.centre[i] = nearest(middle[i]);
-    for (int k = 0; k < 3; ++k) out.normals(i, k) = nearest(rows(i, k));
-  }
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 normal = out.normals.row(i).cast<double>();
-    double reach = 0, size = 0;
-    for (const Vec3& p : points) {
-      const Vec3 d = p - out.centre.cast<double>();
-      reach = std::max(reach, std::abs(normal.dot(d)));
-      size = std::max(size, normal.cwiseAbs().dot(d.cwiseAbs()));
-    }
-    // A difference, a product and two sums: under 5 * 2^-53 of `size`; the same for |normal|. 2^-48
-    // is beyond both.
-    out.half[i] = reach + 0x1p-48 * size + radius * normal.norm() * (1 + 0x1p-48);
-  }
-  return out;
-}
-
 void fatten_proxy(const Patch& patch, double radius, const ProxyBounds& bounds, Drawables& out) {
   out.proxies.push_back(
       {proxy_rectangle(patch.points(), radius, bounds), obb_of(patch.points(), radius)});
@@ -116,12 +34,12 @@ void fatten_proxy(const Patch& patch, double radius, const ProxyBounds& bounds, 
 // The twelve triangles of the closed box. Corners are rounded to nearest: this path promises
 // nothing.
 void fatten_surface(const Patch& patch, double radius, const ProxyBounds&, Drawables& out) {
-  const Slabs slabs = slabs_of(patch.points(), radius);
-  const auto corner = [&slabs](int bits) {
-    Eigen::Vector3f p = slabs.centre;
+  const Solid box = obb_of(patch.points(), radius);
+  const auto corner = [&box](int bits) {
+    std::array<float, 3> p = {box[0][0], box[0][1], box[0][2]};
     for (int i = 0; i < 3; ++i) {
-      const float h = static_cast<float>(slabs.half[i]);
-      p += slabs.normals.row(i).transpose() * ((bits >> i & 1) ? h : -h);
+      const float h = (bits >> i & 1) ? box[1 + i][3] : -box[1 + i][3];
+      for (int k = 0; k < 3; ++k) p[k] += box[1 + i][k] * h;
     }
     return p;
   };
@@ -132,7 +50,7 @@ void fatten_surface(const Patch& patch, double radius, const ProxyBounds&, Drawa
       std::array<float, 12> t{};
       const int pick[3] = {face[0], face[1 + half], face[2 + half]};
       for (int k = 0; k < 3; ++k) {
-        const Eigen::Vector3f p = corner(pick[k]);
+        const std::array<float, 3> p = corner(pick[k]);
         std::copy_n(p.data(), 3, &t[4 * k]);
       }
       out.triangles.push_back(t);
@@ -142,28 +60,14 @@ void fatten_surface(const Patch& patch, double radius, const ProxyBounds&, Drawa
 
 }  // namespace
 
-Solid obb_of(std::span<const Vec3> points, double radius) {
-  const Slabs slabs = slabs_of(points, radius);
-  double lo = HUGE_VAL, hi = -HUGE_VAL;
-  for (const Vec3& p : points) {
-    lo = std::min(lo, p[2]);
-    hi = std::max(hi, p[2]);
-  }
-  Solid solid{};
-  solid[0] = {slabs.centre[0], slabs.centre[1], slabs.centre[2], outward_lower(lo, radius)};
-  for (int i = 0; i < 3; ++i) {
-    solid[1 + i] = {slabs.normals(i, 0), slabs.normals(i, 1), slabs.normals(i, 2),
-                    round_up(slabs.half[i])};
-  }
-  solid[4][0] = outward_upper(hi, radius);
-  return solid;
-}
-
 Fattener obb_fattener() {
-  const SolidProgram solid{"obb", std::string(embedded::slab_glsl) + embedded::obb_glsl,
+  const SolidProgram solid{"obb",
+                           std::string(embedded::slab_glsl) + embedded::obb_glsl,
                            kernel_interval<glsl::obb::solid_interval>,
-                           kernel_interval_worst<glsl_worst::obb::solid_interval>};
-  return {"obb", DepthMode::fragment, solid, fatten_proxy};
+                           kernel_interval_worst<glsl_worst::obb::solid_interval>,
+                           draw_obb_native,
+                           follow_obb_native};
+  return {"obb", DepthMode::fragment, solid, fatten_proxy, fatten_obb_inside};
 }
 
 Fattener obb_surface_fattener() { return {"obb-surface", DepthMode::fixed, {}, fatten_surface}; }

@@ -5,7 +5,7 @@
 //   s0 = (m, zlo), s1 = (a0, h0), s2 = (a1, h1), s3 = (a2, h2), s4 = (zhi, -, -, -)
 // |a| <= 2 per component, so a slab's normal need be neither unit nor orthogonal: the box is what these floats say it is.
 
-bool solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT(float) entry,
+FAR_KERNEL FAR_BOOL solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT(float) entry,
                     FAR_OUT(float) exit) {
   FAR_PRECISE vec2 d = c;
   d.x = c.x - s0.x;
@@ -15,7 +15,7 @@ bool solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT
   FAR_PRECISE float below = abs(s0.w - s0.z);
   FAR_PRECISE float above = abs(s4.x - s0.z);
   FAR_PRECISE float reach = max(below, above) * kUp;
-  bool hit = far_slab(d, s0.z, s1, reach, entry, exit) && far_slab(d, s0.z, s2, reach, entry, exit) &&
+  FAR_BOOL hit = far_slab(d, s0.z, s1, reach, entry, exit) && far_slab(d, s0.z, s2, reach, entry, exit) &&
              far_slab(d, s0.z, s3, reach, entry, exit);
   return hit && entry <= exit;
 }

@@ -13,8 +13,4 @@ Fattener obb_fattener();
 /// path, for comparison.
 Fattener obb_surface_fattener();
 
-/// The box that contains the hull of `points` (px, at least one) fattened by a ball of `radius` px,
-/// rounded outward.
-Solid obb_of(std::span<const Vec3> points, double radius);
-
 }  // namespace farcull

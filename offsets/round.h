@@ -1,8 +1,5 @@
-// Outward rounding from double to float, shared by the offsets.
+// Rounding from double to float, shared by the offsets.
 #pragma once
-
-#include <cmath>
-#include <limits>
 
 namespace farcull {
 
@@ -12,23 +9,6 @@ namespace farcull {
 inline float nearest(double x) {
   const volatile float f = static_cast<float>(x);
   return f;
-}
-
-/// The smallest float >= x.
-inline float round_up(double x) {
-  const float f = nearest(x);
-  return f < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
-}
-
-/// The largest float <= x.
-inline float round_down(double x) { return -round_up(-x); }
-
-/// Floats beyond z -+ radius, the rounding of these very lines included.
-inline float outward_lower(double z, double radius) {
-  return round_down(z - radius - 0x1p-50 * (std::abs(z) + radius));
-}
-inline float outward_upper(double z, double radius) {
-  return round_up(z + radius + 0x1p-50 * (std::abs(z) + radius));
 }
 
 }  // namespace farcull

@@ -1,28 +1,30 @@
 // A line through a pixel centre along z, cut with slabs and halfspaces; every bound is widened outward. One text for GLSL and
 // C++, before the text of an offset.
 //
+// A pixel may be a lane of a vector (core/native/glsl_lanes-inl.h). So a FAR_BOOL may differ from lane to lane and chooses by
+// FAR_SELECT, where both sides are computed; `if` asks only what is the same for all pixels of a solid, by FAR_UNIFORM.
+//
 // With u = 2^-23 per operation in any rounding mode, 2.5 u for a division (GLSL 4.50, 4.7.1; |divisor| >= 2^-20 here, the
 // quotient < 2^126), and results below 2^-126 flushed. The constants are derived in docs/budget.md, "The oriented box".
 
 #ifndef FAR_WIDEN  // 0 in the test that shows what happens without the widening
 #define FAR_WIDEN 1.0f
 #endif
-const float kEightU = FAR_WIDEN * 9.5367431640625e-7f;  // 8 u; powers of two, so the constants are exact
-const float kFourU = FAR_WIDEN * 4.76837158203125e-7f;
-const float kUp = 1.0f + kEightU;
-const float kTiny = FAR_WIDEN * 1e-30f;          // beyond what is flushed
-const float kParallel = 9.5367431640625e-7f;  // 2^-20
+FAR_CONSTANT kEightU = FAR_WIDEN * 9.5367431640625e-7f;  // 8 u; powers of two, so the constants are exact
+FAR_CONSTANT kFourU = FAR_WIDEN * 4.76837158203125e-7f;
+FAR_CONSTANT kUp = 1.0f + kEightU;
+FAR_CONSTANT kTiny = FAR_WIDEN * 1e-30f;          // beyond what is flushed
+FAR_CONSTANT kParallel = 9.5367431640625e-7f;  // 2^-20
 
 // Cuts [lo, hi] with one slab; false: the line misses it. d = c - m.xy, reach >= |z - m.z| on the solid.
-bool far_slab(vec2 d, float mz, vec4 slab, float reach, FAR_INOUT(float) lo,
-              FAR_INOUT(float) hi) {
+FAR_KERNEL FAR_BOOL far_slab(vec2 d, float mz, vec4 slab, float reach, FAR_INOUT(float) lo, FAR_INOUT(float) hi) {
   FAR_PRECISE float sx = slab.x * d.x;
   FAR_PRECISE float sy = slab.y * d.y;
   FAR_PRECISE float s = sx + sy;
   FAR_PRECISE float e = (abs(sx) + abs(sy)) * kEightU + kTiny;
   FAR_PRECISE float h = (slab.w + e) * kUp;
   float steep = abs(slab.z);
-  if (steep < kParallel) {  // the slab is all but parallel to the line
+  if (FAR_UNIFORM(steep < kParallel)) {  // the slab is all but parallel to the line
     FAR_PRECISE float slack = steep * reach * kUp;
     FAR_PRECISE float limit = (h + slack) * kUp;
     return abs(s) <= limit;
@@ -39,11 +41,11 @@ bool far_slab(vec2 d, float mz, vec4 slab, float reach, FAR_INOUT(float) lo,
   FAR_PRECISE float z1 = (mz + far) + far_error;
   lo = max(lo, z0);
   hi = min(hi, z1);
-  return true;
+  return FAR_BOOL(true);
 }
 
 // Cuts [lo, hi] with a halfspace n . (x - m.x, y - m.y, z - m.z) <= h; false: the line misses it.
-bool far_halfspace(vec2 d, float mz, vec4 n, float h, float reach, FAR_INOUT(float) lo, FAR_INOUT(float) hi) {
+FAR_KERNEL FAR_BOOL far_halfspace(vec2 d, float mz, vec4 n, float h, float reach, FAR_INOUT(float) lo, FAR_INOUT(float) hi) {
   FAR_PRECISE float sx = n.x * d.x;
   FAR_PRECISE float sy = n.y * d.y;
   FAR_PRECISE float s = sx + sy;
@@ -51,23 +53,20 @@ bool far_halfspace(vec2 d, float mz, vec4 n, float h, float reach, FAR_INOUT(flo
   FAR_PRECISE float room = (h - s) + e;
   FAR_PRECISE float wide = room + (abs(h) + abs(s) + e) * kEightU;
   float steep = abs(n.z);
-  if (steep < kParallel) {
-    FAR_PRECISE float slack = steep * reach * kUp;
-    FAR_PRECISE float rest = wide + slack * kUp;
-    return rest >= 0.0f;
-  }
-  FAR_PRECISE float t = wide / n.z;
+  FAR_BOOL parallel = steep < kParallel;
+  FAR_PRECISE float slack = steep * reach * kUp;
+  FAR_PRECISE float rest = wide + slack * kUp;
+  FAR_PRECISE float divisor = FAR_SELECT(parallel, 1.0f, n.z);
+  FAR_PRECISE float t = wide / divisor;
   FAR_PRECISE float w = abs(t) * kEightU + kTiny;
-  if (n.z > 0.0f) {
-    FAR_PRECISE float far = t + w;
-    FAR_PRECISE float far_error = (abs(mz) + abs(far)) * kFourU;
-    FAR_PRECISE float z1 = (mz + far) + far_error;
-    hi = min(hi, z1);
-  } else {
-    FAR_PRECISE float near = t - w;
-    FAR_PRECISE float near_error = (abs(mz) + abs(near)) * kFourU;
-    FAR_PRECISE float z0 = (mz + near) - near_error;
-    lo = max(lo, z0);
-  }
-  return true;
+  FAR_PRECISE float far = t + w;
+  FAR_PRECISE float far_error = (abs(mz) + abs(far)) * kFourU;
+  FAR_PRECISE float z1 = (mz + far) + far_error;
+  FAR_PRECISE float near = t - w;
+  FAR_PRECISE float near_error = (abs(mz) + abs(near)) * kFourU;
+  FAR_PRECISE float z0 = (mz + near) - near_error;
+  FAR_BOOL above = n.z > 0.0f;
+  hi = FAR_SELECT(!parallel && above, min(hi, z1), hi);
+  lo = FAR_SELECT(!parallel && !above, max(lo, z0), lo);
+  return !parallel || rest >= 0.0f;
 }

@@ -60,3 +60,10 @@ inline vec4 abs(vec4 a) { return {abs(a.x), abs(a.y), abs(a.z), abs(a.w)}; }
 #define FAR_PRECISE
 #define FAR_KERNEL inline
 #define FAR_FIXED(x) fixed(x)
+// What a kernel writes for bool, ?: and global constants, since pixels may be lanes of a vector
+// (core/native/glsl_lanes-inl.h). FAR_UNIFORM(c): as a condition of `if`, where c is the same for
+// all lanes.
+#define FAR_CONSTANT const float
+#define FAR_BOOL bool
+#define FAR_SELECT(c, a, b) ((c) ? (a) : (b))
+#define FAR_UNIFORM(c) (c)

@@ -1,5 +1,6 @@
-// The few verbs that culling needs of a rasterizer. Implementations: GL (core/gl/canvas.h), and one
-// on the CPU that behaves as badly as the device assumptions allow (verify/).
+// The few verbs that culling needs of a rasterizer. Implementations: GL (core/gl/canvas.h), the
+// cores of the CPU (core/native/canvas.h), and one that behaves as badly as the device assumptions
+// allow (verify/worst_canvas.h).
 #pragma once
 
 #include <array>
@@ -7,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/uninitialized.h"
 #include "core/view/raster.h"
 #include "core/view/view.h"
 
@@ -27,6 +29,9 @@ struct Proxy {
   Solid solid;
 };
 
+struct NativeJob;    // core/native/job.h
+struct NativeLines;  // the same
+
 /// A solid's shader function, one text for GLSL and C++ (core/base/glsl_shim.h):
 ///   bool solid_interval(vec2 c, vec4 s0, .. vec4 s4, out float entry, out float exit)
 /// false: the line through the pixel centre c along the depth misses the solid; else [entry, exit],
@@ -40,6 +45,9 @@ struct SolidProgram {
   /// rounding misses, else the latest entry and the earliest exit.
   bool (*interval_worst)(float cx, float cy, const Solid& solid, float& entry,
                          float& exit) = nullptr;
+  /// On the lanes of this processor (core/native/canvas.h): proxies drawn, and single lines.
+  void (*draw_native)(const NativeJob& job) = nullptr;
+  void (*lines_native)(const NativeLines& lines) = nullptr;
 };
 
 /// All that one view can draw, as elements: proxies (fragment) or triangles (fixed). Item i owns
@@ -47,7 +55,7 @@ struct SolidProgram {
 struct Drawables {
   DepthMode mode = DepthMode::fragment;
   std::vector<std::uint32_t> first{0};
-  std::vector<Proxy> proxies;                    // fragment
+  UninitializedVector<Proxy> proxies;            // fragment
   std::vector<std::array<float, 12>> triangles;  // fixed; x, y, z px and 0 per corner
   std::vector<std::uint32_t> undrawable;  // items beyond the budget: they own no elements, see Pass
 
@@ -57,8 +65,8 @@ struct Drawables {
   }
 };
 
-/// One element drawn on behalf of a slot. kEverywhere: a full-window quad at the nearest depth,
-/// always seen, hiding all.
+/// One element drawn on behalf of a slot. kEverywhere: a full-window quad at the nearest depth; it
+/// is only stored, and hides all.
 struct Draw {
   std::uint32_t element;
   std::uint32_t slot;

@@ -9,36 +9,106 @@
 namespace farcull {
 namespace {
 
-Drawables fatten_part(const Scene& scene, std::span<const std::uint32_t> triangles,
-                      std::uint32_t first_item, const Window& window, const Fattener& fattener,
-                      double radius, FattenCounts& counts) {
+constexpr std::size_t kBatch = 256;
+
+// The part of one thread, whose drawables stand apart until all are joined.
+class Part {
+ public:
+  Part(const Scene& scene, const Window& window, const Fattener& fattener, double radius)
+      : scene_(scene),
+        window_(window),
+        fattener_(fattener),
+        radius_(radius),
+        bounds_(proxy_bounds(window)) {
+    out.mode = fattener.mode;
+  }
+
+  void add(std::span<const std::uint32_t> triangles, std::uint32_t first_item) {
+    out.first.reserve(triangles.size() + 1);
+    if (out.mode == DepthMode::fragment) out.proxies.reserve(triangles.size());
+    if (fattener_.fatten_inside == nullptr) {
+      for (std::size_t i = 0; i < triangles.size(); ++i)
+        add_one(triangles[i], first_item + static_cast<std::uint32_t>(i));
+      return;
+    }
+    std::vector<Proxy> proxies(kBatch);
+    std::vector<std::uint8_t> done(kBatch);
+    for (std::size_t from = 0; from < triangles.size(); from += kBatch) {
+      const std::size_t count = std::min(kBatch, triangles.size() - from);
+      fattener_.fatten_inside({.scene = &scene_,
+                               .items = &triangles[from],
+                               .count = count,
+                               .window = &window_,
+                               .radius = radius_,
+                               .bounds = bounds_,
+                               .out = proxies.data(),
+                               .done = done.data()});
+      for (std::size_t i = 0; i < count; ++i) {
+        if (done[i]) {
+          out.proxies.push_back(proxies[i]);
+          out.first.push_back(static_cast<std::uint32_t>(out.elements()));
+        } else {
+          add_one(triangles[from + i], first_item + static_cast<std::uint32_t>(from + i));
+        }
+      }
+    }
+  }
+
   Drawables out;
-  out.mode = fattener.mode;
-  out.first.reserve(triangles.size() + 1);
-  if (out.mode == DepthMode::fragment) out.proxies.reserve(triangles.size());
-  const ProxyBounds bounds = proxy_bounds(window);
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const Patch patch = clip_to_region(window, scene.corners(triangles[i]));
+  FattenCounts counts;
+
+ private:
+  void add_one(std::uint32_t triangle, std::uint32_t item) {
+    const Patch patch = clip_to_region(window_, scene_.corners(triangle));
     if (!patch.drawable()) {
-      out.undrawable.push_back(first_item + static_cast<std::uint32_t>(i));
+      out.undrawable.push_back(item);
       ++counts.undrawable;
     } else if (patch.count == 0) {
       ++counts.outside;
     } else {
       if (patch.cuts > 0) ++counts.clipped;
-      fattener.fatten(patch, radius, bounds, out);
+      fattener_.fatten(patch, radius_, bounds_, out);
     }
     out.first.push_back(static_cast<std::uint32_t>(out.elements()));
   }
-  return out;
-}
 
-void append(Drawables& to, const Drawables& from) {
-  const auto base = static_cast<std::uint32_t>(to.elements());
-  for (std::size_t i = 1; i < from.first.size(); ++i) to.first.push_back(base + from.first[i]);
-  to.proxies.insert(to.proxies.end(), from.proxies.begin(), from.proxies.end());
-  to.triangles.insert(to.triangles.end(), from.triangles.begin(), from.triangles.end());
-  to.undrawable.insert(to.undrawable.end(), from.undrawable.begin(), from.undrawable.end());
+  const Scene& scene_;
+  const Window& window_;
+  const Fattener& fattener_;
+  double radius_;
+  ProxyBounds bounds_;
+};
+
+// The drawables of all parts in order, in the memory of `out`.
+void join(const std::vector<Part>& parts, std::size_t items, Drawables& out) {
+  const std::size_t count = parts.size();
+  std::vector<std::size_t> element(count + 1), item(count + 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    element[i + 1] = element[i] + parts[i].out.elements();
+    item[i + 1] = item[i] + parts[i].out.items();
+  }
+  out.mode = parts.front().out.mode;
+  out.undrawable.clear();
+  for (const Part& part : parts) {
+    const auto& more = part.out.undrawable;
+    out.undrawable.insert(out.undrawable.end(), more.begin(), more.end());
+  }
+  out.first.resize(items + 1);
+  out.first[0] = 0;
+  const bool proxies = out.mode == DepthMode::fragment;
+  out.proxies.resize(proxies ? element[count] : 0);
+  out.triangles.resize(proxies ? 0 : element[count]);
+  for_chunks(count, count, [&](std::size_t, std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      const Drawables& part = parts[i].out;
+      for (std::size_t k = 1; k < part.first.size(); ++k)
+        out.first[item[i] + k] = static_cast<std::uint32_t>(element[i]) + part.first[k];
+      std::copy(part.proxies.begin(), part.proxies.end(),
+                out.proxies.begin() + static_cast<std::ptrdiff_t>(proxies ? element[i] : 0));
+      std::copy(part.triangles.begin(), part.triangles.end(),
+                out.triangles.begin() + static_cast<std::ptrdiff_t>(proxies ? 0 : element[i]));
+    }
+  });
 }
 
 void add_triangle(const Vec3& a, const Vec3& b, const Vec3& c, Drawables& out) {
@@ -62,74 +132,23 @@ Fattener raw_triangles() {
     for (int i = 2; i < patch.count; ++i)
       add_triangle(patch.corners[0], patch.corners[i - 1], patch.corners[i], out);
   };
-  return {"raw", DepthMode::fixed, {}, draw, true};
-}
-
-std::array<float, 8> proxy_rectangle(std::span<const Vec3> points, double radius,
-                                     const ProxyBounds& bounds) {
-  // Along the longest image of an edge: the tight direction for slivers, and a fair one for all
-  // else.
-  Eigen::Vector2d along = Eigen::Vector2d::UnitX();
-  double longest = 1e-100;  // below it the squares underflow and the quotient is no unit vector
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector2d edge = (points[(i + 1) % points.size()] - points[i]).head<2>();
-    const double length = edge.norm();
-    if (length > longest) {
-      longest = length;
-      along = edge / length;
-    }
-  }
-  const auto rectangle = [&](const Eigen::Vector2d& u, std::array<double, 8>& corners) {
-    const Eigen::Vector2d v(-u[1], u[0]);
-    double lo[2] = {HUGE_VAL, HUGE_VAL}, hi[2] = {-HUGE_VAL, -HUGE_VAL};
-    for (const Vec3& p : points) {
-      const double s[2] = {u.dot(p.head<2>()), v.dot(p.head<2>())};
-      for (int i = 0; i < 2; ++i) {
-        lo[i] = std::min(lo[i], s[i] - radius);
-        hi[i] = std::max(hi[i], s[i] + radius);
-      }
-    }
-    const double at[4][2] = {{lo[0], lo[1]}, {hi[0], lo[1]}, {hi[0], hi[1]}, {lo[0], hi[1]}};
-    for (int i = 0; i < 4; ++i) {
-      corners[2 * i] = at[i][0] * u[0] + at[i][1] * v[0];
-      corners[2 * i + 1] = at[i][0] * u[1] + at[i][1] * v[1];
-    }
-  };
-  std::array<double, 8> corners;
-  rectangle(along, corners);
-  bool fits = true;
-  for (int i = 0; i < 4; ++i) {
-    fits = fits && std::abs(corners[2 * i]) <= bounds.x && std::abs(corners[2 * i + 1]) <= bounds.y;
-  }
-  if (!fits) {
-    rectangle(Eigen::Vector2d::UnitX(), corners);
-    for (int i = 0; i < 4; ++i) {
-      corners[2 * i] = std::clamp(corners[2 * i], -bounds.x, bounds.x);
-      corners[2 * i + 1] = std::clamp(corners[2 * i + 1], -bounds.y, bounds.y);
-    }
-  }
-  std::array<float, 8> out;
-  for (int i = 0; i < 8; ++i) out[i] = static_cast<float>(corners[i]);
-  return out;
+  return {"raw", DepthMode::fixed, {}, draw, nullptr, true};
 }
 
 Drawables fatten(const Scene& scene, std::span<const std::uint32_t> triangles, const Window& window,
-                 const Fattener& fattener, double radius, FattenCounts& counts) {
+                 const Fattener& fattener, double radius, FattenCounts& counts, Drawables used) {
   const std::size_t chunks = chunks_for(triangles.size(), 4096);
-  std::vector<Drawables> parts(chunks);
-  std::vector<FattenCounts> part_counts(chunks);
+  std::vector<Part> parts(chunks, Part(scene, window, fattener, radius));
   for_chunks(triangles.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    parts[chunk] =
-        fatten_part(scene, triangles.subspan(begin, end - begin), static_cast<std::uint32_t>(begin),
-                    window, fattener, radius, part_counts[chunk]);
+    parts[chunk].add(triangles.subspan(begin, end - begin), static_cast<std::uint32_t>(begin));
   });
-  for (std::size_t i = 1; i < chunks; ++i) append(parts[0], parts[i]);
-  for (const FattenCounts& part : part_counts) {
-    counts.outside += part.outside;
-    counts.clipped += part.clipped;
-    counts.undrawable += part.undrawable;
+  join(parts, triangles.size(), used);
+  for (const Part& part : parts) {
+    counts.outside += part.counts.outside;
+    counts.clipped += part.counts.clipped;
+    counts.undrawable += part.counts.undrawable;
   }
-  return std::move(parts[0]);
+  return used;
 }
 
 }  // namespace farcull

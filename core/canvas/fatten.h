@@ -22,6 +22,19 @@ ProxyBounds proxy_bounds(const Window& window);
 /// radius").
 constexpr double kMaxRadius = 0x1p20;
 
+/// Triangles to fatten at once.
+struct FattenBatch {
+  const Scene* scene;
+  const std::uint32_t* items;  // triangles
+  std::size_t count;
+  const Window* window;
+  double radius;  // px
+  ProxyBounds bounds;
+  Proxy* out;          // per item
+  std::uint8_t* done;  // per item: 1 where `out` is the item's one proxy, 0 where the item is not
+                       // drawable or not inside the region as it is, and `out` means nothing
+};
+
 struct Fattener {
   std::string name;  // "raw", "obb", ...
   DepthMode mode;
@@ -30,18 +43,13 @@ struct Fattener {
   /// px (>= 0).
   std::function<void(const Patch& patch, double radius, const ProxyBounds& bounds, Drawables& out)>
       fatten;
+  /// Fattens what needs no clipping, to the same bits, many triangles at once; null: one by one.
+  void (*fatten_inside)(const FattenBatch& batch) = nullptr;
   bool raw = false;  // draws the triangles themselves, whatever the radius
 };
 
 /// CULLIDE's primitives: the clipped triangle itself, fixed-function depth; the radius is not used.
 Fattener raw_triangles();
-
-/// A rectangle that contains the image of `points` fattened by a disc of `radius` px, inside
-/// `bounds`: along the longest edge where that fits, else aligned with the axes and cut off at
-/// `bounds`, a pixel or more outside the window. Corners are rounded to the nearest floats, which
-/// the budget's term "input" pays for.
-std::array<float, 8> proxy_rectangle(std::span<const Vec3> points, double radius,
-                                     const ProxyBounds& bounds);
 
 struct FattenCounts {
   std::uint32_t outside = 0;  // items without elements: no point in the region
@@ -50,8 +58,9 @@ struct FattenCounts {
 };
 
 /// The elements of `triangles` (items, in this order) in `window`. Runs on all cores; the result
-/// does not depend on them.
+/// does not depend on them. `used`: drawables that are needed no more, whose memory is used again.
 Drawables fatten(const Scene& scene, std::span<const std::uint32_t> triangles, const Window& window,
-                 const Fattener& fattener, double radius, FattenCounts& counts);
+                 const Fattener& fattener, double radius, FattenCounts& counts,
+                 Drawables used = {});
 
 }  // namespace farcull

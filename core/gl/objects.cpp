@@ -17,7 +17,9 @@ constexpr const char* kReport = "report this driver's log with the output of `fa
 // (core/base/glsl_shim.h).
 constexpr const char* kKernelNames =
     "#define FAR_OUT(type) out type\n#define FAR_INOUT(type) inout type\n#define FAR_PRECISE "
-    "precise\n#define FAR_FIXED(x) (x)\n#define FAR_KERNEL\n";
+    "precise\n#define FAR_FIXED(x) (x)\n#define FAR_KERNEL\n#define FAR_CONSTANT const float\n"
+    "#define FAR_BOOL bool\n#define FAR_SELECT(c, a, b) ((c) ? (a) : (b))\n"
+    "#define FAR_UNIFORM(c) (c)\n";
 
 template <class Get, class Log>
 std::string log_of(GLuint object, Get get, Log log) {

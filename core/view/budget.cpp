@@ -37,7 +37,10 @@ Budget budget_for(const RasterLimits& limits, int viewport) {
       0.5 * viewport;  // M, the largest |coordinate| about the centre; W/2 of the viewport as well
   Budget b;
   b.sampling = kSqrt2 / 2;
-  b.input = kSqrt2 * kUnit * half;
+  // Corners rounded to the nearest float: kUnit / 2 of half, and less for the doubles before. On
+  // the CPU the edges of a proxy are compared with pixel centres in floats: 3.01 kUnit of half more
+  // (docs/budget.md, "The canvas on the CPU").
+  b.input = kSqrt2 * kUnit * half * (limits.exact_samples ? 4 : 1);
   // In the plane sqrt(2) of it; along the depth it adds to the distance from the centre only to
   // second order: sqrt((s + sqrt(2) e)^2 + e^2) <= s + sqrt(2) e + e^2 / (2 s) with s = sqrt(2)/2
   // (docs/budget.md, "double").
@@ -45,8 +48,9 @@ Budget budget_for(const RasterLimits& limits, int viewport) {
   // docs/budget.md, "vertex": product with 2/viewport (1), division by w (2.5), product with
   // viewport/2 (1), each relative to M, and the sum with the viewport's centre (1), relative to M +
   // viewport/2; 4 u for their products.
-  b.vertex = kSqrt2 * kUnit * (4.5 * half + (half + half)) * (1 + 4 * kUnit);
-  b.snap = kSqrt2 * std::ldexp(1.0, -limits.subpixel_bits);
+  b.vertex =
+      limits.exact_samples ? 0 : kSqrt2 * kUnit * (4.5 * half + (half + half)) * (1 + 4 * kUnit);
+  b.snap = limits.exact_samples ? 0 : kSqrt2 * std::ldexp(1.0, -limits.subpixel_bits);
   b.offset = 0;
   return b;
 }

@@ -11,6 +11,9 @@ struct RasterLimits {
       0;  // GL_SUBPIXEL_BITS: window coordinates snap by at most 2^-subpixel_bits px per axis (A2)
   int depth_bits = 0;      // 24 fixed point, 32 float
   int max_resolution = 0;  // largest Window::width and height
+  /// Samples lie at pixel centres, corners are not moved, and floats are those of IEEE 754
+  /// (core/native/canvas.h).
+  bool exact_samples = false;
 };
 
 /// Pixels of the render target around the window on each side; its corner holds the control items

@@ -19,6 +19,13 @@ struct Regions {
 /// Further views and finer offsets are left out where no more triangles than this are kept: the
 /// exact tests of so few take less time than the upload and the readbacks of one view.
 constexpr std::uint32_t kFewTriangles = 256;
+/// Below this many objects the level that asks each as a whole is left out: it draws everything
+/// twice, and of few objects that overlap one seldom hides all of another.
+constexpr std::uint32_t kFewObjects = 16;
+/// A further round follows where the last one culled at least one triangle in so many. A round
+/// costs about what the exact tests of as many triangles cost, so it has to cull a good part of
+/// them (docs/methods.md, "What is left out").
+constexpr std::uint32_t kWorthARound = 8;
 
 struct RegionRules {
   bool self = false;  // objects that are marked so are tested against themselves

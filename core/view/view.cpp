@@ -114,8 +114,17 @@ PixelPoint to_pixel(const Window& window, const Vec3& x) {
   // additions follow; 8 covers the five roundings and the cross terms (docs/budget.md, "double").
   // Products that underflow err by at most 2^-1075 more, each.
   const Vec3 d = x - window.origin;
-  PixelPoint out{window.map * d, 0};
-  const double bound = 8 * kUnit * (window.map.cwiseAbs() * d.cwiseAbs()).maxCoeff() + 0x1p-1000;
+  // The order of the sums is that of core/native/fatten-inl.h.
+  PixelPoint out{{}, 0};
+  double bound = 0;
+  for (int row = 0; row < 3; ++row) {
+    const double a = window.map(row, 0) * d[0], b = window.map(row, 1) * d[1],
+                 c = window.map(row, 2) * d[2];
+    out.p[row] = (a + b) + c;
+    const double sum = (std::abs(a) + std::abs(b)) + std::abs(c);
+    if (!(sum <= bound)) bound = sum;  // also where it is not a number
+  }
+  bound = 8 * kUnit * bound + 0x1p-1000;
   out.error = std::isfinite(bound) && out.p.allFinite() ? bound : HUGE_VAL;
   return out;
 }

@@ -1,0 +1,60 @@
+// The job of one thread of the native canvas: plain data, so that a function compiled for any
+// instruction set can take it.
+#pragma once
+
+#include <cstdint>
+
+#include "core/canvas/canvas.h"
+
+namespace farcull {
+
+/// Columns and rows behind a window's last that its buffer has as well: a block begins inside the
+/// window, and reads and writes back all its pixels. Of a row they keep what one thread writes back
+/// out of the next row, which may be another's.
+inline constexpr int kNativeOverhang = 8;
+
+/// The pixels of the window whose centres may be covered by an element: [x0, x1) x [y0, y1) from
+/// the window's lower left corner; empty where x0 >= x1 or y0 >= y1.
+struct PixelRange {
+  std::uint16_t x0, x1, y0, y1;
+};
+
+/// run: a pass. values: the depths in px that store (nearest) or ask (farthest) leaves. depths: the
+/// same as the depth buffer holds them.
+enum class NativeOutput : std::uint8_t { run, values, depths };
+
+/// The rows [y0, y1) of a window, and the steps of a pass that a thread draws there, in order.
+struct NativeJob {
+  // The window.
+  int width, height;  // px
+  int stride;         // floats from row to row of the buffer; width + kNativeOverhang or more
+  int y0, y1;
+  float scale;   // of the depth map (depth_scale())
+  bool fixed24;  // depths are rounded to multiples of 1 / (2^24 - 1) and held as multiples
+  // The elements.
+  const Proxy* proxies;
+  const std::array<float, 12>* triangles;
+  const PixelRange* ranges;  // per element
+  // The pass.
+  NativeOutput output;
+  bool touching;
+  const Step* steps;
+  std::uint32_t step_count;
+  const Draw* draws;
+  float* depth;        // height + kNativeOverhang rows of stride floats
+  std::uint8_t* seen;  // per slot; shared by all threads, which only ever write 1
+};
+
+/// `count` lines along the depth through one solid, for the solid's kernel on lanes. cx, cy: px;
+/// hit: 0 or 1.
+struct NativeLines {
+  const Solid* solid;
+  std::uint32_t count;
+  const float* cx;
+  const float* cy;
+  std::uint8_t* hit;
+  float* entry;
+  float* exit;
+};
+
+}  // namespace farcull
