@@ -17,6 +17,10 @@ std::string verb_of(StageKind kind) {
       return "setup";
     case StageKind::draw:
       return "draw";
+    case StageKind::patches:
+      return "patches";
+    case StageKind::objects:
+      return "object level";
     case StageKind::clusters:
       return "sub-object level";
     case StageKind::view:
@@ -91,7 +95,7 @@ std::string reason_of(const Stage& stage) {
     case Reason::device:
       return stage.detail;
     case Reason::shaders:
-      return "context and shaders for " + stage.detail;
+      return "canvas for " + stage.detail;
     case Reason::fattener:
       return stage.detail +
              (stage.n > 0 ? "; " + n + " triangles beyond the budget, kept" : std::string());
@@ -110,6 +114,17 @@ std::string reason_of(const Stage& stage) {
       return n + " triangles are left, at most " + m + " are enough";
     case Reason::few_to_test:
       return n + " triangles are left: " + m + " or fewer are cheaper to test";
+    case Reason::patches_cut:
+      return n + " patches of at most " + m +
+             " triangles: drawn against each other, each joined with itself by boxes";
+    case Reason::patches_whole:
+      return "no object tested against itself has more than " + m +
+             " triangles: each is joined with itself by boxes alone";
+    case Reason::few_objects:
+      return n + " objects, fewer than " + m + ": one seldom hides all of another";
+    case Reason::little_culled:
+      return "round " + std::to_string(stage.round) + " culled " + n + " of " + m +
+             " triangles: testing the rest is cheaper than another round";
     case Reason::owners:
       return "every triangle is an owner";
     case Reason::clusters_given:
@@ -137,6 +152,8 @@ std::string reason_of(const Stage& stage) {
       return "boxes of " + n + " objects overlap, which have " + m + " triangles; " + stage.detail;
     case Reason::join_kept:
       return "boxes of what is kept";
+    case Reason::join_patches:
+      return "boxes of what is kept, and of all pairs inside a patch";
     case Reason::join_all:
       return "boxes of all triangles";
     case Reason::join_unresolvable:
@@ -155,6 +172,8 @@ std::string reason_of(const Stage& stage) {
       return "if more than " + n + " candidates are left for each triangle that takes part";
     case Reason::if_changed:
       return "if the round before changed something";
+    case Reason::if_culled:
+      return "if the round before culled at least one triangle in " + n;
     case Reason::if_candidates:
       return "if there are candidates";
   }

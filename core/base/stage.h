@@ -13,6 +13,8 @@ enum class StageKind : std::uint8_t {
   choose,          // directions and resolutions of views
   setup,           // the device: context, shaders, threads
   draw,            // all drawing; a stage of its own only where nothing is drawn
+  patches,         // owners inside objects that are tested against themselves
+  objects,         // whether objects are asked as a whole before their triangles
   clusters,        // whether there is a level between objects and triangles
   view,            // a view as a whole
   views,           // all views; a stage of its own only where none is looked at
@@ -40,7 +42,7 @@ enum class Reason : std::uint8_t {
   no_triangle_meets,   // no triangle meets the box of another object
   nothing_to_look_at,  // the boxes decide: no device is needed
   device,              // `detail` answered
-  shaders,             // context and shaders for the fattener `detail`
+  shaders,             // the canvas, on GL with context and shaders, for the fattener `detail`
   fattener,            // `detail`; n triangles are beyond its budget and kept
   unresolvable,        // double arithmetic cannot resolve the region of the view in pixels
   unresolvable_view,   // pixel space cannot resolve the scene in the view
@@ -49,6 +51,10 @@ enum class Reason : std::uint8_t {
   passes,              // n passes ran; fewer than 2: the other one's stored set has not changed
   few_left,            // n triangles are left, at most m are enough
   few_to_test,         // n triangles are left: m or fewer are cheaper to test
+  patches_cut,         // n patches of at most m triangles
+  patches_whole,       // n objects, none of more than m triangles: each is one patch
+  few_objects,         // n objects take part, fewer than m: one seldom hides all of another
+  little_culled,       // the round culled n of m triangles, a smaller part than a round is worth
   owners,              // every triangle is an owner by itself
   clusters_given,      // sizes of clusters are given
   clusters_large,      // occlusion queries on many triangles
@@ -62,6 +68,7 @@ enum class Reason : std::uint8_t {
   keeps_sample,        // the view keeps all of a sample of the candidates
   sweep,               // boxes of n objects overlap, which have m triangles; `detail`
   join_kept,           // boxes of what is kept
+  join_patches,        // boxes of what is kept in different patches, and of all in one patch
   join_all,            // boxes of all triangles
   join_unresolvable,   // no view can resolve the scene
   predicates,          // exact predicates on the candidates
@@ -72,6 +79,7 @@ enum class Reason : std::uint8_t {
   if_more_left,        // if more than n triangles are left (n = 0: any)
   if_more_candidates,  // if more than n candidates are left for each triangle that takes part
   if_changed,          // if the round before changed something
+  if_culled,           // if the round before culled at least one triangle in n
   if_candidates,       // if there are candidates
 };
 

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
+#include "core/scene/members.h"
 
 namespace farcull {
 namespace {
@@ -22,9 +23,11 @@ double radius_of(const RadiusRule& rule, const Budget& budget, double step) {
   return radius;
 }
 
-// The owner of each triangle: its object, or itself where its object is tested against itself.
-std::vector<std::uint32_t> owners(const Scene& scene, bool self) {
-  if (!self) return owners(scene);
+// The owner of each triangle: as given, its object, or itself where its object is tested against
+// itself.
+std::vector<std::uint32_t> owners(const Scene& scene, const CullSettings& settings) {
+  if (!settings.owners.empty()) return settings.owners;
+  if (!settings.self) return owners(scene);
   std::vector<std::uint32_t> out;
   out.reserve(scene.triangles.size());
   std::uint32_t owner = 0;
@@ -49,6 +52,23 @@ struct Place {
 bool has_own_owners(const Scene& scene, const CullSettings& settings) {
   return settings.self && std::any_of(scene.objects.begin(), scene.objects.end(),
                                       [](const Object& object) { return object.self; });
+}
+
+// Whether objects are the owners, so that an object can be one question.
+bool owned_by_objects(const Scene& scene, const CullSettings& settings) {
+  return settings.owners.empty() && !has_own_owners(scene, settings);
+}
+
+// Objects that take part, where they are too few to be asked as a whole; else 0.
+std::uint32_t too_few_objects(const Scene& scene, const Regions& regions,
+                              const CullSettings& settings) {
+  if (settings.least_objects == 0 || !owned_by_objects(scene, settings)) return 0;
+  const std::uint64_t objects = count_objects(scene, regions.triangles);
+  return objects < settings.least_objects ? static_cast<std::uint32_t>(objects) : 0;
+}
+
+bool has_object_level(const Scene& scene, const Regions& regions, const CullSettings& settings) {
+  return owned_by_objects(scene, settings) && too_few_objects(scene, regions, settings) == 0;
 }
 
 // The window of each view; empty where doubles cannot resolve its pixels.
@@ -80,6 +100,16 @@ std::vector<Stage> opening_stages(const Scene& scene, const Regions& regions,
          .unit = Unit::triangles});
   }
   // Said once, and only where something is drawn.
+  const std::uint32_t few = any ? too_few_objects(scene, regions, settings) : 0;
+  if (few > 0) {
+    stages.push_back({.kind = StageKind::objects,
+                      .reason = Reason::few_objects,
+                      .n = few,
+                      .m = settings.least_objects,
+                      .in = live,
+                      .out = live,
+                      .unit = Unit::triangles});
+  }
   const Clusters& clusters = settings.clusters;
   if (clusters.reason == Reason::none || !any) return stages;
   const bool alone = has_own_owners(scene, settings);
@@ -110,11 +140,16 @@ class Culling {
     const std::size_t triangles = scene.triangles.size();
     if (!settings.bits.empty() && settings.bits.size() != triangles)
       throw std::logic_error("cull: bits of another scene");
-    state_.owner = owners(scene, settings.self);
+    if (!settings.owners.empty() && settings.owners.size() != triangles)
+      throw std::logic_error("cull: owners of another scene");
+    state_.owner = owners(scene, settings);
     state_.bits.assign(triangles, kCulled);
     for (const std::uint32_t t : regions.triangles)
       state_.bits[t] = settings.bits.empty() ? 0 : settings.bits[t];
     state_.live = regions.triangles;
+    std::stable_sort(state_.live.begin(), state_.live.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return state_.owner[a] < state_.owner[b];
+    });
     own_owners_ = has_own_owners(scene, settings);
     state_.remove_culled();
     arrange_clusters();
@@ -136,14 +171,27 @@ class Culling {
   void begin_round() {
     ++round_;
     before_round_ = changes();
+    live_before_round_ = state_.live.size();
   }
 
   // Whether the round that ends changed something, so that another one may. What follows an empty
   // set is left out.
   bool round_changed() {
     if (done_ || changes() == before_round_) return false;
-    if (!state_.live.empty() || settings_.full) return true;
-    leave_out({.kind = StageKind::further_rounds, .reason = Reason::nothing_left});
+    if (settings_.full) return true;
+    const std::uint64_t culled = live_before_round_ - state_.live.size();
+    if (state_.live.empty()) {
+      leave_out({.kind = StageKind::further_rounds, .reason = Reason::nothing_left});
+    } else if (culled * settings_.worth_a_round < live_before_round_ &&
+               settings_.worth_a_round > 0) {
+      leave_out({.kind = StageKind::further_rounds,
+                 .round = round_,
+                 .reason = Reason::little_culled,
+                 .n = culled,
+                 .m = live_before_round_});
+    } else {
+      return true;
+    }
     return false;
   }
 
@@ -177,14 +225,14 @@ class Culling {
     items_ = state_.live;
     FattenCounts counts;
     drawables_ = fatten(scene_, items_, *place_->window, settings_.fattener,
-                        result_.views[view].radius_px, counts);
+                        result_.views[view].radius_px, counts, std::move(drawables_));
     canvas_.begin(*place_->window, drawables_);
     stage.out = drawables_.elements();
     stage.n = counts.undrawable;
     finish(stage);
   }
 
-  bool has_object_level() const { return !own_owners_; }
+  bool has_object_level() const { return farcull::has_object_level(scene_, regions_, settings_); }
 
   // Both passes over the open triangles at one level.
   void run_level(const Level& level) {
@@ -335,7 +383,7 @@ class Culling {
   std::vector<Place> places_;
 
   int round_ = 0;
-  std::uint64_t before_round_ = 0;
+  std::uint64_t before_round_ = 0, live_before_round_ = 0;
   bool done_ = false;        // few enough triangles are left
   bool visited_ = false;     // a view was visited
   bool first_level_ = true;  // no level has run yet
@@ -357,8 +405,8 @@ std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
   const std::size_t live = regions.triangles.size();
   std::vector<Stage> stages = opening_stages(scene, regions, settings, places, live);
   std::vector<std::string> levels;
+  if (has_object_level(scene, regions, settings)) levels.push_back("objects");
   if (!has_own_owners(scene, settings)) {
-    levels.push_back("objects");
     for (const std::uint32_t size : settings.clusters.sizes) levels.push_back(clusters_name(size));
   }
   levels.push_back("triangles");
@@ -397,7 +445,8 @@ std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
   stages.push_back({.kind = StageKind::further_rounds,
                     .ran = true,
                     .depends = true,
-                    .reason = Reason::if_changed});
+                    .reason = settings.worth_a_round > 0 ? Reason::if_culled : Reason::if_changed,
+                    .n = settings.worth_a_round});
   return stages;
 }
 

@@ -2,10 +2,11 @@
 //   CULLIDE        Govindaraju, Redon, Lin, Manocha, Graphics Hardware 2003: quick = false
 //   Quick-CULLIDE  Govindaraju, Lin, Manocha, IEEE VR 2005: quick = true
 //   S-CULLIDE      the same paper, inside objects: self = true, touching = false, with either
-//   FAR            Govindaraju, Lin, Manocha, VRST 2004: Quick-CULLIDE with a fattener
+//   FAR            Govindaraju, Lin, Manocha, VRST 2004: Quick-CULLIDE with a fattener; inside
+//                  objects with patches as owners (core/cull/patches.h)
 // docs/reliability.md holds the argument ("Passes, views, rounds" and "Quick-CULLIDE").
 //
-// Owners (objects; with `self`, single triangles) have a fixed order, that of the scene. Every
+// Owners (objects; with `self`, single triangles; or `owners`) have a fixed order. Every
 // triangle has two bits. F: cleared against all earlier owners; L: against all later ones. A
 // triangle with both is culled. The four values of the bits are the four visibility sets:
 //   NFV neither; FFV F only (fully visible in the first pass); SFV L only (in the second); BFV
@@ -26,7 +27,7 @@
 //
 // Bits are facts about the triangles: with a fattener that promises, F(t) means that t meets no
 // triangle of an earlier owner, L(t) none of a later one (theorem 2), whatever view, resolution or
-// fattener found it. So a run may start from the bits of another, as long as scene, plan and `self`
+// fattener found it. So a run may start from the bits of another, as long as scene, plan and owners
 // are the same. With raw triangles bits are as good as the run that set them.
 #pragma once
 
@@ -72,10 +73,19 @@ struct CullSettings {
   /// Every triangle of an object with Object::self is an owner; find_regions(scene, {.self = true})
   /// goes with it.
   bool self = false;
+  /// Per triangle of the scene: its owner, where neither objects nor single triangles are owners
+  /// (core/cull/patches.h). No owner has triangles of two objects. Empty: by `self`. There is no
+  /// object level then.
+  std::vector<std::uint32_t> owners = {};
   bool touching = true;  // false: what only touches is not seen, see Pass::touching
   Clusters clusters = {};
   bool full = false;         // nothing is left out
   std::uint32_t enough = 0;  // live triangles at which no further view is drawn; 0: never enough
+  /// Objects that have to take part before they are asked as a whole; 0: they always are.
+  std::uint32_t least_objects = 0;
+  /// A further round follows where the last one culled at least one live triangle in so many; 0:
+  /// where it changed anything.
+  std::uint32_t worth_a_round = 0;
   /// To start from, per triangle of the scene as CullResult::bits; empty: none. Plain CULLIDE takes
   /// from them only what is culled.
   std::vector<std::uint8_t> bits = {};
@@ -103,13 +113,15 @@ struct CullResult {
 };
 
 /// Culls the triangles of regions.triangles. A round visits every view; a visit runs, at object
-/// level (in round 1, unless a triangle is an owner), at the level of clusters (in round 1) and at
+/// level (in round 1, where objects are the owners), at the level of clusters (in round 1) and at
 /// triangle level, the first pass, then the second. Rounds follow until one changes nothing: sets
 /// no bit (quick), or culls nothing (plain). Left out, unless `full`, each as a stage with its
 /// reason: passes and visits that are not due (quick), levels and visits where no triangle is left,
-/// and everything after a view that leaves at most `enough` triangles.
+/// everything after a view that leaves at most `enough` triangles, the object level of few objects
+/// (`least_objects`), and rounds after one that culled little (`worth_a_round`). The last two
+/// change which bits are set, never that a bit is true.
 /// Throws Error where the resolution is beyond the canvas's limit or the canvas cannot vouch for a
-/// pass; std::logic_error where settings.bits has another length than the scene.
+/// pass; std::logic_error where settings.bits or settings.owners has another length than the scene.
 CullResult cull(const Scene& scene, const Regions& regions, const CullSettings& settings,
                 Canvas& canvas, const Progress& progress = {});
 

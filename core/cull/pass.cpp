@@ -24,15 +24,40 @@ void for_owners(const CullState& state, std::span<const std::uint32_t> items, Bi
   }
 }
 
-// One pass in the making. It only reads the state.
+// What a pass asks and stores. It only reads the state.
+struct PassQuestion {
+  const CullState& state;
+  std::span<const std::uint32_t> items;
+  const Drawables& drawables;
+  Bit ask;
+  const PassRule& rule;
+  const Level& level;
+
+  std::uint8_t bits(std::size_t item) const { return state.bits[items[item]]; }
+  bool asks(std::size_t item) const { return rule.asks[ask == kL][bits(item)]; }
+  bool stores(std::size_t item) const { return rule.stores[ask == kL][bits(item)]; }
+  std::uint32_t elements(std::size_t item) const {
+    return drawables.first[item + 1] - drawables.first[item];
+  }
+  std::uint32_t group(std::size_t item) const {
+    return level.group ? (*level.group)[items[item]] : items[item];
+  }
+};
+
+std::vector<std::uint8_t> undrawable_items(const PassQuestion& of) {
+  if (of.drawables.undrawable.empty()) return {};
+  std::vector<std::uint8_t> out(of.items.size());
+  for (const std::uint32_t item : of.drawables.undrawable) out[item] = 1;
+  return out;
+}
+
+// One pass in the making.
 class PassBuilder {
  public:
-  PassBuilder(const CullState& state, std::span<const std::uint32_t> items,
-              const Drawables& drawables, Bit ask, const PassRule& rule, const Level& level)
-      : state_(state), items_(items), drawables_(drawables), ask_(ask), rule_(rule), level_(level) {
-    undrawable_.resize(items.size());
-    for (const std::uint32_t item : drawables.undrawable) undrawable_[item] = 1;
-    for_owners(state, items, ask, [&](std::size_t from, std::size_t to) {
+  explicit PassBuilder(const PassQuestion& of) : of_(of), undrawable_(undrawable_items(of)) {
+    pass_.draws.reserve(2 * of.drawables.elements());
+    asked_.reserve(of.items.size());
+    for_owners(of.state, of.items, of.ask, [&](std::size_t from, std::size_t to) {
       ask_owner(from, to);
       store_owner(from, to);
     });
@@ -50,35 +75,30 @@ class PassBuilder {
   // Calls clear(triangle) for all that the pass did not see.
   template <class Clear>
   void for_unseen(const std::vector<std::uint8_t>& seen, const Clear& clear) const {
-    for (const std::uint32_t item : undrawn_) clear(items_[item]);
+    for (const std::uint32_t item : undrawn_) clear(of_.items[item]);
     for (std::size_t slot = 0; slot < pass_.slots; ++slot) {
       if (seen[slot]) continue;
       for (std::size_t i = slot_begin_[slot]; i < slot_begin_[slot + 1]; ++i)
-        clear(items_[asked_[i]]);
+        clear(of_.items[asked_[i]]);
     }
   }
 
  private:
-  bool asks(std::size_t item) const { return rule_.asks[ask_ == kL][state_.bits[items_[item]]]; }
-  bool stores(std::size_t item) const {
-    return rule_.stores[ask_ == kL][state_.bits[items_[item]]];
-  }
-
   void ask_owner(std::size_t from, std::size_t to) {
     const Step step{Verb::ask, static_cast<std::uint32_t>(pass_.draws.size()), 0};
     std::uint32_t group = 0;
     bool first = true;
     for (std::size_t i = from; i < to; ++i) {
-      if (undrawable_[i] || !asks(i)) continue;
+      if (undrawable(i) || !of_.asks(i)) continue;
       const auto item = static_cast<std::uint32_t>(i);
-      if (!anything_stored_ || drawables_.first[i] == drawables_.first[i + 1]) {
+      if (!anything_stored_ || of_.elements(i) == 0) {
         undrawn_.push_back(item);
         continue;
       }
-      const std::uint32_t of = level_.group ? (*level_.group)[items_[i]] : items_[i];
-      if (first || of != group) slot_begin_.push_back(asked_.size());
+      const std::uint32_t its = of_.group(i);
+      if (first || its != group) slot_begin_.push_back(asked_.size());
       first = false;
-      group = of;
+      group = its;
       asked_.push_back(item);
       add_elements(i, static_cast<std::uint32_t>(slot_begin_.size() - 1));
     }
@@ -88,8 +108,8 @@ class PassBuilder {
   void store_owner(std::size_t from, std::size_t to) {
     const Step step{Verb::store, static_cast<std::uint32_t>(pass_.draws.size()), 0};
     for (std::size_t i = from; i < to; ++i) {
-      if (!stores(i)) continue;
-      if (undrawable_[i]) {
+      if (!of_.stores(i)) continue;
+      if (undrawable(i)) {
         pass_.draws.push_back({kEverywhere, 0});
       } else {
         add_elements(i, 0);
@@ -98,9 +118,11 @@ class PassBuilder {
     push(step);
   }
 
+  bool undrawable(std::size_t item) const { return !undrawable_.empty() && undrawable_[item]; }
+
   void add_elements(std::size_t item, std::uint32_t slot) {
-    for (std::uint32_t e = drawables_.first[item]; e < drawables_.first[item + 1]; ++e)
-      pass_.draws.push_back({e, slot});
+    const std::vector<std::uint32_t>& first = of_.drawables.first;
+    for (std::uint32_t e = first[item]; e < first[item + 1]; ++e) pass_.draws.push_back({e, slot});
   }
 
   void push(Step step) {
@@ -110,16 +132,11 @@ class PassBuilder {
     if (step.verb == Verb::store) anything_stored_ = true;
   }
 
-  const CullState& state_;
-  std::span<const std::uint32_t> items_;
-  const Drawables& drawables_;
-  Bit ask_;
-  const PassRule& rule_;
-  const Level& level_;
-  std::vector<std::uint8_t> undrawable_;
-  std::vector<std::uint32_t> undrawn_;   // items that get the bit without being drawn
-  std::vector<std::uint32_t> asked_;     // items, slot after slot
-  std::vector<std::size_t> slot_begin_;  // into asked_
+  const PassQuestion& of_;
+  std::vector<std::uint8_t> undrawable_;  // per item; empty: none is
+  std::vector<std::uint32_t> undrawn_;    // items that get the bit without being drawn
+  std::vector<std::uint32_t> asked_;      // items, slot after slot
+  std::vector<std::size_t> slot_begin_;   // into asked_
   bool anything_stored_ = false;
   Pass pass_;
 };
@@ -144,7 +161,8 @@ void CullState::clear_bits() {
 PassCost run_pass(CullState& state, std::span<const std::uint32_t> items,
                   const Drawables& drawables, Bit ask, const PassRule& rule, const Level& level,
                   bool touching, Canvas& canvas) {
-  PassBuilder builder(state, items, drawables, ask, rule, level);
+  const PassQuestion question{state, items, drawables, ask, rule, level};
+  PassBuilder builder(question);
   Pass& pass = builder.pass();
   pass.touching = touching;
   const std::vector<std::uint8_t> seen =
@@ -153,9 +171,38 @@ PassCost run_pass(CullState& state, std::span<const std::uint32_t> items,
   return builder.cost();
 }
 
+// What PassBuilder does, without the lists.
 PassCost plain_cost(const CullState& state, std::span<const std::uint32_t> items,
                     const Drawables& drawables, Bit ask, const Level& level) {
-  return PassBuilder(state, items, drawables, ask, kPlainRule, level).cost();
+  const PassQuestion of{state, items, drawables, ask, kPlainRule, level};
+  const std::vector<std::uint8_t> undrawable = undrawable_items(of);
+  PassCost cost;            // up to the last question
+  std::uint64_t drawn = 0;  // so far
+  bool anything_stored = false;
+  for_owners(state, items, ask, [&](std::size_t from, std::size_t to) {
+    std::uint64_t asked = 0, stored = 0, groups = 0;
+    std::uint32_t group = 0;
+    for (std::size_t i = from; i < to; ++i) {
+      if (!of.asks(i)) continue;  // plain CULLIDE stores what it asks
+      if (!undrawable.empty() && undrawable[i]) {
+        ++stored;
+        continue;
+      }
+      const std::uint32_t elements = of.elements(i);
+      stored += elements;
+      if (!anything_stored || elements == 0) continue;
+      const std::uint32_t its = of.group(i);
+      if (groups == 0 || its != group) ++groups;
+      group = its;
+      asked += elements;
+    }
+    cost.queries += groups;
+    drawn += asked;
+    if (asked > 0) cost.draws = drawn;
+    drawn += stored;
+    anything_stored = anything_stored || stored > 0;
+  });
+  return cost;
 }
 
 }  // namespace farcull

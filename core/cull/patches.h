@@ -1,0 +1,42 @@
+// Patches: how FAR tests an object against itself (docs/reliability.md, "Self-collision by FAR").
+// The triangles of the object are cut into patches, and each patch is an owner of the passes. Pairs
+// of triangles in different patches are culled by drawing, pairs inside a patch by boxes alone.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+struct Patches {
+  std::uint32_t size = 0;            // triangles of a patch, at most
+  std::uint32_t count = 0;           // patches of all marked objects together
+  bool cut = false;                  // some marked object has more than one
+  std::vector<std::uint32_t> owner;  // per triangle of the scene: its patch in an object that is
+                                     // marked `self`, else its object. Ascending with the objects;
+                                     // no owner has triangles of two objects.
+};
+
+/// The fixed rule: a sixteenth of the triangles of the largest object that is marked `self`, but at
+/// least 256 and at most 4096.
+std::uint32_t usual_patch_size(const Scene& scene);
+
+/// Cuts the triangles of each marked object, in the order of spatial_order(), into patches of
+/// `size`; the last of an object may be smaller. boxes: per triangle of the scene. size: 1 or more.
+Patches cut_patches(const Scene& scene, std::span<const Box> boxes, std::uint32_t size);
+
+/// What is left to test: all pairs a < b with overlapping boxes, in `live` both and of different
+/// owners, or inside one patch of a marked object, whether live or not. A pair of different owners
+/// is left out where its bits prove that it does not meet (theorem 2): L of the earlier owner's
+/// triangle, or F of the later one's. Sorted, each once.
+/// boxes: per triangle of the scene. live, bits: as in CullResult, of culling by patches.owner;
+/// bits empty: no bit is set. neighbours: false leaves out pairs of one object that share a vertex
+/// index.
+std::vector<TrianglePair> join_patches(const Scene& scene, std::span<const Box> boxes,
+                                       const Patches& patches, std::span<const std::uint32_t> live,
+                                       std::span<const std::uint8_t> bits, bool neighbours = true);
+
+}  // namespace farcull
