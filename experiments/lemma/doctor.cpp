@@ -1,4 +1,5 @@
-// Probes the device, measures FAR pairs on both back ends, and prints both.
+// Probes the native canvas and the device, measures FAR pairs on both back ends, and prints what it
+// found.
 #include "experiments/lemma/doctor.h"
 
 #include <fmt/format.h>
@@ -17,6 +18,9 @@
 #include "core/base/stopwatch.h"
 #include "core/gl/canvas.h"
 #include "core/gl/probe.h"
+#include "core/native/canvas.h"
+#include "core/native/lanes.h"
+#include "experiments/lemma/native_probes.h"
 #include "experiments/method/device_verdict.h"
 #include "experiments/method/kernel_probes.h"
 #include "experiments/method/run.h"
@@ -218,21 +222,74 @@ Json advice_json(const PairAdvice& advice) {
           {"recommended", advice.gl_is_faster() ? "gl" : "cpu"}};
 }
 
+// The native canvas, which needs no device.
+struct NativeFindings {
+  std::vector<ProbeResult> probes;
+  bool pass = true;
+};
+
+NativeFindings look_at_native() {
+  NativeFindings out{.probes = native_probes()};
+  for (const ProbeResult& p : out.probes) out.pass = out.pass && p.pass;
+  return out;
+}
+
+std::string native_text(const NativeFindings& found) {
+  std::string others;
+  for (const std::string& target : lane_targets()) {
+    if (target != lane_target()) others += (others.empty() ? "" : ", ") + target;
+  }
+  return fmt::format("native: the cores of the CPU, lanes of {}{}\n{}", lane_target(),
+                     others.empty() ? "" : " (also probed: " + others + ")",
+                     probes_table(found.probes));
+}
+
+Json native_json(const NativeFindings& found) {
+  return {{"lanes", lane_targets()},
+          {"max_resolution", native_limits().max_resolution},
+          {"probes", probes_json(found.probes)},
+          {"pass", found.pass}};
+}
+
+// Where there is no OpenGL, or none is asked for.
+int doctor_without_gl(const DoctorArguments& arguments, const NativeFindings& native) {
+  if (!arguments.json.empty()) {
+    const Json report = {
+        {"native", native_json(native)},
+        {"floating_point", floating_point_json(callers_floating_point(), floating_point())},
+        {"pass", native.pass},
+        {"commit", FARCULL_COMMIT}};
+    write_output(arguments.json, report.dump(2) + "\n");
+  }
+  if (arguments.json != "-")
+    write_output("-", native_text(native) + arithmetic_line(callers_floating_point()));
+  return native.pass ? 0 : 1;
+}
+
 }  // namespace
 
 int doctor_command(const DoctorArguments& arguments) {
   const FloatingPointGuard guard;
   if (!arguments.json.empty()) check_output(arguments.json);
+  const NativeFindings native = look_at_native();
+  if (is_cpu(arguments.device)) return doctor_without_gl(arguments, native);
   const std::vector<GlDevice> devices = GlContext::list_devices();
   const std::optional<int> chosen = choose(devices, arguments.device);
+  if (!chosen && arguments.device.empty()) {
+    if (arguments.json != "-")
+      write_output("-", devices_table(devices, -1) +
+                            "no device offers what farcull needs of OpenGL: "
+                            "everything runs on the cores of the CPU\n\n");
+    return doctor_without_gl(arguments, native);
+  }
   // Where nothing fits, the context says so in an Error.
   const GlContext context(chosen ? std::to_string(*chosen) : arguments.device);
   const GlInfo& gl = context.info();
   const int resolution = GlCanvas(context, DepthMode::fixed, {}).limits().max_resolution;
   const bool people = arguments.json != "-";
   if (people)
-    write_output("-", devices_table(devices, chosen.value_or(-1)) + limits_table(gl, resolution) +
-                          arithmetic_line(callers_floating_point()));
+    write_output("-", native_text(native) + "\n" + devices_table(devices, chosen.value_or(-1)) +
+                          limits_table(gl, resolution) + arithmetic_line(callers_floating_point()));
 
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const Stopwatch probing;
@@ -245,11 +302,12 @@ int doctor_command(const DoctorArguments& arguments) {
 
   const PairAdvice advice = advise(arguments.device);
 
-  bool pass = true;
+  bool pass = native.pass;
   for (const ProbeResult& p : probes) pass = pass && p.pass;
   if (!arguments.json.empty()) {
     const Json arithmetic = floating_point_json(callers_floating_point(), floating_point());
     const Json report = {
+        {"native", native_json(native)},
         {"devices", devices_json(devices)},
         {"chosen", chosen ? Json(*chosen) : Json(nullptr)},
         {"gl",

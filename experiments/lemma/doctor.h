@@ -1,5 +1,5 @@
-// `farcull doctor`: the devices of this machine, a probe for each assumption that the proofs make
-// of one, and whether FAR pairs is faster on it or on the CPU.
+// `farcull doctor`: the native canvas and the devices of this machine, a probe for each assumption
+// that the proofs make of them, and whether FAR pairs is faster on the chosen device or on the CPU.
 #pragma once
 
 #include <string>
@@ -11,8 +11,9 @@ struct DoctorArguments {
   std::string json;
 };
 
-/// Prints the findings. 0: every assumption holds on the chosen device; 1: one does not. Throws
-/// Error where there is no device at all.
+/// Prints the findings. 0: every assumption holds on the native canvas and on the chosen device; 1:
+/// one does not. Without OpenGL the native canvas is all that is looked at. Throws Error where a
+/// device that is named does not answer.
 int doctor_command(const DoctorArguments& arguments);
 
 }  // namespace farcull

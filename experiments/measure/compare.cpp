@@ -17,7 +17,8 @@ namespace farcull {
 namespace {
 
 constexpr const char* kAllMethods = "far,cullide,far-pairs,exact";
-constexpr const char* kBeyondCulling = "far-pairs,exact";
+constexpr const char* kSelfMethods = "far,far-pairs,exact";
+constexpr const char* kClearanceMethods = "far-pairs,exact";
 constexpr const char* kUsualResolutions = "128,256,512,1024,2048";
 constexpr const char* kAuto = "auto";
 
@@ -45,9 +46,10 @@ std::vector<int> resolutions_of(const CompareArguments& arguments, Method method
 // self: whether an object is tested against itself.
 std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
   std::vector<RunOptions> cells;
-  const bool beyond = self || arguments.options.clearance > 0;
-  for (const std::string& method :
-       split_list(arguments.methods.value_or(beyond ? kBeyondCulling : kAllMethods))) {
+  const char* usual = arguments.options.clearance > 0 ? kClearanceMethods
+                      : self                          ? kSelfMethods
+                                                      : kAllMethods;
+  for (const std::string& method : split_list(arguments.methods.value_or(usual))) {
     RunOptions options = arguments.options;
     options.method = parse_method(method, "--methods");
     if (self && !tests_self(options.method)) {
@@ -76,7 +78,7 @@ void require_room(const std::vector<RunOptions>& cells, Session& session) {
     if (draws(cell.method)) largest = std::max(largest, cell.resolution);
   }
   if (largest <= 8192) return;
-  const int limit = GlCanvas(session.context(), DepthMode::fixed, {}).limits().max_resolution;
+  const int limit = session.max_resolution();
   if (largest > limit) {
     throw Error("--resolutions",
                 fmt::format("{} is outside 1 .. {}, the limit of this device", largest, limit),

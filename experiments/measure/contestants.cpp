@@ -102,8 +102,9 @@ class ContestantList {
 
 void add_methods(const Scene& scene, const BenchOptions& options, ContestantList& list) {
   const bool by_name = options.methods != "all";
-  const bool no_gl = options.device == "cpu";
-  // Without --device, GL is measured where there is one.
+  const bool no_gl = is_cpu(options.device);
+  // Without --device, drawing on GL is measured where hardware answers, and far-pairs where any
+  // does.
   const bool gl_by_name = by_name && !options.device.empty();
   std::shared_ptr<Session> gl;
   const auto on_gl = [&](Contestant& c, Method method) {
@@ -113,24 +114,22 @@ void add_methods(const Scene& scene, const BenchOptions& options, ContestantList
   };
   for (const std::string& name : chosen("--methods", options.methods, kMethods)) {
     const Method method = parse_method(name);
-    if (draws(method)) {
-      Contestant contestant{.name = name, .device = "gl"};
-      if (has_self(scene)) contestant.left_out = "it tests no object against itself";
-      if (no_gl) contestant.left_out = "it needs a GL device, and --device is cpu";
-      list.add(contestant, by_name, "--methods", [&](Contestant& c) {
-        on_gl(c, method);
-        gl->canvas(obb_fattener(), {});
-      });
-      continue;
-    }
-    list.add({.name = name}, by_name, "--methods", [&](Contestant& c) {
-      c.run = method_run(method, std::make_shared<Session>("cpu", options.threads));
+    const std::string refused =
+        has_self(scene) && !tests_self(method) ? "it tests no object against itself" : "";
+    list.add({.name = name, .left_out = refused}, by_name, "--methods", [&](Contestant& c) {
+      c.run = method_run(method, std::make_shared<Session>("native", options.threads));
     });
-    if (!chooses_views(method) || no_gl) continue;
-    list.add({.name = name, .device = "gl"}, gl_by_name, "--methods", [&](Contestant& c) {
-      on_gl(c, method);
-      gl->pairs();
-    });
+    const bool slow = draws(method) && options.device.empty() && !GlContext::hardware_listed();
+    if (!looks(method) || no_gl || slow) continue;
+    list.add({.name = name, .device = "gl", .left_out = refused}, gl_by_name, "--methods",
+             [&](Contestant& c) {
+               on_gl(c, method);
+               if (draws(method)) {
+                 gl->canvas(obb_fattener(), {});
+               } else {
+                 gl->pairs();
+               }
+             });
   }
 }
 

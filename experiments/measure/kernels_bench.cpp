@@ -8,6 +8,7 @@
 #include "core/pairs/interval.h"
 #include "experiments/measure/peers/peer.h"
 #include "experiments/scenes/mesh/shapes.h"
+#include "offsets/fit.h"
 #include "offsets/minkowski.h"
 #include "offsets/obb.h"
 #include "verify/exact.h"

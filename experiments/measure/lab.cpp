@@ -53,8 +53,8 @@ Errors errors_of(const Truth& truth, const std::vector<TrianglePair>& pairs) {
           .wrong = lacking(pairs, truth.pairs)};
 }
 
-Lab::Lab(std::string device, Progress progress)
-    : device_(std::move(device)), progress_(std::move(progress)), session_(device_) {}
+Lab::Lab(std::string device, Progress progress, unsigned threads)
+    : device_(std::move(device)), progress_(std::move(progress)), session_(device_, threads) {}
 
 void Lab::begin_scene(const std::string& name, long frame, long frames) {
   current_ = nullptr;

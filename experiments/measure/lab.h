@@ -42,8 +42,8 @@ std::uint64_t lacking(const std::vector<TrianglePair>& a, const std::vector<Tria
 
 class Lab {
  public:
-  /// device: as --device, "" for what answers first.
-  explicit Lab(std::string device, Progress progress = {});
+  /// device: as --device, "" for what Session chooses. threads: as in Session.
+  explicit Lab(std::string device, Progress progress = {}, unsigned threads = 0);
 
   Session& session() { return session_; }
   const std::string& device() const { return device_; }

@@ -19,7 +19,8 @@ namespace farcull {
 /// The device that answered.
 struct UsedDevice {
   std::optional<GlInfo> gl;  // empty: none, or the cores of the CPU
-  bool cpu = false;          // far-pairs on the cores of the CPU
+  bool cpu = false;          // on the cores of the CPU
+  std::string lanes = {};    // the instruction set of the native canvas; empty for others
   int depth_bits = 0;        // of the canvas
   std::string note;          // why no device was used, where none was; for far-pairs, why this one
   std::optional<Reliance> relies;  // on a GL device, for the promise

@@ -2,7 +2,11 @@
 // offset after the other, and the boxes of what is kept are joined.
 #include "experiments/method/cullide.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "core/base/stopwatch.h"
+#include "core/native/lanes.h"
 #include "core/scene/box_join.h"
 #include "core/scene/members.h"
 #include "offsets/minkowski.h"
@@ -31,6 +35,8 @@ Clusters clusters_of(const RunOptions& options, std::size_t triangles) {
 
 CullSettings settings_of(const RunOptions& options, std::size_t triangles) {
   const bool self = tests_self_alone(options.method);
+  // What a method that promises leaves out costs time alone, never a pair.
+  const bool thrifty = promises(options) && !options.full;
   return {.views = parse_views(views_of(options)),
           .resolution = resolution_of(options),
           .fattener = {},
@@ -40,7 +46,9 @@ CullSettings settings_of(const RunOptions& options, std::size_t triangles) {
           .touching = !self,
           .clusters = clusters_of(options, triangles),
           .full = options.full,
-          .enough = promises(options) && !options.full ? kFewTriangles : 0};
+          .enough = thrifty ? kFewTriangles : 0,
+          .least_objects = thrifty ? kFewObjects : 0,
+          .worth_a_round = thrifty ? kWorthARound : 0};
 }
 
 Stage setup_stage(const Fattener& fattener) {
@@ -55,8 +63,23 @@ Stage offset_stage(const Fattener& fattener) {
           .unit = Unit::triangles};
 }
 
-Stage join_stage() {
-  return {.kind = StageKind::join, .ran = true, .reason = Reason::join_kept, .unit = Unit::pairs};
+Stage join_stage(const DrawPlan& work) {
+  return {.kind = StageKind::join,
+          .ran = true,
+          .reason = work.patches.count > 0 ? Reason::join_patches : Reason::join_kept,
+          .unit = Unit::pairs};
+}
+
+// Cuts the objects that are tested against themselves.
+Stage cut(const Scene& scene, Patches& patches) {
+  const Stopwatch watch;
+  patches = cut_patches(scene, triangle_boxes(scene), usual_patch_size(scene));
+  return {.kind = StageKind::patches,
+          .ran = patches.cut,
+          .reason = patches.cut ? Reason::patches_cut : Reason::patches_whole,
+          .n = patches.cut ? patches.count : 0,
+          .m = patches.size,
+          .ms = watch.ms()};
 }
 
 // Culls with one offset after the other; fills the triangles that are left, views, trace, device.
@@ -77,11 +100,17 @@ void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions&
     }
     if (progress) progress("opening the device");
     const Stopwatch setup;
-    GlCanvas& canvas = session.canvas(
+    Canvas& canvas = session.canvas(
         fattener, {.depth_format = options.depth_format, .query = query_of(options)});
-    out.device.gl = session.context().info();
     out.device.depth_bits = canvas.limits().depth_bits;
-    out.device.relies = Reliance::drawing;
+    out.device.note = session.canvas_device().reason;
+    out.device.cpu = session.canvas_device().native;
+    if (out.device.cpu) {
+      out.device.lanes = lane_target();
+    } else {
+      out.device.gl = session.context().info();
+      out.device.relies = Reliance::drawing;
+    }
     Stage stage = setup_stage(fattener);
     stage.depends = further;
     stage.ms = setup.ms();
@@ -102,31 +131,52 @@ void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions&
   out.by = std::move(views);
 }
 
+Stage boxes_stage(const Scene& scene, const Regions& regions, bool self, bool full) {
+  Stage stage{.kind = StageKind::boxes,
+              .ran = true,
+              .reason = Reason::full,
+              .in = scene.triangles.size(),
+              .out = regions.triangles.size(),
+              .unit = Unit::triangles};
+  if (full) return stage;
+  if (self) {
+    for (const Object& object : scene.objects) stage.m += object.self && object.triangle_count > 1;
+  }
+  stage.reason = self ? Reason::meetings : Reason::regions;
+  stage.n = regions.places.size() - stage.m;
+  return stage;
+}
+
+// Triangles that drawing culled are kept all the same where a pair inside their patch is.
+void add_members(const Scene& scene, Candidates& out) {
+  const std::vector<std::uint32_t> members = members_of(out.pairs, scene.triangles.size());
+  std::vector<std::uint32_t> all;
+  std::set_union(out.triangles.begin(), out.triangles.end(), members.begin(), members.end(),
+                 std::back_inserter(all));
+  out.triangles = std::move(all);
+}
+
 }  // namespace
 
 void plan_drawing(const Scene& scene, unsigned, const Progress&, Plan& plan) {
-  const Stopwatch watch;
   const RunOptions& options = plan.options;
   const bool self = tests_self_alone(options.method);
-  DrawPlan work{.regions = find_regions(scene, {.self = self, .full = options.full}),
-                .fatteners = {},
-                .settings = {},
-                .self = self};
+  DrawPlan work;
+  work.self = self;
+  if (!self && has_self(scene)) plan.trace.push_back(cut(scene, work.patches));
+  const Stopwatch watch;
+  work.regions = find_regions(scene, {.self = self || work.patches.cut, .full = options.full});
   const Regions& regions = work.regions;
-  plan.trace.push_back({.kind = StageKind::boxes,
-                        .ran = true,
-                        .reason = options.full ? Reason::full : Reason::regions,
-                        .n = options.full ? 0 : regions.places.size(),
-                        .ms = watch.ms(),
-                        .in = scene.triangles.size(),
-                        .out = regions.triangles.size(),
-                        .unit = Unit::triangles});
+  plan.trace.push_back(boxes_stage(scene, regions, self || work.patches.cut, options.full));
+  plan.trace.back().ms = watch.ms();
   work.settings = settings_of(options, regions.triangles.size());
+  if (work.patches.cut) work.settings.owners = work.patches.owner;
   if (regions.triangles.empty()) {
-    plan.trace.push_back(
-        {.kind = StageKind::draw,
-         .reason = regions.places.empty() ? Reason::no_boxes_overlap : Reason::no_triangle_meets,
-         .unit = Unit::triangles});
+    plan.trace.push_back({.kind = StageKind::draw,
+                          .reason = work.patches.count > 0   ? Reason::nothing_to_look_at
+                                    : regions.places.empty() ? Reason::no_boxes_overlap
+                                                             : Reason::no_triangle_meets,
+                          .unit = Unit::triangles});
   } else {
     work.fatteners = fatteners_of(options);
     CullSettings first = work.settings;
@@ -142,7 +192,7 @@ void plan_drawing(const Scene& scene, unsigned, const Progress&, Plan& plan) {
       plan.ahead.push_back(stage);
     }
   }
-  plan.ahead.push_back(join_stage());
+  plan.ahead.push_back(join_stage(work));
   plan.work = std::move(work);
 }
 
@@ -157,19 +207,25 @@ Candidates find_by_drawing(const Scene& scene, const Plan& plan, Session& sessio
   } else {
     cull_by_offsets(scene, work, plan.options, session, progress, out);
   }
-  out.triangle_count = out.triangles.size();
-  out.object_count = count_objects(scene, out.triangles);
-
   const Stopwatch join;
   if (progress) progress("joining boxes");
+  const std::uint64_t left = out.triangles.size();
   const std::vector<Box>& boxes = work.regions.triangle_boxes;
-  out.pairs = box_join(boxes, work.self ? join_owners(scene) : owners(scene), out.triangles);
+  if (work.patches.count > 0) {
+    out.pairs =
+        join_patches(scene, boxes, work.patches, out.triangles, out.bits, plan.options.neighbours);
+    add_members(scene, out);
+  } else {
+    out.pairs = box_join(boxes, work.self ? join_owners(scene) : owners(scene), out.triangles);
+  }
   out.count = out.pairs.size();
-  Stage stage = join_stage();
+  Stage stage = join_stage(work);
   stage.ms = join.ms();
-  stage.in = out.triangle_count;
+  stage.in = left;
   stage.out = out.count;
   out.trace.push_back(stage);
+  out.triangle_count = out.triangles.size();
+  out.object_count = count_objects(scene, out.triangles);
   out.ms = watch.ms() - out.setup_ms;
   return out;
 }

@@ -164,14 +164,10 @@ void validate(const RunOptions& options) {
   }
   // Whether there is such a device is seen when one is needed; what can be none is refused at once.
   const std::string& device = options.device;
-  if (device == "cpu" && draws(options.method)) {
-    throw Error("--device", to_string(options.method) + " draws with OpenGL, not on the cpu",
-                "give software, or use --method far-pairs");
-  }
-  if (device != "" && device != "cpu" && device != "hardware" && device != "software" &&
-      device.find_first_not_of("0123456789") != std::string::npos) {
+  if (device != "" && !is_cpu(device) && device != "gl" && device != "hardware" &&
+      device != "software" && device.find_first_not_of("0123456789") != std::string::npos) {
     throw Error("--device", "'" + device + "' is no device",
-                "give cpu (far-pairs), software, hardware or a number that `farcull doctor` lists");
+                "give native, gl, software, hardware or a number that `farcull doctor` lists");
   }
   if (!options.views.empty()) parse_views(options.views);
 }

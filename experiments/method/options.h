@@ -37,11 +37,13 @@ struct RunOptions {
   std::optional<QueryMode> query = {};  // default: flags; occlusion with fixed24 and for s-cullide
   std::optional<std::vector<std::uint32_t>> clusters = {};  // default: usual_clusters()
   std::string views = {};   // "": x,y,z, but chosen by the scene for far-pairs
-  std::string device = {};  // "": hardware first, then software; for far-pairs see pair_device.h
+  std::string device = {};  // native or cpu: the cores of the CPU; gl: GL, even where a software
+                            // renderer answers; hardware, software or a number: that GL device;
+                            // "": GL where hardware answers, else the cores of the CPU
   double clearance = 0;     // world units, finite, >= 0; far-pairs and exact only
   bool verify = true;
   bool neighbours = true;  // false: pairs of one object that share a vertex index are neither
-                           // candidates of far-pairs nor decided
+                           // candidates of far and far-pairs nor decided
   bool full = false;       // leave nothing out that the scene does not need (docs/methods.md)
   std::optional<std::uint64_t> seed = {};  // what the scene was drawn with; empty: it is not random
 };
@@ -50,6 +52,9 @@ struct RunOptions {
 constexpr int kMostPairResolution = 16384;
 /// Throws Error naming `option` for more.
 void require_pair_resolution(int resolution, const std::string& option = "--resolution");
+
+/// Whether a device is the cores of the CPU: "native" or, as far-pairs has called it, "cpu".
+inline bool is_cpu(const std::string& device) { return device == "native" || device == "cpu"; }
 
 /// What applies where the option is not given. resolution_of: 0 and views_of: "" where the scene
 /// chooses.

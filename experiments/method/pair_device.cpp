@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/gl/pairs.h"
 #include "core/pairs/cpu.h"
+#include "experiments/method/options.h"
 
 namespace farcull {
 
@@ -16,7 +17,7 @@ PairDevice gl_pair_device(const GlContext& context, const std::string& reason) {
 
 PairDevice open_pair_device(const std::string& device, unsigned threads,
                             const std::function<const GlContext&()>& context) {
-  if (device == "cpu") return cpu_pair_device(threads, "--device cpu");
+  if (is_cpu(device)) return cpu_pair_device(threads, "--device " + device);
   if (!device.empty()) return gl_pair_device(context(), "--device " + device);
   const std::string rule = "no --device: GL where hardware answers, else the CPU; ";
   try {

@@ -6,6 +6,7 @@
 
 #include "core/base/stage.h"
 #include "core/cull/cull.h"
+#include "core/cull/patches.h"
 #include "core/pairs/pairs.h"
 #include "core/view/regions.h"
 #include "experiments/method/options.h"
@@ -18,6 +19,7 @@ struct DrawPlan {
   std::vector<Fattener> fatteners;  // in the order in which they are tried; empty: nothing is drawn
   CullSettings settings;            // but for the fattener
   bool self = false;                // triangles of marked objects are owners
+  Patches patches;                  // of far, where an object is tested against itself; else empty
 };
 
 struct Plan {

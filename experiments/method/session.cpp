@@ -5,7 +5,9 @@
 
 #include <cstdio>
 
+#include "core/base/error.h"
 #include "experiments/method/kernel_probes.h"
+#include "experiments/method/options.h"
 
 namespace farcull {
 
@@ -31,11 +33,44 @@ const DeviceVerdict& Session::verdict(Reliance reliance) {
       .first->second;
 }
 
-GlCanvas& Session::canvas(const Fattener& fattener, const GlCanvasOptions& options) {
-  return canvases_
-      .try_emplace({fattener.name, options.depth_format, options.query}, context(), fattener.mode,
-                   fattener.solid, options)
-      .first->second;
+const CanvasDevice& Session::canvas_device() {
+  if (!canvas_device_) canvas_device_ = choose_canvas_device();
+  return *canvas_device_;
+}
+
+CanvasDevice Session::choose_canvas_device() {
+  if (is_cpu(device_)) return {true, "--device " + device_};
+  if (!device_.empty()) return {false, "--device " + device_};
+  const std::string rule = "no --device: GL where hardware answers, else the CPU; ";
+  try {
+    if (!GlContext::hardware_listed()) return {true, rule + "EGL lists no hardware device"};
+    if (context().info().kind != "hardware")
+      return {true, rule + "no hardware device could be opened"};
+    const DeviceVerdict& found = verdict(Reliance::drawing);
+    if (!found.holds) return {true, rule + "the hardware failed a probe"};
+    return {false, rule + "hardware answered"};
+  } catch (const Error& error) {
+    return {true, rule + error.where + ": " + error.reason};
+  }
+}
+
+Canvas& Session::canvas(const Fattener& fattener, const GlCanvasOptions& options) {
+  std::unique_ptr<Canvas>& canvas = canvases_[{fattener.name, options.depth_format, options.query}];
+  if (canvas) return *canvas;
+  if (canvas_device().native) {
+    canvas = std::make_unique<NativeCanvas>(
+        fattener.mode, fattener.solid,
+        NativeCanvasOptions{.depth_bits = options.depth_format == DepthFormat::fixed24 ? 24 : 32,
+                            .threads = threads_});
+  } else {
+    canvas = std::make_unique<GlCanvas>(context(), fattener.mode, fattener.solid, options);
+  }
+  return *canvas;
+}
+
+int Session::max_resolution() {
+  if (canvas_device().native) return native_limits().max_resolution;
+  return GlCanvas(context(), DepthMode::fixed, {}).limits().max_resolution;
 }
 
 PairDevice& Session::pairs() {
@@ -50,6 +85,7 @@ void Session::forget_device() {
   pairs_.reset();
   context_.reset();
   verdicts_.clear();  // another device may answer next time
+  canvas_device_.reset();
 }
 
 }  // namespace farcull

@@ -10,6 +10,7 @@
 #include "core/canvas/fatten.h"
 #include "core/gl/canvas.h"
 #include "core/gl/context.h"
+#include "core/native/canvas.h"
 #include "core/pairs/view.h"
 #include "core/sweep/sweep_prune.h"
 #include "experiments/method/device_verdict.h"
@@ -20,11 +21,18 @@ namespace farcull {
 /// Writes the line on standard error; a line of progress is cleared first.
 Say say_on_stderr();
 
+/// Which canvas draws, and why.
+struct CanvasDevice {
+  bool native = false;  // on the cores of the CPU (core/native/canvas.h); else on a GL device
+  std::string reason;
+};
+
 /// Each part is made when first needed, and kept from run to run. Not to be used by two threads at
 /// once.
 class Session {
  public:
-  /// device: as RunOptions::device, or "gl": GL even where only a software renderer answers.
+  /// device: as RunOptions::device. Without one a fixed rule decides: GL where a hardware device
+  /// answers and keeps the assumptions, else the cores of the CPU.
   /// threads: of the CPU, for far-pairs; 0: as many as there are cores.
   /// say: told in one line that the device is probed, and why; may be empty.
   explicit Session(std::string device, unsigned threads = 0, Say say = say_on_stderr())
@@ -35,8 +43,12 @@ class Session {
   /// Whether the context's device keeps the assumptions; probed where no verdict is kept. GL state
   /// is not kept.
   const DeviceVerdict& verdict(Reliance reliance);
-  /// The canvas for the drawables of this fattener, by its name.
-  GlCanvas& canvas(const Fattener& fattener, const GlCanvasOptions& options);
+  /// Where the canvases are: on the cores of the CPU, or on the GL device of context().
+  const CanvasDevice& canvas_device();
+  /// The canvas for the drawables of this fattener, by its name. The query mode is GL's alone.
+  Canvas& canvas(const Fattener& fattener, const GlCanvasOptions& options);
+  /// px; the largest resolution of its canvases.
+  int max_resolution();
   PairDevice& pairs();
   PairScene& pair_workspace() { return pair_workspace_; }
   SweepPrune& sweep() { return sweep_; }
@@ -45,12 +57,15 @@ class Session {
   void forget_device();
 
  private:
+  CanvasDevice choose_canvas_device();
+
   std::string device_;
   unsigned threads_;
   Say say_;
   std::unique_ptr<GlContext> context_;
   std::map<Reliance, DeviceVerdict> verdicts_;
-  std::map<std::tuple<std::string, DepthFormat, QueryMode>, GlCanvas> canvases_;
+  std::optional<CanvasDevice> canvas_device_;
+  std::map<std::tuple<std::string, DepthFormat, QueryMode>, std::unique_ptr<Canvas>> canvases_;
   std::optional<PairDevice> pairs_;  // these two go before the context
   PairScene pair_workspace_;
   SweepPrune sweep_;

@@ -5,6 +5,7 @@
 
 #include "core/gl/probe_kernels.h"
 #include "experiments/method/kernel_probes_parts.h"
+#include "offsets/fit.h"
 #include "offsets/minkowski.h"
 #include "offsets/obb.h"
 

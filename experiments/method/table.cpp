@@ -18,6 +18,7 @@ constexpr std::array kTable = {
            .draws = true,
            .fattens = true,
            .quick = true,
+           .tests_self = true,
            .plan = plan_drawing,
            .find = find_by_drawing},
     Traits{.method = Method::cullide,

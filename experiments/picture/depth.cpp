@@ -53,7 +53,7 @@ ViewRun look(RunOptions options, const std::string& view, const Scene& scene, Se
   }
   out.window = *fit_window(parse_view(view), work.regions.places, work.settings.resolution);
   const Fattener& fattener = work.fatteners.front();
-  GlCanvas& canvas =
+  Canvas& canvas =
       session.canvas(fattener, {.depth_format = options.depth_format, .query = query_of(options)});
   FattenCounts counts;
   const Drawables drawables =

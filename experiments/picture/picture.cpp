@@ -230,7 +230,7 @@ PictureResult make_picture(const PictureArguments& arguments, Lab& lab) {
   const Window window = window_of(arguments, scene, truth);
 
   std::optional<GlContext> own;
-  if (lab.device() == "cpu") own.emplace();
+  if (is_cpu(lab.device())) own.emplace();
   const GlContext& context = own ? *own : lab.session().context();
   PictureResult result;
   result.scene = scene.name;

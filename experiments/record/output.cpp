@@ -51,7 +51,14 @@ Json budget_json(const std::vector<ViewReport>& views) {
 }
 
 Json device_json(const Record& record) {
-  if (record.found.device.cpu) return {{"cpu", record.found.device.note}};
+  if (record.found.device.cpu) {
+    Json out = {{"cpu", record.found.device.note}};
+    if (draws(record.options.method)) {
+      out["lanes"] = record.found.device.lanes;
+      out["depth_bits"] = record.found.device.depth_bits;
+    }
+    return out;
+  }
   if (!record.found.device.gl) return {{"none", record.found.device.note}};
   const GlInfo& device = *record.found.device.gl;
   Json out = {{"vendor", device.vendor},
@@ -61,10 +68,8 @@ Json device_json(const Record& record) {
               {"subpixel_bits", device.subpixel_bits},
               {"depth_bits", record.found.device.depth_bits},
               {"reset_detection", device.reset_detection}};
-  if (chooses_views(record.options.method)) {
-    out.erase("depth_bits");
-    out["reason"] = record.found.device.note;
-  }
+  out["reason"] = record.found.device.note;
+  if (chooses_views(record.options.method)) out.erase("depth_bits");
   return out;
 }
 
@@ -178,8 +183,9 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
        !drawn ? Json(nullptr) : Json(depth_of(o) == DepthMode::fragment ? "fragment" : "fixed")},
       {"depth_format",
        drawn ? Json(o.depth_format == DepthFormat::float32 ? "32f" : "24") : Json(nullptr)},
-      {"query",
-       drawn ? Json(query_of(o) == QueryMode::flags ? "flags" : "occlusion") : Json(nullptr)},
+      {"query", drawn && !record.found.device.cpu
+                    ? Json(query_of(o) == QueryMode::flags ? "flags" : "occlusion")
+                    : Json(nullptr)},
       {"clearance", takes_clearance(o.method) ? Json(o.clearance) : Json(nullptr)},
       {"full", o.full},
       {"promises", record.promise.holds},

@@ -25,6 +25,10 @@ std::string scene_line(const Scene& scene, const Record& record) {
 }
 
 std::string device_text(const Record& record) {
+  if (record.found.device.cpu && draws(record.options.method)) {
+    return fmt::format("cpu, lanes of {}, {} depth bits: {}", record.found.device.lanes,
+                       record.found.device.depth_bits, record.found.device.note);
+  }
   if (record.found.device.cpu) return "cpu: " + record.found.device.note;
   if (!record.found.device.gl) return "none: " + record.found.device.note;
   const std::string resets =
@@ -47,9 +51,10 @@ std::string method_text(const Record& record) {
   std::string text = describe(o);
   if (fattens(o.method)) text += fmt::format(", {} offsets", o.offset);
   if (draws(o.method)) {
-    text += fmt::format(", {} depth, {}",
-                        depth_of(o) == DepthMode::fragment ? "fragment" : "fixed-function",
-                        query_of(o) == QueryMode::flags ? "flags" : "occlusion queries");
+    text += depth_of(o) == DepthMode::fragment ? ", fragment depth" : ", fixed-function depth";
+    // The native canvas has one way to ask.
+    if (!record.found.device.cpu)
+      text += query_of(o) == QueryMode::flags ? ", flags" : ", occlusion queries";
   }
   if (o.clearance > 0) text += fmt::format(", clearance {}", o.clearance);
   return text + (record.promise.holds ? "; promises to miss nothing" : "");
