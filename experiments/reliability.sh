@@ -3,7 +3,7 @@
 # 2048. With fewer resolutions, copies of the scenes are compared as well: moved by 1e6 along the diagonal, scaled by 1e-6 and 1e6,
 # and with a ground a thousand times larger. It prints a table for each scene, keeps the records in build/reliability/, and fails if
 # a pair is missed. It takes about 20 minutes on two cores without a GPU. `bash experiments/reliability.sh two-bunnies` runs one
-# scene and its copies.
+# scene and its copies. Without a GPU the native canvas draws; DEVICE=software (or another --device) asks for GL.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=setup.sh
@@ -26,6 +26,7 @@ for scene in "${scenes[@]}"; do
     methods=far,exact
     if [[ -z $copy ]]; then methods=far,cullide,exact; fi
     build/farcull compare "$scene$copy" --methods "$methods" --offsets obb,exact --resolutions "$resolutions" \
+      ${DEVICE:+--device "$DEVICE"} \
       --json "build/reliability/$scene$copy.json" || failed+=("$scene$copy")
     echo
   done

@@ -3,8 +3,9 @@
 # scene that moves, and the accounting decides every pair of each frame. It fails if a pair is missed. Each scene has a record in
 # build/reliability-motion/; a scene whose record is there does not run again. Remove the folder to begin again.
 #
-#   bash experiments/reliability_motion.sh                     all scenes, 100 frames each: hours on a software rasterizer
+#   bash experiments/reliability_motion.sh                     all scenes, 100 frames each: hours on two cores
 #   FRAMES=10 bash experiments/reliability_motion.sh cloth     one scene, ten frames
+# Without a GPU the native canvas draws; DEVICE=software (or another --device) asks for GL.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=setup.sh
@@ -32,6 +33,7 @@ for scene in "${scenes[@]}"; do
     continue
   fi
   if build/farcull experiment family "$scene" --methods "$methods" --frames "$frames" --csv "$record.csv" \
+    ${DEVICE:+--device "$DEVICE"} \
     --json "$record.json" >"$record.txt"; then
     cat "$record.txt"
   else

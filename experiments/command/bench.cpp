@@ -48,16 +48,14 @@ std::string peers_text() {
 
 CLI::App* BenchCommand::add_to(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("bench", "times beside other libraries, from triangles to pairs");
+      add_command(app, "bench", "times beside other libraries, from triangles to pairs");
   add_scene(*command, scene_);
   const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
-    command->add_option(name, text, help)->type_name(type);
+    add_option(*command, name, text, type, help);
   };
-  command
-      ->add_flag("--self", self_,
-                 "every object is tested against itself as well, but\n"
-                 "for triangles that share a vertex position")
-      ->disable_flag_override();
+  add_flag(*command, "--self", self_,
+           "every object is tested against itself as well, but\n"
+           "for triangles that share a vertex position");
   add("--peers", peers_, "LIST", "all, none, or names by commas; default all");
   add("--methods", methods_, "LIST", "of far-pairs,far,exact; all or none; default all");
   add("--threads", threads_, "N", "cores for each of them; default all there are");
@@ -68,7 +66,7 @@ CLI::App* BenchCommand::add_to(CLI::App& app) {
       "for methods on GL, as for farcull run, or cpu for\nnone of them; default where there is "
       "one");
   add("--json", outputs_.json, "FILE", kJsonHelp);
-  command->footer([] {
+  add_footer(*command, [] {
     return "Examples:\n"
            "  farcull bench two-bunnies\n"
            "  farcull bench needles-layers --threads 1 --peers fcl-obbrss,embree-low\n"
@@ -97,7 +95,7 @@ BenchOptions BenchCommand::parse() const {
   options.self = self_;
   options.seed = scene_.size() == 1 ? builtin_seed(scene_[0]) : std::nullopt;
   validate(options);
-  if (options.device != "cpu") {
+  if (!is_cpu(options.device)) {
     RunOptions run;
     run.device = options.device;
     validate(run);

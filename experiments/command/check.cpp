@@ -184,17 +184,16 @@ int check_certificate_file(const CheckArguments& arguments) {
 }
 
 CLI::App* CheckCommand::add_to(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("check", "prove or refute a certificate of a run");
-  command->add_option("CERTIFICATE", arguments_.certificate, "as written by run --certificate")
-      ->required()
-      ->type_name("");
+  CLI::App* command = add_command(app, "check", "prove or refute a certificate of a run");
+  add_required(*command, "CERTIFICATE", arguments_.certificate, "as written by run --certificate");
   add_scene(*command, arguments_.scene);
   add_flag(*command, "--self", arguments_.self,
            "every object was tested against itself, as by\nfarcull run --self");
   add_option(*command, "--pairs", pairs_, "FILE",
              "the list that farcull run --pairs wrote: is it the\none that is proved?");
   add_option(*command, "--json", json_, "FILE", kJsonHelp);
-  command->footer(
+  add_footer(
+      *command,
       "Examples:\n"
       "  farcull run two-spheres --certificate c.json --pairs pairs.csv\n"
       "  farcull check c.json two-spheres --pairs pairs.csv\n\n"

@@ -1,7 +1,6 @@
 // `farcull check`: a certificate against the scene that it speaks about.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 

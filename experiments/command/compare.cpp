@@ -10,7 +10,7 @@
 namespace farcull {
 
 CLI::App* CompareCommand::add_to(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("compare", "methods and resolutions side by side");
+  CLI::App* command = add_command(app, "compare", "methods and resolutions side by side");
   add_scene(*command, arguments_.scene);
   add_option(*command, "--methods", arguments_.methods, "LIST",
              "separated by commas;\ndefault far,cullide,far-pairs,exact");
@@ -21,16 +21,16 @@ CLI::App* CompareCommand::add_to(CLI::App& app) {
   add_option(*command, "--repeat", arguments_.repeat, "N",
              "runs of each, the one with the median time is shown;\ndefault 1");
   add_option(*command, "--views", views_, "VIEWS", kViewsHelp);
-  add_option(*command, "--device", device_, "DEVICE", kRunDeviceHelp);
+  add_option(*command, "--device", device_, "DEVICE", kDeviceHelp);
   add_flag(*command, "--self", arguments_.self, kSelfHelp);
   add_option(*command, "--clearance", clearance_, "D", kClearanceHelp);
   add_option(*command, "--json", outputs_.json, "FILE", kJsonHelp);
-  command->footer(
-      "Examples:\n"
-      "  farcull compare two-tori\n"
-      "  farcull compare two-bunnies --methods far,exact --resolutions 256,512 --repeat 5\n"
-      "  farcull compare mannequin-devil --methods far-pairs,exact --self\n\n"
-      "Exit status 1: a method that promises missed a pair.");
+  add_footer(*command,
+             "Examples:\n"
+             "  farcull compare two-tori\n"
+             "  farcull compare two-bunnies --methods far,exact --resolutions 256,512 --repeat 5\n"
+             "  farcull compare mannequin-devil --methods far-pairs,exact --self\n\n"
+             "Exit status 1: a method that promises missed a pair.");
   return command;
 }
 

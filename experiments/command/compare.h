@@ -1,8 +1,6 @@
 // `farcull compare`.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "experiments/command/options.h"
 #include "experiments/measure/compare.h"
 

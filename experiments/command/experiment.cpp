@@ -11,55 +11,46 @@
 namespace farcull {
 
 CLI::App* ExperimentCommands::add_to(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("experiment", "studies for publication, and their premises");
-  command->require_subcommand(0, 1);
-  command->footer(
+  CLI::App* command = add_command(app, "experiment", "studies for publication, and their premises");
+  allow_one_command(*command);
+  add_footer(
+      *command,
       "Examples:\n  farcull experiment all --quick\n  farcull experiment accuracy --out results\n"
       "  farcull experiment lemma --points 1000000\n  farcull experiment oracles "
       "--pairs 100000\n  farcull experiment family tree-leaves --methods far-pairs,i-collide\n"
       "  farcull experiment savings two-bunnies");
 
   studies_.add_to(*command);
-  lemma_ = command->add_subcommand(
-      "lemma", "the reliability lemmas on a canvas, decided in exact arithmetic");
-  lemma_->add_option("--points", arguments_.points, "points in all; default 100000")
-      ->type_name("N");
-  lemma_
-      ->add_option("--radius", arguments_.radius,
-                   "budget, published, or a factor on the budget;\ndefault budget")
-      ->type_name("RADIUS");
-  lemma_
-      ->add_option("--sweep", arguments_.sweep, "instead: factors FROM:TO:STEP, as in 0.5:1.1:0.01")
-      ->type_name("SWEEP");
-  lemma_
-      ->add_option("--canvas", arguments_.canvas,
-                   "gl (a device), or worst (none: as bad as the\nassumptions allow); default gl")
-      ->type_name("gl|worst");
-  lemma_->add_option("--offset", arguments_.offset, "obb or exact; default obb")
-      ->type_name("OFFSET");
-  lemma_->add_option("--seed", arguments_.seed, "of the points; default 1")->type_name("N");
-  lemma_->add_option("--device", device_, kDeviceHelp)->type_name("DEVICE");
-  lemma_->add_option("--json", lemma_outputs_.json, kJsonHelp)->type_name("FILE");
-  lemma_
-      ->add_option("--csv", lemma_outputs_.csv,
-                   "write the sweep as CSV to this file; - for standard\noutput")
-      ->type_name("FILE");
-  lemma_->footer(
-      "Examples:\n"
-      "  farcull experiment lemma --points 1000000 --radius budget\n"
-      "  farcull experiment lemma --radius published\n"
-      "  farcull experiment lemma --canvas worst --sweep 0.5:1.1:0.01 --csv sweep.csv\n\n"
-      "Exit status 1: a violation at the budget radius or beyond.");
+  lemma_ = add_command(*command, "lemma",
+                       "the reliability lemmas on a canvas, decided in exact arithmetic");
+  add_option(*lemma_, "--points", arguments_.points, "N", "points in all; default 100000");
+  add_option(*lemma_, "--radius", arguments_.radius, "RADIUS",
+             "budget, published, or a factor on the budget;\ndefault budget");
+  add_option(*lemma_, "--sweep", arguments_.sweep, "SWEEP",
+             "instead: factors FROM:TO:STEP, as in 0.5:1.1:0.01");
+  add_option(*lemma_, "--canvas", arguments_.canvas, "native|gl|worst",
+             "native (the cores of the CPU), gl (a device), or worst\n(as bad as the assumptions "
+             "allow); default gl where\n--device is given or hardware answers, else native");
+  add_option(*lemma_, "--offset", arguments_.offset, "OFFSET", "obb or exact; default obb");
+  add_option(*lemma_, "--seed", arguments_.seed, "N", "of the points; default 1");
+  add_option(*lemma_, "--device", device_, "DEVICE", kDeviceHelp);
+  add_option(*lemma_, "--json", lemma_outputs_.json, "FILE", kJsonHelp);
+  add_option(*lemma_, "--csv", lemma_outputs_.csv, "FILE",
+             "write the sweep as CSV to this file; - for standard\noutput");
+  add_footer(*lemma_,
+             "Examples:\n"
+             "  farcull experiment lemma --points 1000000 --radius budget\n"
+             "  farcull experiment lemma --radius published\n"
+             "  farcull experiment lemma --canvas worst --sweep 0.5:1.1:0.01 --csv sweep.csv\n\n"
+             "Exit status 1: a violation at the budget radius or beyond.");
 
-  oracles_ = command->add_subcommand("oracles", "the two exact oracles against each other");
-  oracles_->add_option("--pairs", pairs_, "pairs of each generator; default 100000")
-      ->type_name("N");
-  oracles_->add_option("--seed", seed_, "of the pairs; default 1")->type_name("N");
-  oracles_->add_option("--json", oracle_outputs_.json, kJsonHelp)->type_name("FILE");
-  oracles_->footer(
-      "Examples:\n  farcull experiment oracles --pairs 1000000 --json oracles.json\n\n"
-      "Exit status 1: they disagree about a pair.");
+  oracles_ = add_command(*command, "oracles", "the two exact oracles against each other");
+  add_option(*oracles_, "--pairs", pairs_, "N", "pairs of each generator; default 100000");
+  add_option(*oracles_, "--seed", seed_, "N", "of the pairs; default 1");
+  add_option(*oracles_, "--json", oracle_outputs_.json, "FILE", kJsonHelp);
+  add_footer(*oracles_,
+             "Examples:\n  farcull experiment oracles --pairs 1000000 --json oracles.json\n\n"
+             "Exit status 1: they disagree about a pair.");
 
   family_ = family_command_.add_to(*command);
   savings_ = savings_command_.add_to(*command);
@@ -83,11 +74,11 @@ int ExperimentCommands::run_oracles() {
 }
 
 int ExperimentCommands::run() {
-  if (*oracles_) return run_oracles();
-  if (*family_) return family_command_.run();
-  if (*savings_) return savings_command_.run();
+  if (given(*oracles_)) return run_oracles();
+  if (given(*family_)) return family_command_.run();
+  if (given(*savings_)) return savings_command_.run();
   if (studies_.named()) return studies_.run();
-  if (!*lemma_) {
+  if (!given(*lemma_)) {
     std::string known = "all";
     for (const Study& study : studies()) known += ", " + study.name;
     throw Error("experiment", "no study is named",

@@ -1,8 +1,6 @@
 // `farcull experiment NAME`: the studies.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "experiments/command/family.h"
 #include "experiments/command/lemma.h"
 #include "experiments/command/options.h"

@@ -16,11 +16,11 @@ int resolution_option(const Text& text) { return text ? parse_resolution(*text) 
 }  // namespace
 
 CLI::App* FamilyCommand::add_to(CLI::App& experiments) {
-  CLI::App* command = experiments.add_subcommand(
-      "family", "moving scenes by every method, beside the rates of the papers");
-  command->add_option("SCENE", arguments_.scenes, kMovingHelp)->type_name("");
+  CLI::App* command = add_command(experiments, "family",
+                                  "moving scenes by every method, beside the rates of the papers");
+  add_option(*command, "SCENE", arguments_.scenes, "", kMovingHelp);
   const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
-    command->add_option(name, text, help)->type_name(type);
+    add_option(*command, name, text, type, help);
   };
   add("--methods", arguments_.methods, "LIST", "by commas; default all that apply");
   add("--frames", frames_, "N|A:B", "of each scene; default 30");
@@ -28,15 +28,15 @@ CLI::App* FamilyCommand::add_to(CLI::App& experiments) {
       "px, of the methods that draw; default 512; far-pairs\nchooses by the scene");
   add("--views", views_, "VIEWS", "of the methods that draw; default x,y,z");
   add("--query", query_, "flags|occlusion", "how visibility is asked; default flags");
-  add("--device", device_, "DEVICE", kRunDeviceHelp);
-  command->add_flag("--self", arguments_.self, kSelfHelp)->disable_flag_override();
-  command->add_flag("--no-verify", no_verify_, "leave out the accounting of all pairs")
-      ->disable_flag_override();
+  add("--device", device_, "DEVICE", kDeviceHelp);
+  add_flag(*command, "--self", arguments_.self, kSelfHelp);
+  add_flag(*command, "--no-verify", no_verify_, "leave out the accounting of all pairs");
   add("--csv", outputs_.csv, "FILE",
       "a row a frame, with the factor by which i-collide keeps\nmore, to this file; - for standard "
       "output");
   add("--json", outputs_.json, "FILE", kJsonHelp);
-  command->footer(
+  add_footer(
+      *command,
       "Examples:\n"
       "  farcull experiment family tree-leaves --methods far-pairs,i-collide --frames 100\n"
       "  farcull experiment family breaking-dragon --methods far,i-collide --csv efficiency.csv\n"
@@ -67,26 +67,23 @@ int FamilyCommand::run() {
 }
 
 CLI::App* SavingsCommand::add_to(CLI::App& experiments) {
-  CLI::App* command = experiments.add_subcommand(
-      "savings", "what leaving out saves: times as planned over times with --full");
-  command
-      ->add_option("SCENE", arguments_.scenes,
-                   "built-in scenes or scene files; default all built-in\nones but the costly")
-      ->type_name("");
-  command->add_option("--methods", arguments_.methods, "by commas; default far-pairs")
-      ->type_name("LIST");
+  CLI::App* command = add_command(
+      experiments, "savings", "what leaving out saves: times as planned over times with --full");
+  add_option(*command, "SCENE", arguments_.scenes, "",
+             "built-in scenes or scene files; default all built-in\nones but the costly");
+  add_option(*command, "--methods", arguments_.methods, "LIST", "by commas; default far-pairs");
   const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
-    command->add_option(name, text, help)->type_name(type);
+    add_option(*command, name, text, type, help);
   };
   add("--repeat", repeat_, "N", "runs of each; default 15");
   add("--resolution", resolution_, "N", "px, of the methods that draw; default 512");
-  add("--device", device_, "DEVICE", kRunDeviceHelp);
+  add("--device", device_, "DEVICE", kDeviceHelp);
   add("--json", outputs_.json, "FILE", kJsonHelp);
-  command->footer(
-      "Examples:\n"
-      "  farcull experiment savings\n"
-      "  farcull experiment savings two-bunnies --methods far,far-pairs --repeat 15\n\n"
-      "Exit status 1: a method that promises finds other pairs with --full than without.");
+  add_footer(*command,
+             "Examples:\n"
+             "  farcull experiment savings\n"
+             "  farcull experiment savings two-bunnies --methods far,far-pairs --repeat 15\n\n"
+             "Exit status 1: a method that promises finds other pairs with --full than without.");
   return command;
 }
 

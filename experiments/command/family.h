@@ -1,8 +1,6 @@
 // `farcull experiment family` and `farcull experiment savings`.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "experiments/command/options.h"
 #include "experiments/measure/family.h"
 #include "experiments/measure/savings.h"

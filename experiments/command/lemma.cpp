@@ -11,8 +11,9 @@
 
 #include "commit.h"
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "core/base/text.h"
-#include "core/gl/canvas.h"
+#include "core/native/lanes.h"
 #include "experiments/lemma/lemma.h"
 #include "experiments/method/run.h"
 #include "experiments/system/output_file.h"
@@ -129,8 +130,13 @@ void validate(const LemmaArguments& arguments) {
     throw Error("--points", fmt::format("{} is no number of points", arguments.points),
                 "give 1 to 1e12");
   }
-  if (arguments.canvas != "gl" && arguments.canvas != "worst") {
-    throw Error("--canvas", "'" + arguments.canvas + "' is no canvas", "give gl or worst");
+  const std::string& canvas = arguments.canvas;
+  if (canvas != "" && canvas != "native" && canvas != "gl" && canvas != "worst") {
+    throw Error("--canvas", "'" + canvas + "' is no canvas", "give native, gl or worst");
+  }
+  if (!arguments.device.empty() && canvas != "" && canvas != "gl") {
+    throw Error("--device", "the " + canvas + " canvas needs no device",
+                "leave --device out, or use --canvas gl");
   }
   if (arguments.offset != "obb" && arguments.offset != "exact") {
     throw Error("--offset", "'" + arguments.offset + "' is no offset", "give obb or exact");
@@ -150,27 +156,37 @@ std::vector<RadiusRule> rules_of(const LemmaArguments& arguments) {
   return out;
 }
 
-// A canvas with the context that it needs; the worst canvas needs none.
+// A canvas with the session that it needs; the worst canvas needs none.
 struct LemmaCanvas {
-  std::unique_ptr<GlContext> context;
-  std::unique_ptr<Canvas> canvas;
+  std::string name;  // native, gl or worst
+  std::optional<Session> session;
+  std::unique_ptr<WorstCanvas> worst;
+  Canvas* canvas = nullptr;
 
   LemmaCanvas(const LemmaArguments& arguments, const Fattener& fattener) {
     if (arguments.canvas == "worst") {
-      canvas = std::make_unique<WorstCanvas>(fattener.solid);
-    } else {
-      context = std::make_unique<GlContext>(arguments.device);
-      canvas = std::make_unique<GlCanvas>(*context, fattener.mode, fattener.solid);
+      name = "worst";
+      worst = std::make_unique<WorstCanvas>(fattener.solid);
+      canvas = worst.get();
+      return;
     }
+    const bool named = arguments.canvas.empty() || !arguments.device.empty();
+    session.emplace(named ? arguments.device : arguments.canvas);
+    canvas = &session->canvas(fattener, {});
+    name = session->canvas_device().native ? "native" : "gl";
   }
+  // The GL device that draws; null for the others.
+  const GlInfo* device() { return name == "gl" ? &session->context().info() : nullptr; }
 };
 
+// displaced: what is drawn errs by as much as doubles may, where the canvas adds no errors of its
+// own that would hide it.
 Result measure(const LemmaArguments& arguments, const RadiusRule& rule, Canvas& canvas,
-               const Fattener& fattener, const Progress& progress) {
+               bool displaced, const Fattener& fattener, const Progress& progress) {
   LemmaSettings settings;
   settings.points = arguments.points;
   settings.seed = arguments.seed;
-  settings.displace = arguments.canvas == "worst";
+  settings.displace = displaced;
   settings.radius = [&rule](const Budget& budget, double step) {
     return lemma_radius(rule, budget, step);
   };
@@ -180,19 +196,20 @@ Result measure(const LemmaArguments& arguments, const RadiusRule& rule, Canvas& 
   return {rule, lemma_experiment(canvas, fattener, settings, named)};
 }
 
-Json to_json(const LemmaArguments& arguments, const LemmaCanvas& on,
+Json to_json(const LemmaArguments& arguments, LemmaCanvas& on, double seconds,
              const std::vector<Result>& results) {
   Json device;
-  if (on.context) {
-    const GlInfo& info = on.context->info();
-    device = {{"vendor", info.vendor}, {"renderer", info.renderer}, {"version", info.version}};
-  }
+  if (const GlInfo* info = on.device())
+    device = {{"vendor", info->vendor}, {"renderer", info->renderer}, {"version", info->version}};
   Json out = {{"experiment", "lemma"},
-              {"canvas", arguments.canvas},
+              {"canvas", on.name},
               {"offset", arguments.offset},
               {"device", device},
-              {"subpixel_bits", on.canvas->limits().subpixel_bits},
+              {"subpixel_bits",
+               on.name == "native" ? Json(nullptr) : Json(on.canvas->limits().subpixel_bits)},
+              {"lanes", on.name == "native" ? Json(lane_target()) : Json(nullptr)},
               {"seed", arguments.seed},
+              {"seconds", seconds},
               {"commit", FARCULL_COMMIT}};
   if (arguments.sweep.empty()) {
     out.update(result_json(results.front()));
@@ -220,14 +237,17 @@ std::string sweep_table(const std::vector<Result>& results) {
                      *safe, 100 * (1 - *safe));
 }
 
-std::string text_of(const LemmaArguments& arguments, const LemmaCanvas& on,
+std::string text_of(const LemmaArguments& arguments, LemmaCanvas& on, double seconds,
                     const std::vector<Result>& results) {
+  const std::string where = on.name == "gl"       ? on.device()->renderer
+                            : on.name == "native" ? "lanes of " + lane_target()
+                                                  : "no device";
   const std::string heading =
-      fmt::format("canvas {}, offset {}, {}\n\n", arguments.canvas, arguments.offset,
-                  on.context ? on.context->info().renderer : "no device");
-  if (!arguments.sweep.empty()) return heading + sweep_table(results);
+      fmt::format("canvas {}, offset {}, {}\n\n", on.name, arguments.offset, where);
+  const std::string took = fmt::format("\ntook {:.1f} s\n", seconds);
+  if (!arguments.sweep.empty()) return heading + sweep_table(results) + took;
   return heading + "radius " + radius_name(results.front().rule) + "\n" +
-         result_table(results.front());
+         result_table(results.front()) + took;
 }
 
 }  // namespace
@@ -237,20 +257,22 @@ int lemma_command(const LemmaArguments& arguments, const Progress& progress,
   validate(arguments);
   const std::vector<RadiusRule> rules = rules_of(arguments);
   const Fattener fattener = arguments.offset == "exact" ? minkowski_fattener() : obb_fattener();
-  const LemmaCanvas on(arguments, fattener);
+  LemmaCanvas on(arguments, fattener);
+  const Stopwatch watch;
   std::vector<Result> results;
   bool broken = false;
   for (const RadiusRule& rule : rules) {
-    results.push_back(measure(arguments, rule, *on.canvas, fattener, progress));
+    results.push_back(measure(arguments, rule, *on.canvas, on.name != "gl", fattener, progress));
     const bool promises = !rule.published && rule.factor >= 1;
     broken = broken || (promises && lemma_total(results.back().rows).violations() > 0);
   }
+  const double seconds = watch.ms() / 1000;
   done();
   if (!arguments.json.empty())
-    write_output(arguments.json, to_json(arguments, on, results).dump(2) + "\n");
+    write_output(arguments.json, to_json(arguments, on, seconds, results).dump(2) + "\n");
   if (!arguments.csv.empty()) write_output(arguments.csv, sweep_csv(results));
   if (arguments.json != "-" && arguments.csv != "-")
-    write_output("-", text_of(arguments, on, results));
+    write_output("-", text_of(arguments, on, seconds, results));
   return broken ? 1 : 0;
 }
 

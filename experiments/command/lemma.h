@@ -14,8 +14,10 @@ struct LemmaArguments {
   std::uint64_t points = 100000;
   std::string radius = "budget";  // budget, published or a factor
   std::string sweep;              // FROM:TO:STEP of the factor; then `radius` is not used
-  std::string canvas = "gl";      // gl or worst
-  std::string offset = "obb";     // obb or exact
+  /// native, gl or worst; empty: that of the device; without one GL where hardware answers and
+  /// passes its probes, else native.
+  std::string canvas;
+  std::string offset = "obb";  // obb or exact
   std::string device;
   std::uint64_t seed = 1;
   std::string json;

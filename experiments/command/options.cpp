@@ -27,7 +27,7 @@
 namespace farcull {
 
 void add_scene(CLI::App& command, std::vector<std::string>& scene) {
-  command.add_option("SCENE", scene, kSceneHelp)->required()->type_name("");
+  add_required(command, "SCENE", scene, kSceneHelp);
 }
 
 void complain(const std::string& message) {
@@ -129,7 +129,7 @@ std::string missed(const Record& record) {
 
 std::string device_of(const Text& device) {
   if (device && device->empty())
-    throw Error("--device", "its value is empty", "give software, hardware or a number");
+    throw Error("--device", "its value is empty", "give native, software, hardware or a number");
   return device.value_or("");
 }
 

@@ -1,32 +1,20 @@
 // Options, outputs and progress that several commands share.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/cull/cull.h"
+#include "experiments/command/declare.h"
 #include "experiments/command/files.h"
 #include "experiments/method/run.h"
 
 namespace farcull {
 
-using Text = std::optional<std::string>;  // of an option; empty where it was not given
-
 inline constexpr int kExitDone = 0, kExitBroken = 1, kExitBad = 2;  // exit statuses
 
-/// Declares an option with a value; `type` stands for the value in the help.
-template <class Value>
-void add_option(CLI::App& command, const char* name, Value& value, const char* type,
-                const char* help) {
-  command.add_option(name, value, help)->type_name(type);
-}
-/// Declares an option without a value.
-inline void add_flag(CLI::App& command, const char* name, bool& value, const char* help) {
-  command.add_flag(name, value, help)->disable_flag_override();
-}
 /// Declares SCENE, which has to be given.
 void add_scene(CLI::App& command, std::vector<std::string>& scene);
 
@@ -91,16 +79,14 @@ inline constexpr const char* kViewsHelp =
     "x,-y,1:1:0.5; default x,y,z; for far-pairs auto:\n"
     "chosen by the scene";
 inline constexpr const char* kDeviceHelp =
+    "native (alias cpu: the cores of the CPU, no GPU), gl,\n"
     "software, hardware or a number that `farcull doctor`\n"
-    "lists; default hardware first, then software";
-inline constexpr const char* kRunDeviceHelp =
-    "cpu (far-pairs), software, hardware or a number that\n"
-    "`farcull doctor` lists; default hardware first, then\n"
-    "software; for far-pairs hardware first, then cpu";
+    "lists; default GL where hardware answers and keeps the\n"
+    "assumptions, else native";
 inline constexpr const char* kSelfHelp =
     "every object is tested against itself as well\n"
-    "(far-pairs, s-cullide, i-collide, exact); collisions of\n"
-    "triangles that share a vertex position are listed apart";
+    "(far, far-pairs, s-cullide, i-collide, exact); collisions\n"
+    "of triangles that share a vertex position are listed apart";
 inline constexpr const char* kFullHelp =
     "leave nothing out that the scene does not need, to\n"
     "measure what leaving out saves (see farcull plan)";

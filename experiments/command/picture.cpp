@@ -73,16 +73,16 @@ std::string checked_output(const Text& output, const std::vector<NamedFile>& inp
 
 CLI::App* PictureCommand::add_to(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("picture", "what a method finds and misses, as a picture (PNG)");
+      add_command(app, "picture", "what a method finds and misses, as a picture (PNG)");
   add_options(*command);
   return command;
 }
 
 void PictureCommand::add_options(CLI::App& app) {
   CLI::App* command = &app;
-  command->add_option("SCENE", scene_, kSceneHelp)->required()->type_name("");
+  add_required(*command, "SCENE", scene_, kSceneHelp);
   const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
-    command->add_option(name, text, help)->type_name(type);
+    add_option(*command, name, text, type, help);
   };
   add("-o,--output", output_, "FILE", "where the PNG goes; - for standard output");
   add("--method", method_, "METHOD", "as farcull run takes it; default far");
@@ -93,24 +93,22 @@ void PictureCommand::add_options(CLI::App& app) {
   add("--radius", radius_, "RADIUS", "for far: budget, published, or a factor");
   add("--offset", offset_, "OFFSET", "for far: obb or exact; default obb");
   add("--depth", depth_, "fragment|fixed", "for far; default fragment");
-  add("--device", device_, "DEVICE", kRunDeviceHelp);
-  command->add_flag("--self", self_, kSelfHelp)->disable_flag_override();
+  add("--device", device_, "DEVICE", kDeviceHelp);
+  add_flag(*command, "--self", self_, kSelfHelp);
   add("--frame", frame_, "F", "of a scene that moves");
   add("--frames", frames_, "N|A:B",
       "of the motion that F is one of; default 30 of a\nbuilt-in scene");
   add("--view", view_, "DIR",
       "direction that the picture looks along, as in -z or\n-1:-1:-2; default -0.45:-0.35:-0.82");
   add("--up", up_, "AXIS", "upwards in the picture; default y");
-  command->add_flag("--zoom", zoom_, "show only where something collides")->disable_flag_override();
-  depth_view_option_ = command
-                           ->add_option("--view-depth", depth_view_,
-                                        "instead: the depth that the method stores in one of\nits "
-                                        "views (default z; --view-depth=-z for -z), and\n"
-                                        "what that view culls")
-                           ->type_name("[VIEW]")
-                           ->expected(0, 1);
+  add_flag(*command, "--zoom", zoom_, "show only where something collides");
+  depth_view_option_ = add_bare_option(*command, "--view-depth", depth_view_, "[VIEW]",
+                                       "instead: the depth that the method stores in one of\nits "
+                                       "views (default z; --view-depth=-z for -z), and\n"
+                                       "what that view culls");
   add("--size", size_, "WxH", "px of a panel; default 900x760");
-  command->footer(
+  add_footer(
+      *command,
       "Examples:\n"
       "  farcull picture two-bunnies --method cullide --resolution 128 -o missed.png\n"
       "  farcull picture two-bunnies --compare cullide,far --resolution 256 -o compare.png\n"
@@ -150,7 +148,7 @@ PictureArguments PictureCommand::arguments() const {
   }
   out.view = view_.value_or("");
   out.up = up_.value_or("");
-  if (depth_view_option_->count() > 0) {
+  if (given(*depth_view_option_)) {
     const std::string given = depth_view_.empty() ? "" : depth_view_.front();
     out.depth_view = given.empty() ? "z" : given;
   }

@@ -1,7 +1,6 @@
 // `farcull picture`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 

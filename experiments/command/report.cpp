@@ -17,18 +17,14 @@ namespace farcull {
 
 CLI::App* ReportCommand::add_to(CLI::App& app) {
   folder_ = kResultsFolder;
-  CLI::App* command =
-      app.add_subcommand("report", "figures, tables and a page of what was measured");
-  command
-      ->add_option("DIR", folder_,
-                   fmt::format("the folder of the results; default {}", kResultsFolder))
-      ->type_name("");
-  command->add_option("--device", device_, kDeviceHelp)->type_name("DEVICE");
-  command
-      ->add_flag("--no-pictures", no_pictures_,
-                 "leave out the pictures of scenes, for which methods are\nrun")
-      ->disable_flag_override();
-  command->footer(
+  CLI::App* command = add_command(app, "report", "figures, tables and a page of what was measured");
+  add_option(*command, "DIR", folder_, "",
+             fmt::format("the folder of the results; default {}", kResultsFolder));
+  add_option(*command, "--device", device_, "DEVICE", kDeviceHelp);
+  add_flag(*command, "--no-pictures", no_pictures_,
+           "leave out the pictures of scenes, for which methods are\nrun");
+  add_footer(
+      *command,
       "Writes DIR/report: index.html, one page that needs nothing else; figures as SVG and PDF "
       "with\n"
       "their gnuplot scripts and data; tables as CSV and LaTeX. An earlier report there is "

@@ -1,7 +1,6 @@
 // `farcull report`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "experiments/command/options.h"

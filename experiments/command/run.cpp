@@ -57,8 +57,8 @@ constexpr const char* kPlanExamples =
 
 CLI::App* RunCommand::add_to(CLI::App& app) {
   const auto declare = [&](const char* name, const char* title, const char* examples) {
-    CLI::App* command = app.add_subcommand(name, title);
-    command->footer(examples);
+    CLI::App* command = add_command(app, name, title);
+    add_footer(*command, examples);
     return command;
   };
   CLI::App* command = nullptr;
@@ -114,7 +114,7 @@ void RunCommand::add_method_options(CLI::App& command) {
       "single ones, for far, cullide and quick-cullide; default\n"
       "32 with occlusion queries and more than 32768 triangles");
   add("--views", views_, "VIEWS", kViewsHelp);
-  add("--device", device_, "DEVICE", kRunDeviceHelp);
+  add("--device", device_, "DEVICE", kDeviceHelp);
   add_flag(command, "--self", self_, kSelfHelp);
   add("--clearance", clearance_, "D", kClearanceHelp);
   add_flag(command, "--full", full_, kFullHelp);

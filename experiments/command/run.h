@@ -1,7 +1,6 @@
 // `farcull run`, `farcull verify` and `farcull plan`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 

@@ -80,9 +80,8 @@ std::string suffixes_text() {
 
 CLI::App* ScenesCommand::add_to(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("scenes", "the built-in scenes with their sizes; one of them as meshes");
-  command->add_option("NAME", name_, "the scene to write, with its numbers and suffixes")
-      ->type_name("");
+      add_command(app, "scenes", "the built-in scenes with their sizes; one of them as meshes");
+  add_option(*command, "NAME", name_, "", "the scene to write, with its numbers and suffixes");
   add_option(*command, "--write", folder_, "DIR",
              "write the scene as meshes, one an object, and\nscene.json into this folder, "
              "which is made if its\nparent is there; files of these names are replaced");
@@ -90,12 +89,12 @@ CLI::App* ScenesCommand::add_to(CLI::App& app) {
              "with --write: N frames (0 to N-1) or those numbered\nA to B of a scene that "
              "moves, for\nfarcull run DIR/scene.json --frames N|A:B");
   add_option(*command, "--json", outputs_.json, "FILE", kJsonHelp);
-  command->footer(
-      "Examples:\n"
-      "  farcull scenes\n"
-      "  farcull run crowd@ground\n"
-      "  farcull scenes crowd:3000:0.2 --write crowd\n"
-      "  farcull scenes tree-leaves --write leaves --frames 60");
+  add_footer(*command,
+             "Examples:\n"
+             "  farcull scenes\n"
+             "  farcull run crowd@ground\n"
+             "  farcull scenes crowd:3000:0.2 --write crowd\n"
+             "  farcull scenes tree-leaves --write leaves --frames 60");
   return command;
 }
 

@@ -1,8 +1,6 @@
 // `farcull scenes`.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "experiments/command/options.h"
 
 namespace farcull {

@@ -66,32 +66,24 @@ constexpr std::uint64_t kMostSeed = 1'000'000'000'000;
 
 void StudiesCommand::add_to(CLI::App& experiment) {
   const auto declare = [&](const std::string& name, const std::string& title) {
-    CLI::App* command = experiment.add_subcommand(name, title);
-    command
-        ->add_option(
-            "--out", out_,
-            fmt::format("folder of the results, one SQLite file; default\n{}", kResultsFolder))
-        ->type_name("DIR");
-    command->add_flag("--quick", quick_, "a smaller grid of the same shape: minutes, not hours")
-        ->disable_flag_override();
-    command->add_option("--seed", seed_, "of what is random in the grid; default 1")
-        ->type_name("N");
-    command->add_flag("--resume", resume_, "go on with what is in the folder")
-        ->disable_flag_override();
-    command
-        ->add_option("--shard", shard_,
-                     "measure the Kth of N parts; default the variables of\nSlurm's array jobs and "
-                     "Open MPI, else everything")
-        ->type_name("K/N");
-    command->add_option("--device", device_, kDeviceHelp)->type_name("DEVICE");
-    command->footer(
-        fmt::format("Examples:\n"
-                    "  farcull experiment {0} --quick\n"
-                    "  farcull experiment {0} --out results --resume\n"
-                    "  farcull experiment {0} --out results --shard 2/4\n\n"
-                    "Then: farcull report DIR; for shards farcull merge DIR first.\n"
-                    "Exit status 1: a method that promises missed a pair.",
-                    name));
+    CLI::App* command = add_command(experiment, name, title);
+    add_option(*command, "--out", out_, "DIR",
+               fmt::format("folder of the results, one SQLite file; default\n{}", kResultsFolder));
+    add_flag(*command, "--quick", quick_, "a smaller grid of the same shape: minutes, not hours");
+    add_option(*command, "--seed", seed_, "N", "of what is random in the grid; default 1");
+    add_flag(*command, "--resume", resume_, "go on with what is in the folder");
+    add_option(*command, "--shard", shard_, "K/N",
+               "measure the Kth of N parts; default the variables of\nSlurm's array jobs and "
+               "Open MPI, else everything");
+    add_option(*command, "--device", device_, "DEVICE", kDeviceHelp);
+    add_footer(*command,
+               fmt::format("Examples:\n"
+                           "  farcull experiment {0} --quick\n"
+                           "  farcull experiment {0} --out results --resume\n"
+                           "  farcull experiment {0} --out results --shard 2/4\n\n"
+                           "Then: farcull report DIR; for shards farcull merge DIR first.\n"
+                           "Exit status 1: a method that promises missed a pair.",
+                           name));
     commands_.push_back(command);
   };
   for (const Study& study : studies()) declare(study.name, study.title);
@@ -100,7 +92,7 @@ void StudiesCommand::add_to(CLI::App& experiment) {
 
 bool StudiesCommand::named() const {
   for (CLI::App* command : commands_) {
-    if (*command) return true;
+    if (given(*command)) return true;
   }
   return false;
 }
@@ -109,11 +101,12 @@ int StudiesCommand::run() {
   StudiesRequest request;
   std::string name;
   for (std::size_t i = 0; i < commands_.size(); ++i) {
-    if (!*commands_[i]) continue;
-    name = commands_[i]->get_name();
+    if (!given(*commands_[i])) continue;
     if (i < studies().size()) {
+      name = studies()[i].name;
       request.studies = {studies()[i]};
     } else {
+      name = "all";
       request.studies = studies();
     }
   }
@@ -165,23 +158,18 @@ int StudiesCommand::run() {
 }
 
 CLI::App* MergeCommand::add_to(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("merge", "join what shards of an experiment measured");
-  command
-      ->add_option(
-          "SHARDS", sources_,
-          fmt::format("the folder of the shards, or their files; default\n{}", kResultsFolder))
-      ->type_name("");
-  command
-      ->add_option("-o,--out", out_,
-                   "the file to write; default results.sqlite in the\nfolder of the shards")
-      ->type_name("FILE");
-  command->footer(
-      "Examples:\n"
-      "  farcull merge results\n"
-      "  farcull merge node1/results-1-of-2.sqlite node2/results-2-of-2.sqlite -o "
-      "results.sqlite\n\n"
-      "Refuses shards that are there twice, points without a row, and shards of different\n"
-      "commits, grids or seeds.");
+  CLI::App* command = add_command(app, "merge", "join what shards of an experiment measured");
+  add_option(*command, "SHARDS", sources_, "",
+             fmt::format("the folder of the shards, or their files; default\n{}", kResultsFolder));
+  add_option(*command, "-o,--out", out_, "FILE",
+             "the file to write; default results.sqlite in the\nfolder of the shards");
+  add_footer(*command,
+             "Examples:\n"
+             "  farcull merge results\n"
+             "  farcull merge node1/results-1-of-2.sqlite node2/results-2-of-2.sqlite -o "
+             "results.sqlite\n\n"
+             "Refuses shards that are there twice, points without a row, and shards of different\n"
+             "commits, grids or seeds.");
   return command;
 }
 

@@ -1,7 +1,6 @@
 // `farcull experiment NAME|all` for the studies that the store keeps, and `farcull merge`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>

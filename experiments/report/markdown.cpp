@@ -69,9 +69,8 @@ std::string machine_of(const Page& page) {
   std::string out;
   for (const auto& [number, p] : page.runs) {
     if (!rows.contains(number)) continue;
-    out += row_of({std::to_string(number), p.started, p.commit, p.gl_renderer,
-                   p.gl_vendor + ", " + p.gl_version, p.cpu, std::to_string(p.cores),
-                   json_code(p.options), grouped(rows.at(number))});
+    out += row_of({std::to_string(number), p.started, p.commit, p.gl_renderer, driver_text(p),
+                   p.cpu, std::to_string(p.cores), json_code(p.options), grouped(rows.at(number))});
   }
   if (out.empty()) return out;
   return "| run | started | commit | device | driver | CPU | cores | options | rows |\n"

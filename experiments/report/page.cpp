@@ -288,7 +288,7 @@ class Writer {
     add("<h3>Run {}</h3>\n<table class=\"machine\">\n<tbody>", number);
     line("Started", p.started);
     line("Device", p.gl_renderer);
-    line("Driver", p.gl_vendor + ", " + p.gl_version);
+    line("Driver", driver_text(p));
     line("CPU", p.cpu);
     line("Cores", std::to_string(p.cores));
     line("Commit", p.commit);

@@ -28,11 +28,10 @@ std::string csv_line(const std::vector<std::string>& cells) {
 }
 
 // Of all rows, each once, in the order of first appearance.
-std::vector<std::string> names_of(const StoredStudy& stored,
-                                  nlohmann::ordered_json Measurement::*values) {
+std::vector<std::string> names_of(const StoredStudy& stored, JsonObject Measurement::*values) {
   std::vector<std::string> out;
   for (const Row& row : stored.rows) {
-    for (const auto& [name, value] : (row.measurement.*values).items()) {
+    for (const auto& [name, value] : (row.measurement.*values)->items()) {
       if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(name);
     }
   }
@@ -168,8 +167,8 @@ std::string rows_csv(const StoredStudy& stored) {
     const Measurement& m = row.measurement;
     std::vector<std::string> cells = {std::to_string(row.position)};
     for (std::string& value : axis_values(row.point)) cells.push_back(std::move(value));
-    for (const std::string& name : counts) cells.push_back(value_text(m.counts, name));
-    for (const std::string& name : times) cells.push_back(value_text(m.times, name));
+    for (const std::string& name : counts) cells.push_back(value_text(*m.counts, name));
+    for (const std::string& name : times) cells.push_back(value_text(*m.times, name));
     cells.push_back(m.device);
     cells.push_back(std::to_string(row.run));
     cells.push_back(row.measured);

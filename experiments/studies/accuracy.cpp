@@ -10,7 +10,7 @@ using enum Method;
 
 struct AccuracyScene {
   const char* name;
-  bool self = false;  // one object against itself, which the set methods but S-CULLIDE do not do
+  bool self = false;  // one object against itself, by S-CULLIDE and FAR pairs
 };
 
 // Scenes of small triangles, or few: at 4096 px large ones take a software device minutes.

@@ -1,6 +1,8 @@
 // Converts typed counts and times to the names under which a store holds them.
 #include "experiments/studies/counts.h"
 
+#include <nlohmann/json.hpp>
+
 namespace farcull {
 namespace {
 
@@ -84,7 +86,7 @@ NamedCounts named(const Counts& counts) {
 Measurement stored(const PointResult& result) {
   Measurement out{.device = result.device, .left_out = result.left_out};
   for (const auto& [name, value] : named(result.counts))
-    std::visit([&, &key = name](const auto& of) { out.counts[key] = of; }, value);
+    std::visit([&, &key = name](const auto& of) { (*out.counts)[key] = of; }, value);
   const PointTimes& t = result.times;
   const std::pair<const char*, std::optional<double>> times[] = {
       {"build", t.build}, {"cull", t.cull},           {"exact", t.exact},        {"total", t.total},
@@ -96,7 +98,7 @@ Measurement stored(const PointResult& result) {
 }
 
 bool breaks_promise(const Measurement& measurement) {
-  const auto& counts = measurement.counts;
+  const auto& counts = *measurement.counts;
   if (!counts.value("promises", false)) return false;
   return counts.value("missed", std::uint64_t{0}) > 0 ||
          counts.value("violations", std::uint64_t{0}) > 0;

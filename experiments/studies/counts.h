@@ -2,12 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "experiments/studies/json_object.h"
 
 namespace farcull {
 
@@ -86,17 +87,19 @@ struct PointTimes {
 
 /// The result of a point.
 struct PointResult {
-  Counts counts = {};  // the same on every run on the same device and CPU features, bit for bit
+  Counts counts = {};  // the same on every run on the same device, bit for bit; those of methods on
+                       // native and cpu are the same on every machine
   PointTimes times = {};
-  std::string device = {};    // what answered: a renderer, or "cpu"
+  std::string device = {};    // what answered: a renderer, "native" (the native canvas drew), or
+                              // "cpu" (nothing was drawn)
   std::string left_out = {};  // why nothing was measured (a library that this build is without, a
                               // resolution beyond the device); empty: it was
 };
 
 /// The same as a row of a store holds it. Rows of other versions may have other names.
 struct Measurement {
-  nlohmann::ordered_json counts = nlohmann::ordered_json::object();
-  nlohmann::ordered_json times = nlohmann::ordered_json::object();
+  JsonObject counts = {};
+  JsonObject times = {};
   std::string device;
   std::string left_out = {};
 };

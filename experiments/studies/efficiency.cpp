@@ -16,7 +16,7 @@ using enum Method;
 
 struct MovingCase {
   const char* scene;
-  bool self = false;  // its objects are tested against themselves as well, which few methods do
+  bool self = false;  // its objects are tested against themselves as well, by few methods
 };
 
 // All scenes that move, no larger than the methods that draw can take on a software device.

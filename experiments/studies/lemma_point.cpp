@@ -43,11 +43,13 @@ PointResult measure_lemma(const LemmaPoint& point, Lab& lab) {
     canvas = worst.get();
     out.device = "cpu";
   } else {
-    if (counts.promises) counts.revoked = !lab.session().verdict(Reliance::drawing).holds;
+    const bool native = lab.session().canvas_device().native;
+    if (counts.promises && !native)
+      counts.revoked = !lab.session().verdict(Reliance::drawing).holds;
     canvas = &lab.session().canvas(
         fattener, {.depth_format = bits24 ? DepthFormat::fixed24 : DepthFormat::float32,
                    .query = bits24 ? QueryMode::occlusion : QueryMode::flags});
-    out.device = lab.session().context().info().renderer;
+    out.device = native ? "native" : lab.session().context().info().renderer;
   }
   if (point.side > canvas->limits().max_resolution) {
     out.left_out = fmt::format("{} px are beyond the device's {}", point.side,

@@ -5,7 +5,8 @@
 #include <ctime>
 
 #include "commit.h"
-#include "core/gl/context.h"
+#include "core/native/lanes.h"
+#include "experiments/method/session.h"
 #include "experiments/system/machine.h"
 
 namespace farcull {
@@ -21,16 +22,30 @@ std::string utc_now() {
 }
 
 Provenance provenance_now(const std::string& device, const std::string& options) {
-  const GlInfo gl = GlContext(device).info();
-  return {.started = utc_now(),
-          .commit = FARCULL_COMMIT,
-          .gl_vendor = gl.vendor,
-          .gl_renderer = gl.renderer,
-          .gl_version = gl.version,
-          .cpu = cpu_model(),
-          .cpu_features = cpu_features(),
-          .cores = usable_cores(),
-          .options = options};
+  Provenance out{.started = utc_now(),
+                 .commit = FARCULL_COMMIT,
+                 .gl_vendor = {},
+                 .gl_renderer = {},
+                 .gl_version = {},
+                 .cpu = cpu_model(),
+                 .cpu_features = cpu_features(),
+                 .cores = usable_cores(),
+                 .options = options};
+  Session session(device);
+  if (session.canvas_device().native) {
+    out.gl_renderer = "native (" + lane_target() + ")";
+  } else {
+    const GlInfo& gl = session.context().info();
+    out.gl_vendor = gl.vendor;
+    out.gl_renderer = gl.renderer;
+    out.gl_version = gl.version;
+  }
+  return out;
+}
+
+std::string driver_text(const Provenance& provenance) {
+  if (provenance.gl_vendor.empty() && provenance.gl_version.empty()) return "none";
+  return provenance.gl_vendor + ", " + provenance.gl_version;
 }
 
 }  // namespace farcull

@@ -40,7 +40,10 @@ std::uint64_t missed_penetrating(const Scene& scene, const Truth& truth,
 Outcome outcome_of(const Scene& scene, const Truth& truth, const Record& record) {
   Outcome out;
   out.pairs = record.collisions.all();
-  out.device = record.found.device.gl ? record.found.device.gl->renderer : "cpu";
+  const UsedDevice& used = record.found.device;
+  out.device = used.gl                                    ? used.gl->renderer
+               : used.cpu && draws(record.options.method) ? "native"
+                                                          : "cpu";
   RunCounts counts;
   fill(counts, scene, truth, errors_of(truth, out.pairs), record.found.count);
   counts.missed_penetrating = missed_penetrating(scene, truth, out.pairs);

@@ -39,6 +39,11 @@ void make_folder(const std::string& folder) {
   }
 }
 
+std::string device_text(const Provenance& provenance) {
+  const std::string& version = provenance.gl_version;
+  return provenance.gl_renderer + (version.empty() ? "" : " (" + version + ")");
+}
+
 // Refuses to go on where earlier rows are of another program or machine: one table would hold both
 // as if they were of one.
 void require_alike(const Store& store, const StoredStudy& stored, const Provenance& now) {
@@ -57,8 +62,7 @@ void require_alike(const Store& store, const StoredStudy& stored, const Provenan
       refuse("commit", then.commit, now.commit,
              "go on with that commit, or start anew in another folder");
     if (then.gl_renderer != now.gl_renderer || then.gl_version != now.gl_version)
-      refuse("the device", then.gl_renderer + " (" + then.gl_version + ")",
-             now.gl_renderer + " (" + now.gl_version + ")",
+      refuse("the device", device_text(then), device_text(now),
              "go on with that device (--device), or start anew in another folder");
     if (then.cpu_features != now.cpu_features)
       refuse("the processor", then.cpu, now.cpu + ", with other features",

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/base/error.h"
@@ -324,8 +325,8 @@ void Store::add(const std::string& study, const Row& row) {
     insert.bind(3, row.run);
     insert.bind(4, row.measured);
     insert.bind(5, row.measurement.device);
-    insert.bind(6, text_of(row.measurement.counts));
-    insert.bind(7, text_of(row.measurement.times));
+    insert.bind(6, text_of(*row.measurement.counts));
+    insert.bind(7, text_of(*row.measurement.times));
     insert.bind(8, row.measurement.left_out);
     if (insert.exec() == 0) {
       throw Error(state_->path,
@@ -362,12 +363,12 @@ StoredStudy Store::study(const std::string& name) const {
         throw Error(state_->path, "is damaged: a row of " + name + " has no point",
                     "restore it from a copy, or start anew in another folder");
       }
+      Measurement measurement{.device = text(3), .left_out = text(6)};
+      measurement.counts = parsed(state_->path, text(4));
+      measurement.times = parsed(state_->path, text(5));
       out.rows.push_back({.position = position,
                           .point = out.declaration.points[position],
-                          .measurement = {.counts = parsed(state_->path, text(4)),
-                                          .times = parsed(state_->path, text(5)),
-                                          .device = text(3),
-                                          .left_out = text(6)},
+                          .measurement = std::move(measurement),
                           .run = select.getColumn(1).getInt64(),
                           .measured = text(2)});
     }

@@ -189,8 +189,8 @@ Chapter accuracy_chapter(const StoredStudy& stored) {
   out.limits = {
       "Scenes are few and still, so that no miss is no proof; the proof is in "
       "docs/reliability.md.",
-      "FAR culls sets of triangles of different objects; against themselves objects are tested by "
-      "S-CULLIDE and FAR pairs alone.",
+      "FAR is measured between objects; against themselves objects are tested by S-CULLIDE and FAR "
+      "pairs alone.",
       "How much CULLIDE misses depends on how a device samples: other devices give other counts.",
       "The published radius may miss nothing in these scenes and pairs in others (see the study of "
       "the radius)."};

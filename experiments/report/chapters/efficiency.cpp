@@ -307,8 +307,8 @@ Chapter efficiency_chapter(const StoredStudy& stored) {
       "Scenes are far smaller than in the papers, so that a software device can draw them; "
       "`farcull experiment family` takes any size.",
       "Factors depend on resolution: at a lower one FAR fattens more and keeps more.",
-      "FAR and CULLIDE do not test objects against themselves, so scenes that need that are "
-      "measured by I-COLLIDE and FAR pairs alone.",
+      "FAR and CULLIDE are measured between objects; scenes with objects that are tested against "
+      "themselves are measured by I-COLLIDE and FAR pairs alone.",
       "Boxes of triangles are our addition to I-COLLIDE; as published it ends with objects.",
       "On a software device the times of methods that draw say nothing about graphics hardware; "
       "queries and draws carry over."};

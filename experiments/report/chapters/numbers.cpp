@@ -24,11 +24,17 @@ std::string grouped_digits(std::string digits) {
 }  // namespace
 
 std::optional<double> count_of(const Row& row, const std::string& name) {
-  return number_in(row.measurement.counts, name);
+  return number_in(*row.measurement.counts, name);
 }
 
 std::optional<double> time_of(const Row& row, const std::string& name) {
-  return number_in(row.measurement.times, name);
+  return number_in(*row.measurement.times, name);
+}
+
+bool flag_of(const Row& row, const std::string& name) {
+  const auto& counts = *row.measurement.counts;
+  const auto it = counts.find(name);
+  return it != counts.end() && it->is_boolean() && it->get<bool>();
 }
 
 std::string method_label(const PointKey& point) {

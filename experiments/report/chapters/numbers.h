@@ -22,6 +22,8 @@ inline double count_or_none(const Row& row, const std::string& name) {
 inline double time_or_none(const Row& row, const std::string& name) {
   return time_of(row, name).value_or(kNone);
 }
+/// Whether a row has a count of that name that is true.
+bool flag_of(const Row& row, const std::string& name);
 
 /// As figures and tables name what a point was measured with: "FAR (OBB)", "CULLIDE", "FAR pairs".
 std::string method_label(const PointKey& point);

@@ -177,10 +177,7 @@ double false_positives(const Row& row) {
   return (*candidates - found) / *colliding;
 }
 
-bool promises(const Row& row) {
-  const auto it = row.measurement.counts.find("promises");
-  return it != row.measurement.counts.end() && it->is_boolean() && it->get<bool>();
-}
+bool promises(const Row& row) { return flag_of(row, "promises"); }
 
 bool is_lemma(const Row& row) { return row.point.method.starts_with("lemma"); }
 

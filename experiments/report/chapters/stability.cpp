@@ -303,7 +303,7 @@ Chapter stability_chapter(const StoredStudy& stored) {
   add_failures(families, names, out);
   for (const NamedRows& method : promising) add_degradation(families, method.name, out);
   out.limits = {
-      "FAR and CULLIDE test no object against itself: of the cloth they see it against the sphere, "
+      "FAR and CULLIDE are measured between objects: of the cloth they see it against the sphere, "
       "FAR pairs and S-CULLIDE also against itself.",
       "FCL leaves neighbours in one object out, so these are no misses of its; of the others they "
       "count.",

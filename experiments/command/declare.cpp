@@ -1,0 +1,63 @@
+// All that the commands need of CLI11, so that its templates are compiled once.
+#include "experiments/command/declare.h"
+
+#include <CLI/CLI.hpp>
+#include <utility>
+
+namespace farcull {
+
+CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& title) {
+  return parent.add_subcommand(name, title);
+}
+
+void allow_one_command(CLI::App& command) { command.require_subcommand(0, 1); }
+
+void add_footer(CLI::App& command, const std::string& text) { command.footer(text); }
+
+void add_footer(CLI::App& command, std::function<std::string()> text) {
+  command.footer(std::move(text));
+}
+
+void add_option(CLI::App& command, const char* name, Text& value, const char* type,
+                const std::string& help) {
+  command.add_option(name, value, help)->type_name(type);
+}
+
+void add_option(CLI::App& command, const char* name, std::string& value, const char* type,
+                const std::string& help) {
+  command.add_option(name, value, help)->type_name(type);
+}
+
+void add_option(CLI::App& command, const char* name, std::uint64_t& value, const char* type,
+                const std::string& help) {
+  command.add_option(name, value, help)->type_name(type);
+}
+
+void add_option(CLI::App& command, const char* name, std::vector<std::string>& values,
+                const char* type, const std::string& help) {
+  command.add_option(name, values, help)->type_name(type);
+}
+
+void add_required(CLI::App& command, const char* name, std::string& value, const char* help) {
+  command.add_option(name, value, help)->required()->type_name("");
+}
+
+void add_required(CLI::App& command, const char* name, std::vector<std::string>& values,
+                  const char* help) {
+  command.add_option(name, values, help)->required()->type_name("");
+}
+
+CLI::Option* add_bare_option(CLI::App& command, const char* name, std::vector<std::string>& values,
+                             const char* type, const char* help) {
+  return command.add_option(name, values, help)->type_name(type)->expected(0, 1);
+}
+
+void add_flag(CLI::App& command, const char* name, bool& value, const char* help) {
+  command.add_flag(name, value, help)->disable_flag_override();
+}
+
+bool given(const CLI::App& command) { return command.parsed(); }
+
+bool given(const CLI::Option& option) { return option.count() > 0; }
+
+}  // namespace farcull
