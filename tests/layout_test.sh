@@ -24,8 +24,8 @@ core/cull                  core/canvas
 core/sweep                 core/scene
 core/pairs                 core/view
 core/native                core/canvas
-core/gl                    core/cull core/sweep core/pairs core/native
-offsets                    core/canvas
+core/gl                    core/cull core/sweep core/pairs
+offsets                    core/native
 verify/certificate         core/scene
 verify                     core/canvas verify/certificate
 experiments/system         core/base

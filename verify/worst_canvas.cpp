@@ -49,6 +49,18 @@ bool surely_inside(const Range (&a)[2], const Range (&b)[2], const Point& c, dou
   return true;
 }
 
+// The same where the two products that are compared, dx (c.y - a.y) and dy (c.x - a.x), are of
+// floats, each operation off by half a unit in its last place to the worse side: two in each
+// factor, one in the product, and none in comparing. Doubles hold these products of floats to
+// 2^-53.
+bool surely_beside(const float* a, const float* b, const Point& c, double orientation) {
+  constexpr double kHalfUnit = 0x1p-24;
+  const double dx = double(b[0]) - a[0], dy = double(b[1]) - a[1];
+  const double left = dx * (c.y - a[1]), right = dy * (c.x - a[0]);
+  const double lost = 3 * kHalfUnit * (std::abs(left) + std::abs(right));
+  return orientation * (left - right) > lost;
+}
+
 // The depth buffer's place of a depth, for a scale of depth_scale().
 float mapped(float z, float scale) { return std::min(std::max(0.5f + z * scale, 0.25f), 0.75f); }
 
@@ -65,6 +77,7 @@ WorstCanvas::WorstCanvas(const SolidProgram& solid, const WorstCanvasOptions& op
   limits_.subpixel_bits = options.subpixel_bits;
   limits_.depth_bits = options.depth_bits;
   limits_.max_resolution = options.max_resolution;
+  limits_.exact_samples = options.exact_samples;
 }
 
 void WorstCanvas::begin(const Window& window, const Drawables& drawables) {
@@ -99,23 +112,41 @@ void WorstCanvas::rasterize_triangle(std::uint32_t element, const Visit& visit) 
   }
 }
 
+// Whether the centre is inside for every choice that the assumptions leave.
+bool WorstCanvas::covers(const Proxy& proxy, double orientation, double cx, double cy) const {
+  const Point c = {cx, cy};
+  for (int i = 0; i < 4; ++i) {
+    const float* const a = &proxy.corners[2 * i];
+    const float* const b = &proxy.corners[2 * ((i + 1) % 4)];
+    if (options_.exact_samples) {
+      if (!surely_beside(a, b, c, orientation)) return false;
+      continue;
+    }
+    Range from[2], to[2];
+    for (int k = 0; k < 2; ++k) {
+      const int size = k == 0 ? window_.width : window_.height;
+      const double d = displacement(viewport_side(size), options_.subpixel_bits);
+      from[k] = {a[k] - d, a[k] + d};
+      to[k] = {b[k] - d, b[k] + d};
+    }
+    if (!surely_inside(from, to, c, orientation)) return false;
+  }
+  return true;
+}
+
 template <class Visit>
 void WorstCanvas::rasterize_proxy(std::uint32_t element, Verb verb, const Visit& visit) const {
   const int width = window_.width, height = window_.height;
   const float scale = depth_scale(window_);
   const Proxy& proxy = drawables_->proxies[element];
-  Range corner[4][2];
   Point nominal[4];
   double lo[2] = {HUGE_VAL, HUGE_VAL}, hi[2] = {-HUGE_VAL, -HUGE_VAL};
   for (int i = 0; i < 4; ++i) {
     nominal[i] = {proxy.corners[2 * i], proxy.corners[2 * i + 1]};
     for (int k = 0; k < 2; ++k) {
-      const int size = k == 0 ? width : height;
-      const double d = displacement(viewport_side(size), options_.subpixel_bits);
       const double x = proxy.corners[2 * i + k];
-      corner[i][k] = {x - d, x + d};
-      lo[k] = std::min(lo[k], corner[i][k].lo);
-      hi[k] = std::max(hi[k], corner[i][k].hi);
+      lo[k] = std::min(lo[k], x);
+      hi[k] = std::max(hi[k], x);
     }
   }
   const double orientation = cross(nominal[0], nominal[1], nominal[2]) > 0 ? 1 : -1;
@@ -124,10 +155,7 @@ void WorstCanvas::rasterize_proxy(std::uint32_t element, Verb verb, const Visit&
   for (int y = y0; y <= y1; ++y) {
     for (int x = x0; x <= x1; ++x) {
       const Point c = {x + 0.5 - 0.5 * width, y + 0.5 - 0.5 * height};
-      bool covered = true;
-      for (int i = 0; i < 4 && covered; ++i)
-        covered = surely_inside(corner[i], corner[(i + 1) % 4], c, orientation);
-      if (!covered) continue;
+      if (!covers(proxy, orientation, c.x, c.y)) continue;
       float entry, exit;
       if (!solid_.interval_worst(static_cast<float>(c.x), static_cast<float>(c.y), proxy.solid,
                                  entry, exit))

@@ -15,6 +15,9 @@ struct WorstCanvasOptions {
   int depth_bits =
       32;  // 32: stored as the float that was computed; 24: rounded to a multiple of 2^-24
   int max_resolution = 16370;
+  /// Keeps what core/native/canvas.h promises, and no more: corners are not moved, but the floats
+  /// that compare a pixel centre with an edge are rounded as badly as IEEE 754 allows.
+  bool exact_samples = false;
 };
 
 /// Proxies (A1 to A4): a pixel gets a fragment only if its centre is inside the quadrilateral for
@@ -38,6 +41,7 @@ class WorstCanvas final : public Canvas {
  private:
   template <class Visit>
   void rasterize_triangle(std::uint32_t element, const Visit& visit) const;
+  bool covers(const Proxy& proxy, double orientation, double cx, double cy) const;
   template <class Visit>
   void rasterize_proxy(std::uint32_t element, Verb verb, const Visit& visit) const;
   template <class Visit>

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "offsets/fit.h"
 #include "offsets/minkowski.h"
 #include "offsets/obb.h"
 #include "tests/core/base/rational.h"

@@ -1,6 +1,7 @@
 // The checks of kernels' answers: this CPU's are right, and answers that are a little too
 // narrow, far too wide, or no numbers are not.
 #include "verify/kernel_check.h"
+#include "offsets/fit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Fattening: items, clipped triangles and drawables that are left out.
 #include "core/canvas/fatten.h"
+#include "offsets/fit.h"
 
 #include <gtest/gtest.h>
 

@@ -24,7 +24,7 @@ using lab::scene_of;
 using lab::undrawable_scene;
 
 Session& session() {
-  static Session shared("");
+  static Session shared("gl");
   return shared;
 }
 

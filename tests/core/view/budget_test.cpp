@@ -50,6 +50,21 @@ TEST(Budget, TermsAreTheFormulasOfTheTable) {
   }
 }
 
+TEST(Budget, TermsOfACanvasWithExactSamples) {
+  for (const int viewport : {8, 64, 1024, 16384}) {
+    RasterLimits limits = with_bits(8);
+    const Budget gl = budget_for(limits, viewport);
+    limits.exact_samples = true;
+    const Budget b = budget_for(limits, viewport);
+    // Corners rounded to float and the comparison of edges: 3.51 u M, charged as 4 u M.
+    expect_root(b.input, 2, 4 * kU * Q(viewport) / 2);
+    EXPECT_EQ(b.vertex, 0);
+    EXPECT_EQ(b.snap, 0);
+    EXPECT_EQ(b.sampling, gl.sampling);
+    EXPECT_EQ(b.double_, gl.double_);
+  }
+}
+
 TEST(Budget, TermsHaveTheirNamesInOrder) {
   const Budget b{1, 2, 3, 4, 5, 6};
   const char* const kNames[] = {"sampling", "input", "double", "vertex", "snap", "offset"};

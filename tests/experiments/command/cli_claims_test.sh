@@ -94,7 +94,9 @@ answers 'check' 0 '^proved: no pair of the scene meets$' check p.json pierced.ob
 expect 'check says what was not asked' "$out" "^$line"
 unasked verify verify pierced.obj --method far-pairs
 unasked 'run far' run pierced.obj --device software --resolution 64
-expect 'run far asks by a method' "$out" '^not asked .*\(--method far-pairs --self asks\)$'
+expect 'run far asks by an option' "$out" '^not asked .*\(--self asks\)$'
+unasked 'run cullide' run pierced.obj --method cullide --device software --resolution 64
+expect 'run cullide asks by a method' "$out" '^not asked .*\(--method far-pairs --self asks\)$'
 unasked compare compare pierced.obj --methods far-pairs,exact
 unasked bench bench pierced.obj --device cpu --repeat 1 --peers none
 cp pierced.obj pierced0.obj

@@ -24,7 +24,6 @@ obj 'v 1 1 -1' 'v 1 1 1' 'v 0 0 -1' 'f 1 2 3' 'f 1 2 4' 'f 5 6 7' >folded.obj
 for method in quick-cullide s-cullide; do
   bad "$method with a clearance" '--clearance: .*far-pairs' run two-spheres --method "$method" \
     --clearance 0
-  bad "$method on the cpu" '--device: .*far-pairs' run two-spheres --method "$method" --device cpu
   bad "$method with fragment depth" '--depth: ' run two-spheres --method "$method" --depth fragment
   bad "$method with a radius" '--radius: ' run two-spheres --method "$method" --radius 0.5
   bad "$method with an offset" '--offset: ' run two-spheres --method "$method" --offset exact
@@ -83,6 +82,11 @@ good 'plan as JSON' 0 plan two-spheres --method far-pairs --json -
 expect 'plan as JSON' "$out" '"decision": "depends"'
 good 'plan of self-collision' 0 plan folded.obj --method far-pairs --self
 expect 'plan of self-collision' "$out" '^self +1 object is tested against itself'
+good 'plan of far inside objects' 0 plan two-spheres --self
+expect 'plan of far inside objects' "$out" '^patches +.*32 patches of at most 320 triangles'
+good 'far inside a small object' 0 verify folded.obj --self
+expect 'far inside a small object' "$out" '^patches .*boxes alone$'
+expect 'far inside a small object' "$out" 'promises to miss nothing$'
 
 good 'quick-cullide' 0 run crowd --method quick-cullide --resolution 64 --device software --json -
 expect 'quick-cullide' "$out" '"draws_saved": [1-9]'

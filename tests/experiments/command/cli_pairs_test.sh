@@ -32,13 +32,12 @@ bad 'compare far at auto' '--resolutions: auto ' compare two-spheres --methods f
 bad 'far with views auto' '--views: auto .*far-pairs' run two-spheres --views auto
 bad 'compare far with views auto' '--views: auto ' compare two-spheres --methods far --views auto
 for method in far cullide; do
-  bad "$method with self" '--self: .*far-pairs' run two-spheres --method "$method" --self
   bad "$method with a clearance" '--clearance: .*far-pairs' run two-spheres --method "$method" \
     --clearance 0
-  bad "$method on the cpu" '--device: .*far-pairs' run two-spheres --method "$method" --device cpu
-  bad "compare $method with self" '--methods: .*far-pairs' compare two-spheres \
-    --methods "$method,exact" --self
 done
+bad 'cullide with self' '--self: .*far-pairs' run two-spheres --method cullide --self
+bad 'compare cullide with self' '--methods: .*far-pairs' compare two-spheres \
+  --methods cullide,exact --self
 for option in --radius --offset --depth --depth-format --query; do
   bad "far-pairs with $option" "$option: " run "${pairs[@]}" "$option" 24
 done
@@ -82,9 +81,10 @@ printf 'v 0 0 nan\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n' >cloth_05.obj
 bad 'a first frame that is no mesh' 'cloth_05\.obj:1: ' run cloth_%02d.obj --method far-pairs \
   --frames 5:5 --json old.json --pairs new.csv
 printf '{"objects": [{"mesh": "good.obj", "self": true}, {"mesh": "good.obj"}]}' >self.json
-bad 'far on a scene that collides with itself' 'self: far tests no object .*far-pairs' run self.json
-bad 'compare far on one' '--methods: far tests no object .*far-pairs' compare self.json \
-  --methods far,exact
+bad 'cullide on a scene that collides with itself' 'self: cullide tests no object .*far-pairs' \
+  run self.json --method cullide
+bad 'compare cullide on one' '--methods: cullide tests no object .*far-pairs' compare self.json \
+  --methods cullide,exact
 
 # --- good cases --------------------------------------------------------------------------------
 

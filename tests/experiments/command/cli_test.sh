@@ -338,7 +338,7 @@ mkdir no_vendors broken_egl
 echo 'not a library' >broken_egl/libEGL.so.1
 for command in run verify compare doctor; do
   arguments=("$command")
-  [[ $command == doctor ]] || arguments+=(two-spheres --json old.json)
+  [[ $command == doctor ]] || arguments+=(two-spheres --device gl --json old.json)
   settings=(__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent)
   bad "$command without an EGL vendor" 'EGL: ' "${arguments[@]}"
   settings=("__EGL_VENDOR_LIBRARY_DIRS=$PWD/no_vendors")
@@ -346,6 +346,7 @@ for command in run verify compare doctor; do
   settings=("LD_LIBRARY_PATH=$PWD/broken_egl")
   bad "$command without libEGL" 'EGL: libEGL\.so\.1 cannot be loaded' "${arguments[@]}"
   settings=(GALLIUM_DRIVER=nonsense)
+  [[ $command == doctor ]] || arguments=("$command" two-spheres --json old.json)
   bad "$command without a driver" 'EGL: ' "${arguments[@]}" --device software
   settings=(MESA_GL_VERSION_OVERRIDE=3.3 MESA_GLSL_VERSION_OVERRIDE=330)
   bad "$command with OpenGL 3.3" 'EGL: .*older than 4\.3' "${arguments[@]}" --device software
@@ -355,7 +356,38 @@ settings=()
 settings=(__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent)
 good 'far apart without EGL' 0 run far-apart
 good 'exact without EGL' 0 run two-spheres --method exact
+# What draws does so on the cores of the CPU where no device was asked for, and says why.
+good 'far without EGL' 0 verify two-spheres --resolution 64 --json -
+expect 'far without EGL' "$out" '^    "cpu": "no --device: GL where hardware answers, else the CPU; EGL'
+expect 'far without EGL' "$out" '^    "lanes": "[A-Za-z0-9_]+",$'
+settings=("LD_LIBRARY_PATH=$PWD/broken_egl")
+good 'cullide without libEGL' 0 run two-spheres --method cullide --resolution 64
+expect 'cullide without libEGL' "$out" '^device     cpu, lanes of .*: no --device: '
 settings=()
+
+# --- the native canvas -------------------------------------------------------------------------
+
+native=(two-spheres --resolution 64)
+for device in native cpu; do
+  good "far on $device" 0 verify "${native[@]}" --device "$device" --json -
+  expect "far on $device" "$out" "^    \"cpu\": \"--device $device\",\$"
+  expect "far on $device" "$out" '^    "depth_bits": 32$'
+done
+good 'far on native as the default' 0 run "${native[@]}" --pairs -
+cp "$out" default.csv
+for options in '--device native' '--device native --query occlusion' '--device native --depth-format 24'; do
+  # shellcheck disable=SC2086 # several words
+  good "far, $options" 0 run "${native[@]}" $options --pairs -
+  ((cases += 1))
+  cmp -s "$out" default.csv || fail "far, $options" 'other pairs'
+done
+good '24 bits on native' 0 run "${native[@]}" --device native --depth-format 24
+expect '24 bits on native' "$out" '^device     cpu, lanes of .*, 24 depth bits: --device native$'
+good 'occlusion on native' 0 run "${native[@]}" --device native --query occlusion --json -
+expect 'occlusion on native' "$out" '^  "query": null,$'
+good 'occlusion on GL' 0 run "${native[@]}" --device software --query occlusion --json -
+expect 'occlusion on GL' "$out" '^  "query": "occlusion",$'
+rm default.csv
 
 # --- interrupts --------------------------------------------------------------------------------
 

@@ -1,11 +1,13 @@
 // What the lemma experiment measures: one generator alone, and how large a violation is.
 #include "experiments/lemma/lemma.h"
+#include "offsets/fit.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "experiments/studies/lemma_point.h"

@@ -15,7 +15,7 @@ namespace {
 using lab::not_followed;
 
 Session& session() {
-  static Session shared("");
+  static Session shared("gl");
   return shared;
 }
 
@@ -35,6 +35,30 @@ Scene scene_for(const std::string& name, Method method) {
     for (Object& object : scene.objects) object.self = true;
   }
   return scene;
+}
+
+// That GL is drawn with where it is named, even a software renderer, and that its pairs are those
+// of the native canvas where FAR promises. (Without a name: canvas_device_test.cpp.)
+TEST(GlMethods, AreDrawnOnGlWhereItIsNamed) {
+  const Scene scene = make_builtin_scene("crowd");
+  Session native("native");
+  RunOptions options = options_of(Method::far);
+  options.device = "native";
+  const Record there = run(scene, options, native);
+  EXPECT_FALSE(there.found.device.gl);
+  for (const std::string name : {"gl", "software"}) {
+    Session gl(name);
+    EXPECT_FALSE(gl.canvas_device().native);
+    EXPECT_EQ(gl.canvas_device().reason, "--device " + name);
+    options.device = name;
+    const Record here = run(scene, options, gl);
+    ASSERT_TRUE(here.found.device.gl);
+    if (name == "software") {
+      EXPECT_EQ(here.found.device.gl->kind, "software");
+    }
+    EXPECT_FALSE(here.found.device.cpu);
+    EXPECT_EQ(here.collisions.pairs, there.collisions.pairs);
+  }
 }
 
 TEST(GlMethods, RunsFollowThePlan) {
@@ -219,14 +243,43 @@ TEST(GlMethods, SCullideMissesWhatOnlyTouchesAndSaysSo) {
             (std::vector<TrianglePair>{{0, 1}, {0, 2}}));
 }
 
+// Spheres of 5120 triangles: 16 patches each.
+TEST(GlMethods, FarFindsThePairsInsideObjectsToo) {
+  Scene scene = make_builtin_scene("two-spheres");
+  // Vertices of one half moved through the other: the sphere pierces itself.
+  for (std::size_t v = 0; v < scene.vertices.size(); v += 40) scene.vertices[v] *= 0.5;
+  for (Object& object : scene.objects) object.self = true;
+  const Record exact = run(scene, options_of(Method::exact), session());
+  ASSERT_GT(exact.collisions.neighbour_pairs.size() + exact.collisions.pairs.size(), 0u);
+  for (const char* offset : {"obb", "exact"}) {
+    for (const bool full : {false, true}) {
+      RunOptions options = options_of(Method::far, 128);
+      options.offset = offset;
+      options.full = full;
+      const Record record = run(scene, options, session());
+      EXPECT_EQ(record.collisions.pairs, exact.collisions.pairs);
+      EXPECT_EQ(record.collisions.neighbour_pairs, exact.collisions.neighbour_pairs);
+      EXPECT_EQ(record.verification->false_negatives, 0u);
+      EXPECT_TRUE(record.promise.holds);
+      EXPECT_EQ(not_followed(record), "");
+    }
+  }
+  RunOptions options = options_of(Method::far, 128);
+  options.verify = options.neighbours = false;
+  const Record apart = run(scene, options, session());
+  EXPECT_EQ(apart.collisions.pairs, exact.collisions.pairs);
+  EXPECT_EQ(apart.collisions.neighbours, 0u);
+  EXPECT_LT(apart.found.count, exact.found.count / 2);
+}
+
 TEST(GlMethods, TheFamilyOfASceneInMotion) {
   FamilyArguments arguments;
-  // far does not test objects against themselves: it sees a scene that asks for it without that.
+  // A cloth against itself: far, with either offset, and cullide without that question.
   arguments.scenes = {"cloth:200"};
-  arguments.methods = "far";
+  arguments.methods = "far,cullide";
   arguments.range = {0, 0};
   arguments.options.resolution = 64;
-  EXPECT_EQ(run_family(arguments).size(), 2u);
+  EXPECT_EQ(run_family(arguments).size(), 3u);
   arguments.scenes = {"crowd"};
   arguments.methods.reset();
   arguments.range = {0, 2};

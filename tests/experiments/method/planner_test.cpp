@@ -71,8 +71,11 @@ TEST(Planner, SaysWhatItLeavesOut) {
   EXPECT_FALSE(has(plan(scene, far), StageKind::offset));
   EXPECT_EQ(decision(plan(scene, far), "sub-object level"), "left out");
   EXPECT_EQ(decision(plan(scene, far), "fatten x, round 1"), "runs");
-  EXPECT_EQ(decision(plan(scene, far), "cull objects x, round 1"), "runs");
-  EXPECT_EQ(decision(plan(scene, far), "cull triangles x, round 1"), "depends");
+  EXPECT_EQ(decision(plan(scene, far), "object level"), "left out") << "of two objects";
+  EXPECT_EQ(decision(plan(scene, far), "cull triangles x, round 1"), "runs");
+  const Scene crowd = make_builtin_scene("crowd");
+  EXPECT_EQ(decision(plan(crowd, far), "cull objects x, round 1"), "runs");
+  EXPECT_EQ(decision(plan(crowd, far), "cull triangles x, round 1"), "depends");
   EXPECT_EQ(decision(plan(scene, far), "fatten y, round 1"), "depends");
   far.offset = "exact";
   EXPECT_EQ(decision(plan(scene, far), "offset exact"), "depends");
@@ -109,7 +112,41 @@ TEST(Planner, RefusesWhatTheMethodHasNoUseFor) {
   for (Object& object : scene.objects) object.self = true;
   EXPECT_NO_THROW(plan(scene, options));
   options.method = Method::far;
+  EXPECT_NO_THROW(plan(scene, options));
+  options.method = Method::cullide;
   EXPECT_EQ(error_of([&] { plan(scene, options); }).where, "two-spheres");
+}
+
+TEST(Planner, CutsObjectsIntoPatchesForFar) {
+  Scene scene = make_builtin_scene("two-spheres");
+  EXPECT_FALSE(has(plan(scene, {}), StageKind::patches));
+  scene.objects[0].self = true;  // of 5120 triangles, so its patches have 320
+  const Plan planned = plan(scene, {});
+  EXPECT_EQ(decision(planned, "patches"), "runs");
+  EXPECT_TRUE(reason_of(stage_named(planned, "patches")).starts_with("16 patches of at most 320"));
+  for (const Stage& stage : planned.stages()) EXPECT_NE(stage.level, "objects");
+}
+
+// An object of one patch has nothing to draw: the answer is that of a box join, without a device.
+TEST(Planner, FarJoinsSmallObjectsByBoxesAlone) {
+  int colliding = 0;
+  for (int seed = 0; seed < 20; ++seed) {
+    Scene scene = lab::random_scene(seed);
+    scene.objects.resize(1);
+    scene.triangles.resize(scene.objects[0].triangle_count);
+    scene.source_face.resize(scene.triangles.size());
+    scene.objects[0].self = true;
+    const Record far = run(scene, {});
+    const Record exact = run(scene, on_cpu(Method::exact));
+    EXPECT_EQ(far.collisions.pairs, exact.collisions.pairs);
+    EXPECT_EQ(far.verification->false_negatives, 0u);
+    EXPECT_EQ(not_followed(far), "");
+    EXPECT_TRUE(far.promise.holds);
+    EXPECT_FALSE(far.found.device.gl);
+    EXPECT_EQ(decision_of(far.plan.front()), "left out");
+    colliding += static_cast<int>(far.collisions.pairs.size());
+  }
+  EXPECT_GT(colliding, 0);
 }
 
 // The methods that need no GL, on every built-in scene; gl_plan_test.cpp has the others.

@@ -128,9 +128,9 @@ TEST(RunPairs, ViewsAndResolutionAreTakenAsGiven) {
   }
 }
 
-TEST(RunPairs, FarAndCullideRefuseObjectsAgainstThemselves) {
+TEST(RunPairs, CullideAndQuickCullideRefuseObjectsAgainstThemselves) {
   const Scene scene = self_scene("two-spheres");
-  for (const Method method : {Method::far, Method::cullide}) {
+  for (const Method method : {Method::cullide, Method::quick_cullide}) {
     RunOptions options;
     options.method = method;
     const Error error = error_of([&] { run(scene, options); });

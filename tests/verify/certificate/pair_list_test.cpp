@@ -110,7 +110,10 @@ TEST(NotAsked, IsSaidBesideThePromise) {
                          "pairs of triangles inside sheet, "),
             std::string::npos)
       << heading;
-  EXPECT_NE(heading.find("(--method far-pairs --self asks)\n"), std::string::npos);
+  EXPECT_NE(heading.find("(--self asks)\n"), std::string::npos);
+  record.options.method = Method::cullide;
+  EXPECT_NE(run_heading(folded(false), record).find("(--method far-pairs --self asks)\n"),
+            std::string::npos);
   record.options.method = Method::exact;
   EXPECT_NE(run_heading(folded(false), record).find("(--self asks)\n"), std::string::npos);
   EXPECT_EQ(run_heading(folded(true), record).find("not asked"), std::string::npos);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "experiments/report/chapters/chapter.h"
 #include "experiments/studies/points.h"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "experiments/report/chapters/chapter.h"
 #include "experiments/report/chapters/rows.h"

@@ -1,0 +1,491 @@
+// The canvas on the cores of the CPU against plain loops over pixels: the same bits for every
+// instruction set and any number of threads.
+#include "core/native/canvas.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "core/base/error.h"
+#include "core/native/lanes.h"
+#include "core/native/triangles.h"
+#include "core/view/regions.h"
+#include "offsets/fit.h"
+#include "offsets/minkowski.h"
+#include "offsets/obb.h"
+#include "tests/core/canvas/lab.h"
+#include "tests/core/scene/scenes.h"
+#include "verify/box_line.h"
+#include "verify/minkowski_cases.h"
+
+namespace farcull {
+namespace {
+
+using lab::Random;
+
+/// Uses an instruction set until the end of its scope.
+struct UseLanes {
+  explicit UseLanes(const std::string& name) { use_lane_target(name); }
+  ~UseLanes() { use_lane_target(""); }
+};
+
+template <class Work>
+void on_every_target(const Work& work) {
+  const std::vector<std::string> targets = lane_targets();
+  ASSERT_GE(targets.size(), 1u);
+  for (const std::string& target : targets) {
+    SCOPED_TRACE("lanes of " + target);
+    const UseLanes use(target);
+    EXPECT_EQ(lane_target(), target);
+    work();
+  }
+}
+
+std::vector<Fattener> fatteners() { return {obb_fattener(), minkowski_fattener()}; }
+
+TEST(NativeLanes, TheProcessorsTargetsAreListedAndAnUnknownOneIsRefused) {
+  const std::vector<std::string> targets = lane_targets();
+  EXPECT_EQ(lane_target(), targets.front());
+  EXPECT_THROW(use_lane_target("abacus"), Error);
+  EXPECT_EQ(lane_target(), targets.front());
+}
+
+// ---- kernels ----
+
+bool same_bits(float a, float b) {
+  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+}
+
+/// Lines of a solid whose answer on lanes differs from that of the scalar text.
+std::uint64_t different_lines(const SolidProgram& program, const Solid& solid,
+                              const std::vector<float>& cx, const std::vector<float>& cy) {
+  const std::size_t count = cx.size();
+  std::vector<std::uint8_t> hit(count);
+  std::vector<float> entry(count), exit(count);
+  program.lines_native({&solid, static_cast<std::uint32_t>(count), cx.data(), cy.data(), hit.data(),
+                        entry.data(), exit.data()});
+  std::uint64_t different = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    float first = 0, last = 0;
+    const bool met = program.interval(cx[i], cy[i], solid, first, last);
+    different +=
+        met != (hit[i] != 0) || (met && (!same_bits(first, entry[i]) || !same_bits(last, exit[i])));
+  }
+  return different;
+}
+
+/// Centres around a line, on a grid of half pixels and off it.
+void add_lines(rational::Draws& random, float cx, float cy, std::vector<float>& x,
+               std::vector<float>& y) {
+  for (int i = 0; i < 37; ++i) {
+    x.push_back(i == 0 ? cx : static_cast<float>(cx + random.uniform(-2, 2)));
+    y.push_back(i == 0 ? cy : static_cast<float>(cy + random.uniform(-2, 2)));
+  }
+}
+
+TEST(NativeLanes, BoxesAreThoseOfTheScalarTextBitForBit) {
+  const SolidProgram program = obb_fattener().solid;
+  on_every_target([&] {
+    rational::Draws random(20261122);
+    std::uint64_t lines = 0, different = 0;
+    for (std::uint64_t n = 0; n < 60'000; ++n) {
+      float cx = 0, cy = 0;
+      Solid solid;
+      box_line::adversarial(random, solid, cx, cy);
+      std::vector<float> x, y;
+      add_lines(random, cx, cy, x, y);
+      lines += x.size();
+      different += different_lines(program, solid, x, y);
+    }
+    EXPECT_EQ(different, 0u);
+    EXPECT_GT(lines, 2'000'000u);
+  });
+}
+
+TEST(NativeLanes, ExactOffsetsAreThoseOfTheScalarTextBitForBit) {
+  const SolidProgram program = minkowski_fattener().solid;
+  on_every_target([&] {
+    rational::Draws random(20261123);
+    std::uint64_t lines = 0, different = 0;
+    for (std::uint64_t n = 0; n < 60'000; ++n) {
+      const auto t = minkowski_cases::random_triangle(
+          random, static_cast<int>(n % minkowski_cases::kKindCount));
+      const Solid solid = minkowski_solid(t[0], t[1], t[2], random.uniform(0.1, 3));
+      std::vector<float> x, y;
+      const Vec3 p = (t[0] + t[1] + t[2]) / 3;
+      add_lines(random, static_cast<float>(p[0]), static_cast<float>(p[1]), x, y);
+      lines += x.size();
+      different += different_lines(program, solid, x, y);
+    }
+    EXPECT_EQ(different, 0u);
+    EXPECT_GT(lines, 2'000'000u);
+  });
+}
+
+// ---- fattening ----
+
+TEST(NativeLanes, FattenedTrianglesAreThoseOfTheScalarTextBitForBit) {
+  on_every_target([&] {
+    long on_lanes = 0, left = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      const Scene scene = lab::random_scene(seed);
+      const Regions regions = find_regions(scene);
+      if (regions.triangles.empty()) continue;
+      for (const std::string view : {"x", "1:2:0.5"}) {
+        const auto window = fit_window(parse_view(view), regions.places, 64);
+        ASSERT_TRUE(window);
+        for (const Fattener& fattener : fatteners()) {
+          Fattener one_by_one = fattener;
+          one_by_one.fatten_inside = nullptr;
+          FattenCounts counts, counts_one;
+          const Drawables many = fatten(scene, regions.triangles, *window, fattener, 0.71, counts);
+          const Drawables one =
+              fatten(scene, regions.triangles, *window, one_by_one, 0.71, counts_one);
+          ASSERT_EQ(many.proxies.size(), one.proxies.size());
+          EXPECT_EQ(many.first, one.first);
+          EXPECT_EQ(many.undrawable, one.undrawable);
+          EXPECT_EQ(counts.clipped, counts_one.clipped);
+          EXPECT_EQ(counts.outside, counts_one.outside);
+          // That lanes did most of it, and left what has to be clipped.
+          std::vector<Proxy> proxies(regions.triangles.size());
+          std::vector<std::uint8_t> done(proxies.size());
+          fattener.fatten_inside({.scene = &scene,
+                                  .items = regions.triangles.data(),
+                                  .count = proxies.size(),
+                                  .window = &*window,
+                                  .radius = 0.71,
+                                  .bounds = proxy_bounds(*window),
+                                  .out = proxies.data(),
+                                  .done = done.data()});
+          on_lanes += std::count(done.begin(), done.end(), 1);
+          left += std::count(done.begin(), done.end(), 0);
+          EXPECT_EQ(std::memcmp(many.proxies.data(), one.proxies.data(),
+                                many.proxies.size() * sizeof(Proxy)),
+                    0)
+              << fattener.name << ", seed " << seed;
+        }
+      }
+    }
+    EXPECT_GT(on_lanes, 100);
+    EXPECT_GT(left, 10);
+  });
+}
+
+// ---- passes ----
+
+/// What a pass has to see, pixel by pixel in the order of the draws.
+std::vector<std::uint8_t> plain_run(const Window& w, const Drawables& drawables,
+                                    const SolidProgram& program, const Pass& pass, int bits = 32,
+                                    bool reversed = false) {
+  const float top = 0x1p24f - 1;
+  const auto held_as = [&](float mapped) {
+    return bits == 24 ? std::nearbyint(mapped * top) : mapped;
+  };
+  std::vector<float> depth(static_cast<std::size_t>(w.width) * w.height, bits == 24 ? top : 1);
+  std::vector<std::uint8_t> seen(pass.slots);
+  const float scale = depth_scale(w);
+  for (const Step& step : pass.steps) {
+    for (std::uint32_t d = step.first; d < step.first + step.count; ++d) {
+      for (int y = 0; y < w.height; ++y) {
+        for (int x = 0; x < w.width; ++x) {
+          const float cx = static_cast<float>(x) + 0.5f - 0.5f * static_cast<float>(w.width),
+                      cy = static_cast<float>(y) + 0.5f - 0.5f * static_cast<float>(w.height);
+          float& held = depth[static_cast<std::size_t>(y) * w.width + x];
+          float entry = 0, exit = 0, place = 0;
+          if (pass.draws[d].element != kEverywhere) {
+            const Proxy& proxy = drawables.proxies[pass.draws[d].element];
+            const auto& c = proxy.corners;
+            bool inside = true;
+            for (int i = 0; i < 4; ++i) {
+              const int j = (i + 1) % 4;
+              inside = inside && (c[2 * j] - c[2 * i]) * (cy - c[2 * i + 1]) >=
+                                     (c[2 * j + 1] - c[2 * i + 1]) * (cx - c[2 * i]);
+            }
+            const float lo_x = std::min({c[0], c[2], c[4], c[6]}),
+                        hi_x = std::max({c[0], c[2], c[4], c[6]}),
+                        lo_y = std::min({c[1], c[3], c[5], c[7]}),
+                        hi_y = std::max({c[1], c[3], c[5], c[7]});
+            inside = inside && cx >= lo_x && cx <= hi_x && cy >= lo_y && cy <= hi_y;
+            if (!inside || !program.interval(cx, cy, proxy.solid, entry, exit)) continue;
+            const float z = (step.verb == Verb::store ? entry : exit) * scale;
+            place = held_as(std::min(std::max(0.5f + z, 0.25f), 0.75f));
+          }
+          if (step.verb == Verb::store) {
+            held = std::min(held, place);
+          } else if (reversed ? place < held : pass.touching ? place >= held : place > held) {
+            seen[pass.draws[d].slot] = 1;
+          }
+        }
+      }
+    }
+  }
+  return seen;
+}
+
+/// Random triangles of many sizes, and a pass with many steps over them.
+struct RandomPass {
+  Window window = lab::window(66, 100);
+  std::vector<Patch> patches;
+  Pass pass;
+
+  explicit RandomPass(std::uint64_t seed) {
+    Random random(seed);
+    for (int i = 0; i < 60; ++i) {
+      const double reach = std::exp2(random.between(-3, 5));
+      Patch p;
+      const Vec3 at(random.between(-30, 30), random.between(-30, 30), random.between(-60, 60));
+      for (int k = 0; k < 3; ++k) {
+        Vec3 q =
+            at + reach * Vec3(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+        for (int axis = 0; axis < 3; ++axis)
+          q[axis] = std::clamp(q[axis], window.lo[axis], window.hi[axis]);
+        p.corners[p.count++] = q;
+      }
+      patches.push_back(p);
+    }
+    pass.touching = random.below(2) != 0;
+    pass.slots = 24;
+    std::uint32_t slot = 0;
+    for (int s = 0; s < 8; ++s) {
+      const Verb verb = s % 2 == 0 ? Verb::store : Verb::ask;
+      Step step{verb, static_cast<std::uint32_t>(pass.draws.size()), 0};
+      for (int d = 0; d < 6; ++d) {
+        pass.draws.push_back({static_cast<std::uint32_t>(random.below(60)),
+                              verb == Verb::ask ? slot + static_cast<std::uint32_t>(d) : 0});
+      }
+      if (verb == Verb::store && random.below(12) == 0) pass.draws.push_back({kEverywhere, 0});
+      if (verb == Verb::ask) slot += 6;
+      step.count = static_cast<std::uint32_t>(pass.draws.size()) - step.first;
+      pass.steps.push_back(step);
+    }
+  }
+};
+
+/// The same pass with every draw many times over, which changes no answer: so many that the rows of
+/// the window are divided among three threads.
+Pass repeated(const Pass& pass) {
+  constexpr std::uint32_t kTimes = 140;
+  Pass out;
+  out.touching = pass.touching;
+  out.slots = pass.slots;
+  for (const Draw& draw : pass.draws) out.draws.insert(out.draws.end(), kTimes, draw);
+  for (const Step& step : pass.steps)
+    out.steps.push_back({step.verb, step.first * kTimes, step.count * kTimes});
+  return out;
+}
+
+TEST(NativeCanvas, PassesSeeWhatPlainLoopsSee) {
+  on_every_target([&] {
+    int seen_in_all = 0, reversed_differs = 0;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+      const RandomPass random(seed);
+      const Pass many = repeated(random.pass);
+      ASSERT_GT(many.draws.size(), 3 * 2048u);
+      for (const Fattener& fattener : fatteners()) {
+        SCOPED_TRACE(fattener.name + ", seed " + std::to_string(seed));
+        const Drawables drawables = lab::fattened(random.window, fattener, 0.72, random.patches);
+        const auto run = [&](int bits, bool reversed) {
+          return plain_run(random.window, drawables, fattener.solid, random.pass, bits, reversed);
+        };
+        for (const int bits : {32, 24}) {
+          const auto wanted = run(bits, false);
+          for (const unsigned threads : {1u, 2u, 3u}) {
+            NativeCanvas canvas(fattener.mode, fattener.solid,
+                                {.depth_bits = bits, .threads = threads});
+            canvas.begin(random.window, drawables);
+            EXPECT_EQ(canvas.run(random.pass), wanted) << bits << " bits";
+            EXPECT_EQ(canvas.run(many), wanted) << bits << " bits, " << threads << " threads";
+          }
+          seen_in_all += static_cast<int>(std::count(wanted.begin(), wanted.end(), 1));
+          reversed_differs += run(bits, true) != wanted;
+        }
+      }
+    }
+    EXPECT_GT(seen_in_all, 400);
+    EXPECT_LT(seen_in_all, 40 * 4 * 24 - 400);
+    EXPECT_GT(reversed_differs, 130) << "a swapped depth test has to be noticed";
+  });
+}
+
+// Large enough that rows are shared out among threads.
+TEST(NativeCanvas, AnyNumberOfThreadsGivesTheSameBits) {
+  Random random(7);
+  const Window w = lab::window(200, 100);
+  std::vector<Patch> patches;
+  for (int i = 0; i < 12'000; ++i) {
+    const Vec3 at(random.between(-98, 98), random.between(-98, 98), random.between(-90, 90));
+    const auto near = [&] {
+      return Vec3(at + Vec3(random.between(-2, 2), random.between(-2, 2), random.between(-2, 2)));
+    };
+    patches.push_back(lab::patch({near(), near(), near()}));
+  }
+  for (Fattener fattener : {obb_fattener(), minkowski_fattener(), raw_triangles()}) {
+    const Drawables drawables = lab::fattened(w, fattener, 0.72, patches);
+    Pass pass;
+    pass.slots = 6000;
+    for (std::uint32_t i = 0; i < 12'000; ++i) pass.draws.push_back({i, i < 6000 ? 0 : i - 6000});
+    pass.steps = {{Verb::store, 0, 6000}, {Verb::ask, 6000, 6000}};
+    std::vector<std::uint8_t> first;
+    std::vector<float> first_depths;
+    on_every_target([&] {
+      for (const unsigned threads : {1u, 2u, 3u, 7u}) {
+        NativeCanvas canvas(fattener.mode, fattener.solid, {.threads = threads});
+        canvas.begin(w, drawables);
+        const auto seen = canvas.run(pass);
+        const auto depths = canvas.depths(Verb::store, pass.draws);
+        if (first.empty()) {
+          first = seen;
+          first_depths = depths;
+        }
+        EXPECT_EQ(seen, first) << fattener.name << ", " << threads << " threads";
+        EXPECT_EQ(depths, first_depths) << fattener.name << ", " << threads << " threads";
+      }
+    });
+    EXPECT_GT(std::count(first.begin(), first.end(), 0), 100);
+    EXPECT_GT(std::count(first.begin(), first.end(), 1), 100);
+  }
+}
+
+// Elements beside the window have no rows; those above it begin behind the last one. (The
+// sanitizers see a write behind the counts of the rows.)
+TEST(NativeCanvas, ElementsBesideTheWindowTakePartInNothing) {
+  const Window w = lab::window(40, 10);
+  Drawables drawables;
+  drawables.mode = DepthMode::fixed;
+  for (const float y : {-30.0f, 0.0f, 30.0f}) {
+    for (const float x : {-30.0f, 0.0f, 30.0f}) {
+      drawables.triangles.push_back({x - 4, y - 4, 0, 0, x + 4, y - 4, 0, 0, x, y + 4, 0, 0});
+      drawables.first.push_back(static_cast<std::uint32_t>(drawables.triangles.size()));
+    }
+  }
+  Pass pass;
+  pass.slots = 9;
+  for (std::uint32_t i = 0; i < 9; ++i) pass.draws.push_back({i, i});
+  pass.draws.insert(pass.draws.end(), pass.draws.begin(), pass.draws.end());
+  pass.steps = {{Verb::store, 0, 9}, {Verb::ask, 9, 9}};
+  NativeCanvas canvas(DepthMode::fixed, {});
+  canvas.begin(w, drawables);
+  EXPECT_EQ(canvas.run(pass), (std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0, 0}));
+}
+
+TEST(NativeCanvas, HoldsTheSamplesUnderTheDepthMap) {
+  const Window w = lab::window(64, 100);
+  const std::vector<Patch> patches = {lab::patch({{-20, -20, -60}, {20, -10, 30}, {0, 25, 80}}),
+                                      lab::patch({{-5, 0, 2}, {28, 3, 9}, {10, 30, -99}})};
+  const Fattener fattener = obb_fattener();
+  for (const int bits : {32, 24}) {
+    NativeCanvas canvas(fattener.mode, fattener.solid, {.depth_bits = bits});
+    const Drawables drawables = lab::fattened(w, fattener, 0.72, patches);
+    canvas.begin(w, drawables);
+    for (const Verb verb : {Verb::store, Verb::ask}) {
+      const std::vector<float> px = canvas.samples(verb, {{0, 0}, {1, 0}}),
+                               held = canvas.depths(verb, {{0, 0}, {1, 0}});
+      int covered = 0;
+      for (std::size_t i = 0; i < px.size(); ++i) {
+        if (std::isnan(px[i])) {
+          EXPECT_EQ(held[i], verb == Verb::store ? 1 : 0);
+          continue;
+        }
+        ++covered;
+        const double map = 0.5 + static_cast<double>(px[i]) * depth_scale(w);
+        EXPECT_LE(std::abs(held[i] - map) * 0x1p24, depth_rounding(bits));
+      }
+      EXPECT_GT(covered, 500);
+    }
+  }
+}
+
+// ---- raw triangles ----
+
+/// How many of the triangles cover each pixel.
+std::vector<int> coverage(const Window& w, const std::vector<Patch>& patches) {
+  const Fattener fattener = raw_triangles();
+  std::vector<int> out(static_cast<std::size_t>(w.width) * w.height);
+  NativeCanvas canvas(fattener.mode, fattener.solid);
+  const Drawables drawables = lab::fattened(w, fattener, 0, patches);
+  canvas.begin(w, drawables);
+  for (std::uint32_t e = 0; e < drawables.elements(); ++e) {
+    const std::vector<float> held = canvas.depths(Verb::store, {{e, 0}});
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] += held[i] < 1;
+  }
+  return out;
+}
+
+// A fan about a point, its corners on pixel centres and between them: every pixel inside belongs to
+// one triangle alone.
+TEST(NativeTriangles, OfTrianglesThatShareEdgesOneOwnsEachPixel) {
+  const Window w = lab::window(40, 10);
+  on_every_target([&] {
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+      Random random(seed);
+      const auto point = [&](double x, double y) {
+        // On the subpixel grid, half of the time on pixel centres.
+        const double grid = random.below(2) ? 1 : 0x1p-8;
+        return Vec3(std::floor(x / grid) * grid + 0.5, std::floor(y / grid) * grid + 0.5, 0);
+      };
+      const Vec3 corners[4] = {
+          {-19.5, -19.5, 0}, {18.5, -19.5, 0}, {18.5, 18.5, 0}, {-19.5, 18.5, 0}};
+      const Vec3 middle = point(random.between(-15, 15), random.between(-15, 15));
+      std::vector<Patch> fan;
+      for (int i = 0; i < 4; ++i) {
+        const bool turned = random.below(2) != 0;
+        fan.push_back(lab::patch(
+            {middle, corners[turned ? (i + 1) % 4 : i], corners[turned ? i : (i + 1) % 4]}));
+      }
+      const std::vector<int> counts = coverage(w, fan);
+      for (int y = 1; y < 38; ++y) {
+        for (int x = 1; x < 38; ++x)
+          EXPECT_EQ(counts[static_cast<std::size_t>(y) * 40 + x], 1) << x << ", " << y;
+      }
+      // The twin: with one triangle left out, pixels are left over.
+      fan.pop_back();
+      const std::vector<int> fewer = coverage(w, fan);
+      EXPECT_GT(std::count(fewer.begin() + 41, fewer.begin() + 1500, 0),
+                std::count(counts.begin() + 41, counts.begin() + 1500, 0));
+    }
+  });
+}
+
+TEST(NativeTriangles, DepthIsInterpolatedAtPixelCentres) {
+  const Window w = lab::window(40, 100);
+  const auto plane = [](double x, double y) { return 3 * x - 2 * y + 1; };
+  const auto at = [&](double x, double y) { return Vec3(x, y, plane(x, y)); };
+  const Fattener fattener = raw_triangles();
+  NativeCanvas canvas(fattener.mode, fattener.solid);
+  const Drawables drawables =
+      lab::fattened(w, fattener, 0, {{lab::patch({at(-15, -14), at(16, -10), at(2, 17)})}});
+  canvas.begin(w, drawables);
+  const std::vector<float> held = canvas.depths(Verb::store, {{0, 0}});
+  int covered = 0;
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      const float d = held[static_cast<std::size_t>(y) * 40 + x];
+      if (d >= 1) continue;
+      ++covered;
+      // Places of corners and of the sample, each rounded to float.
+      const double wanted = 0.5 + plane(x + 0.5 - 20, y + 0.5 - 20) * double(depth_scale(w));
+      EXPECT_LE(std::abs(d - wanted), 4 * 0x1p-24);
+    }
+  }
+  EXPECT_GT(covered, 400);
+}
+
+// ---- misuse ----
+
+TEST(NativeCanvas, RefusesWhatItCannotDraw) {
+  EXPECT_THROW(NativeCanvas(DepthMode::fragment, {}), std::logic_error);
+  EXPECT_THROW(NativeCanvas(DepthMode::fixed, {}, {.depth_bits = 16}), Error);
+  NativeCanvas canvas(DepthMode::fragment, obb_fattener().solid);
+  EXPECT_THROW(canvas.run({}), std::logic_error);
+  Drawables raw;
+  raw.mode = DepthMode::fixed;
+  EXPECT_THROW(canvas.begin(lab::window(64), raw), std::logic_error);
+  NativeCanvas triangles(DepthMode::fixed, {});
+  triangles.begin(lab::window(64), raw);
+  EXPECT_THROW(triangles.samples(Verb::store, {}), std::logic_error);
+}
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,102 @@
+// Which canvas draws, by --device and without one, and that the native canvas says what it is. That
+// GL is drawn with where it is asked for: gl_methods_test.cpp.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/native/lanes.h"
+#include "experiments/method/run.h"
+#include "experiments/record/output.h"
+#include "experiments/record/tables.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/studies/provenance.h"
+
+namespace farcull {
+namespace {
+
+RunOptions far_on(const std::string& device) {
+  RunOptions options;
+  options.resolution = 64;
+  options.device = device;
+  return options;
+}
+
+TEST(CanvasDevice, BothNamesOfTheCpuGiveTheNativeCanvasAndAreTheReason) {
+  for (const std::string name : {"native", "cpu"}) {
+    Session session(name);
+    EXPECT_TRUE(session.canvas_device().native);
+    EXPECT_EQ(session.canvas_device().reason, "--device " + name);
+    EXPECT_GE(session.max_resolution(), 16000);
+  }
+}
+
+TEST(CanvasDevice, WithoutADeviceTheRuleIsSaidAndNativeDrawsWhereNoHardwareAnswers) {
+  Session session("", 0, Say());
+  const CanvasDevice& chosen = session.canvas_device();
+  EXPECT_TRUE(chosen.reason.starts_with("no --device: GL where hardware answers, else the CPU; "))
+      << chosen.reason;
+  bool hardware = false;
+  try {
+    hardware = GlContext::hardware_listed();
+  } catch (const Error&) {  // no EGL
+  }
+  if (!hardware) {
+    EXPECT_TRUE(chosen.native);
+  }
+  const Record record = run(make_builtin_scene("two-spheres"), far_on(""), session);
+  EXPECT_EQ(record.found.device.cpu, chosen.native);
+  EXPECT_EQ(record.found.device.gl.has_value(), !chosen.native);
+  EXPECT_EQ(record.found.device.note, chosen.reason);
+}
+
+TEST(CanvasDevice, UnknownNamesAreRefusedAndSaid) {
+  for (const char* name : {"nativ", "CPU", "gpu", "-1", "native "})
+    EXPECT_THROW(validate(far_on(name)), Error) << name;
+  for (const char* name : {"", "native", "cpu", "gl", "software", "hardware", "0", "12"})
+    EXPECT_NO_THROW(validate(far_on(name))) << name;
+}
+
+// One way to ask: neither the query mode nor the depth format changes the pairs of FAR, and the
+// record says what drew.
+TEST(CanvasDevice, QueryModesAndDepthFormatsWorkOnTheNativeCanvasAndAreSaid) {
+  const Scene scene = make_builtin_scene("crowd");
+  Session session("native");
+  const Record usual = run(scene, far_on("native"), session);
+  ASSERT_FALSE(usual.collisions.pairs.empty());
+  RunOptions asked = far_on("native"), coarse = asked;
+  asked.query = QueryMode::occlusion;
+  coarse.depth_format = DepthFormat::fixed24;
+  for (const RunOptions& options : {far_on("native"), asked, coarse}) {
+    const Record record = run(scene, options, session);
+    EXPECT_EQ(record.collisions.pairs, usual.collisions.pairs);
+    EXPECT_EQ(record.verification->false_negatives, 0u);
+    EXPECT_TRUE(record.promise.holds);
+    EXPECT_FALSE(record.promise.verdict) << "nothing rests on a device";
+    const bool bits24 = options.depth_format == DepthFormat::fixed24;
+    const nlohmann::ordered_json json = to_json(scene, record);
+    EXPECT_EQ(json["device"], (nlohmann::ordered_json{{"cpu", "--device native"},
+                                                      {"lanes", lane_target()},
+                                                      {"depth_bits", bits24 ? 24 : 32}}));
+    EXPECT_EQ(json["query"], nullptr);
+    EXPECT_EQ(json["depth_format"], bits24 ? "24" : "32f");
+    const std::string table = run_table(scene, record);
+    EXPECT_NE(table.find("lanes of " + lane_target()), std::string::npos) << table;
+    EXPECT_EQ(table.find("occlusion queries"), std::string::npos) << table;
+  }
+  RunOptions both = coarse;
+  both.query = QueryMode::flags;
+  EXPECT_THROW(validate(both), Error) << "as on GL: options are checked before a device is chosen";
+}
+
+TEST(CanvasDevice, StudiesSayThatTheNativeCanvasDrawsAndWithWhichInstructionSet) {
+  const Provenance native = provenance_now("native", "{}");
+  EXPECT_EQ(native.gl_renderer, "native (" + lane_target() + ")");
+  EXPECT_EQ(native.gl_vendor + native.gl_version, "");
+  EXPECT_EQ(driver_text(native), "none");
+  EXPECT_EQ(driver_text({.gl_vendor = "v", .gl_version = "4.5"}), "v, 4.5");
+  EXPECT_THROW(provenance_now("no such device", "{}"), Error);
+}
+
+}  // namespace
+}  // namespace farcull
