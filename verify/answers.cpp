@@ -21,30 +21,19 @@ Collisions count_answers(std::span<const TrianglePair> candidates,
   if (answers.size() != candidates.size())
     throw std::logic_error("decide: not one answer for each candidate");
   Collisions result;
+  std::uint64_t unasked = 0;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    switch (answers[i]) {
-      case PairAnswer::apart:
-        ++result.apart;
-        continue;
-      case PairAnswer::colliding:
-        result.pairs.push_back(candidates[i]);
-        continue;
-      case PairAnswer::neighbours_apart:
-        ++result.neighbours;
-        ++result.neighbours_apart;
-        continue;
-      case PairAnswer::neighbours_colliding:
-        ++result.neighbours;
-        result.neighbour_pairs.push_back(candidates[i]);
-        continue;
-      case PairAnswer::neighbours_unasked:
-        ++result.neighbours;
-        continue;
-      case PairAnswer::undecided:
-        break;
-    }
-    throw std::logic_error("decide: a candidate was left undecided");
+    // Most answers are counted without a branch.
+    const PairAnswer answer = answers[i];
+    result.apart += answer == PairAnswer::apart;
+    result.neighbours_apart += answer == PairAnswer::neighbours_apart;
+    unasked += answer == PairAnswer::neighbours_unasked;
+    if (answer == PairAnswer::colliding) result.pairs.push_back(candidates[i]);
+    if (answer == PairAnswer::neighbours_colliding) result.neighbour_pairs.push_back(candidates[i]);
   }
+  result.neighbours = result.neighbour_pairs.size() + result.neighbours_apart + unasked;
+  if (result.pairs.size() + result.apart + result.neighbours != candidates.size())
+    throw std::logic_error("decide: a candidate was left undecided");
   return result;
 }
 

@@ -1,5 +1,5 @@
 // decide(): the candidates in blocks, which the threads take in turn. A filter in doubles answers
-// for most pairs, exact arithmetic for the rest.
+// for most pairs, several at once on lanes; exact arithmetic answers for the rest.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -8,6 +8,7 @@
 #include "core/base/floating_point.h"
 #include "core/base/parallel.h"
 #include "verify/exact.h"
+#include "verify/filter_lanes.h"
 #include "verify/within.h"
 
 namespace farcull {
@@ -48,37 +49,33 @@ Triage filter_neighbours(unsigned equal, const Corners& a, const Corners& b) {
   return filter_beyond_edge(a[i], a[k], a[3 - i - k], b[3 - j - l]);
 }
 
-// Pairs whose second corners are fetched ahead; the first ones are mostly those of the pair before.
-constexpr std::size_t kAhead = 8;
+PairAnswer answer_about_neighbours(unsigned equal, const Corners& a, const Corners& b) {
+  const Triage triage = filter_neighbours(equal, a, b);
+  const bool beyond =
+      triage == Triage::unknown ? intersects_beyond_shared(a, b) : triage == Triage::yes;
+  return beyond ? PairAnswer::neighbours_colliding : PairAnswer::neighbours_apart;
+}
 
-/// A triangle with its corners at hand.
-struct Gathered {
-  std::uint32_t triangle;
-  Corners corners;
+/// Scene::corners(), inline.
+inline Corners corners_of(const Scene& scene, std::uint32_t triangle) {
+  const auto& [i, j, k] = scene.triangles[triangle];
+  return {scene.vertices[i], scene.vertices[j], scene.vertices[k]};
+}
 
-  Gathered(const Scene& scene, std::uint32_t t) { gather(scene, t); }
-  void gather(const Scene& scene, std::uint32_t t) {
-    triangle = t;
-    const auto& [i, j, k] = scene.triangles[t];
-    corners = {scene.vertices[i], scene.vertices[j], scene.vertices[k]};
-  }
-};
-
-PairAnswer answer(const Scene& scene, const Gathered& a, const Gathered& b, bool one_object,
-                  const ExactQuestion& question) {
+/// The answer about a pair of which the filter of planes knows nothing, or which it was not asked.
+PairAnswer answer_unfiltered(const Scene& scene, const TrianglePair& pair, bool one_object,
+                             const ExactQuestion& question) {
+  const Corners a = corners_of(scene, pair.a);
+  const Corners b = corners_of(scene, pair.b);
   if (one_object) {
-    const unsigned equal = equal_corners(scene.triangles[a.triangle], a.corners,
-                                         scene.triangles[b.triangle], b.corners);
+    const unsigned equal = equal_corners(scene.triangles[pair.a], a, scene.triangles[pair.b], b);
     if (equal != 0) {
-      if (!question.neighbours) return PairAnswer::neighbours_unasked;
-      const Triage triage = filter_neighbours(equal, a.corners, b.corners);
-      const bool beyond = triage == Triage::unknown ? intersects_beyond_shared(a.corners, b.corners)
-                                                    : triage == Triage::yes;
-      return beyond ? PairAnswer::neighbours_colliding : PairAnswer::neighbours_apart;
+      return question.neighbours ? answer_about_neighbours(equal, a, b)
+                                 : PairAnswer::neighbours_unasked;
     }
   }
-  return is_within(a.corners, b.corners, question.clearance) ? PairAnswer::colliding
-                                                             : PairAnswer::apart;
+  return is_within_beyond_planes(a, b, question.clearance) ? PairAnswer::colliding
+                                                           : PairAnswer::apart;
 }
 
 /// Says whether both triangles of a pair are of one object; fast where the first members mostly
@@ -105,6 +102,108 @@ class SameObject {
   std::uint64_t end_ = 0;
 };
 
+/// Whether two triangles have a vertex of the scene in common.
+bool share_index(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32_t, 3>& b) {
+  bool shared = false;
+  for (const std::uint32_t i : a) {
+    shared = static_cast<bool>(shared | (i == b[0]) | (i == b[1]) | (i == b[2]));
+  }
+  return shared;
+}
+
+// Pairs whose second corners are fetched ahead; the first ones are mostly those of the pair before.
+constexpr std::size_t kAhead = 8;
+// Enough work for each turn to pay for the shared counter, little enough to balance.
+constexpr std::size_t kBlock = 1024;
+
+/// Decides up to kBlock pairs at a time, in memory of its own.
+///
+/// Of neighbours the filter of planes knows nothing. It answers only where it has proved that all
+/// corners of a triangle are off the plane of the other one, and a corner of both is in both
+/// planes. So all pairs may meet the filter, and corners are compared only where its answer is
+/// unknown. Where neighbours are many, it is faster to set them aside first.
+class BlockDecider {
+ public:
+  BlockDecider(const Scene& scene, const ExactQuestion& question)
+      : scene_(scene), question_(question), same_object_(scene) {}
+
+  void operator()(std::span<const TrianglePair> pairs, std::span<PairAnswer> answers) {
+    std::size_t neighbours = 0;
+    if (many_neighbours_) {
+      const std::size_t others =
+          question_.neighbours ? answer_neighbours(pairs, answers) : set_aside(pairs, answers);
+      neighbours = pairs.size() - others;
+      filter({others_.data(), others});
+      for (std::size_t k = 0; k < others; ++k) answers[where_[k]] = answer(others_[k], triage_[k]);
+    } else {
+      filter(pairs);
+      for (std::size_t i = 0; i < pairs.size(); ++i) {
+        answers[i] = answer(pairs[i], triage_[i]);
+        neighbours += answers[i] != PairAnswer::apart && answers[i] != PairAnswer::colliding;
+      }
+    }
+    many_neighbours_ = neighbours > pairs.size() / 8;
+  }
+
+ private:
+  /// Those that are no neighbours by an index become others_; returns how many. Without branches,
+  /// which would often be foretold wrongly.
+  std::size_t set_aside(std::span<const TrianglePair> pairs, std::span<PairAnswer> answers) {
+    std::size_t others = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const TrianglePair& pair = pairs[i];
+      const bool shared = static_cast<bool>(
+          same_object_(pair) & share_index(scene_.triangles[pair.a], scene_.triangles[pair.b]));
+      answers[i] = shared ? PairAnswer::neighbours_unasked : PairAnswer::undecided;
+      others_[others] = pair;
+      where_[others] = static_cast<std::uint16_t>(i);
+      others += !shared;
+    }
+    return others;
+  }
+
+  /// Answers about the neighbours; all that are none become others_, and it returns how many.
+  std::size_t answer_neighbours(std::span<const TrianglePair> pairs,
+                                std::span<PairAnswer> answers) {
+    std::size_t others = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const TrianglePair& pair = pairs[i];
+      prefetch(scene_, pairs[std::min(i + kAhead, pairs.size() - 1)].b);
+      if (same_object_(pair)) {
+        const Corners a = corners_of(scene_, pair.a);
+        const Corners b = corners_of(scene_, pair.b);
+        const unsigned equal =
+            equal_corners(scene_.triangles[pair.a], a, scene_.triangles[pair.b], b);
+        if (equal != 0) {
+          answers[i] = answer_about_neighbours(equal, a, b);
+          continue;
+        }
+      }
+      others_[others] = pair;
+      where_[others++] = static_cast<std::uint16_t>(i);
+    }
+    return others;
+  }
+
+  void filter(std::span<const TrianglePair> pairs) {
+    filter_pairs(scene_, pairs, question_.clearance, {triage_.data(), pairs.size()});
+  }
+
+  PairAnswer answer(const TrianglePair& pair, Triage triage) {
+    if (triage == Triage::unknown)
+      return answer_unfiltered(scene_, pair, same_object_(pair), question_);
+    return triage == Triage::no ? PairAnswer::apart : PairAnswer::colliding;
+  }
+
+  const Scene& scene_;
+  const ExactQuestion& question_;
+  SameObject same_object_;
+  bool many_neighbours_ = false;  // in the block before
+  std::array<TrianglePair, kBlock> others_;
+  std::array<std::uint16_t, kBlock> where_;  // their places in the block
+  std::array<Triage, kBlock> triage_;
+};
+
 void require_pairs(const Scene& scene, std::span<const TrianglePair> candidates) {
   for (const TrianglePair& pair : candidates) {
     if (std::max(pair.a, pair.b) >= scene.triangles.size()) {
@@ -121,25 +220,15 @@ Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
   const FloatingPointGuard guard;
   require_clearance("decide", question.clearance);
   require_pairs(scene, candidates);
-  // Enough work for each turn to pay for the shared counter, little enough to balance.
-  constexpr std::size_t kBlock = 1024;
   std::vector<PairAnswer> answers(candidates.size(), PairAnswer::undecided);
   std::atomic<std::size_t> next = 0;
   const auto work = [&](std::size_t, std::size_t, std::size_t) {
-    SameObject same_object(scene);
+    BlockDecider decide_block(scene, question);
     for (;;) {
       const std::size_t begin = next.fetch_add(kBlock);
       if (begin >= candidates.size()) return;
-      const std::size_t end = std::min(begin + kBlock, candidates.size());
-      Gathered a(scene, candidates[begin].a);
-      Gathered b(scene, candidates[begin].b);
-      for (std::size_t i = begin; i < end; ++i) {
-        const TrianglePair& pair = candidates[i];
-        prefetch(scene, candidates[std::min(i + kAhead, end - 1)].b);
-        if (pair.a != a.triangle) a.gather(scene, pair.a);  // mostly as before, in sorted lists
-        b.gather(scene, pair.b);
-        answers[i] = answer(scene, a, b, same_object(pair), question);
-      }
+      const std::size_t count = std::min(kBlock, candidates.size() - begin);
+      decide_block(candidates.subspan(begin, count), std::span(answers).subspan(begin, count));
     }
   };
   const std::size_t blocks = (candidates.size() + kBlock - 1) / kBlock;

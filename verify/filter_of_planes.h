@@ -34,26 +34,30 @@
 #include <cmath>
 
 #include "core/scene/scene.h"
+#include "verify/corner_order.h"
 #include "verify/filter_bounds.h"
 
 namespace farcull::filters {
 
-struct Triple {
-  double x, y, z;
-};
+using PlainReal = double;
+using Real = double;
+using Truth = bool;
+using Point = Vec3;
+using std::abs;
+using std::max;
+using std::min;
+using std::sqrt;
+inline bool of_all(bool answer) { return answer; }
+#define FAR_FILTER inline
+#include "verify/filter_planes.inl"
+#undef FAR_FILTER
 
-inline Triple difference(const Vec3& p, const Vec3& q) {
-  return {p.x() - q.x(), p.y() - q.y(), p.z() - q.z()};
-}
 inline Triple operator+(const Triple& p, const Triple& q) {
   return {p.x + q.x, p.y + q.y, p.z + q.z};
 }
 inline Triple operator-(const Triple& p, const Triple& q) {
   return {p.x - q.x, p.y - q.y, p.z - q.z};
 }
-inline Triple magnitudes(const Triple& p) { return {std::abs(p.x), std::abs(p.y), std::abs(p.z)}; }
-inline double dot(const Triple& p, const Triple& q) { return p.x * q.x + p.y * q.y + p.z * q.z; }
-inline double sum(const Triple& p) { return p.x + p.y + p.z; }
 
 /// About p / |p|; not finite where p is zero or products underflow or overflow.
 inline Triple unit(const Triple& p) {
@@ -61,102 +65,12 @@ inline Triple unit(const Triple& p) {
   return {p.x / length, p.y / length, p.z / length};
 }
 
-/// The largest magnitudes per axis of two or three.
-inline Triple largest(const Triple& p, const Triple& q) {
-  return {std::max(std::abs(p.x), std::abs(q.x)), std::max(std::abs(p.y), std::abs(q.y)),
-          std::max(std::abs(p.z), std::abs(q.z))};
-}
-
-/// e x f, and the same of magnitudes with sums for differences.
-struct Normal {
-  Triple n, m;
-};
-
-inline Normal normal_of(const Triple& e, const Triple& f) {
-  const double yz = e.y * f.z, zy = e.z * f.y;
-  const double zx = e.z * f.x, xz = e.x * f.z;
-  const double xy = e.x * f.y, yx = e.y * f.x;
-  return {{yz - zy, zx - xz, xy - yx},
-          {std::abs(yz) + std::abs(zy), std::abs(zx) + std::abs(xz), std::abs(xy) + std::abs(yx)}};
-}
-
-/// For points within w (magnitudes, from the origin of the normal).
-template <class Bounds>
-double side_bound(const Normal& normal, const Triple& w) {
-  return Bounds::side * dot(normal.m, w) + Bounds::absolute * (sum(w) + 1);
-}
-
 /// -1, 1, or 0 for a doubt.
 inline int sign(double value, double bound) { return (value > bound) - (value < -bound); }
 
-/// Determinants of the corners of s and the plane through the corners of t; each has the sign it
-/// shows where it is beyond +-bound.
-struct Sides {
-  std::array<double, 3> value;
-  double bound;
-  double needed;  // by which the value is larger at the clearance from the plane, or more
-
-  bool on_one_side() const {
-    return std::min({value[0], value[1], value[2]}) > bound + needed ||
-           std::max({value[0], value[1], value[2]}) < -(bound + needed);
-  }
-  bool certain() const {
-    return std::min({std::abs(value[0]), std::abs(value[1]), std::abs(value[2])}) > bound;
-  }
-  /// The corner that is alone on its side; where all are certain and not on one side.
-  int alone() const {
-    const bool first = value[0] > 0, second = value[1] > 0, third = value[2] > 0;
-    return second == third ? 0 : first == third ? 1 : 2;
-  }
-};
-
-/// The clearance times the length of the normal, rounded up: the computed normal is within
-/// ((1 + u)^4 - 1) (1 - u)^-4 m of the exact one per axis, and 2^-900 stands for squares that
-/// underflow. 8 roundings follow.
-inline double at_clearance(const Normal& normal, double clearance) {
-  const double length = std::sqrt(dot(normal.n, normal.n) + 0x1p-900);
-  return clearance * (length + sum(normal.m) * 0x1p-50) * (1 + 0x1p-49) + 0x1p-1000;
-}
-
-template <class Bounds>
-Sides sides(const std::array<Vec3, 3>& s, const std::array<Vec3, 3>& t, double clearance) {
-  const Normal normal = normal_of(difference(t[1], t[0]), difference(t[2], t[0]));
-  const Triple w0 = difference(s[0], t[0]);
-  const Triple w1 = difference(s[1], t[0]);
-  const Triple w2 = difference(s[2], t[0]);
-  return {{dot(normal.n, w0), dot(normal.n, w1), dot(normal.n, w2)},
-          side_bound<Bounds>(normal, largest(largest(w0, w1), w2)),
-          clearance > 0 ? at_clearance(normal, clearance) : 0};
-}
-
-template <class Bounds>
-int side(const Vec3& o, const Vec3& p, const Vec3& q, const Vec3& x) {
-  const Normal normal = normal_of(difference(p, o), difference(q, o));
-  const Triple w = difference(x, o);
-  return sign(dot(normal.n, w), side_bound<Bounds>(normal, magnitudes(w)));
-}
-
-/// Where the planes cross, each triangle covers a segment of their line, from the edge to one of
-/// the other corners to the edge to the other. Seen from the corner that is alone, with the other
-/// two in the order that puts the other triangle's corner on the positive side, the ends are in a
-/// known order along the line, and two determinants compare them (Guigue, Devillers: Fast and
-/// robust triangle-triangle overlap test using orientation predicates, 2003).
-template <class Bounds>
-Triage compare_on_line(const std::array<Vec3, 3>& a, const Sides& a_sides,
-                       const std::array<Vec3, 3>& b, const Sides& b_sides) {
-  const int i = a_sides.alone();
-  const int j = b_sides.alone();
-  const Vec3* a1 = &a[(i + 1) % 3];
-  const Vec3* a2 = &a[(i + 2) % 3];
-  const Vec3* b1 = &b[(j + 1) % 3];
-  const Vec3* b2 = &b[(j + 2) % 3];
-  if (a_sides.value[i] < 0) std::swap(b1, b2);
-  if (b_sides.value[j] < 0) std::swap(a1, a2);
-  const int first = side<Bounds>(a[i], *a1, b[j], *b1);
-  if (first > 0) return Triage::no;
-  const int second = side<Bounds>(a[i], *a2, *b2, b[j]);
-  if (second > 0) return Triage::no;
-  return first < 0 && second < 0 ? Triage::yes : Triage::unknown;
+/// Bit i where the value of corner i is above 0.
+inline unsigned above(const Sides& sides) {
+  return (sides.value[0] > 0) + 2u * (sides.value[1] > 0) + 4u * (sides.value[2] > 0);
 }
 
 /// True where d surely divides: w1, w2 on its positive side, x1, x2 on the negative one. All are
@@ -171,18 +85,14 @@ bool divides(const Triple& d, const Triple& w1, const Triple& w2, const Triple& 
 
 template <class Bounds>
 Triage filter_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
-  const Sides b_sides = sides<Bounds>(b, a, clearance);
-  if (b_sides.on_one_side()) return Triage::no;
-  const Sides a_sides = sides<Bounds>(a, b, clearance);
-  if (a_sides.on_one_side()) return Triage::no;
-  if (!a_sides.certain() || !b_sides.certain()) return Triage::unknown;
-  if (clearance == 0) return compare_on_line<Bounds>(a, a_sides, b, b_sides);
-  const auto crosses = [](const Sides& x) {
-    return (x.value[0] > 0) != (x.value[1] > 0) || (x.value[0] > 0) != (x.value[2] > 0);
-  };
-  if (!crosses(a_sides) || !crosses(b_sides)) return Triage::unknown;
-  return compare_on_line<Bounds>(a, a_sides, b, b_sides) == Triage::yes ? Triage::yes
-                                                                        : Triage::unknown;
+  const AgainstPlanes planes = against_planes<Bounds>(a.data(), b.data(), clearance);
+  if (planes.apart) return Triage::no;
+  if (!planes.crossing) return Triage::unknown;
+  const auto& [i, j] = kCornerOrders[above(planes.a) + 8 * above(planes.b)];
+  const OnLine line = compare_on_line<Bounds>(a[i[0]], a[i[1]], a[i[2]], b[j[0]], b[j[1]], b[j[2]]);
+  // Triangles that miss each other may be within a clearance.
+  if (line.apart && clearance == 0) return Triage::no;
+  return line.meeting ? Triage::yes : Triage::unknown;
 }
 
 // Seen from v, with N = a1 x a2 and M = b1 x b2: A1 = M . a1 and A2 = M . a2 give the sides of b's

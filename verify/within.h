@@ -23,12 +23,19 @@ inline void require_clearance(const char* where, double clearance) {
 bool within_unfiltered(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                        double clearance);
 
+/// The answer where filter_planes() does not know it.
+inline bool is_within_beyond_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                                    double clearance) {
+  const Triage triage = clearance > 0 ? filter_within(a, b, clearance) : Triage::unknown;
+  return triage == Triage::unknown ? within_unfiltered(a, b, clearance) : triage == Triage::yes;
+}
+
 /// Precondition: a clearance as of require_clearance().
 inline bool is_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                       double clearance) {
-  Triage triage = filter_planes(a, b, clearance);
-  if (triage == Triage::unknown && clearance > 0) triage = filter_within(a, b, clearance);
-  return triage == Triage::unknown ? within_unfiltered(a, b, clearance) : triage == Triage::yes;
+  const Triage triage = filter_planes(a, b, clearance);
+  return triage == Triage::unknown ? is_within_beyond_planes(a, b, clearance)
+                                   : triage == Triage::yes;
 }
 
 }  // namespace farcull

@@ -1,0 +1,123 @@
+// Two triangles against each other's planes, and along the line where the planes cross. One text
+// for scalars and for lanes, where each lane is a pair of its own: filter_of_planes.h, which
+// derives the bounds, and filter_lanes-inl.h include it in a namespace that says
+//   Real, Truth   a number and an answer, of every lane; PlainReal is a number for all lanes
+//   Point         a corner, with x(), y() and z()
+//   min, max, abs, sqrt, of_all, and FAR_FILTER before each function.
+// Where all lanes are decided it stops; nothing else branches.
+
+struct Triple {
+  Real x, y, z;
+};
+
+FAR_FILTER Triple difference(const Point& p, const Point& q) {
+  return {p.x() - q.x(), p.y() - q.y(), p.z() - q.z()};
+}
+FAR_FILTER Triple magnitudes(const Triple& p) { return {abs(p.x), abs(p.y), abs(p.z)}; }
+FAR_FILTER Real dot(const Triple& p, const Triple& q) { return p.x * q.x + p.y * q.y + p.z * q.z; }
+FAR_FILTER Real sum(const Triple& p) { return p.x + p.y + p.z; }
+
+/// The largest magnitudes per axis of two or three.
+FAR_FILTER Triple largest(const Triple& p, const Triple& q) {
+  return {max(abs(p.x), abs(q.x)), max(abs(p.y), abs(q.y)), max(abs(p.z), abs(q.z))};
+}
+
+/// e x f, and the same of magnitudes with sums for differences.
+struct Normal {
+  Triple n, m;
+};
+
+FAR_FILTER Normal normal_of(const Triple& e, const Triple& f) {
+  const Real yz = e.y * f.z, zy = e.z * f.y;
+  const Real zx = e.z * f.x, xz = e.x * f.z;
+  const Real xy = e.x * f.y, yx = e.y * f.x;
+  return {{yz - zy, zx - xz, xy - yx}, {abs(yz) + abs(zy), abs(zx) + abs(xz), abs(xy) + abs(yx)}};
+}
+
+/// For points within w (magnitudes, from the origin of the normal).
+template <class Bounds>
+FAR_FILTER Real side_bound(const Normal& normal, const Triple& w) {
+  return Bounds::side * dot(normal.m, w) + Bounds::absolute * (sum(w) + 1);
+}
+
+// ---- sides of planes ----
+
+/// Determinants of the corners of s and the plane through the corners of t; each has the sign it
+/// shows where it is beyond +-bound.
+struct Sides {
+  Real value[3];
+  Real bound;
+  Real needed;  // by which the value is larger at the clearance from the plane, or more
+
+  FAR_FILTER Real least() const { return min(min(value[0], value[1]), value[2]); }
+  FAR_FILTER Real most() const { return max(max(value[0], value[1]), value[2]); }
+  FAR_FILTER Truth on_one_side() const {
+    return least() > bound + needed || most() < -(bound + needed);
+  }
+  /// Corners are on both sides, none of them in doubt.
+  FAR_FILTER Truth on_both_sides() const {
+    const Real nearest = min(min(abs(value[0]), abs(value[1])), abs(value[2]));
+    return nearest > bound && least() < Real(0.0) && most() > Real(0.0);
+  }
+};
+
+/// The clearance times the length of the normal, rounded up: the computed normal is within
+/// ((1 + u)^4 - 1) (1 - u)^-4 m of the exact one per axis, and 2^-900 stands for squares that
+/// underflow. 8 roundings follow.
+FAR_FILTER Real at_clearance(const Normal& normal, PlainReal clearance) {
+  const Real length = sqrt(dot(normal.n, normal.n) + 0x1p-900);
+  return clearance * (length + sum(normal.m) * 0x1p-50) * (1 + 0x1p-49) + 0x1p-1000;
+}
+
+template <class Bounds>
+FAR_FILTER Sides sides(const Point* s, const Point* t, PlainReal clearance) {
+  const Normal normal = normal_of(difference(t[1], t[0]), difference(t[2], t[0]));
+  const Triple w0 = difference(s[0], t[0]);
+  const Triple w1 = difference(s[1], t[0]);
+  const Triple w2 = difference(s[2], t[0]);
+  return {{dot(normal.n, w0), dot(normal.n, w1), dot(normal.n, w2)},
+          side_bound<Bounds>(normal, largest(largest(w0, w1), w2)),
+          clearance > 0 ? at_clearance(normal, clearance) : Real(0.0)};
+}
+
+/// What the planes alone tell.
+struct AgainstPlanes {
+  Truth apart;     // a triangle is on one side of the other's plane, beyond the clearance
+  Truth crossing;  // each is on both sides of the other's plane; never together with apart
+  Sides a, b;      // of the corners of either; a only where not every lane is apart
+};
+
+template <class Bounds>
+FAR_FILTER AgainstPlanes against_planes(const Point* a, const Point* b, PlainReal clearance) {
+  const Sides b_sides = sides<Bounds>(b, a, clearance);
+  Truth apart = b_sides.on_one_side();
+  if (of_all(apart)) return {apart, !apart, b_sides, b_sides};
+  const Sides a_sides = sides<Bounds>(a, b, clearance);
+  apart = apart || a_sides.on_one_side();
+  if (of_all(apart)) return {apart, !apart, a_sides, b_sides};
+  return {apart, a_sides.on_both_sides() && b_sides.on_both_sides(), a_sides, b_sides};
+}
+
+// ---- along the line of two planes ----
+
+/// What the line of crossing planes tells.
+struct OnLine {
+  Truth apart, meeting;  // neither: a doubt
+};
+
+/// The corners as corner_order() puts them.
+template <class Bounds>
+FAR_FILTER OnLine compare_on_line(const Point& a0, const Point& a1, const Point& a2,
+                                  const Point& b0, const Point& b1, const Point& b2) {
+  const Normal first_normal = normal_of(difference(a1, a0), difference(b0, a0));
+  const Triple first_w = difference(b1, a0);
+  const Real first = dot(first_normal.n, first_w);
+  const Real first_bound = side_bound<Bounds>(first_normal, magnitudes(first_w));
+  const Truth first_apart = first > first_bound;
+  if (of_all(first_apart)) return {first_apart, !first_apart};
+  const Normal second_normal = normal_of(difference(a2, a0), difference(b2, a0));
+  const Triple second_w = difference(b0, a0);
+  const Real second = dot(second_normal.n, second_w);
+  const Real second_bound = side_bound<Bounds>(second_normal, magnitudes(second_w));
+  return {first_apart || second > second_bound, first < -first_bound && second < -second_bound};
+}
