@@ -17,6 +17,8 @@ namespace farcull {
 std::vector<BuiltinScene> generated_scenes();
 /// For benchmarks; the counts are those of docs/bench.md.
 std::vector<BuiltinScene> bench_scenes();
+/// For benchmarks too, of kinds that people have: cloth, rope and parts in contact.
+std::vector<BuiltinScene> contact_scenes();
 /// The scenes of the papers (CULLIDE, Graphics Hardware 2003; FAR, VRST 2004), which move. Without
 /// frames they are as halfway through their motion.
 std::vector<BuiltinScene> paper_scenes();
@@ -43,6 +45,13 @@ BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed);
 /// size: pairs; second: ulps of their coordinates, the nearest whole number, by which a vertex
 /// stands above a face, or an edge above an edge: they collide where it is 0 or less.
 BuiltScene make_gap(const SceneParameters& parameters);
+
+/// The scenes of the same names in contact_scenes(). size: triangles.
+BuiltScene make_crumpled(const SceneParameters& parameters, std::uint64_t seed);
+BuiltScene make_rope(const SceneParameters& parameters, std::uint64_t seed);
+BuiltScene make_spheres(const SceneParameters& parameters, std::uint64_t seed);
+BuiltScene make_fans(const SceneParameters& parameters, std::uint64_t seed);
+BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed);
 
 /// A scene of two objects, the second one placed.
 Scene two_objects(const std::string& name, const char* first, const Mesh& one, const char* second,

@@ -74,8 +74,9 @@ SceneParameters BuiltinScene::usual() const {
 const std::vector<BuiltinScene>& builtin_scenes() {
   static const std::vector<BuiltinScene> scenes = [] {
     std::vector<BuiltinScene> all;
-    for (const auto group : {generated_scenes, bench_scenes, paper_scenes, sheet_scenes,
-                             cloth_scenes, extreme_scenes, packaged_scenes, dragon_scenes}) {
+    for (const auto group :
+         {generated_scenes, bench_scenes, contact_scenes, paper_scenes, sheet_scenes, cloth_scenes,
+          extreme_scenes, packaged_scenes, dragon_scenes}) {
       for (BuiltinScene& scene : group()) all.push_back(std::move(scene));
     }
     return all;

@@ -36,7 +36,8 @@ TEST(GlMovingScenes, FarPairsMissNothingInAnyFrame) {
     EXPECT_EQ(gl.json["summary"]["missed"], 0);
     EXPECT_EQ(gl.pairs_csv, cpu.pairs_csv);
     for (std::size_t k = 0; k < static_cast<std::size_t>(kFrames); ++k) {
-      EXPECT_EQ(gl.json["frames"][k]["candidate_pairs"], cpu.json["frames"][k]["candidate_pairs"]);
+      // On the CPU boxes of runs may decide, which keep no fewer pairs than views.
+      EXPECT_LE(gl.json["frames"][k]["candidate_pairs"], cpu.json["frames"][k]["candidate_pairs"]);
     }
   }
 }
@@ -83,13 +84,13 @@ TEST(GlMovingScenes, ChangedTopologyIsSeen) {
   lab::Reconnected reconnected;
   for (long frame = 0; frame < 15; ++frame) {
     const Scene& scene = reconnected.at(frame);
-    EXPECT_EQ(lab::missed(scene, {}, gl), 0u) << frame;
-    EXPECT_EQ(find_pairs(scene, {}, gl).candidates,
-              find_pairs(scene, {}, *cpu_pair_backend(2)).candidates);
+    EXPECT_EQ(lab::missed(scene, {.runs = false}, gl), 0u) << frame;
+    EXPECT_EQ(find_pairs(scene, {.runs = false}, gl).candidates,
+              find_pairs(scene, {.runs = false}, *cpu_pair_backend(2)).candidates);
   }
   MovingScene dragon("breaking-dragon:19994", kFrames);
   for (const long frame : {1L, 2L, 7L, 3L, 0L, 4L})
-    EXPECT_EQ(lab::missed(dragon.at(frame), {}, gl), 0u) << frame;
+    EXPECT_EQ(lab::missed(dragon.at(frame), {.runs = false}, gl), 0u) << frame;
 }
 
 // The twin.
@@ -97,9 +98,9 @@ TEST(GlMovingScenes, StaleTopologyIsCaught) {
   GlPairs gl(lab::context());
   lab::Stale stale(gl);
   lab::Reconnected reconnected;
-  EXPECT_EQ(lab::missed(reconnected.at(0), {}, stale), 0u);
+  EXPECT_EQ(lab::missed(reconnected.at(0), {.runs = false}, stale), 0u);
   for (long frame = 1; frame < 6; ++frame)
-    EXPECT_GT(lab::missed(reconnected.at(frame), {}, stale), 0u) << frame;
+    EXPECT_GT(lab::missed(reconnected.at(frame), {.runs = false}, stale), 0u) << frame;
 }
 
 }  // namespace

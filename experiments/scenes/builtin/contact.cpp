@@ -1,0 +1,278 @@
+// Scenes for benchmarks whose objects touch: a rope, a heap of spheres, and the list with those of
+// the other two files.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "experiments/scenes/builtin/generators.h"
+#include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/mesh/shapes.h"
+
+namespace farcull {
+
+using namespace shapes;
+
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+// A rope of three strands, wound in turns around a ring. Lengths are of the radius of a strand. The
+// strands are one closed tube: after each way around the ring a strand goes on as the next one.
+constexpr std::uint32_t kStrands = 3;
+constexpr double kApart = 1.05;  // distance of strands and of turns, where 1 is contact
+constexpr double kWinding = 5;   // radius of the turns
+constexpr double kLay = 20;      // length of rope in which its strands turn once
+constexpr double kStrandAt = kApart * 1.1547005383792517;  // 2 / sqrt(3), of the rope's middle
+constexpr double kRope = kStrandAt + 1;
+
+struct RopeShape {
+  std::uint32_t turns;
+  std::uint32_t sides;  // of a strand
+  std::uint32_t steps;  // of one turn
+  double ring;          // radius of the middle of the turns
+  double twist;         // turns of the strands, all the way around the ring: whole ones and a third
+};
+
+// Below the usual size the rope is shorter, above it is divided more finely.
+RopeShape rope_shape(std::uint64_t triangles) {
+  constexpr double kUsual = 80'000, kUsualTurns = 24, kUsualSides = 12;
+  const auto wanted = static_cast<double>(triangles);
+  RopeShape out{};
+  out.turns = static_cast<std::uint32_t>(
+      std::clamp(std::round(kUsualTurns * wanted / kUsual), 6.0, kUsualTurns));
+  const double part = out.turns / kUsualTurns;
+  out.sides = static_cast<std::uint32_t>(
+      std::max(4.0, std::round(kUsualSides * std::sqrt(wanted / kUsual / part))));
+  out.steps = static_cast<std::uint32_t>(
+      std::max(8.0, std::round(wanted / (2.0 * kStrands * out.sides * out.turns))));
+  // At the inside of the ring, the turns are at kApart.
+  out.ring = kWinding + out.turns * kRope * (kApart + 0.02) / std::numbers::pi;
+  const double length = out.turns * kTurn * kWinding;
+  out.twist = std::round(length / kLay) + 1.0 / kStrands;
+  return out;
+}
+
+// The middle of the rope and two directions across it, after so many turns.
+struct RopeFrame {
+  Vec3 middle, out, aside;
+};
+
+RopeFrame rope_at(const RopeShape& shape, double turn) {
+  const double around = kTurn * turn / shape.turns;
+  const double wound = kTurn * turn;
+  const Vec3 radial(std::cos(around), std::sin(around), 0);
+  const Vec3 forward(-std::sin(around), std::cos(around), 0);
+  const Vec3 out = std::cos(wound) * radial + std::sin(wound) * Vec3::UnitZ();
+  const Vec3 up = std::cos(wound) * Vec3::UnitZ() - std::sin(wound) * radial;
+  const double far = shape.ring + kWinding * std::cos(wound);
+  const Vec3 along = (far / shape.turns * forward + kWinding * up).normalized();
+  return {far * radial + kWinding * std::sin(wound) * Vec3::UnitZ(), out, along.cross(out)};
+}
+
+// A smooth bend of all space that is one to one: the derivatives of its waves stay far below 1.
+class Bend {
+ public:
+  Bend(double size, Random& random) {
+    for (Wave& wave : waves_) {
+      wave.along = random.direction() * (random.between(0.5, 1) * kTurn / size);
+      wave.by = random.direction() * (0.06 / wave.along.norm());
+      wave.phase = kTurn * random.unit();
+    }
+  }
+  Vec3 operator()(const Vec3& p) const {
+    Vec3 out = p;
+    for (const Wave& wave : waves_) out += std::sin(wave.along.dot(p) + wave.phase) * wave.by;
+    return out;
+  }
+
+ private:
+  struct Wave {
+    Vec3 along, by;
+    double phase;
+  };
+  std::array<Wave, 4> waves_;
+};
+
+}  // namespace
+
+// Rings of a strand lie across the rope, not across the strand: they turn about
+// its middle with all strands, so that the parts between two rings stay apart as the rings do.
+BuiltScene make_rope(const SceneParameters& parameters, std::uint64_t seed) {
+  Random random(seed);
+  const RopeShape shape = rope_shape(parameters.size);
+  const Bend bend(2 * (shape.ring + kWinding), random);
+  const double begin = random.unit();
+  const std::uint32_t around = shape.steps * shape.turns;  // rings, once around the ring
+  const std::uint32_t rings = kStrands * around;
+  std::vector<Vec3> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  vertices.reserve(std::size_t{rings} * shape.sides);
+  triangles.reserve(std::size_t{rings} * shape.sides * 2);
+  for (std::uint32_t ring = 0; ring < rings; ++ring) {
+    const RopeFrame frame = rope_at(shape, static_cast<double>(ring % around) / shape.steps);
+    const double turned = kTurn * (begin + shape.twist * ring / around);
+    const double c = std::cos(turned), s = std::sin(turned);
+    for (std::uint32_t side = 0; side < shape.sides; ++side) {
+      const double angle = kTurn * side / shape.sides;
+      const double x = kStrandAt + std::cos(angle), y = std::sin(angle);
+      vertices.push_back(
+          bend(frame.middle + (c * x - s * y) * frame.out + (s * x + c * y) * frame.aside));
+      const std::uint32_t next = (ring + 1) % rings * shape.sides;
+      const std::uint32_t a = ring * shape.sides + side;
+      const std::uint32_t b = ring * shape.sides + (side + 1) % shape.sides;
+      const std::uint32_t d = next + side;
+      const std::uint32_t e = next + (side + 1) % shape.sides;
+      triangles.push_back({a, b, d});
+      triangles.push_back({b, e, d});
+    }
+  }
+  SceneBuilder builder("rope", "rope");
+  builder.add(finished(std::move(vertices), std::move(triangles)), "rope", Split::kNone, {}, true);
+  return {builder.finish(), {}};
+}
+
+namespace {
+
+struct Ball {
+  Vec3 centre;
+  double radius;
+};
+
+// Pairs of balls whose distance is below the sum of their radii plus a margin.
+std::vector<std::array<std::uint32_t, 2>> near_pairs(const std::vector<Ball>& balls,
+                                                     double margin) {
+  const double cell = 2 + margin;  // a radius is at most 1
+  Box box = Box::empty();
+  for (const Ball& ball : balls) box.add(ball.centre);
+  std::array<std::int64_t, 3> cells;
+  for (int k = 0; k < 3; ++k)
+    cells[k] = static_cast<std::int64_t>((box.hi[k] - box.lo[k]) / cell) + 1;
+  const auto cell_of = [&](const Vec3& p, int k) {
+    return static_cast<std::int64_t>((p[k] - box.lo[k]) / cell);
+  };
+  std::vector<std::vector<std::uint32_t>> in(
+      static_cast<std::size_t>(cells[0] * cells[1] * cells[2]));
+  std::vector<std::array<std::uint32_t, 2>> out;
+  for (std::uint32_t i = 0; i < balls.size(); ++i) {
+    const Vec3& p = balls[i].centre;
+    const std::int64_t x = cell_of(p, 0), y = cell_of(p, 1), z = cell_of(p, 2);
+    for (std::int64_t n = 0; n < 27; ++n) {
+      const std::int64_t a = x + n % 3 - 1, b = y + n / 3 % 3 - 1, c = z + n / 9 - 1;
+      if (a < 0 || b < 0 || c < 0 || a >= cells[0] || b >= cells[1] || c >= cells[2]) continue;
+      for (const std::uint32_t j :
+           in[static_cast<std::size_t>((c * cells[1] + b) * cells[0] + a)]) {
+        const double most = balls[i].radius + balls[j].radius + margin;
+        if ((balls[j].centre - p).squaredNorm() < most * most) out.push_back({j, i});
+      }
+    }
+    in[static_cast<std::size_t>((z * cells[1] + y) * cells[0] + x)].push_back(i);
+  }
+  return out;
+}
+
+// Balls of radius 0.5 to 1 that have settled in a box without a lid. Those that touch are kDeep of
+// the sum of their radii nearer than that, as their meshes lie inside of them.
+std::vector<Ball> heap(std::uint64_t count, Random& random) {
+  constexpr double kDeep = 0.03;
+  constexpr double kSpacing = 1.62;
+  constexpr int kRounds = 240, kFalling = 160;
+  std::uint64_t wide = 1;
+  while (wide * wide * wide < count) ++wide;
+  const double width = kSpacing * static_cast<double>(wide);
+  std::vector<Ball> balls;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const Vec3 cell(static_cast<double>(i % wide), static_cast<double>(i / wide % wide),
+                    static_cast<double>(i / wide / wide));
+    const Vec3 centre = kSpacing * (cell + Vec3::Constant(0.5)) + random.in_cube(0.3);
+    balls.push_back({centre, random.between(0.5, 1)});
+  }
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+  for (int round = 0; round < kRounds; ++round) {
+    if (round % 4 == 0) pairs = near_pairs(balls, 0.3);
+    const double fall =
+        round < kFalling ? 0.6 * width / kFalling * (1 - 1.0 * round / kFalling) : 0;
+    for (Ball& ball : balls) ball.centre.z() -= fall;
+    for (const auto& [i, j] : pairs) {
+      const Vec3 d = balls[j].centre - balls[i].centre;
+      const double apart = (1 - kDeep) * (balls[i].radius + balls[j].radius);
+      const double distance = std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
+      if (distance >= apart || distance == 0) continue;
+      const Vec3 step = 0.5 * (apart / distance - 1) * d;
+      balls[i].centre -= step;
+      balls[j].centre += step;
+    }
+    for (Ball& ball : balls) {
+      for (int k = 0; k < 2; ++k)
+        ball.centre[k] = std::clamp(ball.centre[k], ball.radius, width - ball.radius);
+      ball.centre.z() = std::max(ball.centre.z(), ball.radius);
+    }
+  }
+  return balls;
+}
+
+}  // namespace
+
+// A sphere has 320 triangles.
+BuiltScene make_spheres(const SceneParameters& parameters, std::uint64_t seed) {
+  Random random(seed);
+  const Mesh shape = sphere(2);
+  const std::vector<Ball> balls =
+      heap(std::max<std::uint64_t>(2, (parameters.size + 160) / 320), random);
+  SceneBuilder builder("spheres", "spheres");
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    Placement placement = random.anywhere(balls[i].centre);
+    placement.scale = Vec3::Constant(balls[i].radius);
+    builder.add(shape, "sphere" + std::to_string(i), Split::kNone, placement);
+  }
+  return {builder.finish(), {}};
+}
+
+std::vector<BuiltinScene> contact_scenes() {
+  return {
+      drawn(
+          {.name = "crumpled",
+           .description = "a sheet of cloth crumpled to a ball, against itself: 57,043 pairs that "
+                          "are no neighbours collide",
+           .objects = 1,
+           .triangles = 91'592,
+           .size = SceneSize{"triangles", 1000, 100'000'000, 92'000},
+           .costly = true},
+          16, make_crumpled),
+      drawn({.name = "rope",
+             .description = "a rope of three strands wound around a ring, against itself, where "
+                            "nothing collides",
+             .objects = 1,
+             .triangles = 79'488,
+             .size = SceneSize{"triangles", 2000, 100'000'000, 80'000},
+             .costly = true},
+            17, make_rope),
+      drawn({.name = "spheres",
+             .description = "spheres of 320 triangles, settled in a heap: 23,513 pairs collide",
+             .objects = 458,
+             .triangles = 146'560,
+             .size = SceneSize{"triangles", 1000, 100'000'000, 146'560},
+             .costly = true},
+            18, make_spheres),
+      drawn({.name = "fans",
+             .description = "a plug in its socket, triangulated in fans and slivers: 30,979,610 "
+                            "boxes overlap, 1164 collide",
+             .objects = 2,
+             .triangles = 31'112,
+             .size = SceneSize{"triangles", 2000, 10'000'000, 31'000},
+             .costly = true},
+            19, make_fans),
+      drawn({.name = "funnel",
+             .description = "a cloth that hangs in a funnel in pleats, against itself as well, "
+                            "where nothing collides",
+             .objects = 2,
+             .triangles = 29'832,
+             .size = SceneSize{"triangles", 5000, 100'000'000, 30'000},
+             .costly = true},
+            20, make_funnel),
+  };
+}
+
+}  // namespace farcull

@@ -1,0 +1,299 @@
+// Cloth in contact with itself: a sheet crumpled to a ball, and a cloth that hangs in a funnel.
+// Both are smooth surfaces that are sampled more finely for more triangles.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "experiments/scenes/builtin/generators.h"
+#include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/mesh/shapes.h"
+
+namespace farcull {
+
+using namespace shapes;
+
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+// Control points of a uniform cubic B-spline over the unit square: point i * side + j, both from 0
+// to side - 1, is that of the parameter ((i - 1) / spans, (j - 1) / spans).
+struct Lattice {
+  explicit Lattice(std::uint32_t spans) : spans(spans), side(spans + 3), points(side * side) {}
+  std::uint32_t spans;
+  std::uint32_t side;
+  std::vector<Vec3> points;
+};
+
+struct Weights {
+  std::uint32_t first;
+  std::array<double, 4> w;
+};
+
+Weights weights_at(double u, std::uint32_t spans) {
+  const double scaled = u * spans;
+  const auto first = std::min(static_cast<std::uint32_t>(scaled), spans - 1);
+  const double t = scaled - first;
+  const double s = 1 - t;
+  return {first,
+          {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6,
+           t * t * t / 6}};
+}
+
+Vec3 value(const Lattice& lattice, const Weights& u, const Weights& v) {
+  Vec3 sum = Vec3::Zero();
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const Vec3* const row = &lattice.points[(u.first + i) * lattice.side + v.first];
+    sum += u.w[i] * (v.w[0] * row[0] + v.w[1] * row[1] + v.w[2] * row[2] + v.w[3] * row[3]);
+  }
+  return sum;
+}
+
+// Brings the distance of two points from outside [least, most] to its nearer end.
+void keep_distance(Vec3& a, Vec3& b, double least, double most) {
+  const Vec3 d = b - a;
+  const double length = std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
+  if ((length >= least && length <= most) || length == 0) return;
+  const Vec3 step = 0.5 * (1 - std::clamp(length, least, most) / length) * d;
+  a += step;
+  b -= step;
+}
+
+// Position based dynamics (Müller et al. 2007): neighbours in the lattice come to the distance
+// that they have in the flat sheet, and a bend is limited by the distance of every second point.
+void relax(Lattice& sheet, int rounds) {
+  constexpr double kBend = 1.5;  // of the distance of neighbours; 2 is flat
+  const double h = 1.0 / sheet.spans;
+  const double across = h * std::sqrt(2.0);
+  const std::uint32_t n = sheet.side;
+  const auto point = [&](std::uint32_t i, std::uint32_t j) -> Vec3& {
+    return sheet.points[i * n + j];
+  };
+  for (int round = 0; round < rounds; ++round) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      for (std::uint32_t j = 0; j < n; ++j) {
+        Vec3& here = point(i, j);
+        if (i + 2 < n) keep_distance(here, point(i + 2, j), kBend * h, 2 * h);
+        if (j + 2 < n) keep_distance(here, point(i, j + 2), kBend * h, 2 * h);
+        if (i + 1 < n && j + 1 < n) {
+          keep_distance(here, point(i + 1, j + 1), 0.8 * across, 1.2 * across);
+          keep_distance(point(i + 1, j), point(i, j + 1), 0.8 * across, 1.2 * across);
+        }
+        if (i + 1 < n) keep_distance(here, point(i + 1, j), h, h);
+        if (j + 1 < n) keep_distance(here, point(i, j + 1), h, h);
+      }
+    }
+  }
+}
+
+// A random smooth map of the unit square into a ball, relaxed until it hardly stretches.
+Lattice crumple(Random& random) {
+  constexpr std::uint32_t kFolds = 10;  // spans of the random map, which give the size of folds
+  constexpr std::uint32_t kSpans = 84;  // of the sheet that is relaxed
+  constexpr double kReach = 0.26;       // of random control points, the side of the sheet being 1
+  Lattice coarse(kFolds);
+  for (Vec3& p : coarse.points) p = kReach * random.in_ball();
+  Lattice sheet(kSpans);
+  for (std::uint32_t i = 0; i < sheet.side; ++i) {
+    const Weights u = weights_at(static_cast<double>(i) / (sheet.side - 1), kFolds);
+    for (std::uint32_t j = 0; j < sheet.side; ++j) {
+      const Weights v = weights_at(static_cast<double>(j) / (sheet.side - 1), kFolds);
+      sheet.points[i * sheet.side + j] = value(coarse, u, v);
+    }
+  }
+  relax(sheet, 60);
+  return sheet;
+}
+
+// Cells along the side of a grid of about so many triangles.
+std::uint32_t cells_for(std::uint64_t triangles) {
+  return static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(triangles) / 2)));
+}
+
+// The funnel stands upright: a pipe below, a cone above. The cloth hangs in it by a square whose
+// middle was pulled down the pipe. Lengths are of half the side of the cloth.
+constexpr double kCap = 0.22;    // from the middle of the cloth, the part that has no pleats
+constexpr double kPipe = 0.62;   // from the middle of the cloth, where the cone begins
+constexpr double kNarrow = 0.2;  // mean radius of the cloth in the pipe
+constexpr double kSlope = 0.62;  // growth of the mean radius along the cloth in the cone
+constexpr std::uint32_t kPleats = 14;
+
+// Mean radius and height of the cloth at each distance from its middle, and the pleats there: a
+// sine-generated curve, whose direction swings by `swing` radians and whose length is that of the
+// cloth while it advances as far as the mean radius allows.
+struct Ring {
+  double radius = 0, height = 0;
+  std::vector<std::array<double, 2>> pleat;  // (along, outward) at steps of one pleat, length 1
+};
+
+constexpr std::uint32_t kSteps = 64;  // of a pleat in the table
+constexpr std::uint32_t kRings = 600;
+constexpr double kReachOfCloth = 1.5;  // beyond the corners of the square, sqrt(2)
+
+// Mean of cos(swing sin(u)): the Bessel function J0, which falls from 1 to 0 on [0, 2.4].
+double advance(double swing) {
+  double sum = 0;
+  for (std::uint32_t k = 0; k < kSteps; ++k) {
+    sum += std::cos(swing * std::sin(kTurn * k / kSteps));
+  }
+  return sum / kSteps;
+}
+
+std::vector<std::array<double, 2>> pleat_of(double wanted) {
+  double lo = 0, hi = 2.4;
+  for (int step = 0; step < 30; ++step) {
+    const double middle = (lo + hi) / 2;
+    (advance(middle) > wanted ? lo : hi) = middle;
+  }
+  std::vector<std::array<double, 2>> out(kSteps + 1, {0, 0});
+  for (std::uint32_t k = 0; k < kSteps; ++k) {
+    const double turned = lo * std::sin(kTurn * (k + 0.5) / kSteps);
+    out[k + 1] = {out[k][0] + std::cos(turned) / kSteps, out[k][1] + std::sin(turned) / kSteps};
+  }
+  // The middle of the curve lies at 0; it goes outward first.
+  double mean = 0;
+  for (std::uint32_t k = 0; k < kSteps; ++k) mean += out[k][1] / kSteps;
+  for (auto& [along, outward] : out) outward -= mean;
+  return out;
+}
+
+std::vector<Ring> rings() {
+  std::vector<Ring> out(kRings + 1);
+  const double step = kReachOfCloth / kRings;
+  const auto smooth = [](double t) {
+    t = std::clamp(t, 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+  };
+  double radius = 0, height = 0;
+  for (std::uint32_t k = 0; k <= kRings; ++k) {
+    const double s = k * step;
+    const double wanted = s <= kNarrow ? s : std::max(kNarrow, kNarrow + kSlope * (s - kPipe));
+    out[k].radius = s == 0 ? 0 : s + (wanted - s) * smooth(s / kCap - 0.3);
+    const double grown = out[k].radius - radius;
+    if (k > 0) height += std::sqrt(std::max(0.0, step * step - grown * grown));
+    radius = out[k].radius;
+    out[k].height = height;
+    out[k].pleat = pleat_of(s == 0 ? 1 : std::min(1.0, radius / s));
+  }
+  return out;
+}
+
+// Where the cloth is that was at this distance and angle (in turns) of the flat square.
+Vec3 hung(const std::vector<Ring>& table, double s, double turns, double uneven) {
+  const double row = s / kReachOfCloth * kRings;
+  const auto k = std::min(static_cast<std::uint32_t>(row), kRings - 1);
+  const double t = row - k;
+  const double pleats = kPleats * turns + uneven;
+  const double begun = std::floor(pleats);
+  const double column = (pleats - begun) * kSteps;
+  const auto c = std::min(static_cast<std::uint32_t>(column), kSteps - 1);
+  const double f = column - c;
+  const auto at = [&](std::size_t axis) {
+    const auto of = [&](const Ring& ring) {
+      return (1 - f) * ring.pleat[c][axis] + f * ring.pleat[c + 1][axis];
+    };
+    return (1 - t) * of(table[k]) + t * of(table[k + 1]);
+  };
+  const double radius = (1 - t) * table[k].radius + t * table[k + 1].radius;
+  const double height = (1 - t) * table[k].height + t * table[k + 1].height;
+  const double length = kTurn * s / kPleats;  // of a pleat
+  const double pitch = s == 0 ? 1 : std::min(1.0, radius / s);
+  const double angle = kTurn * ((begun + at(0) / pitch - uneven) / kPleats);
+  const double out = radius + length * at(1);
+  return {out * std::cos(angle), out * std::sin(angle), height};
+}
+
+constexpr std::uint32_t kAround = 96;  // quads around the funnel
+constexpr std::uint32_t kPipeRings = 8, kConeRings = 12;
+constexpr std::uint64_t kRigid = 2 * kAround * (kPipeRings + kConeRings);  // its triangles
+
+// A surface of revolution that holds all of the points, `gap` away from the nearest.
+Mesh funnel_around(const std::vector<Vec3>& points, double gap) {
+  const double begin = rings()[static_cast<std::size_t>(kPipe / kReachOfCloth * kRings)].height;
+  const double slope = kSlope / std::sqrt(1 - kSlope * kSlope);
+  double pipe = 0, top = 0;
+  for (const Vec3& p : points) {
+    const double r = std::sqrt(p.x() * p.x() + p.y() * p.y());
+    pipe = std::max(pipe, r - slope * std::max(0.0, p.z() - begin));
+    top = std::max(top, p.z());
+  }
+  // Chords of the polygon come nearer to the axis than its corners.
+  const double widen = 1 / std::cos(kTurn / 2 / kAround);
+  std::vector<std::array<double, 2>> profile;  // radius, height
+  for (std::uint32_t k = 0; k <= kPipeRings; ++k)
+    profile.push_back({pipe + gap, begin * (0.2 + 0.1 * k)});
+  for (std::uint32_t k = 1; k <= kConeRings; ++k) {
+    const double z = (top - begin) * k / (kConeRings - 1);  // the last ring lies above the cloth
+    profile.push_back({pipe + gap + slope * z, begin + z});
+  }
+  std::vector<Vec3> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (const auto& [radius, height] : profile) {
+    const auto first = static_cast<std::uint32_t>(vertices.size());
+    for (std::uint32_t i = 0; i < kAround; ++i) {
+      const double angle = kTurn * i / kAround;
+      vertices.emplace_back(widen * radius * std::cos(angle), widen * radius * std::sin(angle),
+                            height);
+      if (first == 0) continue;
+      const std::uint32_t a = first + i, b = first + (i + 1) % kAround;
+      triangles.push_back({a - kAround, b - kAround, b});
+      triangles.push_back({a - kAround, b, a});
+    }
+  }
+  return finished(std::move(vertices), std::move(triangles));
+}
+
+}  // namespace
+
+BuiltScene make_crumpled(const SceneParameters& parameters, std::uint64_t seed) {
+  Random random(seed);
+  const Lattice sheet = crumple(random);
+  const std::uint32_t cells = cells_for(parameters.size);
+  Mesh mesh = grid(cells);
+  std::vector<Weights> at;
+  for (std::uint32_t i = 0; i <= cells; ++i)
+    at.push_back(weights_at(static_cast<double>(i) / cells, sheet.spans));
+  for (std::uint32_t i = 0; i <= cells; ++i) {
+    for (std::uint32_t j = 0; j <= cells; ++j)
+      mesh.vertices[i * (cells + 1) + j] = value(sheet, at[i], at[j]);
+  }
+  SceneBuilder builder("crumpled", "crumpled");
+  builder.add(mesh, "sheet", Split::kNone, {}, true);
+  return {builder.finish(), {}};
+}
+
+BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed) {
+  constexpr std::size_t kWaves = 3;
+  Random random(seed);
+  const double turned = random.unit();
+  std::array<std::array<double, 3>, kWaves> waves;  // height in pleats, phase, twist
+  for (auto& [height, phase, twist] : waves) {
+    height = random.between(0.15, 0.3);
+    phase = random.unit();
+    twist = random.between(-0.5, 0.5);
+  }
+  const std::uint32_t cells = cells_for(parameters.size - kRigid);
+  Mesh mesh = grid(cells);
+  const std::vector<Ring> table = rings();
+  for (Vec3& p : mesh.vertices) {
+    // The middle lies off every grid line.
+    const double x = 2 * p.x() - 1 + 0.013, y = 2 * p.y() - 1 + 0.007;
+    const double s = std::sqrt(x * x + y * y);
+    const double angle = std::atan2(y, x) / kTurn + 0.5;
+    double uneven = turned;
+    for (std::size_t k = 0; k < kWaves; ++k) {
+      const auto& [height, phase, twist] = waves[k];
+      uneven += height * std::sin(kTurn * (static_cast<double>(k + 1) * angle + phase + twist * s));
+    }
+    p = hung(table, s, angle, uneven);
+  }
+  const Mesh around = funnel_around(mesh.vertices, 0.002);
+  SceneBuilder builder("funnel", "funnel");
+  builder.add(mesh, "cloth", Split::kNone, {}, true);
+  builder.add(around, "funnel", Split::kNone, {});
+  return {builder.finish(), {}};
+}
+
+}  // namespace farcull
