@@ -30,7 +30,7 @@ farcull_packages=(
   # results, pictures, figures
   libsqlitecpp-dev libsqlite3-dev libpng-dev gnuplot-nox
   # libraries that farcull bench compares with, and benchmarks of kernels; the build works without
-  libfcl-dev libembree-dev libtbb-dev libbenchmark-dev
+  libfcl-dev libembree-dev libbullet-dev libode-dev libtbb-dev libbenchmark-dev
 )
 # What only the test of the report needs: it opens the page in a browser, prints it and reads the PDF.
 farcull_test_packages=(chromium poppler-utils sqlite3)

@@ -44,8 +44,9 @@ std::vector<std::string> chosen(const std::string& option, const std::string& te
 }
 
 // The pipeline, without a record. Neighbours are not asked for: the peers leave them out too.
-BenchRun method_run(Method method, std::shared_ptr<Session> session) {
-  const RunOptions options{.method = method, .verify = false, .neighbours = false};
+BenchRun method_run(Method method, std::shared_ptr<Session> session, const std::string& device) {
+  RunOptions options{.method = method, .verify = false, .neighbours = false};
+  options.device = device;
   return [=](const Scene& scene) {
     const Stopwatch watch;
     const unsigned threads = session->threads();
@@ -110,14 +111,14 @@ void add_methods(const Scene& scene, const BenchOptions& options, ContestantList
   const auto on_gl = [&](Contestant& c, Method method) {
     if (!gl) gl = gl_session(options);
     c.device = gl->context().info().renderer;
-    c.run = method_run(method, gl);
+    c.run = method_run(method, gl, options.device.empty() ? "gl" : options.device);
   };
   for (const std::string& name : chosen("--methods", options.methods, kMethods)) {
     const Method method = parse_method(name);
     const std::string refused =
         has_self(scene) && !tests_self(method) ? "it tests no object against itself" : "";
     list.add({.name = name, .left_out = refused}, by_name, "--methods", [&](Contestant& c) {
-      c.run = method_run(method, std::make_shared<Session>("native", options.threads));
+      c.run = method_run(method, std::make_shared<Session>("native", options.threads), "native");
     });
     const bool slow = draws(method) && options.device.empty() && !GlContext::hardware_listed();
     if (!looks(method) || no_gl || slow) continue;

@@ -22,9 +22,9 @@ std::vector<TimedScene> scenes_of(bool quick) {
   return {{"two-tori"}, {"needles:100"}, {"two-bunnies"}, {"mannequin-devil", true}};
 }
 
-// Libraries with exact decisions after their broad phase, and FCL as it is.
-constexpr const char* kPeers[] = {"cgal-boxes", "cgal-aabb", "embree-low", "fcl-double",
-                                  "fcl-float"};
+// Libraries with exact decisions after their broad phase, and FCL and ODE as they are.
+constexpr const char* kPeers[] = {"cgal-boxes", "cgal-aabb", "embree-low",
+                                  "fcl-double", "fcl-float", "ode-trimesh"};
 
 // All methods at one resolution.
 void add_drawn(std::vector<Point>& out, const TimedScene& scene, int resolution, int repeat) {

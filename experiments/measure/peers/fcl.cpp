@@ -1,6 +1,6 @@
 // FCL in double: its bounding volume hierarchies and overlap tests. FCL's own test of two triangles
-// is inexact, so its leaves are candidates here; and its traversal, which has one thread, is
-// written anew so that it can be divided and can take a model with itself.
+// is inexact, so its leaves are candidates here. FCL's traversal has one thread and takes no model
+// with itself, so that of trees.h takes its place.
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/math/bv/AABB.h>
 #include <fcl/math/bv/OBB.h>
@@ -13,54 +13,35 @@
 
 #include "experiments/measure/peers/fcl_parts.h"
 #include "experiments/measure/peers/parts.h"
+#include "experiments/measure/peers/trees.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
 
-/// Two nodes whose leaves are to be compared; a model with itself where one of them is all.
+/// The hierarchy of an object, as search_trees() takes it. The larger node is divided first, as in
+/// FCL.
 template <class Volume>
-struct Task {
-  const FclModel<Volume>* first;
-  const FclModel<Volume>* second;
-  int a;
-  int b;
-  bool inner = false;  // the leaves below a with each other
+class FclTree {
+ public:
+  explicit FclTree(const FclModel<Volume>& model)
+      : hierarchy_(model.hierarchy.get()), first_(model.first) {}
+
+  bool is_leaf(int node) const { return hierarchy_->getBV(node).isLeaf(); }
+  int left(int node) const { return hierarchy_->getBV(node).leftChild(); }
+  int right(int node) const { return hierarchy_->getBV(node).rightChild(); }
+  double size(int node) const { return hierarchy_->getBV(node).bv.size(); }
+  std::uint32_t triangle(int leaf) const {
+    return first_ + static_cast<std::uint32_t>(hierarchy_->getBV(leaf).primitiveId());
+  }
+  bool meets(int node, const FclTree& other, int other_node) const {
+    return hierarchy_->getBV(node).overlap(other.hierarchy_->getBV(other_node));
+  }
+
+ private:
+  const fcl::BVHModel<Volume>* hierarchy_;
+  std::uint32_t first_;
 };
-
-/// Where a task goes on: with the larger node divided, as FCL does it, or at leaves (found) and
-/// disjoint volumes nowhere.
-template <class Volume, class Found, class Next>
-void step(const Task<Volume>& task, const Found& found, const Next& next) {
-  const auto& a = task.first->hierarchy->getBV(task.a);
-  const auto& b = task.second->hierarchy->getBV(task.b);
-  const auto with = [&](int left, int right, bool inner = false) {
-    next({task.first, task.second, left, right, inner});
-  };
-  if (task.inner) {
-    if (a.isLeaf()) return;
-    with(a.leftChild(), a.leftChild(), true);
-    with(a.rightChild(), a.rightChild(), true);
-    with(a.leftChild(), a.rightChild());
-    return;
-  }
-  if (!a.overlap(b)) return;
-  if (a.isLeaf() && b.isLeaf()) {
-    found(task.first->first + static_cast<std::uint32_t>(a.primitiveId()),
-          task.second->first + static_cast<std::uint32_t>(b.primitiveId()));
-  } else if (b.isLeaf() || (!a.isLeaf() && a.bv.size() > b.bv.size())) {
-    with(a.leftChild(), task.b);
-    with(a.rightChild(), task.b);
-  } else {
-    with(task.a, b.leftChild());
-    with(task.a, b.rightChild());
-  }
-}
-
-template <class Volume, class Found>
-void descend(const Task<Volume>& task, const Found& found) {
-  step(task, found, [&found](const Task<Volume>& next) { descend(next, found); });
-}
 
 /// The objects whose boxes meet, by FCL's own broad phase where there are more than two.
 std::vector<std::pair<std::size_t, std::size_t>> meeting(
@@ -97,31 +78,13 @@ BenchAnswer collide(const Scene& scene, unsigned threads) {
   const double build_ms = building.ms();
 
   PeerCandidates candidates(scene, threads, threads > 1);
-  std::vector<Task<Volume>> tasks;
+  std::vector<FclTree<Volume>> trees(models.begin(), models.end());
+  std::vector<TreeTask<FclTree<Volume>>> tasks;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (objects[i]->self) tasks.push_back({&models[i], &models[i], 0, 0, true});
+    if (objects[i]->self) tasks.push_back({&trees[i], &trees[i], 0, 0, true});
   }
-  for (const auto& [i, j] : meeting(placed)) tasks.push_back({&models[i], &models[j], 0, 0});
-  // Divided until there is enough for all threads.
-  const auto found = [&](std::uint32_t a, std::uint32_t b) { candidates.part().add(a, b); };
-  const std::size_t enough = threads > 1 ? 64 * threads : 1;
-  while (!tasks.empty() && tasks.size() < enough) {
-    std::vector<Task<Volume>> finer;
-    for (const Task<Volume>& task : tasks) {
-      step(task, found, [&finer](const Task<Volume>& next) { finer.push_back(next); });
-    }
-    tasks = std::move(finer);
-  }
-  for_each_taken(tasks.size(), 1, threads, [&](std::size_t i) {
-    PeerCandidates::Part& part = candidates.part();
-    if (tasks[i].first == tasks[i].second) {
-      descend(tasks[i], [&](std::uint32_t a, std::uint32_t b) {
-        if (!share_vertex(scene, a, b)) part.add(a, b);
-      });
-    } else {
-      descend(tasks[i], [&part](std::uint32_t a, std::uint32_t b) { part.add(a, b); });
-    }
-  });
+  for (const auto& [i, j] : meeting(placed)) tasks.push_back({&trees[i], &trees[j]});
+  search_trees(scene, std::move(tasks), threads, candidates);
   BenchAnswer answer = candidates.finish();
   answer.build_ms = build_ms;
   return answer;

@@ -116,6 +116,8 @@ Peer peer(const std::string& name) {
 
 }  // namespace
 
-std::vector<Peer> narrow_peers() { return {peer<float>("fcl-float"), peer<double>("fcl-double")}; }
+std::vector<Peer> fcl_narrow_peers() {
+  return {peer<float>("fcl-float"), peer<double>("fcl-double")};
+}
 
 }  // namespace farcull

@@ -2,11 +2,12 @@
 #include "experiments/measure/peers/peer.h"
 
 #include <iterator>
+#include <utility>
 
 namespace farcull {
 namespace {
 
-#if !FARCULL_WITH_FCL || !FARCULL_WITH_EMBREE
+#if !FARCULL_WITH_FCL || !FARCULL_WITH_EMBREE || !FARCULL_WITH_BULLET || !FARCULL_WITH_ODE
 Peer missing(const std::string& name, const std::string& library, const std::string& debian) {
   return {.name = name,
           .library = library,
@@ -22,7 +23,7 @@ std::vector<Peer> fcl_peers() {
           missing("fcl-aabb", "FCL", "libfcl-dev")};
 }
 
-std::vector<Peer> narrow_peers() {
+std::vector<Peer> fcl_narrow_peers() {
   return {missing("fcl-float", "FCL", "libfcl-dev"), missing("fcl-double", "FCL", "libfcl-dev")};
 }
 #endif
@@ -34,9 +35,26 @@ std::vector<Peer> embree_peers() {
 }
 #endif
 
+#if !FARCULL_WITH_BULLET
+std::vector<Peer> bullet_peers() {
+  return {missing("bullet-gimpact", "Bullet in double", "libbullet-dev")};
+}
+#endif
+
+#if !FARCULL_WITH_ODE
+std::vector<Peer> ode_narrow_peers() { return {missing("ode-trimesh", "ODE", "libode-dev")}; }
+#endif
+
+std::vector<Peer> narrow_peers() {
+  std::vector<Peer> all = fcl_narrow_peers();
+  for (Peer& peer : ode_narrow_peers()) all.push_back(std::move(peer));
+  return all;
+}
+
 std::vector<Peer> all_peers(unsigned threads) {
   std::vector<Peer> all = cgal_peers(threads);
-  for (std::vector<Peer> some : {fcl_peers(), embree_peers()}) {
+  for (std::vector<Peer> some :
+       {cgal_self_peers(threads), fcl_peers(), embree_peers(), bullet_peers()}) {
     all.insert(all.end(), std::move_iterator(some.begin()), std::move_iterator(some.end()));
   }
   return all;

@@ -1,5 +1,6 @@
 // Broad phases of other libraries, which a user would take instead of farcull, for `farcull bench`:
-// each is followed by the exact decisions of verify/exact.h. All go from the triangles of a scene
+// each is followed by the exact decisions of verify/exact.h, but for CGAL's self_intersections(),
+// which decides exactly by itself. All go from the triangles of a scene
 // to the same list: the pairs of triangles of different objects, and of one object where it is
 // `self`, that collide and are not neighbours (verify/exact.h).
 //
@@ -45,16 +46,23 @@ std::vector<Peer> all_peers(unsigned threads);
 
 /// Their parts, a library each; peer.cpp joins them.
 std::vector<Peer> cgal_peers(unsigned threads);
+std::vector<Peer> cgal_self_peers(unsigned threads);
 std::vector<Peer> fcl_peers();
 std::vector<Peer> embree_peers();
+std::vector<Peer> bullet_peers();
 
 /// Libraries as their users run them, with their own inexact test of two triangles, so that pairs
-/// may be missed or wrong: fcl-float and fcl-double are FCL's OBBRSS hierarchies and fcl::collide()
-/// on coordinates rounded to that type. BenchAnswer::pairs is what the library reports, without
-/// neighbours (verify/exact.h) inside an object that is `self`; candidate_pairs is their number.
-/// One traversal has one thread, pairs of objects are divided over the threads. Not among
-/// all_peers(), whose answers are exact; `refuses` is null, since they vouch for nothing.
+/// may be missed or wrong. fcl-float and fcl-double are FCL's OBBRSS hierarchies and fcl::collide()
+/// on coordinates rounded to that type. ode-trimesh is the contacts of ODE's dCollide().
+/// BenchAnswer::pairs is what the library reports, without neighbours (verify/exact.h) inside an
+/// object that is `self`; candidate_pairs is their number. One traversal has one thread; FCL's
+/// pairs of objects are divided over the threads. Not among all_peers(), whose answers are exact;
+/// `refuses` names what a library does not do at all, since they vouch for nothing.
 std::vector<Peer> narrow_peers();
+
+/// Their parts, a library each.
+std::vector<Peer> fcl_narrow_peers();
+std::vector<Peer> ode_narrow_peers();
 
 /// CGAL's exact predicate by itself, as its users call it: what decide() falls back to. Neither may
 /// be degenerate.

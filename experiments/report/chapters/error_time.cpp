@@ -185,9 +185,9 @@ void add_front_finding(const NamedRows& scene, Chapter& chapter) {
       scene.name, in_words(*best), in_words(*next), times_as_long(*next, *best)));
 }
 
-// Adds the errors of FCL's own test of triangles, by its precision.
-void add_fcl_findings(const Rows& rows, Chapter& chapter) {
-  for (const char* name : {"fcl-float", "fcl-double"}) {
+// Adds the errors of libraries with a test of triangles of their own.
+void add_narrow_findings(const Rows& rows, Chapter& chapter) {
+  for (const char* name : {"fcl-float", "fcl-double", "ode-trimesh"}) {
     Rows of = rows;
     std::erase_if(of, [&](const Row* row) { return row->point.method != name; });
     if (of.empty()) continue;
@@ -206,13 +206,14 @@ Chapter error_time_chapter(const StoredStudy& stored) {
   const std::vector<NamedRows> scenes = rows_by_scene(stored);
   add_promises(stored, out);
   for (const NamedRows& scene : scenes) add_front_finding(scene, out);
-  add_fcl_findings(rows, out);
+  add_narrow_findings(rows, out);
   out.limits = {
       "Times are one machine's. On a software device those of methods that draw say nothing about "
       "graphics hardware, and the front is another there.",
-      "Every method may use all cores; FCL's traversal of two objects has one thread.",
+      "Every method may use all cores; FCL's traversal of two objects has one thread, and so has "
+      "ODE.",
       "Embree and CGAL give candidates; they are right because exact tests follow, whose time is "
-      "in theirs. What FCL takes includes its own test of triangles.",
+      "in theirs. What FCL and ODE take includes their own test of triangles.",
       "Contexts, shaders and Embree's device are made before; hierarchies and boxes belong to the "
       "run.",
       "On a scene tested against itself libraries leave pairs that share a vertex out, ours count "

@@ -61,8 +61,16 @@ Scene sheets_and_blades(std::uint32_t sheets, std::uint32_t blades) {
   return scene;
 }
 
-// All contestants that there are agree, and those that must be there are.
-BenchResult expect_agreement(const Scene& scene, bool oriented_boxes = true) {
+// Whether CGAL's self_intersections() takes the scene, but for degenerate triangles.
+bool is_one_self_object(const Scene& scene) {
+  std::vector<Object> objects = scene.objects;
+  std::erase_if(objects, [](const Object& object) { return object.triangle_count == 0; });
+  return objects.size() == 1 && objects[0].self;
+}
+
+// All contestants that there are agree, and those that must be there are. `degenerate`: the scene
+// has triangles that not all peers take.
+BenchResult expect_agreement(const Scene& scene, bool degenerate = false) {
   const BenchOptions options = quick();
   const BenchResult result = bench(scene, contestants(scene, options), options);
   EXPECT_FALSE(result.disagreement) << describe(scene, *result.disagreement);
@@ -75,8 +83,10 @@ BenchResult expect_agreement(const Scene& scene, bool oriented_boxes = true) {
   }
   for (const Peer& peer : all_peers(options.threads)) {
     const bool oriented = peer.name == "fcl-obb" || peer.name == "fcl-obbrss";
-    EXPECT_EQ(ran.contains(peer.name), peer.missing.empty() && (oriented_boxes || !oriented))
-        << peer.name;
+    const bool one_mesh = peer.name.starts_with("cgal-self-intersections");
+    const bool refuses =
+        (degenerate && (oriented || one_mesh)) || (one_mesh && !is_one_self_object(scene));
+    EXPECT_EQ(ran.contains(peer.name), peer.missing.empty() && !refuses) << peer.name;
   }
   for (const char* name : {"far-pairs", "exact", "cgal-boxes", "cgal-boxes-2000",
                            "cgal-object-pairs", "cgal-aabb", "cgal-aabb-triangles"}) {
@@ -96,9 +106,9 @@ TEST(Bench, PeersAgreeOnSmallScenes) {
 
 TEST(Bench, PeersAgreeWithBruteForceOnDegenerateTriangles) {
   const Scene scene = make_builtin_scene("degenerate");
-  EXPECT_EQ(expect_agreement(scene, false).rows[0].pairs, brute_force(scene).size());
+  EXPECT_EQ(expect_agreement(scene, true).rows[0].pairs, brute_force(scene).size());
   const Scene self = self_colliding(scene);
-  EXPECT_EQ(expect_agreement(self, false).rows[0].pairs, brute_force(self).size());
+  EXPECT_EQ(expect_agreement(self, true).rows[0].pairs, brute_force(self).size());
 }
 
 TEST(Bench, PeersAgreeOnSelfCollisionWithoutNeighbours) {
@@ -113,6 +123,51 @@ TEST(Bench, PeersAgreeOnSelfCollisionWithoutNeighbours) {
   expect_agreement(some);
   some.objects = {{"one", 0, static_cast<std::uint32_t>(some.triangles.size())}};
   EXPECT_EQ(expect_agreement(some).rows[0].pairs, 0u) << "an object that is not self has no pairs";
+}
+
+// Four faces at one edge, two fans at one vertex, a face twice, one that is turned: a mesh takes
+// none of these, and self_intersections() must report their pairs all the same, no neighbour.
+TEST(Bench, PeersAgreeOnAnObjectThatIsNoManifold) {
+  Scene scene;
+  scene.name = "book";
+  scene.vertices = {{0, 0, 0}, {0, 0, 4},  {3, 0, 2},  {0, 3, 2}, {-3, 0, 2}, {0, -3, 2},
+                    {1, 1, 2}, {-1, 1, 2}, {1, -1, 2}, {9, 9, 9}, {9, 8, 9},  {0, 9, 0}};
+  scene.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {1, 0, 5},  {6, 7, 8},
+                     {6, 7, 8}, {7, 6, 8}, {9, 0, 6}, {9, 10, 6}, {11, 0, 9}};
+  scene.source_face.resize(scene.triangles.size());
+  scene.objects = {{"book", 0, static_cast<std::uint32_t>(scene.triangles.size()), true}};
+  validate(scene, scene.name);
+  ASSERT_GT(brute_force(scene).size(), 5u);
+  EXPECT_EQ(expect_agreement(scene).rows[0].pairs, brute_force(scene).size());
+}
+
+// Bullet's own comparison of two trees loses half of such pairs: boxes of 1e-5 that touch, 1e6 from
+// the origin. FCL's oriented boxes lose a third (docs/bench.md), so they are not asked.
+TEST(Bench, PeersWithAlignedBoxesAgreeOnWhatTouchesFarFromTheOrigin) {
+  const std::uint32_t pairs = 500;
+  Scene scene;
+  scene.name = "touching";
+  for (std::uint32_t object = 0; object < 2; ++object) {
+    for (std::uint32_t i = 0; i < pairs; ++i) {
+      const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+      const Vec3 at = {1e6 + i * 0.37, 1e6 + i * 0.11, 1e6};
+      const double away = object == 0 ? -1e-5 : 1e-5;
+      scene.vertices.insert(scene.vertices.end(),
+                            {at, at + Vec3(away, 1e-5, 0), at + Vec3(away, 0, 1e-5)});
+      scene.triangles.push_back({first, first + 1, first + 2});
+      scene.source_face.push_back(0);
+    }
+  }
+  scene.objects = {{"left", 0, pairs}, {"right", pairs, pairs}};
+  validate(scene, scene.name);
+  const std::vector<TrianglePair> all = brute_force(scene);
+  ASSERT_EQ(all.size(), pairs);
+  for (const Peer& peer : all_peers(2)) {
+    const bool oriented = peer.name == "fcl-obb" || peer.name == "fcl-obbrss";
+    if (!peer.missing.empty() || oriented || (peer.refuses && !peer.refuses(scene).empty()))
+      continue;
+    EXPECT_EQ(peer.set_up(2)(scene).pairs, all) << peer.name;
+  }
 }
 
 TEST(Bench, PeersAgreeWhenCandidatesAreDecidedInParts) {
@@ -289,6 +344,7 @@ TEST(Bench, LeavesOutAloudWhatCannotRun) {
   }
   EXPECT_FALSE(out.contains("far")) << "the native canvas draws on the CPU";
   EXPECT_TRUE(out.contains("fcl-obbrss")) << "not exact here, or not in this build";
+  EXPECT_TRUE(out.contains("cgal-self-intersections")) << "of several objects";
   options.methods = "far";
   EXPECT_NO_THROW(contestants(scene, options));
   Scene with_self = scene;
@@ -299,6 +355,9 @@ TEST(Bench, LeavesOutAloudWhatCannotRun) {
   options = quick();
   options.peers = "fcl-obb,cgal-aabb";
   EXPECT_EQ(error_of([&] { contestants(scene, options); }).where, "--peers");
+  options.peers = "cgal-self-intersections";
+  EXPECT_EQ(error_of([&] { contestants(make_builtin_scene("crowd"), options); }).reason,
+            "cgal-self-intersections: it takes one object, tested against itself");
 }
 
 TEST(Bench, RefusesWhatItDoesNotKnow) {

@@ -32,7 +32,7 @@ std::vector<TrianglePair> truth_of(const Scene& scene) { return all_colliding_pa
 class NarrowPeers : public testing::Test {
  protected:
   void SetUp() override {
-    for (const Peer& peer : narrow_peers()) {
+    for (const Peer& peer : fcl_narrow_peers()) {
       if (!peer.missing.empty()) GTEST_SKIP() << peer.missing;
     }
   }
@@ -140,6 +140,56 @@ TEST_F(NarrowPeers, EndOnDegenerateTrianglesAndWhatOnlyFloatsMakeDegenerate) {
       }
     }
   }
+}
+
+class OdeTrimesh : public NarrowPeers {
+ protected:
+  void SetUp() override {
+    const Peer peer = ode_narrow_peers().front();
+    if (!peer.missing.empty()) GTEST_SKIP() << peer.missing;
+  }
+  static std::vector<TrianglePair> found(const Scene& scene) {
+    return NarrowPeers::found("ode-trimesh", scene);
+  }
+};
+
+// Contacts of two-spheres are merged where triangles share an edge; the pairs of both are there.
+TEST_F(OdeTrimesh, FindsPairsWhoseContactsAreMerged) {
+  for (const char* name : {"two-spheres", "two-tori"}) {
+    const Scene scene = make_builtin_scene(name);
+    ASSERT_FALSE(truth_of(scene).empty());
+    EXPECT_EQ(found(scene), truth_of(scene)) << name;
+  }
+}
+
+TEST_F(OdeTrimesh, FindsPairsOfManyObjectsAndNoneOfOne) {
+  const Scene scene = make_builtin_scene("crowd");
+  const Errors errors = errors_of({truth_of(scene), 0, 0}, found(scene));
+  EXPECT_LT(errors.missed, truth_of(scene).size() / 10) << "merged contacts of other depth";
+  EXPECT_EQ(errors.wrong, 0u);
+  EXPECT_EQ(fault_of(scene, found(scene)), "");
+}
+
+TEST_F(OdeTrimesh, MissesNeedlesThatFloatsMakeDegenerate) {
+  const Scene scene = make_builtin_scene("needles-crossed");
+  ASSERT_EQ(truth_of(scene).size(), 625u);
+  EXPECT_TRUE(found(scene).empty());
+}
+
+TEST_F(OdeTrimesh, EndsOnDegenerateTrianglesAndOnScenesOfNothing) {
+  for (const char* name : {"degenerate", "needles", "crowd@far", "crowd@tiny", "crowd@huge"}) {
+    const Scene scene = make_builtin_scene(name);
+    EXPECT_EQ(fault_of(scene, found(scene)), "") << name;
+  }
+  EXPECT_TRUE(found(Scene{}).empty());
+}
+
+TEST_F(OdeTrimesh, RefusesAnObjectAgainstItself) {
+  Scene scene = make_builtin_scene("crowd");
+  const Peer peer = ode_narrow_peers().front();
+  EXPECT_EQ(peer.refuses(scene), "");
+  scene.objects[1].self = true;
+  EXPECT_EQ(peer.refuses(scene), "it tests no object against itself");
 }
 
 // The twin: each fault is seen.
