@@ -11,6 +11,8 @@ std::string verb_of(StageKind kind) {
   switch (kind) {
     case StageKind::boxes:
       return "boxes";
+    case StageKind::runs:
+      return "runs";
     case StageKind::choose:
       return "choose";
     case StageKind::setup:
@@ -86,6 +88,11 @@ std::string reason_of(const Stage& stage) {
     case Reason::meetings:
       return "pairs of objects whose boxes overlap: " + n +
              "; objects tested against themselves: " + m;
+    case Reason::run_pairs:
+      return "boxes of runs of 16 triangles that overlap: " + n + ", of " + m +
+             (m == "1" ? " object or pair of objects" : " objects and pairs of objects");
+    case Reason::only_runs:
+      return "boxes of runs decide: no view is needed";
     case Reason::no_boxes_overlap:
       return "no two objects' boxes overlap, none is tested against itself";
     case Reason::no_triangle_meets:

@@ -10,6 +10,7 @@ namespace farcull {
 
 enum class StageKind : std::uint8_t {
   boxes,           // which triangles can take part, by boxes
+  runs,            // objects that are compared without a view, by boxes of runs of triangles
   choose,          // directions and resolutions of views
   setup,           // the device: context, shaders, threads
   draw,            // all drawing; a stage of its own only where nothing is drawn
@@ -38,6 +39,8 @@ enum class Reason : std::uint8_t {
   full,                // --full: nothing is left out
   regions,             // n pairs of objects' boxes overlap
   meetings,            // n such pairs, m objects are tested against themselves
+  run_pairs,           // n pairs of runs overlap, of m pairs of objects
+  only_runs,           // nothing else can meet: no view is needed
   no_boxes_overlap,    // no two objects' boxes overlap (and none is tested against itself)
   no_triangle_meets,   // no triangle meets the box of another object
   nothing_to_look_at,  // the boxes decide: no device is needed

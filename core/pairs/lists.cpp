@@ -84,7 +84,10 @@ std::size_t TileLists::mark(const PairTile& tile, std::span<const PairItem> item
 void TileLists::sort_entries(std::size_t cells) {
   for (std::size_t k = 0; k < shown_.size(); ++k) {
     grid_->prefetch(shown_[std::min(k + kAhead, shown_.size() - 1)].triangle);
-    shown_[k].bounds = grid_->bounds(shown_[k].triangle);
+    const PairBounds b = grid_->bounds(shown_[k].triangle);
+    Shown& shown = shown_[k];
+    shown.x0 = b.lo.x, shown.y0 = b.lo.y, shown.z0 = b.lo.z;
+    shown.x1 = b.hi.x, shown.y1 = b.hi.y, shown.z1 = b.hi.z;
   }
   for (std::size_t c = 0; c < cells; ++c) first_[c + 1] += first_[c];
   first_[cells + 1] = static_cast<std::uint32_t>(raw_.size());
@@ -92,9 +95,9 @@ void TileLists::sort_entries(std::size_t cells) {
   // From the back, so that first_[c + 1], the end of list c, ends as its start.
   for (std::size_t k = raw_.size(); k-- > 0;) {
     const RawEntry& raw = raw_[k];
-    const Shown& shown = shown_[raw.shown];
-    entries_[--first_[raw.cell + 1]] = entry(raw.shown, shown.whole ? shown.bounds.lo.z : raw.near,
-                                             shown.whole ? shown.bounds.hi.z : raw.far);
+    const Shown& shown = shown_[raw.entry.shown];
+    entries_[--first_[raw.cell + 1]] =
+        shown.whole ? Entry{raw.entry.shown, shown.z0, shown.z1} : raw.entry;
   }
 }
 
@@ -114,12 +117,22 @@ bool TileLists::list(const PairTile& tile, std::span<const PairItem> items, std:
     const std::size_t before = raw_.size();
     for_each_pixel(item, [&](std::uint32_t cell, std::uint64_t bits, float near, float far) {
       if (!meets(cell, bits)) return;
-      raw_.push_back({cell, next, near, far});
+      raw_.push_back({cell, {next, near, far}});
       ++first_[cell + 1];
     });
     if (raw_.size() == before) return;
-    shown_.push_back(
-        {item.triangle, task.owners[item.triangle], task.triangles[item.triangle], {}, item.whole});
+    shown_.push_back({.triangle = item.triangle,
+                      .owner = task.owners[item.triangle],
+                      .vertices = task.triangles[item.triangle],
+                      .x0 = 0,
+                      .y0 = 0,
+                      .z0 = 0,
+                      .x1 = 0,
+                      .y1 = 0,
+                      .z1 = 0,
+                      .i0 = item.i0,
+                      .j0 = item.j0,
+                      .whole = item.whole});
   };
   if (masked && last < items.size()) {
     const bool self = task.self[task.owners[items[last].triangle]] != 0;

@@ -14,27 +14,25 @@ namespace farcull {
 class TileLists {
  public:
   /// A triangle with an entry.
-  struct Shown {
+  struct alignas(64) Shown {
     std::uint32_t triangle;
     std::uint32_t owner;
     std::array<std::uint32_t, 3> vertices;
-    PairBounds bounds;
-    bool whole;
-    std::uint32_t number = 0;  // in the table of settled pairs, where its round is
-    std::uint32_t round = 0;   // this one
+    float x0, y0, z0, x1, y1, z1;  // bounds, px
+    std::uint16_t i0, j0;          // the first pixel of its bounds
+    bool whole;                    // one interval in all its pixels
+    std::uint32_t number = 0;      // in the table of settled pairs, where its round is
+    std::uint32_t round = 0;       // this one
+    PairBounds bounds() const { return {{x0, y0, z0, 0}, {x1, y1, z1, 0}}; }
   };
-  /// A triangle in a pixel, with all that comparing two of them takes.
-  static constexpr std::uint32_t kWholeBit = 0x80000000;
-  struct alignas(16) Entry {
-    float x0, y0, near;   // px
-    std::uint32_t shown;  // index of the Shown; kWholeBit: one interval in all its pixels
-    float x1, y1, far;
-    std::uint32_t owner;
+  /// A triangle in a pixel or in a part of one.
+  struct Entry {
+    std::uint32_t shown;  // index of the Shown
+    float near, far;      // px
   };
   struct RawEntry {
     std::uint32_t cell;
-    std::uint32_t shown;
-    float near, far;  // px; not set for whole triangles
+    Entry entry;  // its depths are not set for whole triangles
   };
 
   void begin(const PairGrid& grid) { grid_ = &grid; }
@@ -54,9 +52,8 @@ class TileLists {
   std::size_t size(std::size_t cell) const { return first_[cell + 2] - first_[cell + 1]; }
   std::size_t size() const { return entries_.size(); }
   std::size_t shown_count() const { return shown_.size(); }
-  const Shown& shown(const Entry& e) const { return shown_[e.shown & ~kWholeBit]; }
-  Shown& shown(const Entry& e) { return shown_[e.shown & ~kWholeBit]; }
-  Entry entry(std::uint32_t index, float near, float far) const;
+  const Shown& shown(std::uint32_t index) const { return shown_[index]; }
+  Shown& shown(std::uint32_t index) { return shown_[index]; }
 
  private:
   template <class Visit>
@@ -72,12 +69,5 @@ class TileLists {
   std::vector<std::uint32_t> first_;  // per pixel: into entries_
   std::vector<Entry> entries_;
 };
-
-inline TileLists::Entry TileLists::entry(std::uint32_t index, float near, float far) const {
-  const Shown& shown = shown_[index];
-  const PairBounds& b = shown.bounds;
-  return {b.lo.x, b.lo.y, near, index | (shown.whole ? kWholeBit : 0),
-          b.hi.x, b.hi.y, far,  shown.owner};
-}
 
 }  // namespace farcull

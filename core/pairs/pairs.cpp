@@ -1,4 +1,4 @@
-// A plan is made of boxes and views; each view then takes candidates away from the ones before it.
+// Boxes of runs give their pairs; each view takes candidates away from the ones before it.
 #include "core/pairs/pairs.h"
 
 #include <algorithm>
@@ -8,17 +8,44 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
-#include "core/pairs/cpu.h"
+#include "core/pairs/box_check.h"
+#include "core/pairs/plan.h"
+#include "core/pairs/runs.h"
 #include "core/scene/box_join.h"
 #include "core/scene/members.h"
 
 namespace farcull {
 namespace {
 
+// As many triangles are compared with all others one by one: a join of all boxes would find every
+// pair of boxes that overlap, to keep few of them.
+constexpr std::size_t kComparedWithAll = 256;
+
+// Pairs that count of a few triangles (ascending) with all others whose grown boxes overlap theirs.
+std::vector<TrianglePair> pairs_of_few(const Scene& scene, const PairRegions& regions,
+                                       std::span<const std::uint32_t> few, double clearance) {
+  const std::vector<std::uint32_t> owner = join_owners(scene);
+  std::vector<Box> boxes;
+  for (const std::uint32_t t : few) boxes.push_back(grown_box(scene, t, clearance));
+  std::vector<TrianglePair> pairs;
+  for (const std::uint32_t t : regions.triangles) {
+    const Box box = grown_box(scene, t, clearance);
+    const bool one = std::binary_search(few.begin(), few.end(), t);
+    for (std::size_t k = 0; k < few.size(); ++k) {
+      // Of two of them the pair is found once, from the larger one.
+      if (owner[t] == owner[few[k]] || (one && t < few[k]) || !overlap(box, boxes[k])) continue;
+      pairs.push_back({std::min(t, few[k]), std::max(t, few[k])});
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
 // Pairs of the scene whose grown boxes overlap and one of whose triangles is in `some` (ascending):
 // for triangles of which a view can say nothing.
 std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const PairRegions& regions,
                                          std::span<const std::uint32_t> some, double clearance) {
+  if (some.size() <= kComparedWithAll) return pairs_of_few(scene, regions, some, clearance);
   std::vector<Box> boxes(scene.triangles.size(), Box::empty());
   for (const std::uint32_t t : regions.triangles) boxes[t] = grown_box(scene, t, clearance);
   std::vector<TrianglePair> pairs = box_join(boxes, join_owners(scene), regions.triangles);
@@ -29,32 +56,6 @@ std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const PairRegions& 
     });
   }
   return pairs;
-}
-
-// Whether the boxes of two triangles, each grown by `half`, overlap: outward where half > 0, so
-// that a distance of twice `half` or less is never lost.
-bool boxes_meet(const Scene& scene, const TrianglePair& pair, double half) {
-  const std::array<std::uint32_t, 3>&s = scene.triangles[pair.a], &t = scene.triangles[pair.b];
-  const double *a = scene.vertices[s[0]].data(), *b = scene.vertices[s[1]].data(),
-               *c = scene.vertices[s[2]].data();
-  const double *d = scene.vertices[t[0]].data(), *e = scene.vertices[t[1]].data(),
-               *f = scene.vertices[t[2]].data();
-  const auto least = [](double x, double y) { return x < y ? x : y; };
-  const auto most = [](double x, double y) { return x > y ? x : y; };
-  for (int axis = 0; axis < 3; ++axis) {
-    double lo0 = least(least(a[axis], b[axis]), c[axis]),
-           hi0 = most(most(a[axis], b[axis]), c[axis]);
-    double lo1 = least(least(d[axis], e[axis]), f[axis]),
-           hi1 = most(most(d[axis], e[axis]), f[axis]);
-    if (half > 0) {
-      lo0 = std::nextafter(lo0 - half, -HUGE_VAL);
-      hi0 = std::nextafter(hi0 + half, HUGE_VAL);
-      lo1 = std::nextafter(lo1 - half, -HUGE_VAL);
-      hi1 = std::nextafter(hi1 + half, HUGE_VAL);
-    }
-    if (lo0 > hi1 || lo1 > hi0) return false;
-  }
-  return true;
 }
 
 // Whether two triangles of one object share a vertex index.
@@ -69,8 +70,9 @@ bool share_index(const Scene& scene, const TrianglePair& pair) {
 constexpr std::size_t kAhead = 8;
 
 // Those whose boxes overlap, in order; without neighbours where they are not asked for.
-void keep_overlapping(const Scene& scene, const PairScene& seen, double clearance, unsigned threads,
-                      std::vector<TrianglePair>& pairs) {
+// `owners`, of the triangles, is empty where neighbours stay.
+void keep_overlapping(const Scene& scene, std::span<const std::uint32_t> owners, double clearance,
+                      unsigned threads, std::vector<TrianglePair>& pairs) {
   const double half = half_of(clearance);
   const std::size_t chunks = chunks_for(pairs.size(), 2048, threads);
   std::vector<std::size_t> kept(chunks, 0);
@@ -80,7 +82,7 @@ void keep_overlapping(const Scene& scene, const PairScene& seen, double clearanc
       prefetch(scene, pairs[std::min(k + kAhead, end - 1)].b);
       pairs[to] = pairs[k];
       to += boxes_meet(scene, pairs[k], half) &&
-            (seen.task.neighbours || seen.owners[pairs[k].a] != seen.owners[pairs[k].b] ||
+            (owners.empty() || owners[pairs[k].a] != owners[pairs[k].b] ||
              !share_index(scene, pairs[k]));
     }
     kept[chunk] = to - begin;
@@ -108,50 +110,6 @@ std::vector<TrianglePair> merged(const std::vector<TrianglePair>& a,
   return out;
 }
 
-// Whether one of the two is in the list.
-bool has_any(const std::vector<std::uint32_t>& ascending, const TrianglePair& pair) {
-  return std::binary_search(ascending.begin(), ascending.end(), pair.a) ||
-         std::binary_search(ascending.begin(), ascending.end(), pair.b);
-}
-
-// Pairs that a further view is tried on, before it looks at all of them.
-constexpr std::size_t kTried = 256;
-
-// Whether a further view would keep every one of some candidates, evenly chosen: it then takes next
-// to nothing away from the others. That is so where triangles lie on each other. A choice alone:
-// no pair is lost either way.
-bool keeps_sample(const Scene& scene, const PairRegions& regions, const PairChoice& choice,
-                  double clearance, const std::vector<TrianglePair>& candidates,
-                  std::size_t triangles) {
-  std::vector<TrianglePair> sample;
-  const std::size_t count = std::min(kTried, candidates.size());
-  for (std::size_t k = 0; k < count; ++k) {
-    sample.push_back(candidates[candidates.size() * k / count]);
-  }
-  const std::optional<PairWindow> window =
-      pair_window(regions, choice.view, choice.resolution, clearance);
-  if (!window) return true;
-  PairScene seen;
-  look(scene, regions, members_of(sample, scene.triangles.size()), *window, 1, seen);
-  PairCounts counts;
-  const std::vector<TrianglePair> kept =
-      cpu_sample_backend(triangles)->raw_pairs(seen.task, counts);
-  const auto& bad = seen.undrawable;
-  return std::all_of(sample.begin(), sample.end(), [&](const TrianglePair& pair) {
-    return std::binary_search(kept.begin(), kept.end(), pair) || has_any(bad, pair);
-  });
-}
-
-std::optional<PairWindow> window_of(const PairPlan& plan, const PairChoice& choice) {
-  return pair_window(plan.regions, choice.view, choice.resolution, plan.settings.clearance);
-}
-
-// The number of views that are looked at whatever the candidates, where they can be resolved.
-std::size_t certain_views(const PairPlan& plan) {
-  if (!plan.settings.views.empty()) return plan.choices.size();
-  return plan.settings.full ? kMostPairViews : 1;
-}
-
 // One run over the views of a plan.
 class Finding {
  public:
@@ -160,6 +118,7 @@ class Finding {
       : scene_(scene), plan_(plan), backend_(backend), seen_(seen), progress_(progress) {}
 
   PairResult result() {
+    compare_runs();
     for (std::size_t k = 0; k < plan_.choices.size(); ++k) {
       const PairChoice& choice = plan_.choices[k];
       if (asks_whether_to_go_on() && stops_before(choice)) break;
@@ -167,10 +126,27 @@ class Finding {
       look_along(choice, k < plan_.windows.size() ? plan_.windows[k] : window_of(plan_, choice));
     }
     if (first_) join_boxes();
+    if (out_.candidates.empty()) {
+      out_.candidates = std::move(of_runs_);
+    } else if (!of_runs_.empty()) {
+      out_.candidates = merged(out_.candidates, of_runs_);
+    }
     return std::move(out_);
   }
 
  private:
+  void compare_runs() {
+    if (plan_.runs.empty()) return;
+    const Stopwatch start;
+    const PairSettings& settings = plan_.settings;
+    of_runs_ = pairs_of_runs(scene_, plan_.runs, settings.clearance, settings.neighbours,
+                             backend_.threads());
+    Stage stage = stage_of_runs(plan_);
+    stage.ms = start.ms();
+    stage.out = of_runs_.size();
+    out_.stages.push_back(stage);
+  }
+
   bool asks_whether_to_go_on() {
     skipped_ = false;
     const PairSettings& settings = plan_.settings;
@@ -188,8 +164,8 @@ class Finding {
       out_.stages.push_back(stage);
       return true;
     }
-    if (keeps_sample(scene_, plan_.regions, choice, plan_.settings.clearance, out_.candidates,
-                     triangles)) {
+    // A view that keeps them all takes next to nothing away: the triangles lie on each other.
+    if (kept_by(scene_, plan_.regions, choice, plan_.settings.clearance, out_.candidates) == 1) {
       stage.reason = Reason::keeps_sample;
       out_.stages.push_back(stage);
       ++looked_;
@@ -248,7 +224,9 @@ class Finding {
     const double clearance = plan_.settings.clearance;
     const std::vector<std::uint32_t>& bad = seen_.undrawable;
     if (first_) {
-      keep_overlapping(scene_, seen_, clearance, backend_.threads(), pairs);
+      const std::span<const std::uint32_t> owners(seen_.owners);
+      keep_overlapping(scene_, seen_.task.neighbours ? owners.first(0) : owners, clearance,
+                       backend_.threads(), pairs);
       if (!bad.empty())
         pairs = merged(pairs, pairs_by_boxes(scene_, plan_.regions, bad, clearance));
       out_.candidates = std::move(pairs);
@@ -289,105 +267,13 @@ class Finding {
   PairScene& seen_;
   const Progress& progress_;
   PairResult out_;
+  std::vector<TrianglePair> of_runs_;
   bool first_ = true;  // no view has said anything yet
   bool skipped_ = false;
   std::size_t looked_ = 0;
 };
 
-std::vector<PairChoice> given_choices(const Scene& scene, const PairRegions& regions,
-                                      const PairSettings& settings) {
-  std::vector<PairChoice> choices;
-  const bool given = settings.resolution > 0;
-  for (const View& view : settings.views) {
-    choices.push_back({view,
-                       given ? settings.resolution : choose_pair_resolution(scene, regions, view),
-                       given ? "direction and resolution given"
-                             : "direction given; pixels by the triangles' sizes"});
-  }
-  return choices;
-}
-
 }  // namespace
-
-PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned threads) {
-  if (!(settings.clearance >= 0) || !std::isfinite(settings.clearance)) {
-    throw std::logic_error("plan_pairs: the clearance is negative or not finite");
-  }
-  if (scene.triangles.size() + scene.objects.size() >= std::size_t{1} << 31) {
-    throw Error(scene.name, "has 2^31 triangles and objects, or more", "split it into scenes");
-  }
-  const Stopwatch planning;
-  PairPlan plan{.settings = settings,
-                .regions = pair_regions(scene, settings.clearance, settings.full, threads),
-                .choices = {},
-                .windows = {},
-                .trace = {}};
-  plan.trace.push_back({.kind = StageKind::boxes,
-                        .ran = true,
-                        .reason = settings.full ? Reason::full : Reason::meetings,
-                        .n = settings.full ? 0 : plan.regions.pairs,
-                        .m = settings.full ? 0 : plan.regions.self,
-                        .ms = planning.ms(),
-                        .in = scene.triangles.size(),
-                        .out = plan.regions.triangles.size(),
-                        .unit = Unit::triangles});
-  if (plan.regions.triangles.empty()) {
-    plan.trace.push_back(
-        {.kind = StageKind::views, .reason = Reason::no_boxes_overlap, .unit = Unit::pairs});
-    return plan;
-  }
-  const Stopwatch choosing;
-  const bool chosen = settings.views.empty();
-  plan.choices = chosen ? choose_pair_views(scene, plan.regions, settings.resolution)
-                        : given_choices(scene, plan.regions, settings);
-  plan.trace.push_back({.kind = StageKind::choose,
-                        .ran = true,
-                        .reason = chosen ? Reason::views_chosen : Reason::views_given,
-                        .ms = choosing.ms(),
-                        .in = plan.choices.size(),
-                        .out = chosen ? 1 : plan.choices.size(),
-                        .unit = Unit::views});
-  std::size_t resolved = 0;
-  for (const PairChoice& choice : plan.choices) {
-    if (resolved == certain_views(plan)) break;
-    plan.windows.push_back(window_of(plan, choice));
-    resolved += plan.windows.back().has_value();
-  }
-  return plan;
-}
-
-std::vector<Stage> planned_stages(const PairPlan& plan) {
-  std::vector<Stage> stages;
-  const bool chosen = plan.settings.views.empty();
-  std::size_t looked = 0;
-  for (std::size_t k = 0; k < plan.choices.size(); ++k) {
-    const PairChoice& choice = plan.choices[k];
-    Stage stage{.kind = StageKind::view, .subject = choice.view.name, .unit = Unit::pairs};
-    if (k >= plan.windows.size()) {
-      stage.depends = true;
-      stage.ran = looked++ < kMostPairViews;
-      stage.reason = stage.ran ? Reason::if_more_candidates : Reason::enough_views;
-      stage.n = stage.ran ? kFurtherViewFrom : 0;
-    } else if (const std::optional<PairWindow>& window = plan.windows[k]) {
-      ++looked;
-      stage.ran = true;
-      stage.reason = Reason::chosen;
-      stage.detail = choice.reason;
-      stage.n = static_cast<std::uint64_t>(window->window.width);
-      stage.m = static_cast<std::uint64_t>(window->window.height);
-    } else {
-      stage.reason = Reason::unresolvable_view;
-    }
-    stages.push_back(stage);
-    if (chosen && stage.depends && !stage.ran) break;
-  }
-  if (looked == 0 && !plan.choices.empty())
-    stages.push_back({.kind = StageKind::join,
-                      .ran = true,
-                      .reason = Reason::join_unresolvable,
-                      .unit = Unit::pairs});
-  return stages;
-}
 
 PairResult find_pairs(const Scene& scene, const PairPlan& plan, PairBackend& backend,
                       PairScene& workspace, const Progress& progress) {

@@ -15,6 +15,7 @@
 #include "core/pairs/lists.h"
 #include "core/pairs/rows.h"
 #include "core/pairs/settled.h"
+#include "core/pairs/sweep.h"
 #include "core/scene/pair_sort.h"
 
 namespace farcull {
@@ -24,9 +25,10 @@ namespace farcull {
 struct TileRules {
   /// True: a pair is settled also where its intervals do not overlap.
   static constexpr bool kSettlesApart = false;
-  /// A pair of whole triangles is reported in the pixel with this lower bound (px) alone: the first
-  /// one of the common rectangle.
-  static float reporting(float a, float b) { return std::max(a, b); }
+  /// What a whole triangle has where its pixels began to the left of this one, or below. Two that
+  /// have something in common are not reported here, but in the first pixel of their common
+  /// rectangle.
+  static std::uint32_t begun(bool left, bool below) { return (left ? 1 : 0) | (below ? 2 : 0); }
 };
 
 /// Works on tiles one after the other; keeps its buffers.
@@ -45,25 +47,32 @@ class TileWorker {
   using Shown = TileLists::Shown;
   using Entry = TileLists::Entry;
 
-  // Longer lists are sorted by near depth and swept.
-  static constexpr std::size_t kSweepFrom = 64;
-  // Pairs of lists this long are looked up in the table of settled ones.
-  static constexpr std::size_t kSettleFrom = 128;
-  // They are where a list is crowded, or where so many pairs were added for each listed triangle
-  // that most of them must be the same ones again: what the table costs is little then.
+  // Longer lists are sorted by near depth, so that the partners of an entry stand together.
+  static constexpr std::size_t kSortFrom = 224;
+  // Pairs of such lists are looked up in the table of settled ones where a list is crowded, or
+  // where so many pairs were added for each listed triangle that most of them must be the same ones
+  // again: what the table costs is little then.
   static constexpr std::size_t kRepeatedFrom = 32;
   // The part of a worker's memory that the table may take.
   static constexpr std::size_t kSettledPart = 8;
 
-  static bool meet(const Entry& a, const Entry& b);
+  /// Where the pairs of a list are reported.
+  struct Place {
+    bool pixel;  // a whole pixel, and no crowded one
+    int i, j;
+  };
+
+  static bool meet(const Entry& a, const Shown& s, const Entry& b, const Shown& t);
   bool left_out(const Shown& a, const Shown& b) const;
-  void keep(const Entry& a, const Entry& b);
   void split(const PairTile& tile, std::span<const PairItem> items, PairCounts& counts);
   void pair_pixel(std::span<Entry> entries, int i, int j);
   void pair_cell(std::span<Entry> entries, float x, float y, float size, int level);
   bool subdivide(std::span<Entry> entries, float x, float y, float size, int level);
-  template <class Emit>
-  void sweep(std::span<Entry> entries, const Emit& emit);
+  void sweep(std::span<Entry> entries, const Place& place);
+  void fill_columns(std::span<const Entry> entries, const Place& place);
+  bool reported_elsewhere(const Shown& a, const Shown& b, const Place& here) const;
+  void keep(std::span<const TrianglePair> found, std::span<const Entry> entries,
+            const Place& place);
   bool number_entries(std::span<const Entry> entries);
   bool sweep_unsettled(std::span<const Entry> entries);
 
@@ -77,6 +86,9 @@ class TileWorker {
   TileLists lists_;
   SettledPairs settled_;
   std::size_t added_ = 0, listed_ = 0;  // pairs and triangles of the window up to now
+  bool some_crowded_ = false;           // pixels of the tile
+  SweepColumns columns_;
+  std::vector<TrianglePair> found_;
   // Of one list: the number of each entry, the entry of each number, and numbers of those to come.
   std::vector<std::uint32_t> numbers_, places_;
   std::vector<std::uint64_t> to_come_;
@@ -84,16 +96,9 @@ class TileWorker {
 
 // True where the bounds in the image and the intervals overlap.
 template <class Rules>
-bool TileWorker<Rules>::meet(const Entry& a, const Entry& b) {
-#ifdef __SSE2__
-  const __m128 a_lo = _mm_load_ps(&a.x0), a_hi = _mm_load_ps(&a.x1);
-  const __m128 b_lo = _mm_load_ps(&b.x0), b_hi = _mm_load_ps(&b.x1);
-  const __m128 apart = _mm_or_ps(_mm_cmpgt_ps(a_lo, b_hi), _mm_cmpgt_ps(b_lo, a_hi));
-  return (_mm_movemask_ps(apart) & 7) == 0;
-#else
-  return a.near <= b.far && b.near <= a.far && a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 &&
-         b.y0 <= a.y1;
-#endif
+bool TileWorker<Rules>::meet(const Entry& a, const Shown& s, const Entry& b, const Shown& t) {
+  return a.near <= b.far && b.near <= a.far && s.x0 <= t.x1 && t.x0 <= s.x1 && s.y0 <= t.y1 &&
+         t.y0 <= s.y1;
 }
 
 // Neighbours that the task does not ask for.
@@ -106,42 +111,89 @@ bool TileWorker<Rules>::left_out(const Shown& a, const Shown& b) const {
   return shared;
 }
 
-// Calls emit for each two entries that meet and whose triangles may collide. Entries of an
-// owner stand together; long lists are put into another order.
+// Two whole triangles overlap in all their common pixels or in none: the first of these alone, in
+// the lower left corner of the common rectangle, reports them, or of its part in this tile. Both
+// are listed there if they are here: a list leaves an entry out by its slices alone, which are the
+// same in all pixels of a whole triangle, and two that overlap in depth have a common slice, which
+// is in conflict in every pixel that both meet. Bounds are cut to the limits before, so the limits
+// are the same everywhere. Where that pixel is crowded this one reports them too, since their
+// intervals may be finer there.
 template <class Rules>
-template <class Emit>
-void TileWorker<Rules>::sweep(std::span<Entry> entries, const Emit& emit) {
-  const std::size_t n = entries.size();
+void TileWorker<Rules>::fill_columns(std::span<const Entry> entries, const Place& place) {
+  constexpr std::uint32_t kAlone = 0x80000000;  // a group of one
   const PairTask& task = grid_->task();
-  if (n <= kSweepFrom) {
-    for (std::size_t begin = 0, end = 0; begin < n; begin = end) {
-      const std::uint32_t owner = entries[begin].owner;
-      while (end < n && entries[end].owner == owner) ++end;
-      const bool self = task.self[owner] != 0;
-      for (std::size_t x = begin; x < end; ++x) {
-        const Entry a = entries[x];
-        const std::size_t from = self ? x + 1 : end;
-        counts_->tests += n - from;
-        for (std::size_t y = from; y < n; ++y) {
-          if (meet(a, entries[y])) emit(a, entries[y]);
-        }
-      }
-    }
+  const bool first_only = place.pixel && !some_crowded_;
+  columns_.start(entries.size());
+  std::uint32_t position = 0;
+  for (const Entry& entry : entries) {
+    const Shown& s = lists_.shown(entry.shown);
+    const bool left = s.i0 < place.i && place.i > tile_.i0;
+    const bool below = s.j0 < place.j && place.j > tile_.j0;
+    columns_.add({.x0 = s.x0,
+                  .y0 = s.y0,
+                  .near = entry.near,
+                  .x1 = s.x1,
+                  .y1 = s.y1,
+                  .far = entry.far,
+                  .id = some_crowded_ && place.pixel ? position : s.triangle,
+                  .group = task.self[s.owner] ? kAlone | position : s.owner,
+                  .begun = first_only && s.whole ? Rules::begun(left, below) : 0,
+                  .owner = s.owner,
+                  .v0 = s.vertices[0],
+                  .v1 = s.vertices[1],
+                  .v2 = s.vertices[2]});
+    ++position;
+  }
+  columns_.finish();
+}
+
+// Whether the first common pixel of two triangles is another one that reports them.
+template <class Rules>
+bool TileWorker<Rules>::reported_elsewhere(const Shown& a, const Shown& b,
+                                           const Place& here) const {
+  if (!a.whole || !b.whole) return false;
+  const int i = std::max({static_cast<int>(a.i0), static_cast<int>(b.i0), tile_.i0});
+  const int j = std::max({static_cast<int>(a.j0), static_cast<int>(b.j0), tile_.j0});
+  if (i == here.i && j == here.j) return false;
+  return lists_.size(static_cast<std::size_t>(j - tile_.j0) * tile_.width() + (i - tile_.i0)) <=
+         kCrowded;
+}
+
+// Puts pairs that a sweep found into the pool. In a tile with crowded pixels they are positions.
+template <class Rules>
+void TileWorker<Rules>::keep(std::span<const TrianglePair> found, std::span<const Entry> entries,
+                             const Place& place) {
+  if (!some_crowded_ || !place.pixel) {
+    added_ += found.size();
+    pool_->add(pool_list_, found);
     return;
   }
-  std::sort(entries.begin(), entries.end(),
-            [](const Entry& x, const Entry& y) { return x.near < y.near; });
-  const bool repeats = n > kCrowded || added_ > kRepeatedFrom * listed_;
-  if (n >= kSettleFrom && repeats && sweep_unsettled(entries)) return;
-  for (std::size_t x = 0; x + 1 < n; ++x) {
-    const Entry a = entries[x];
-    const bool self = task.self[a.owner] != 0;
-    std::size_t y = x + 1;
-    for (; y < n && entries[y].near <= a.far; ++y) {
-      if ((self || entries[y].owner != a.owner) && meet(a, entries[y])) emit(a, entries[y]);
-    }
-    counts_->tests += y - x - 1;
+  for (const TrianglePair& pair : found) {
+    const Shown& a = lists_.shown(entries[pair.a].shown);
+    const Shown& b = lists_.shown(entries[pair.b].shown);
+    if (reported_elsewhere(a, b, place)) continue;
+    ++added_;
+    pool_->add(pool_list_, {std::min(a.triangle, b.triangle), std::max(a.triangle, b.triangle)});
   }
+}
+
+// Reports each two entries that meet and whose triangles may collide. Long lists are put into
+// another order.
+template <class Rules>
+void TileWorker<Rules>::sweep(std::span<Entry> entries, const Place& place) {
+  const std::size_t n = entries.size();
+  const bool sorted = n > kSortFrom;
+  if (sorted) {
+    std::sort(entries.begin(), entries.end(),
+              [](const Entry& x, const Entry& y) { return x.near < y.near; });
+    const bool repeats = n > kCrowded || added_ > kRepeatedFrom * listed_;
+    if (repeats && sweep_unsettled(entries)) return;
+  }
+  fill_columns(entries, place);
+  if (found_.size() < n + kSweepPadding) found_.resize(2 * n + 64 * kSweepPadding);
+  Sweep state{&columns_, sorted, !grid_->task().neighbours};
+  while (state.next < n) keep(std::span(found_).first(sweep_on(state, found_)), entries, place);
+  counts_->tests += state.tests;
 }
 
 // Gives the entries their numbers in the table of settled pairs. False: too many.
@@ -151,7 +203,7 @@ bool TileWorker<Rules>::number_entries(std::span<const Entry> entries) {
   if (!settled_.reserve(n)) return false;
   numbers_.resize(n);
   for (std::size_t x = 0; x < n; ++x) {
-    Shown& item = lists_.shown(entries[x]);
+    Shown& item = lists_.shown(entries[x].shown);
     if (item.round != settled_.round()) {
       item.number = settled_.number(item.triangle);
       item.round = settled_.round();
@@ -190,17 +242,21 @@ bool TileWorker<Rules>::sweep_unsettled(std::span<const Entry> entries) {
   const PairTask& task = grid_->task();
   for (std::size_t x = 0; x + 1 < n; ++x) {
     const Entry a = entries[x];
+    const Shown& s = lists_.shown(a.shown);
     const std::uint32_t number = numbers_[x];
     to_come_[number / 64] &= ~(std::uint64_t{1} << (number % 64));
     const std::size_t end = static_cast<std::size_t>(
         std::upper_bound(entries.begin() + static_cast<std::ptrdiff_t>(x) + 1, entries.end(), a.far,
                          [](float far, const Entry& y) { return far < y.near; }) -
         entries.begin());
-    const bool self = task.self[a.owner] != 0;
+    const bool self = task.self[s.owner] != 0;
     const auto look = [&](std::size_t y) {
       const Entry& b = entries[y];
+      const Shown& t = lists_.shown(b.shown);
       settled_.settle(number, numbers_[y]);
-      if ((self || b.owner != a.owner) && meet(a, b)) keep(a, b);
+      if ((!self && t.owner == s.owner) || !meet(a, s, b, t) || left_out(s, t)) return;
+      ++added_;
+      pool_->add(pool_list_, {std::min(s.triangle, t.triangle), std::max(s.triangle, t.triangle)});
     };
     if constexpr (Rules::kSettlesApart) {
       for (std::size_t y = end; y < n; ++y) settled_.settle(number, numbers_[y]);
@@ -239,34 +295,7 @@ void TileWorker<Rules>::pair_pixel(std::span<Entry> entries, int i, int j) {
     pair_cell(entries, static_cast<float>(i), static_cast<float>(j), 1, 0);
     return;
   }
-  // Two whole triangles overlap in all their common pixels or in none: the first of these alone, in
-  // the lower left corner of the common rectangle, reports them. Both are listed there if they are
-  // here: a list leaves an entry out by its slices alone, which are the same in all pixels of a
-  // whole triangle, and two that overlap in depth have a common slice, which is in conflict in
-  // every pixel that both meet. Bounds are cut to the limits before, so the limits are the same
-  // everywhere. Where that pixel lies in another tile (of another band or part of the window) this
-  // one reports them too, and where it is crowded, since their intervals may be finer there.
-  const auto elsewhere = [&](const Entry& a, const Entry& b) {
-    const auto first = [](float p, int count) {
-      return static_cast<int>(interval::clamp(p, 0, static_cast<float>(count - 1)));
-    };
-    const int ri = first(Rules::reporting(a.x0, b.x0), grid_->task().width);
-    const int rj = first(Rules::reporting(a.y0, b.y0), grid_->task().height);
-    if ((ri == i && rj == j) || ri < tile_.i0 || rj < tile_.j0) return false;
-    const std::size_t c = static_cast<std::size_t>(rj - tile_.j0) * tile_.width() + (ri - tile_.i0);
-    return lists_.size(c) <= kCrowded;
-  };
-  sweep(entries, [&](const Entry& a, const Entry& b) {
-    if ((a.shown & b.shown & TileLists::kWholeBit) == 0 || !elsewhere(a, b)) keep(a, b);
-  });
-}
-
-template <class Rules>
-void TileWorker<Rules>::keep(const Entry& a, const Entry& b) {
-  const Shown &s = lists_.shown(a), &t = lists_.shown(b);
-  if (left_out(s, t)) return;
-  ++added_;
-  pool_->add(pool_list_, {std::min(s.triangle, t.triangle), std::max(s.triangle, t.triangle)});
+  sweep(entries, {.pixel = true, .i = i, .j = j});
 }
 
 template <class Rules>
@@ -275,7 +304,7 @@ void TileWorker<Rules>::pair_cell(std::span<Entry> entries, float x, float y, fl
   if (entries.size() > kCrowded && level < kMaxLevel && subdivide(entries, x, y, size, level)) {
     return;
   }
-  sweep(entries, [&](const Entry& a, const Entry& b) { keep(a, b); });
+  sweep(entries, {.pixel = false, .i = 0, .j = 0});
 }
 
 // Cuts a crowded cell, unless that leaves more than half of the tests.
@@ -290,13 +319,13 @@ bool TileWorker<Rules>::subdivide(std::span<Entry> entries, float x, float y, fl
     return interval::far_part(p, from, parts_per_px, kSubdivision - 1);
   };
   for (const Entry& entry : entries) {
-    const Shown& item = lists_.shown(entry);
-    const PairBounds& b = item.bounds;
+    const Shown& item = lists_.shown(entry.shown);
+    const PairBounds b = item.bounds();
     const int i0 = index(b.lo.x, x), i1 = index(b.hi.x, x);
     const int j0 = index(b.lo.y, y), j1 = index(b.hi.y, y);
     const auto add = [&](int i, int j, float near, float far) {
       const auto cell = static_cast<std::uint32_t>(j * kSubdivision + i);
-      raw.push_back({cell, entry.shown & ~TileLists::kWholeBit, near, far});
+      raw.push_back({cell, {entry.shown, near, far}});
       ++first[cell + 1];
     };
     if ((i1 - i0 + 1) * (j1 - j0 + 1) <= kWholePixels) {
@@ -330,7 +359,7 @@ bool TileWorker<Rules>::subdivide(std::span<Entry> entries, float x, float y, fl
   std::vector<Entry> sorted(raw.size());
   std::array<std::uint32_t, kCells + 1> next = first;
   for (const TileLists::RawEntry& part_of : raw) {
-    sorted[next[part_of.cell]++] = lists_.entry(part_of.shown, part_of.near, part_of.far);
+    sorted[next[part_of.cell]++] = part_of.entry;
   }
   for (int c = 0; c < kCells; ++c) {
     const std::size_t n = first[c + 1] - first[c];
@@ -401,6 +430,8 @@ void TileWorker<Rules>::run(const PairTile& tile, std::span<const PairItem> item
   counts.listed += lists_.shown_count();
   counts.entries += lists_.size();
   const Stopwatch pairing;
+  some_crowded_ = false;
+  for (std::size_t c = 0; c < cells; ++c) some_crowded_ |= lists_.size(c) > kCrowded;
   for (std::size_t c = 0; c < cells; ++c) {
     if (lists_.size(c) < 2) continue;
     pair_pixel(lists_.entries(c), tile.i0 + static_cast<int>(c % tile.width()),

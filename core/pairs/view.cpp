@@ -1,16 +1,11 @@
 #include "core/pairs/view.h"
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numeric>
 
 #include "core/base/parallel.h"
-#include "core/scene/box_join.h"
+#include "core/pairs/runs.h"
 
 namespace farcull {
 namespace {
@@ -19,90 +14,6 @@ constexpr double kUnit = 0x1p-53;
 constexpr double kLargest = 0x1p20;         // px, of a coordinate that kernels take
 constexpr double kSmallest = 0x1p-60;       // px, of one that is not zero
 constexpr double kLeastWidening = 0x1p-40;  // px
-
-// Never decreasing, and beyond the exact sum.
-Box grow(Box box, double half) {
-  if (half == 0 || box.is_empty()) return box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lo[axis] = std::nextafter(box.lo[axis] - half, -HUGE_VAL);
-    box.hi[axis] = std::nextafter(box.hi[axis] + half, HUGE_VAL);
-  }
-  return box;
-}
-
-// The box of the triangles from .. to - 1. Each of the three corners has minima and maxima of its
-// own, so that none waits for another.
-Box box_of(const Scene& scene, std::size_t from, std::size_t to) {
-  Box box = Box::empty();
-#ifdef __SSE2__
-  struct Corner {
-    __m128d lo_xy, hi_xy, lo_z, hi_z;
-    void add(const double* p) {
-      const __m128d xy = _mm_loadu_pd(p), z = _mm_load_sd(p + 2);
-      lo_xy = _mm_min_pd(lo_xy, xy);
-      hi_xy = _mm_max_pd(hi_xy, xy);
-      lo_z = _mm_min_sd(lo_z, z);
-      hi_z = _mm_max_sd(hi_z, z);
-    }
-  };
-  const __m128d inf = _mm_set1_pd(HUGE_VAL), minus = _mm_set1_pd(-HUGE_VAL);
-  Corner a{inf, minus, inf, minus}, b = a, c = a;
-  for (std::size_t t = from; t < to; ++t) {
-    // Their corners may lie anywhere, so they are fetched ahead.
-    for (const std::uint32_t v : scene.triangles[std::min(t + 16, to - 1)]) {
-      _mm_prefetch(reinterpret_cast<const char*>(scene.vertices[v].data()), _MM_HINT_T0);
-    }
-    const std::array<std::uint32_t, 3>& v = scene.triangles[t];
-    a.add(scene.vertices[v[0]].data());
-    b.add(scene.vertices[v[1]].data());
-    c.add(scene.vertices[v[2]].data());
-  }
-  for (const Corner& corner : {a, b, c}) {
-    double lo[2], hi[2];
-    _mm_storeu_pd(lo, corner.lo_xy);
-    _mm_storeu_pd(hi, corner.hi_xy);
-    box.add(Box{{lo[0], lo[1], _mm_cvtsd_f64(corner.lo_z)},
-                {hi[0], hi[1], _mm_cvtsd_f64(corner.hi_z)}});
-  }
-#else
-  for (std::size_t t = from; t < to; ++t) {
-    for (const std::uint32_t v : scene.triangles[t]) box.add(scene.vertices[v]);
-  }
-#endif
-  return box;
-}
-
-std::vector<Box> boxes_of_objects(const Scene& scene, unsigned threads) {
-  std::vector<Box> boxes(scene.objects.size(), Box::empty());
-  const std::vector<Object>& objects = scene.objects;
-  // In chunks of triangles, whatever the sizes of the objects.
-  const std::size_t chunks = chunks_for(scene.triangles.size(), 4096, threads);
-  struct Part {
-    std::size_t first = 0;
-    std::vector<Box> boxes;
-  };
-  std::vector<Part> parts(chunks);
-  for_chunks(
-      scene.triangles.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-        if (begin == end) return;
-        Part& part = parts[chunk];
-        const auto after =
-            std::upper_bound(objects.begin(), objects.end(), begin,
-                             [](std::size_t t, const Object& o) { return t < o.first_triangle; });
-        std::size_t o = static_cast<std::size_t>(after - objects.begin()) - 1;
-        part.first = o;
-        for (std::size_t t = begin; t < end; ++o) {
-          const std::size_t stop = std::min<std::size_t>(
-              end, std::size_t{objects[o].first_triangle} + objects[o].triangle_count);
-          part.boxes.push_back(box_of(scene, t, stop));
-          t = stop;
-        }
-      });
-  for (const Part& part : parts) {
-    for (std::size_t k = 0; k < part.boxes.size(); ++k) boxes[part.first + k].add(part.boxes[k]);
-  }
-  return boxes;
-}
 
 // A float that is not below x.
 float float_above(double x) {
@@ -117,51 +28,6 @@ PixelVertex pixel_vertex(const Vec3& p) {
 }
 
 }  // namespace
-
-double half_of(double clearance) {
-  return clearance == 0 ? 0 : std::nextafter(0.5 * clearance, HUGE_VAL);
-}
-
-Box grown_box(const Scene& scene, std::uint32_t triangle, double clearance) {
-  Box box = Box::empty();
-  for (const std::uint32_t v : scene.triangles[triangle]) box.add(scene.vertices[v]);
-  return grow(box, half_of(clearance));
-}
-
-PairRegions pair_regions(const Scene& scene, double clearance, bool full, unsigned threads) {
-  PairRegions out;
-  std::vector<Box> boxes = boxes_of_objects(scene, threads);
-  for (Box& box : boxes) box = grow(box, half_of(clearance));
-  out.objects.assign(boxes.size(), Box::empty());
-  std::vector<std::uint32_t> objects(boxes.size());
-  std::iota(objects.begin(), objects.end(), 0u);
-  for (const TrianglePair& pair : box_join(boxes, objects, objects)) {
-    const Box common = intersection(boxes[pair.a], boxes[pair.b]);
-    out.objects[pair.a].add(common);
-    out.objects[pair.b].add(common);
-    ++out.pairs;
-  }
-  std::size_t count = 0;
-  for (std::size_t o = 0; o < boxes.size(); ++o) {
-    if (scene.objects[o].self && scene.objects[o].triangle_count > 1) {
-      out.objects[o] = boxes[o];
-      ++out.self;
-    }
-    if (full) out.objects[o] = boxes[o];
-    if (out.objects[o].is_empty()) continue;
-    out.reach.add(boxes[o]);
-    count += scene.objects[o].triangle_count;
-  }
-  out.triangles.resize(count);
-  std::uint32_t* next = out.triangles.data();
-  for (std::size_t o = 0; o < boxes.size(); ++o) {
-    if (out.objects[o].is_empty()) continue;
-    const Object& object = scene.objects[o];
-    std::iota(next, next + object.triangle_count, object.first_triangle);
-    next += object.triangle_count;
-  }
-  return out;
-}
 
 std::optional<PairWindow> pair_window(const PairRegions& regions, const View& view, int resolution,
                                       double clearance) {

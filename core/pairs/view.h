@@ -10,29 +10,11 @@
 #include <vector>
 
 #include "core/pairs/backend.h"
+#include "core/pairs/regions.h"
 #include "core/scene/scene.h"
 #include "core/view/view.h"
 
 namespace farcull {
-
-/// Where the objects of a scene can meet, by their boxes alone.
-struct PairRegions {
-  std::vector<Box>
-      objects;  // per object: contains all its points that can belong to a pair; empty: none
-  Box reach = Box::empty();              // of all their triangles, grown by the clearance
-  std::uint64_t pairs = 0;               // of objects whose boxes overlap (grown by the clearance)
-  std::uint64_t self = 0;                // objects that collide with themselves
-  std::vector<std::uint32_t> triangles;  // ascending: of the objects that can meet anything
-};
-/// full: every object can meet anything, anywhere.
-PairRegions pair_regions(const Scene& scene, double clearance, bool full = false,
-                         unsigned threads = 0);
-
-/// By how much each of two triangles grows so that they meet at that distance: half of it, rounded
-/// up.
-double half_of(double clearance);
-/// The closed box of a triangle, grown outward by at least half the clearance on every side.
-Box grown_box(const Scene& scene, std::uint32_t triangle, double clearance);
 
 /// A direction and a resolution, and why.
 struct PairChoice {

@@ -34,6 +34,11 @@ class PairPool {
     pairs.push_back(pair);
     if (pairs.size() >= limit_.load(std::memory_order_relaxed)) shrink(list);
   }
+  void add(std::size_t list, std::span<const TrianglePair> added) {
+    std::vector<TrianglePair>& pairs = lists_[list].pairs;
+    pairs.insert(pairs.end(), added.begin(), added.end());
+    shrink_if_full(list);
+  }
   /// Room for `count` more pairs at the end of a list, all `value`, for those who write them there;
   /// then shrink_if_full().
   std::span<TrianglePair> append(std::size_t list, std::size_t count, const TrianglePair& value);

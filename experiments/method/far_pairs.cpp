@@ -2,6 +2,7 @@
 #include "experiments/method/far_pairs.h"
 
 #include "core/base/stopwatch.h"
+#include "core/pairs/cpu.h"
 
 namespace farcull {
 
@@ -11,6 +12,8 @@ void plan_far_pairs(const Scene& scene, unsigned threads, const Progress&, Plan&
                         .resolution = resolution_of(options),
                         .clearance = options.clearance,
                         .full = options.full,
+                        // Who names a GL device wants it to look.
+                        .runs = options.device.empty() || is_cpu(options.device),
                         .neighbours = options.neighbours};
   if (!views_of(options).empty()) settings.views = parse_views(views_of(options));
   PairPlan pairs = plan_pairs(scene, settings, threads);
@@ -30,14 +33,35 @@ void plan_far_pairs(const Scene& scene, unsigned threads, const Progress&, Plan&
   plan.work = std::move(pairs);
 }
 
+namespace {
+
+void take(PairResult&& result, Candidates& out) {
+  out.pairs = std::move(result.candidates);
+  out.count = out.pairs.size();
+  out.by = std::move(result.views);
+  out.trace.insert(out.trace.end(), result.stages.begin(), result.stages.end());
+}
+
+}  // namespace
+
 Candidates find_far_pairs(const Scene& scene, const Plan& plan, Session& session,
                           const Progress& progress) {
   const auto& pairs = std::get<PairPlan>(plan.work);
   Candidates out;
   out.by = std::vector<PairView>();
-  if (pairs.choices.empty()) {
+  if (pairs.nothing_can_meet()) {
     out.device.note = "no two objects' boxes overlap, none collides with itself";
     out.trace.push_back({.kind = StageKind::setup, .reason = Reason::nothing_to_look_at});
+    return out;
+  }
+  if (pairs.choices.empty()) {
+    out.device = {.gl = {}, .cpu = true, .note = "boxes of runs decide: no view", .relies = {}};
+    out.trace.push_back({.kind = StageKind::setup, .reason = Reason::nothing_to_look_at});
+    const Stopwatch watch;
+    take(find_pairs(scene, pairs, *cpu_pair_backend(session.threads()), session.pair_workspace(),
+                    progress),
+         out);
+    out.ms = watch.ms();
     return out;
   }
   if (progress) progress("opening the device");
@@ -53,12 +77,8 @@ Candidates find_far_pairs(const Scene& scene, const Plan& plan, Session& session
                        .ms = out.setup_ms});
 
   const Stopwatch watch;
-  PairResult result = find_pairs(scene, pairs, *device.backend, session.pair_workspace(), progress);
+  take(find_pairs(scene, pairs, *device.backend, session.pair_workspace(), progress), out);
   out.ms = watch.ms();
-  out.pairs = std::move(result.candidates);
-  out.count = out.pairs.size();
-  out.by = std::move(result.views);
-  out.trace.insert(out.trace.end(), result.stages.begin(), result.stages.end());
   return out;
 }
 

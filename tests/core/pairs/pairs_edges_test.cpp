@@ -1,6 +1,8 @@
 // FAR pairs where one rule alone keeps a pair: each scene loses it when that rule is taken away.
 #include <algorithm>
 
+#include "core/base/stopwatch.h"
+#include "experiments/scenes/builtin/scenes.h"
 #include "tests/core/pairs/pairs_lab.h"
 
 namespace farcull {
@@ -35,7 +37,36 @@ TEST(PairsEdges, NoViewResolvesWhatIsBeyondDouble) {
   const auto backend = cpu_pair_backend(2);
   ASSERT_EQ(truth_of(scene).size(), 1u);
   EXPECT_EQ(missed(scene, {}, *backend), 0u);
-  EXPECT_EQ(find_pairs(scene, {}, *backend).stages.back().kind, StageKind::join);
+  const PairSettings given{.views = parse_views("z")};
+  EXPECT_EQ(missed(scene, given, *backend), 0u);
+  EXPECT_EQ(find_pairs(scene, given, *backend).stages.back().kind, StageKind::join);
+}
+
+// A triangle that no view can show is compared with all others, and they are not joined for its
+// sake: the boxes of these needles overlap 45 million times.
+TEST(PairsEdges, ATriangleThatNoViewShowsCostsLittle) {
+  Scene scene = make_builtin_scene("needles-layers");
+  const auto backend = cpu_pair_backend(2);
+  const auto timed = [&](PairResult& result) {
+    const Stopwatch watch;
+    result = find_pairs(scene, {}, *backend);
+    return watch.ms();
+  };
+  PairResult before, after;
+  const double without = std::min(timed(before), timed(before));
+  const Vec3 far = Vec3(1, 1, 1) * 0x1p60;
+  const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+  scene.vertices.insert(scene.vertices.end(), {-far, far, far + Vec3(0, 0, 0x1p10)});
+  scene.triangles.push_back({first, first + 1, first + 2});
+  scene.source_face.push_back(0);
+  ++scene.objects.back().triangle_count;
+  const double with = std::min(timed(after), timed(after));
+  ASSERT_EQ(after.views.size(), 1u);
+  EXPECT_EQ(after.views[0].counts.undrawable, 1u);
+  EXPECT_GT(after.candidates.size(), before.candidates.size());
+  EXPECT_EQ(missed(decide(scene, before.candidates).pairs, after.candidates), 0u);
+  // A join of all boxes takes more than twenty times as long.
+  EXPECT_LT(with, 8 * without);
 }
 
 TEST(PairsEdges, TheLeastClearanceIsOne) {

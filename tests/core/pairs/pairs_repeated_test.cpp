@@ -125,7 +125,7 @@ struct SettlesApart : TileRules {
 };
 // A pair of whole triangles is left to the first pixel of either of them.
 struct WrongPixel : TileRules {
-  static float reporting(float a, float b) { return std::min(a, b); }
+  static std::uint32_t begun(bool left, bool below) { return left || below ? 3 : 0; }
 };
 
 template <class Rules>
@@ -158,8 +158,12 @@ TEST(PairsRepeated, CoincidentTrianglesAreComparedOnce) {
 // Further views of what lies on itself take nothing away: a sample shows it.
 TEST(PairsRepeated, NoFurtherViewWhereItTakesNothingAway) {
   const auto backend = cpu_pair_backend(2);
-  const PairResult result = find_pairs(coincident(300, 0, 10), {}, *backend);
-  EXPECT_EQ(result.candidates.size(), 90'000u);
+  const Scene scene = coincident(300, 0, 10);
+  const PairResult by_runs = find_pairs(scene, {}, *backend);
+  EXPECT_EQ(by_runs.candidates.size(), 90'000u);
+  EXPECT_TRUE(by_runs.views.empty());
+  const PairResult result = find_pairs(scene, {.resolution = 32}, *backend);
+  EXPECT_EQ(result.candidates, by_runs.candidates);
   EXPECT_EQ(result.views.size(), 1u);
   EXPECT_TRUE(std::any_of(result.stages.begin(), result.stages.end(), [](const Stage& stage) {
     return !stage.ran && reason_of(stage) == "it keeps all of a sample of the candidates";

@@ -26,6 +26,7 @@ using lab::with_self;
 
 std::vector<PairSettings> all_settings() {
   std::vector<PairSettings> out(1);  // all chosen by the scene
+  out.push_back({.runs = false});    // and decided by views
   for (const char* views : {"x", "1:1:0.5", "x,y,z", "z,1:-2:0.5,0:1:1"}) {
     for (const int resolution : {32, 200, 1024}) {
       out.push_back({.views = parse_views(views), .resolution = resolution});

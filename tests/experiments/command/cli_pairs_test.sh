@@ -89,7 +89,7 @@ bad 'compare cullide on one' '--methods: cullide tests no object .*far-pairs' co
 # --- good cases --------------------------------------------------------------------------------
 
 good 'far-pairs' 0 run "${pairs[@]}"
-expect 'far-pairs' "$out" '^device     cpu: no --device: '
+expect 'far-pairs' "$out" '^device     cpu: boxes of runs decide: no view$'
 expect 'far-pairs' "$out" '^method     far-pairs; promises to miss nothing$'
 expect 'far-pairs' "$out" ' \+ 0 missed$'
 expect 'far-pairs' "$out" '^colliding  298 pairs$'
@@ -106,9 +106,11 @@ expect 'far-pairs as asked' "$out" '^method     far-pairs at 64 px; '
 expect 'far-pairs as asked' "$out" '^views      x [0-9]+ x [0-9]+, 1:2:3 '
 good 'far-pairs auto' 0 run "${pairs[@]}" --views auto --resolution auto --json -
 for line in '"method": "far-pairs"' '"resolution": "auto"' '"clearance": 0\.0' '"promises": true' \
-  '"cpu": "no --device' '"neighbour_pairs": 0' '"self_objects": 0' '"looked": true'; do
+  '"cpu": "boxes of runs decide: no view"' '"neighbour_pairs": 0' '"self_objects": 0'; do
   expect 'far-pairs auto' "$out" "^ *$line"
 done
+good 'far-pairs by views' 0 run "${pairs[@]}" --views auto --resolution 64 --json -
+for line in '"cpu": "no --device' '"looked": true'; do expect 'far-pairs by views' "$out" "^ *$line"; done
 obj 'v 1 1 -1' 'v 1 1 1' 'v 0 0 -1' 'f 1 2 3' 'f 1 2 4' 'f 5 6 7' >folded.obj
 good 'self-collision' 0 verify folded.obj --method far-pairs --self --pairs -
 expect 'self-collision' "$out" '^object_a,triangle_a,object_b,triangle_b,neighbours$'

@@ -16,6 +16,7 @@ RunOptions on(const std::string& device) {
   RunOptions options;
   options.method = Method::far_pairs;
   options.device = device;
+  options.resolution = 100;  // views decide, on the CPU too
   return options;
 }
 

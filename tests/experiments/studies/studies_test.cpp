@@ -129,7 +129,7 @@ TEST(ErrorTime, HasEveryLibraryOnEveryScene) {
     }
     for (const auto& [scene, of] : methods) {
       for (const char* peer :
-           {"cgal-boxes", "cgal-aabb", "embree-low", "fcl-double", "fcl-float"}) {
+           {"cgal-boxes", "cgal-aabb", "embree-low", "fcl-double", "fcl-float", "ode-trimesh"}) {
         EXPECT_TRUE(of.contains(peer)) << peer << " on " << scene;
       }
     }

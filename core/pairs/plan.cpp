@@ -1,0 +1,223 @@
+// A plan is made of boxes, runs and views.
+#include "core/pairs/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/base/error.h"
+#include "core/base/stopwatch.h"
+#include "core/pairs/cpu.h"
+#include "core/scene/members.h"
+
+namespace farcull {
+
+bool has_any(const std::vector<std::uint32_t>& ascending, const TrianglePair& pair) {
+  return std::binary_search(ascending.begin(), ascending.end(), pair.a) ||
+         std::binary_search(ascending.begin(), ascending.end(), pair.b);
+}
+
+namespace {
+
+// Pairs that a view is tried on, before it looks at all of them.
+constexpr std::size_t kTried = 256;
+// A view that would keep more than this part of the pairs of overlapping boxes is no help: it finds
+// each of them in several pixels.
+constexpr double kKeptByView = 0.5;
+
+}  // namespace
+
+double kept_by(const Scene& scene, const PairRegions& regions, const PairChoice& choice,
+               double clearance, const std::vector<TrianglePair>& from) {
+  std::vector<TrianglePair> sample;
+  const std::size_t count = std::min(kTried, from.size());
+  for (std::size_t k = 0; k < count; ++k) sample.push_back(from[from.size() * k / count]);
+  const std::optional<PairWindow> window =
+      pair_window(regions, choice.view, choice.resolution, clearance);
+  if (!window) return 1;
+  PairScene seen;
+  look(scene, regions, members_of(sample, scene.triangles.size()), *window, 1, seen);
+  PairCounts counts;
+  const std::vector<TrianglePair> kept =
+      cpu_sample_backend(regions.triangles.size())->raw_pairs(seen.task, counts);
+  const auto& bad = seen.undrawable;
+  const auto left = std::ranges::count_if(sample, [&](const TrianglePair& pair) {
+    return std::binary_search(kept.begin(), kept.end(), pair) || has_any(bad, pair);
+  });
+  return static_cast<double>(left) / static_cast<double>(count);
+}
+
+std::optional<PairWindow> window_of(const PairPlan& plan, const PairChoice& choice) {
+  return pair_window(plan.regions, choice.view, choice.resolution, plan.settings.clearance);
+}
+
+Stage stage_of_runs(const PairPlan& plan) {
+  return {.kind = StageKind::runs,
+          .ran = true,
+          .reason = Reason::run_pairs,
+          .n = plan.runs.between.size() + plan.runs.inside.size(),
+          .m = plan.runs.meetings,
+          .in = plan.runs.triangles,
+          .unit = Unit::pairs};
+}
+
+std::size_t certain_views(const PairPlan& plan) {
+  if (!plan.settings.views.empty()) return plan.choices.size();
+  return plan.settings.full ? kMostPairViews : 1;
+}
+
+namespace {
+
+std::vector<PairChoice> given_choices(const Scene& scene, const PairRegions& regions,
+                                      const PairSettings& settings) {
+  std::vector<PairChoice> choices;
+  const bool given = settings.resolution > 0;
+  for (const View& view : settings.views) {
+    choices.push_back({view,
+                       given ? settings.resolution : choose_pair_resolution(scene, regions, view),
+                       given ? "direction and resolution given"
+                             : "direction given; pixels by the triangles' sizes"});
+  }
+  return choices;
+}
+
+// Splits the meetings of a scene into those that boxes of runs decide and those that views do, and
+// chooses the views.
+void split_and_choose(const Scene& scene, unsigned threads, PairPlan& plan) {
+  const PairSettings& settings = plan.settings;
+  const Stopwatch planning;
+  PairParts parts = split_meetings(scene, settings.clearance, threads);
+  const double split_ms = planning.ms();
+  const Stopwatch choosing;
+  if (!parts.rest.triangles.empty()) {
+    plan.choices = choose_pair_views(scene, parts.rest, 0);
+    // Where triangles lie on each other no view parts them, and boxes are found faster.
+    if (!parts.sample.empty() && kept_by(scene, parts.rest, plan.choices.front(),
+                                         settings.clearance, parts.sample) > kKeptByView) {
+      plan.choices.clear();
+      parts = split_meetings(scene, settings.clearance, threads, true);
+    }
+  }
+  plan.runs = std::move(parts.runs);
+  plan.regions = std::move(parts.rest);
+  plan.trace.push_back(
+      {.kind = StageKind::boxes,
+       .ran = true,
+       .reason = Reason::meetings,
+       .n = plan.regions.pairs,
+       .m = plan.regions.self,
+       .ms = split_ms,
+       .in = scene.triangles.size(),
+       .out = std::min<std::uint64_t>(plan.runs.triangles + plan.regions.triangles.size(),
+                                      scene.triangles.size()),
+       .unit = Unit::triangles});
+  if (plan.choices.empty()) {
+    plan.trace.push_back(
+        {.kind = StageKind::views,
+         .reason = plan.runs.empty() ? Reason::no_boxes_overlap : Reason::only_runs,
+         .ms = choosing.ms(),
+         .unit = Unit::pairs});
+    return;
+  }
+  plan.trace.push_back({.kind = StageKind::choose,
+                        .ran = true,
+                        .reason = Reason::views_chosen,
+                        .ms = choosing.ms(),
+                        .in = plan.choices.size(),
+                        .out = 1,
+                        .unit = Unit::views});
+}
+
+// Everything is left to views, because the caller wants views, or a resolution, or nothing left
+// out.
+void leave_to_views(const Scene& scene, unsigned threads, PairPlan& plan) {
+  const PairSettings& settings = plan.settings;
+  const Stopwatch planning;
+  plan.regions = pair_regions(scene, settings.clearance, settings.full, threads);
+  plan.trace.push_back({.kind = StageKind::boxes,
+                        .ran = true,
+                        .reason = settings.full ? Reason::full : Reason::meetings,
+                        .n = settings.full ? 0 : plan.regions.pairs,
+                        .m = settings.full ? 0 : plan.regions.self,
+                        .ms = planning.ms(),
+                        .in = scene.triangles.size(),
+                        .out = plan.regions.triangles.size(),
+                        .unit = Unit::triangles});
+  if (plan.regions.triangles.empty()) {
+    plan.trace.push_back(
+        {.kind = StageKind::views, .reason = Reason::no_boxes_overlap, .unit = Unit::pairs});
+    return;
+  }
+  const Stopwatch choosing;
+  const bool chosen = settings.views.empty();
+  plan.choices = chosen ? choose_pair_views(scene, plan.regions, settings.resolution)
+                        : given_choices(scene, plan.regions, settings);
+  plan.trace.push_back({.kind = StageKind::choose,
+                        .ran = true,
+                        .reason = chosen ? Reason::views_chosen : Reason::views_given,
+                        .ms = choosing.ms(),
+                        .in = plan.choices.size(),
+                        .out = chosen ? 1 : plan.choices.size(),
+                        .unit = Unit::views});
+}
+
+}  // namespace
+
+PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned threads) {
+  if (!(settings.clearance >= 0) || !std::isfinite(settings.clearance)) {
+    throw std::logic_error("plan_pairs: the clearance is negative or not finite");
+  }
+  if (scene.triangles.size() + scene.objects.size() >= std::size_t{1} << 31) {
+    throw Error(scene.name, "has 2^31 triangles and objects, or more", "split it into scenes");
+  }
+  PairPlan plan;
+  plan.settings = settings;
+  if (settings.runs && settings.views.empty() && settings.resolution == 0 && !settings.full) {
+    split_and_choose(scene, threads, plan);
+  } else {
+    leave_to_views(scene, threads, plan);
+  }
+  std::size_t resolved = 0;
+  for (const PairChoice& choice : plan.choices) {
+    if (resolved == certain_views(plan)) break;
+    plan.windows.push_back(window_of(plan, choice));
+    resolved += plan.windows.back().has_value();
+  }
+  return plan;
+}
+
+std::vector<Stage> planned_stages(const PairPlan& plan) {
+  std::vector<Stage> stages;
+  if (!plan.runs.empty()) stages.push_back(stage_of_runs(plan));
+  const bool chosen = plan.settings.views.empty();
+  std::size_t looked = 0;
+  for (std::size_t k = 0; k < plan.choices.size(); ++k) {
+    const PairChoice& choice = plan.choices[k];
+    Stage stage{.kind = StageKind::view, .subject = choice.view.name, .unit = Unit::pairs};
+    if (k >= plan.windows.size()) {
+      stage.depends = true;
+      stage.ran = looked++ < kMostPairViews;
+      stage.reason = stage.ran ? Reason::if_more_candidates : Reason::enough_views;
+      stage.n = stage.ran ? kFurtherViewFrom : 0;
+    } else if (const std::optional<PairWindow>& window = plan.windows[k]) {
+      ++looked;
+      stage.ran = true;
+      stage.reason = Reason::chosen;
+      stage.detail = choice.reason;
+      stage.n = static_cast<std::uint64_t>(window->window.width);
+      stage.m = static_cast<std::uint64_t>(window->window.height);
+    } else {
+      stage.reason = Reason::unresolvable_view;
+    }
+    stages.push_back(stage);
+    if (chosen && stage.depends && !stage.ran) break;
+  }
+  if (looked == 0 && !plan.choices.empty())
+    stages.push_back({.kind = StageKind::join,
+                      .ran = true,
+                      .reason = Reason::join_unresolvable,
+                      .unit = Unit::pairs});
+  return stages;
+}
+
+}  // namespace farcull

@@ -1,0 +1,66 @@
+// What FAR pairs will do with a scene: what boxes of runs decide, and which views decide the rest.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/stage.h"
+#include "core/pairs/regions.h"
+#include "core/pairs/view.h"
+#include "core/scene/scene.h"
+#include "core/view/view.h"
+
+namespace farcull {
+
+/// A further view is looked at where there are more candidates than this for each triangle that
+/// takes part: fewer are mostly neighbours and contacts, which no view takes away.
+constexpr std::size_t kFurtherViewFrom = 16;
+constexpr std::size_t kMostPairViews = 3;  // chosen by the scene
+
+struct PairSettings {
+  std::vector<View> views = {};  // empty: chosen by the scene, by fixed rules
+  int resolution = 0;    // px along the larger side of each view's window; 0: chosen by the scene
+  double clearance = 0;  // world units, finite, >= 0: pairs at this distance or less count too
+  bool full = false;     // leave nothing out: every triangle takes part, three views are looked at
+  bool runs = true;  // false: views decide everything
+  bool neighbours = true;  // false: nobody asks for pairs of one object that share a vertex
+                           // index; views leave them out
+};
+
+/// Everything about a scene that needs no pixels: who takes part, and which views are looked at.
+struct PairPlan {
+  PairSettings settings;
+  RunMeetings runs;                 // decided without a view
+  PairRegions regions;              // of all others
+  std::vector<PairChoice> choices;  // in the order in which they are looked at; empty: boxes decide
+  /// Of the first choices, those that are looked at whatever the candidates; empty: unresolvable.
+  std::vector<std::optional<PairWindow>> windows;
+  std::vector<Stage> trace;  // of the planning itself
+  bool nothing_can_meet() const { return runs.empty() && regions.triangles.empty(); }
+};
+
+/// Finds the triangles that take part and chooses the views. threads: of the CPU; 0: as many as
+/// there are cores. Throws Error for a scene that is too large, std::logic_error for a clearance
+/// that is negative or not finite.
+PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned threads = 0);
+
+/// The stages that find_pairs() will go through, in order. Those that candidates decide about are
+/// marked so, with the rule.
+std::vector<Stage> planned_stages(const PairPlan& plan);
+
+/// Whether one of the two is in the list.
+bool has_any(const std::vector<std::uint32_t>& ascending, const TrianglePair& pair);
+/// Which part of some pairs, evenly chosen of `from`, a view would keep. For choices alone: no pair
+/// is lost either way. Precondition: there is a pair.
+double kept_by(const Scene& scene, const PairRegions& regions, const PairChoice& choice,
+               double clearance, const std::vector<TrianglePair>& from);
+/// The window of a choice; empty where pixel space cannot resolve it.
+std::optional<PairWindow> window_of(const PairPlan& plan, const PairChoice& choice);
+/// The stage of the boxes of runs, before it ran. Precondition: plan.runs is not empty.
+Stage stage_of_runs(const PairPlan& plan);
+/// The number of views that are looked at whatever the candidates, where they can be resolved.
+std::size_t certain_views(const PairPlan& plan);
+
+}  // namespace farcull

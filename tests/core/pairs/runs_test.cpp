@@ -1,0 +1,336 @@
+// Runs of triangles and the comparisons on lanes: all boxes that overlap are found, on every
+// instruction set, whatever the order of the triangles. Each property has a twin that must fail.
+#include "core/pairs/runs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <set>
+
+#include "core/native/lanes.h"
+#include "core/pairs/box_check.h"
+#include "core/pairs/regions.h"
+#include "core/pairs/run_pairs.h"
+#include "core/pairs/sweep.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/core/pairs/pairs_lab.h"
+
+namespace farcull {
+namespace {
+
+using lab::missed;
+using lab::Random;
+using lab::random_scene;
+using lab::truth_of;
+using lab::with_self;
+
+// Calls `work` on every instruction set.
+void for_each_target(const std::function<void()>& work) {
+  for (const std::string& target : lane_targets()) {
+    SCOPED_TRACE(target);
+    use_lane_target(target);
+    work();
+  }
+  use_lane_target("");
+}
+
+// The triangles of each object in another order.
+Scene shuffled(Scene scene, std::uint64_t seed) {
+  Random random(seed);
+  for (const Object& object : scene.objects) {
+    for (std::uint32_t k = object.triangle_count; k > 1; --k) {
+      std::swap(scene.triangles[object.first_triangle + k - 1],
+                scene.triangles[object.first_triangle +
+                                static_cast<std::uint32_t>(random.below(static_cast<int>(k)))]);
+    }
+  }
+  return scene;
+}
+
+// Pairs that count whose boxes overlap, by comparing all with all.
+std::vector<TrianglePair> overlapping(const Scene& scene, double clearance, bool neighbours) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  std::vector<TrianglePair> out;
+  for (std::uint32_t a = 0; a < scene.triangles.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < scene.triangles.size(); ++b) {
+      if (owner[a] == owner[b]) {
+        if (!scene.objects[owner[a]].self) continue;
+        const auto& other = scene.triangles[b];
+        const bool shared = std::ranges::any_of(scene.triangles[a], [&](std::uint32_t v) {
+          return std::ranges::find(other, v) != other.end();
+        });
+        if (shared && !neighbours) continue;
+      }
+      if (boxes_meet(scene, {a, b}, half_of(clearance))) out.push_back({a, b});
+    }
+  }
+  return out;
+}
+
+std::vector<Scene> small_scenes() {
+  std::vector<Scene> out;
+  for (const char* name : {"two-spheres", "crowd", "field:1000", "spheres:1000", "rope:2000",
+                           "crumpled:1000", "crowd@far", "degenerate", "degenerate@huge"}) {
+    Scene scene = make_builtin_scene(name);
+    if (scene.triangles.size() > 12'000) continue;
+    out.push_back(shuffled(scene, 1));
+    out.push_back(std::move(scene));
+  }
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    out.push_back(seed % 2 ? with_self(random_scene(seed)) : random_scene(seed));
+  }
+  return out;
+}
+
+std::vector<Box> regions_of(const Runs& runs) { return runs.objects; }
+
+TEST(Runs, HoldEachTriangleOnceInItsBox) {
+  std::size_t ordered = 0;
+  for (const Scene& scene : small_scenes()) {
+    for (const double clearance : {0.0, 0.01}) {
+      Runs runs = make_runs(scene, clearance, 2);
+      gather_scattered(scene, clearance, regions_of(runs), 2, runs);
+      ordered += !runs.order.empty();
+      std::set<std::uint32_t> seen;
+      for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+        const Object& object = scene.objects[o];
+        for (std::uint32_t k = runs.first[o]; k < runs.first[o + 1]; ++k) {
+          for (std::uint32_t i = 0; i < runs.runs[k].count; ++i) {
+            const std::uint32_t t = runs.triangle(runs.runs[k].first + i);
+            ASSERT_TRUE(seen.insert(t).second);
+            ASSERT_LT(t - object.first_triangle, object.triangle_count);
+            const Box box = grown_box(scene, t, clearance);
+            Box both = runs.boxes[k];
+            both.add(box);
+            ASSERT_EQ(both.lo, runs.boxes[k].lo);
+            ASSERT_EQ(both.hi, runs.boxes[k].hi);
+          }
+        }
+      }
+      ASSERT_EQ(seen.size(), scene.triangles.size());
+    }
+  }
+  EXPECT_GT(ordered, 5u);
+}
+
+TEST(Runs, ThatOverlapAreFoundInTheTrees) {
+  std::size_t found = 0;
+  for (const Scene& scene : small_scenes()) {
+    const Runs runs = make_runs(scene, 0, 1);
+    const RunTrees trees(runs, runs.objects);
+    const auto objects = static_cast<std::uint32_t>(scene.objects.size());
+    for (std::uint32_t a = 0; a < objects; ++a) {
+      for (std::uint32_t b = a; b < std::min(objects, a + 8); ++b) {
+        std::vector<RunPair> expected;
+        for (std::uint32_t r = runs.first[a]; r < runs.first[a + 1]; ++r) {
+          for (std::uint32_t s = a == b ? r : runs.first[b]; s < runs.first[b + 1]; ++s) {
+            if (overlap(runs.boxes[r], runs.boxes[s])) expected.push_back({r, s});
+          }
+        }
+        std::vector<RunPair> first;
+        for_each_target([&] {
+          std::vector<RunPair> pairs;
+          pair_runs(trees, a, b, runs.first[a], runs.first[a + 1], SIZE_MAX, pairs);
+          if (first.empty()) first = pairs;
+          ASSERT_EQ(pairs, first);
+          std::sort(pairs.begin(), pairs.end());
+          ASSERT_TRUE(std::ranges::includes(pairs, expected));
+          found += pairs.size();
+        });
+      }
+    }
+  }
+  EXPECT_GT(found, 100'000u);
+}
+
+TEST(Runs, GiveThePairsWhoseBoxesOverlap) {
+  std::size_t pairs = 0, by_runs = 0;
+  for (const Scene& scene : small_scenes()) {
+    for (const double clearance : {0.0, 0.01}) {
+      for (const bool neighbours : {true, false}) {
+        const PairParts parts = split_meetings(scene, clearance, 2);
+        if (parts.runs.empty() || !parts.rest.triangles.empty()) continue;
+        ++by_runs;
+        const std::vector<TrianglePair> expected = overlapping(scene, clearance, neighbours);
+        pairs += expected.size();
+        for_each_target([&] {
+          for (const unsigned threads : {1u, 3u}) {
+            ASSERT_EQ(pairs_of_runs(scene, parts.runs, clearance, neighbours, threads), expected)
+                << scene.name;
+          }
+        });
+      }
+    }
+  }
+  EXPECT_GT(by_runs, 20u);
+  EXPECT_GT(pairs, 100'000u);
+}
+
+// What is decided by runs does not depend on threads.
+TEST(Runs, SplitAlikeWhateverTheThreads) {
+  for (const Scene& scene : small_scenes()) {
+    const PairParts one = split_meetings(scene, 0, 1), five = split_meetings(scene, 0, 5);
+    ASSERT_EQ(one.runs.between, five.runs.between);
+    ASSERT_EQ(one.runs.inside, five.runs.inside);
+    ASSERT_EQ(one.rest.triangles, five.rest.triangles);
+  }
+}
+
+// Boxes that touch in one point, edge or face, wherever they lie; or with a gap between them.
+Scene touching(double at, double gap = 0) {
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+  for (int n = 0; n < 40; ++n) {
+    const Vec3 p(at + n, at, at);
+    objects[0].push_back({p, p + Vec3(0.5, 0, 0.5), p + Vec3(0, 0.5, 0.5)});
+    const Vec3 q = p + Vec3(0.5, n % 2 ? 0.5 : 0, (n % 3 ? 0.5 : 0) + gap);
+    objects[1].push_back({q, q + Vec3(0.25, 0, 0.25), q + Vec3(0, 0.25, 0.25)});
+  }
+  return lab::scene_of(objects);
+}
+
+TEST(Runs, CountBoxesThatTouch) {
+  for (const double at : {0.0, 3.0, -1e3, 1e9, 1e15}) {
+    const Scene scene = touching(at);
+    const PairParts parts = split_meetings(scene, 0, 1);
+    ASSERT_FALSE(parts.runs.empty());
+    const std::vector<TrianglePair> expected = overlapping(scene, 0, true);
+    ASSERT_GE(expected.size(), 40u);
+    for_each_target(
+        [&] { ASSERT_EQ(pairs_of_runs(scene, parts.runs, 0, true, 1), expected) << at; });
+  }
+}
+
+TEST(Runs, GoBeyondWhatFloatHolds) {
+  for (const double scale : {1e-320, 1e-50, 1e38, 1e60, 1e300}) {
+    Scene scene = make_builtin_scene("two-spheres");
+    for (Vec3& v : scene.vertices) v *= scale;
+    const PairParts parts = split_meetings(scene, 0, 1);
+    if (parts.runs.empty()) continue;
+    EXPECT_EQ(pairs_of_runs(scene, parts.runs, 0, true, 2), overlapping(scene, 0, true)) << scale;
+  }
+}
+
+// Twins: what each ingredient is there for.
+TEST(RunsTwin, WithoutThePairsThatTouchInFloatsPairsAreLost) {
+  const Scene scene = touching(0);
+  const PairParts parts = split_meetings(scene, 0, 1);
+  std::vector<RunBlock> blocks(parts.runs.runs.size());
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    std::vector<std::uint32_t> triangles(parts.runs.runs[k].count);
+    std::iota(triangles.begin(), triangles.end(), parts.runs.runs[k].first);
+    fill_block(scene, triangles, parts.runs.origin, 0, blocks[k]);
+  }
+  std::vector<BlockPair> pairs;
+  for (const RunPair& pair : parts.runs.between) pairs.push_back({pair.a, pair.b, false});
+  RunFindings found;
+  compare_blocks(blocks, {}, pairs, found);
+  std::sort(found.certain.begin(), found.certain.end());
+  EXPECT_GT(missed(overlapping(scene, 0, true), found.certain), 0u);
+}
+
+TEST(RunsTwin, ADroppedPairOfRunsMisses) {
+  const Scene scene = make_builtin_scene("two-spheres");
+  PairParts parts = split_meetings(scene, 0, 1);
+  ASSERT_FALSE(parts.runs.between.empty());
+  const std::vector<TrianglePair> truth = truth_of(scene);
+  const auto without = [&](std::size_t k) {
+    RunMeetings fewer = parts.runs;
+    fewer.between.erase(fewer.between.begin() + static_cast<std::ptrdiff_t>(k));
+    return missed(truth, pairs_of_runs(scene, fewer, 0, true, 1));
+  };
+  std::size_t lost = 0;
+  for (std::size_t k = 0; k < parts.runs.between.size(); ++k) lost += without(k);
+  EXPECT_GT(lost, 0u);
+}
+
+TEST(RunsTwin, RunsThatAreNotGrownMissPairsOfAClearance) {
+  const Scene scene = touching(0, 0.6);
+  constexpr double kClearance = 0.7;
+  const PairParts plain = split_meetings(scene, 0, 1);
+  const PairParts grown = split_meetings(scene, kClearance, 1);
+  const std::vector<TrianglePair> truth = truth_of(scene, kClearance);
+  EXPECT_EQ(missed(truth, pairs_of_runs(scene, grown.runs, kClearance, true, 1)), 0u);
+  EXPECT_GT(missed(truth, pairs_of_runs(scene, plain.runs, 0, true, 1)), 0u);
+}
+
+// Entries of a pixel: all that the definition names, on every instruction set, in any portions.
+struct SweepCase {
+  std::vector<SweepColumns::Row> rows;
+  bool sorted, drops_neighbours;
+};
+
+SweepCase sweep_case(Random& random) {
+  SweepCase out{
+      .rows = {}, .sorted = random.below(2) == 0, .drops_neighbours = random.below(2) == 0};
+  const int n = random.below(80);
+  for (int k = 0; k < n; ++k) {
+    const auto coordinate = [&] { return static_cast<float>(random.below(12)); };
+    SweepColumns::Row row{};
+    row.x0 = coordinate(), row.y0 = coordinate(), row.near = coordinate();
+    row.x1 = row.x0 + static_cast<float>(random.below(4));
+    row.y1 = row.y0 + static_cast<float>(random.below(4));
+    row.far = row.near + static_cast<float>(random.below(4));
+    row.id = static_cast<std::uint32_t>(3 * k + random.below(3));
+    row.group = static_cast<std::uint32_t>(random.below(5));
+    row.begun = static_cast<std::uint32_t>(random.below(4));
+    row.owner = static_cast<std::uint32_t>(random.below(3));
+    for (std::uint32_t* v : {&row.v0, &row.v1, &row.v2}) {
+      *v = static_cast<std::uint32_t>(random.below(40));
+    }
+    out.rows.push_back(row);
+  }
+  if (out.sorted) std::ranges::stable_sort(out.rows, {}, &SweepColumns::Row::near);
+  return out;
+}
+
+bool makes_pair(const SweepColumns::Row& a, const SweepColumns::Row& b, bool drops_neighbours) {
+  const bool meet = a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1 &&
+                    a.near <= b.far && b.near <= a.far;
+  bool shared = false;
+  for (const std::uint32_t v : {a.v0, a.v1, a.v2}) shared |= v == b.v0 || v == b.v1 || v == b.v2;
+  return meet && a.group != b.group && (a.begun & b.begun) == 0 &&
+         !(drops_neighbours && a.owner == b.owner && shared);
+}
+
+TEST(SweepOnLanes, FindsWhatTheDefinitionSays) {
+  Random random(7);
+  std::size_t found = 0;
+  for (int round = 0; round < 400; ++round) {
+    const SweepCase c = sweep_case(random);
+    const std::size_t n = c.rows.size();
+    std::vector<TrianglePair> expected;
+    std::uint64_t tests = 0;
+    for (std::size_t x = 0; x < n; ++x) {
+      for (std::size_t y = x + 1; y < n; ++y) {
+        const std::uint32_t a = c.rows[x].id, b = c.rows[y].id;
+        if (makes_pair(c.rows[x], c.rows[y], c.drops_neighbours)) {
+          expected.push_back({std::min(a, b), std::max(a, b)});
+        }
+        tests += !c.sorted || c.rows[y].near <= c.rows[x].far;
+      }
+    }
+    found += expected.size();
+    SweepColumns columns;
+    columns.start(n);
+    for (const SweepColumns::Row& row : c.rows) columns.add(row);
+    columns.finish();
+    for_each_target([&] {
+      std::vector<TrianglePair> pairs;
+      std::vector<TrianglePair> room(n + kSweepPadding +
+                                     static_cast<std::size_t>(random.below(200)));
+      Sweep sweep{.columns = &columns, .sorted = c.sorted, .drops_neighbours = c.drops_neighbours};
+      while (sweep.next < n) {
+        const std::size_t count = sweep_on(sweep, room);
+        pairs.insert(pairs.end(), room.begin(), room.begin() + static_cast<std::ptrdiff_t>(count));
+      }
+      ASSERT_EQ(pairs, expected);
+      ASSERT_EQ(sweep.tests, tests);
+    });
+  }
+  EXPECT_GT(found, 4000u);
+}
+
+}  // namespace
+}  // namespace farcull
