@@ -40,20 +40,6 @@ void check(const ColliderOptions& options) {
     throw Error("resolution", "is outside 0 .. 16384", "give a number of pixels, or 0");
 }
 
-RunOptions run_options(const ColliderOptions& options) {
-  check(options);
-  RunOptions out{.method = Method::far_pairs,
-                 .resolution = options.resolution,
-                 .views = options.views == "auto" ? "" : options.views,
-                 .clearance = options.clearance};
-  try {
-    if (options.views != "auto") parse_views(options.views);
-  } catch (const Error& error) {
-    throw Error("views", error.reason, error.remedy);
-  }
-  return out;
-}
-
 std::string device_of(const ColliderOptions& options) {
   switch (options.device) {
     case ColliderDevice::cpu:
@@ -64,6 +50,21 @@ std::string device_of(const ColliderOptions& options) {
       return "";
   }
   return "";
+}
+
+RunOptions run_options(const ColliderOptions& options) {
+  check(options);
+  RunOptions out{.method = Method::far_pairs,
+                 .resolution = options.resolution,
+                 .views = options.views == "auto" ? "" : options.views,
+                 .clearance = options.clearance};
+  out.device = device_of(options);
+  try {
+    if (options.views != "auto") parse_views(options.views);
+  } catch (const Error& error) {
+    throw Error("views", error.reason, error.remedy);
+  }
+  return out;
 }
 
 // Into the scene of the last call, whose memory is used again.
