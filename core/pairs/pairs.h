@@ -1,6 +1,6 @@
-// FAR pairs: every pair of triangles whose boxes overlap, where boxes of runs decide; elsewhere every
-// pair whose depth intervals overlap in a pixel, per view. A pair that intersects is among them
-// (docs/reliability.md, "Interval pairs"): between objects, and inside those that collide with
+// FAR pairs: every pair of triangles whose boxes overlap, where boxes of runs decide; elsewhere
+// every pair whose depth intervals overlap in a pixel, per view. A pair that intersects is among
+// them (docs/reliability.md, "Interval pairs"): between objects, and inside those that collide with
 // themselves. The method decides nothing exactly; that is verify's.
 #pragma once
 

@@ -24,7 +24,7 @@ struct PairSettings {
   int resolution = 0;    // px along the larger side of each view's window; 0: chosen by the scene
   double clearance = 0;  // world units, finite, >= 0: pairs at this distance or less count too
   bool full = false;     // leave nothing out: every triangle takes part, three views are looked at
-  bool runs = true;  // false: views decide everything
+  bool runs = true;      // false: views decide everything
   bool neighbours = true;  // false: nobody asks for pairs of one object that share a vertex
                            // index; views leave them out
 };

@@ -62,9 +62,8 @@ void expect_as_exact(const Scene& scene, double clearance = 0) {
   EXPECT_EQ(pairs.found.device.cpu, scene.name != "far-apart");
   EXPECT_FALSE(pairs.found.device.gl);
   if (pairs.found.device.cpu) {
-    EXPECT_EQ(pairs.found.device.note, pairs.found.pair_views().empty()
-                                           ? "boxes of runs decide: no view"
-                                           : "--device cpu");
+    EXPECT_EQ(pairs.found.device.note,
+              pairs.found.pair_views().empty() ? "boxes of runs decide: no view" : "--device cpu");
   }
   EXPECT_EQ(pairs.found.count, pairs.found.pairs.size());
 }
