@@ -241,6 +241,7 @@ std::vector<TrianglePair> pairs_of_some(const Scene& scene, const RunMeetings& m
              });
   return sorted_unique(found, threads);
 }
+
 // Whether boxes of triangles overlap so often that views are worth while, by a sample of the pairs,
 // which is returned in `left` then.
 bool overlaps_often(const Scene& scene, const RunMeetings& meetings, double clearance,

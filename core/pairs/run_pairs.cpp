@@ -40,7 +40,11 @@ RunTrees::RunTrees(const Runs& runs, std::span<const Box> regions)
   for (std::size_t o = 0; o < trees_.size(); ++o) {
     if (!regions[o].is_empty()) all.add(runs.objects[o]);
   }
-  origin_ = all.is_empty() ? Vec3(Vec3::Zero()) : Vec3(0.5 * all.lo + 0.5 * all.hi);
+  // A box that grew beyond the range of doubles is infinite; the origin must not be, since a box
+  // relative to it would be no number and meet nothing.
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  if (all.is_empty()) all = {Vec3::Zero(), Vec3::Zero()};
+  origin_ = 0.5 * all.lo.cwiseMax(-kLargest) + 0.5 * all.hi.cwiseMin(kLargest);
   for (std::uint32_t o = 0; o < trees_.size(); ++o) {
     const std::uint32_t count = regions[o].is_empty() ? 0 : runs.count(o);
     Tree& tree = trees_[o];

@@ -135,7 +135,7 @@ bool is_scattered(const Runs& runs, std::uint32_t object) {
   return sum > kScattered * std::sqrt(count) * length(runs.objects[object]);
 }
 
-// The lower `bits` bits of x, two zeros before each.
+// The lower 10 bits of x, two zeros before each.
 std::uint32_t spread(std::uint32_t x) {
   x = (x | x << 16) & 0x030000ff;
   x = (x | x << 8) & 0x0300f00f;

@@ -212,6 +212,25 @@ TEST(Runs, GoBeyondWhatFloatHolds) {
   }
 }
 
+// Boxes that grow beyond the range of doubles are infinite, and still meet.
+TEST(Runs, GrowBeyondWhatDoubleHolds) {
+  for (const double size : {1e300, 1e308}) {
+    const Scene scene = lab::scene_of(
+        {{{Vec3(-size, 0, 0), Vec3(-size, size, 0), Vec3(-size, 0, size)}},
+         {{Vec3(-0.5 * size, 0, 0), Vec3(-0.5 * size, size, 0), Vec3(-0.5 * size, 0, size)},
+          {Vec3(size, 0, 0), Vec3(size, size, 0), Vec3(size, 0, size)}}});
+    for (const double clearance : {0.7 * size, 1.7e308}) {
+      const PairParts parts = split_meetings(scene, clearance, 1);
+      ASSERT_FALSE(parts.runs.empty());
+      const auto found = pairs_of_runs(scene, parts.runs, clearance, true, 1);
+      EXPECT_EQ(found, overlapping(scene, clearance, true)) << size << " and " << clearance;
+      EXPECT_TRUE(std::ranges::count(found, TrianglePair{0, 1})) << size << " and " << clearance;
+      const auto backend = cpu_pair_backend(1);
+      EXPECT_EQ(lab::missed(scene, {.clearance = clearance}, *backend), 0u);
+    }
+  }
+}
+
 // Twins: what each ingredient is there for.
 TEST(RunsTwin, WithoutThePairsThatTouchInFloatsPairsAreLost) {
   const Scene scene = touching(0);
