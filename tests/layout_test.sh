@@ -295,11 +295,11 @@ function reaches(from, to,   k) {
 }
 '
 
-# Prints "FILE:LINE:TEXT" wherever the product starts a thread, except in core/base/parallel.h.
+# Prints "FILE:LINE:TEXT" wherever the product starts a thread, except in core/base/parallel.cpp.
 thread_starts() {
   grep -rnE 'std::(jthread|async|thread)([^:_[:alnum:]]|$)|pthread_create' \
     core offsets verify experiments --include='*.h' --include='*.cpp' |
-    grep -v '^core/base/parallel\.h:' || true
+    grep -v '^core/base/parallel\.cpp:' || true
 }
 
 # Prints a violation for each path in README.md and docs/*.md that does not exist: paths in
@@ -401,7 +401,7 @@ check() {
       echo "no #include found under $1: this is not the repository, or the test reads it wrongly"
     fi
     thread_starts | sed -E \
-      's/^([^:]*:[0-9]+:).*/\1 starts a thread: only core\/base\/parallel.h does, which sets the arithmetic of each/'
+      's/^([^:]*:[0-9]+:).*/\1 starts a thread: only core\/base\/parallel.cpp does, which sets the arithmetic of each/'
     page_paths
     top_level
   )
@@ -606,10 +606,10 @@ break_threads() {
   printf '#include <thread>\nunsigned n = std::thread::hardware_concurrency();\n' >verify/threads.cpp
   expect "the number of cores" pass "$(verdict '' '')"
   rm verify/threads.cpp
-  put core/base/parallel.h '<thread>'
-  echo 'std::jthread t(work);' >>core/base/parallel.h
-  expect "core/base/parallel.h starts threads" pass "$(verdict '' '')"
-  rm core/base/parallel.h
+  put core/base/parallel.cpp '<thread>'
+  echo 'std::jthread t(work);' >>core/base/parallel.cpp
+  expect "core/base/parallel.cpp starts threads" pass "$(verdict '' '')"
+  rm core/base/parallel.cpp
 }
 
 # page TEXT VERDICT REASON: a page that says TEXT.

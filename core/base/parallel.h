@@ -1,5 +1,5 @@
 // Work on all cores in contiguous chunks, so that results can be joined in order. All threads of
-// farcull start here, so each computes as the proofs say (core/base/floating_point.h).
+// farcull's own work start here, so each computes as the proofs say (core/base/floating_point.h).
 #pragma once
 
 #include <algorithm>
@@ -12,9 +12,14 @@
 
 namespace farcull {
 
-/// Calls work(chunk, begin, end) for `chunks` contiguous parts of 0 .. count - 1, each in a thread
-/// of its own, rounding to nearest with subnormals kept whatever the caller does. The first
-/// exception of the lowest chunk is thrown again here.
+/// Calls part(data, k) once for each k in 0 .. parts - 1, the first here and the others in threads
+/// that are kept for the next call, or here where none is free: so calls may be nested. Returns
+/// when all have returned. part throws nothing.
+void run_parts(std::size_t parts, void (*part)(const void* data, std::size_t k), const void* data);
+
+/// Calls work(chunk, begin, end) for `chunks` contiguous parts of 0 .. count - 1, side by side
+/// where threads are free, rounding to nearest with subnormals kept whatever the caller does. No
+/// chunk may wait for another one. The first exception of the lowest chunk is thrown again here.
 template <class Work>
 void for_chunks(std::size_t count, std::size_t chunks, const Work& work) {
   std::vector<std::exception_ptr> failures(chunks);
@@ -26,10 +31,9 @@ void for_chunks(std::size_t count, std::size_t chunks, const Work& work) {
       failures[chunk] = std::current_exception();
     }
   };
-  std::vector<std::jthread> threads;  // joined also where starting one of them fails
-  for (std::size_t chunk = 1; chunk < chunks; ++chunk) threads.emplace_back(part, chunk);
-  part(0);
-  threads.clear();
+  using Part = decltype(part);
+  run_parts(
+      chunks, [](const void* data, std::size_t k) { (*static_cast<const Part*>(data))(k); }, &part);
   for (const std::exception_ptr& failure : failures) {
     if (failure) std::rethrow_exception(failure);
   }

@@ -1,0 +1,150 @@
+// Threads that are kept: to start one takes as long as a small step of a query.
+#include "core/base/parallel.h"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <system_error>
+
+#ifndef _WIN32
+#include <csignal>
+#endif
+
+namespace farcull {
+namespace {
+
+// How long a thread looks for work, or for the end of it, before it sleeps: steps of a query follow
+// each other faster than a sleeping thread wakes.
+constexpr std::chrono::microseconds kSpin{50};
+
+template <class Done>
+bool spin_until(const Done& done) {
+  const auto end = std::chrono::steady_clock::now() + kSpin;
+  do {
+    for (int k = 0; k < 64; ++k) {
+      if (done()) return true;
+#if defined(__GNUC__) && (defined(__x86_64__) || defined(__i386__))
+      __builtin_ia32_pause();
+#endif
+    }
+  } while (std::chrono::steady_clock::now() < end);
+  return done();
+}
+
+// Signals are left to the threads of the caller.
+class SignalsBlocked {
+ public:
+#ifndef _WIN32
+  SignalsBlocked() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~SignalsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_;
+#else
+  SignalsBlocked() {}
+#endif
+};
+
+// One call of run_parts(). It lives as long as the call does.
+struct Batch {
+  void (*part)(const void*, std::size_t);
+  const void* data;
+  std::size_t parts;
+  std::size_t next = 0;               // guarded by the pool's mutex
+  std::atomic<std::size_t> done = 0;  // parts that have returned
+};
+
+class Pool {
+ public:
+  void run(Batch& batch) {
+    {
+      const std::lock_guard lock(mutex_);
+      batch.next = 1;
+      batches_.push_back(&batch);
+      waiting_ += batch.parts - 1;
+      need_threads(batch.parts - 1);
+    }
+    wake_.notify_all();
+    batch.part(batch.data, 0);
+    batch.done.fetch_add(1);
+    while (std::size_t k = claim_of(batch)) {
+      batch.part(batch.data, k);
+      batch.done.fetch_add(1);
+    }
+    const auto finished = [&] { return batch.done.load() == batch.parts; };
+    if (spin_until(finished)) return;
+    std::unique_lock lock(mutex_);
+    finished_.wait(lock, finished);
+  }
+
+ private:
+  // The next part of the batch that nobody has begun; 0: there is none.
+  std::size_t claim_of(Batch& batch) {
+    const std::lock_guard lock(mutex_);
+    return batch.next < batch.parts ? claim(batch) : 0;
+  }
+  // The mutex is held.
+  std::size_t claim(Batch& batch) {
+    --waiting_;
+    const std::size_t k = batch.next++;
+    if (batch.next == batch.parts) std::erase(batches_, &batch);
+    return k;
+  }
+
+  // Starts threads until there are as many, if the system allows. The mutex is held.
+  void need_threads(std::size_t count) {
+    const SignalsBlocked blocked;
+    try {
+      while (threads_ < count) {
+        std::thread([this] { work(); }).detach();
+        ++threads_;
+      }
+    } catch (const std::system_error&) {
+      // Those that there are do it, at worst the caller alone.
+    }
+  }
+
+  void work() {
+    for (;;) {
+      spin_until([&] { return waiting_.load(std::memory_order_relaxed) > 0; });
+      std::unique_lock lock(mutex_);
+      wake_.wait(lock, [&] { return waiting_.load() > 0; });
+      Batch& batch = *batches_.front();
+      const std::size_t k = claim(batch);
+      lock.unlock();
+      batch.part(batch.data, k);
+      lock.lock();
+      // The batch may be gone from here on.
+      const bool last = batch.done.fetch_add(1) + 1 == batch.parts;
+      lock.unlock();
+      if (last) finished_.notify_all();
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable wake_, finished_;
+  std::deque<Batch*> batches_;            // that have a part which nobody has begun
+  std::atomic<std::size_t> waiting_ = 0;  // parts that nobody has begun; changed under the mutex
+  std::size_t threads_ = 0;
+};
+
+}  // namespace
+
+void run_parts(std::size_t parts, void (*part)(const void*, std::size_t), const void* data) {
+  if (parts <= 1) {
+    if (parts == 1) part(data, 0);
+    return;
+  }
+  // Never destroyed: its threads sleep until the process ends.
+  static Pool& pool = *new Pool;
+  Batch batch{part, data, parts};
+  pool.run(batch);
+}
+
+}  // namespace farcull
