@@ -4,6 +4,7 @@
 #include <atomic>
 #include <bit>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/floating_point.h"
 #include "core/base/parallel.h"
@@ -62,7 +63,7 @@ inline Corners corners_of(const Scene& scene, std::uint32_t triangle) {
   return {scene.vertices[i], scene.vertices[j], scene.vertices[k]};
 }
 
-/// The answer about a pair of which the filter of planes knows nothing, or which it was not asked.
+/// The answer about a pair of which the filter of planes knows nothing.
 PairAnswer answer_unfiltered(const Scene& scene, const TrianglePair& pair, bool one_object,
                              const ExactQuestion& question) {
   const Corners a = corners_of(scene, pair.a);
@@ -101,15 +102,6 @@ class SameObject {
   std::uint32_t first_ = 0;
   std::uint64_t end_ = 0;
 };
-
-/// Whether two triangles have a vertex of the scene in common.
-bool share_index(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32_t, 3>& b) {
-  bool shared = false;
-  for (const std::uint32_t i : a) {
-    shared = static_cast<bool>(shared | (i == b[0]) | (i == b[1]) | (i == b[2]));
-  }
-  return shared;
-}
 
 // Pairs whose second corners are fetched ahead; the first ones are mostly those of the pair before.
 constexpr std::size_t kAhead = 8;
@@ -213,13 +205,9 @@ void require_pairs(const Scene& scene, std::span<const TrianglePair> candidates)
   }
 }
 
-}  // namespace
-
-Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
-                  const ExactQuestion& question) {
-  const FloatingPointGuard guard;
-  require_clearance("decide", question.clearance);
-  require_pairs(scene, candidates);
+// The answers, in the order of the candidates.
+std::vector<PairAnswer> answers_about(const Scene& scene, std::span<const TrianglePair> candidates,
+                                      const ExactQuestion& question) {
   std::vector<PairAnswer> answers(candidates.size(), PairAnswer::undecided);
   std::atomic<std::size_t> next = 0;
   const auto work = [&](std::size_t, std::size_t, std::size_t) {
@@ -235,8 +223,75 @@ Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
   const std::size_t threads =
       std::clamp<std::size_t>(question.threads, 1, std::max<std::size_t>(blocks, 1));
   for_chunks(threads, threads, work);
+  return answers;
+}
 
-  return count_answers(candidates, answers);
+}  // namespace
+
+Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
+                  const ExactQuestion& question) {
+  const FloatingPointGuard guard;
+  require_clearance("decide", question.clearance);
+  require_pairs(scene, candidates);
+  return count_answers(candidates, answers_about(scene, candidates, question));
+}
+
+Collisions FrameDecider::decide(const Scene& scene, std::span<const TrianglePair> candidates,
+                                const ExactQuestion& question) {
+  const FloatingPointGuard guard;
+  require_clearance("decide", question.clearance);
+  require_pairs(scene, candidates);
+  const bool complete = std::exchange(complete_, false);  // until all are decided
+  decided_ = candidates.size();
+  if (patience_.waits()) {
+    moved_.forget();
+    return count_answers(candidates, answers_about(scene, candidates, question));
+  }
+  bool known = moved_.update(scene) && complete && clearance_ == question.clearance &&
+               neighbours_ == question.neighbours;
+  clearance_ = question.clearance;
+  neighbours_ = question.neighbours;
+  const bool sorted =
+      std::ranges::adjacent_find(candidates, std::ranges::greater_equal()) == candidates.end();
+  if (known) {
+    known = mostly_unmoved(scene, moved_, candidates);
+    patience_.tell(known);
+  }
+  std::vector<PairAnswer> answers = known && sorted ? answers_with_kept(scene, candidates, question)
+                                                    : answers_about(scene, candidates, question);
+  const Collisions out = count_answers(candidates, answers);
+  if (sorted) {
+    pairs_.assign(candidates.begin(), candidates.end());
+    answers_ = std::move(answers);
+    complete_ = true;
+  }
+  return out;
+}
+
+std::vector<PairAnswer> FrameDecider::answers_with_kept(const Scene& scene,
+                                                        std::span<const TrianglePair> candidates,
+                                                        const ExactQuestion& question) {
+  const std::vector<std::uint8_t> moved = moved_.triangles(scene);
+  std::vector<PairAnswer> answers(candidates.size(), PairAnswer::undecided);
+  std::vector<TrianglePair> left;
+  std::vector<std::uint32_t> where;  // of these in the candidates
+  std::size_t before = 0;
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const TrianglePair& pair = candidates[k];
+    if ((moved[pair.a] | moved[pair.b]) == 0) {
+      while (before < pairs_.size() && pairs_[before] < pair) ++before;
+      if (before < pairs_.size() && pairs_[before] == pair) {
+        answers[k] = answers_[before];
+        continue;
+      }
+    }
+    left.push_back(pair);
+    where.push_back(static_cast<std::uint32_t>(k));
+  }
+  const std::vector<PairAnswer> anew = answers_about(scene, left, question);
+  for (std::size_t k = 0; k < left.size(); ++k) answers[where[k]] = anew[k];
+  decided_ = left.size();
+  return answers;
 }
 
 }  // namespace farcull

@@ -28,6 +28,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/scene/moved.h"
 #include "core/scene/scene.h"
 #include "verify/answers.h"
 
@@ -70,6 +71,34 @@ struct ExactQuestion {
 /// twice, if one was left undecided, or if the clearance is negative or not finite.
 Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
                   const ExactQuestion& question = {});
+
+/// decide() for one frame of a scene after the other. The answer about a pair depends on the
+/// corners of its triangles alone, so the answers about pairs of which neither triangle moved are
+/// those of the last frame.
+class FrameDecider {
+ public:
+  /// As farcull::decide(). Answers are kept where the candidates are sorted, each once; and those
+  /// of the last call are used where that one ended, the question is the same but for threads, and
+  /// the scene has the same triangles and objects.
+  Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
+                    const ExactQuestion& question = {});
+  /// Pairs that the last call decided anew.
+  std::size_t decided() const { return decided_; }
+
+ private:
+  std::vector<PairAnswer> answers_with_kept(const Scene& scene,
+                                            std::span<const TrianglePair> candidates,
+                                            const ExactQuestion& question);
+
+  MovedCorners moved_;
+  Patience patience_;
+  bool complete_ = false;
+  double clearance_ = 0;
+  bool neighbours_ = true;
+  std::vector<TrianglePair> pairs_;
+  std::vector<PairAnswer> answers_;  // about them
+  std::size_t decided_ = 0;
+};
 
 /// The pairs that count: triangles of different objects, and of one object where it is `self`.
 struct ExactResult {

@@ -17,7 +17,7 @@ FAR_FILTER Triple magnitudes(const Triple& p) { return {abs(p.x), abs(p.y), abs(
 FAR_FILTER Real dot(const Triple& p, const Triple& q) { return p.x * q.x + p.y * q.y + p.z * q.z; }
 FAR_FILTER Real sum(const Triple& p) { return p.x + p.y + p.z; }
 
-/// The largest magnitudes per axis of two or three.
+/// The largest magnitudes per axis of two.
 FAR_FILTER Triple largest(const Triple& p, const Triple& q) {
   return {max(abs(p.x), abs(q.x)), max(abs(p.y), abs(q.y)), max(abs(p.z), abs(q.z))};
 }

@@ -88,9 +88,14 @@ std::string reason_of(const Stage& stage) {
     case Reason::meetings:
       return "pairs of objects whose boxes overlap: " + n +
              "; objects tested against themselves: " + m;
+    case Reason::crowded:
+      return "pairs of objects whose boxes overlap: too many to list, so all objects take part "
+             "whole; objects tested against themselves: " +
+             m;
     case Reason::run_pairs:
-      return "boxes of runs of 16 triangles that overlap: " + n + ", of " + m +
-             (m == "1" ? " object or pair of objects" : " objects and pairs of objects");
+      return "pairs of runs (of at most 16 triangles) whose boxes overlap: " + n +
+             (stage.detail.empty() ? "" : ", of which something moved in " + stage.detail) +
+             "; pairs of objects, and objects with themselves: " + m;
     case Reason::only_runs:
       return "boxes of runs decide: no view is needed";
     case Reason::no_boxes_overlap:

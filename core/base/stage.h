@@ -36,12 +36,14 @@ enum class Unit : std::uint8_t { none, triangles, pairs, views };
 /// Why a stage runs, was left out, or how it went. n and m are numbers of Stage.
 enum class Reason : std::uint8_t {
   none,
-  full,                // --full: nothing is left out
-  regions,             // n pairs of objects' boxes overlap
-  meetings,            // n such pairs, m objects are tested against themselves
-  run_pairs,           // n pairs of runs overlap, of m pairs of objects
-  only_runs,           // nothing else can meet: no view is needed
-  no_boxes_overlap,    // no two objects' boxes overlap (and none is tested against itself)
+  full,              // --full: nothing is left out
+  regions,           // n pairs of objects' boxes overlap
+  meetings,          // n such pairs, m objects are tested against themselves
+  crowded,           // too many such pairs to list; m as above
+  run_pairs,         // boxes of n pairs of runs overlap, of m pairs of objects (or one and itself);
+                     // `detail` were compared, since a corner moved; empty: all
+  only_runs,         // nothing else can meet: no view is needed
+  no_boxes_overlap,  // no two objects' boxes overlap (and none is tested against itself)
   no_triangle_meets,   // no triangle meets the box of another object
   nothing_to_look_at,  // the boxes decide: no device is needed
   device,              // `detail` answered

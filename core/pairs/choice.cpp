@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "core/pairs/cpu.h"
-#include "core/pairs/runs.h"
+#include "core/pairs/grown_box.h"
 #include "core/pairs/view.h"
 
 namespace farcull {

@@ -8,9 +8,8 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
-#include "core/pairs/box_check.h"
+#include "core/pairs/grown_box.h"
 #include "core/pairs/plan.h"
-#include "core/pairs/runs.h"
 #include "core/scene/box_join.h"
 #include "core/scene/members.h"
 
@@ -58,14 +57,6 @@ std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const PairRegions& 
   return pairs;
 }
 
-// Whether two triangles of one object share a vertex index.
-bool share_index(const Scene& scene, const TrianglePair& pair) {
-  const auto& [p, q, r] = scene.triangles[pair.b];
-  bool shared = false;
-  for (const std::uint32_t v : scene.triangles[pair.a]) shared |= (v == p) | (v == q) | (v == r);
-  return shared;
-}
-
 // Pairs whose second corners are fetched ahead; the first ones are mostly those of the pair before.
 constexpr std::size_t kAhead = 8;
 
@@ -83,7 +74,7 @@ void keep_overlapping(const Scene& scene, std::span<const std::uint32_t> owners,
       pairs[to] = pairs[k];
       to += boxes_meet(scene, pairs[k], half) &&
             (owners.empty() || owners[pairs[k].a] != owners[pairs[k].b] ||
-             !share_index(scene, pairs[k]));
+             !share_index(scene.triangles[pairs[k].a], scene.triangles[pairs[k].b]));
     }
     kept[chunk] = to - begin;
   });
@@ -113,9 +104,14 @@ std::vector<TrianglePair> merged(const std::vector<TrianglePair>& a,
 // One run over the views of a plan.
 class Finding {
  public:
-  Finding(const Scene& scene, const PairPlan& plan, PairBackend& backend, PairScene& seen,
+  Finding(const Scene& scene, const PairPlan& plan, PairBackend& backend, PairWorkspace& workspace,
           const Progress& progress)
-      : scene_(scene), plan_(plan), backend_(backend), seen_(seen), progress_(progress) {}
+      : scene_(scene),
+        plan_(plan),
+        backend_(backend),
+        seen_(workspace.seen),
+        memory_(workspace.memory),
+        progress_(progress) {}
 
   PairResult result() {
     compare_runs();
@@ -126,6 +122,7 @@ class Finding {
       look_along(choice, k < plan_.windows.size() ? plan_.windows[k] : window_of(plan_, choice));
     }
     if (first_) join_boxes();
+    if (plan_.remembers) remember();
     if (out_.candidates.empty()) {
       out_.candidates = std::move(of_runs_);
     } else if (!of_runs_.empty()) {
@@ -139,12 +136,23 @@ class Finding {
     if (plan_.runs.empty()) return;
     const Stopwatch start;
     const PairSettings& settings = plan_.settings;
-    of_runs_ = pairs_of_runs(scene_, plan_.runs, settings.clearance, settings.neighbours,
-                             backend_.threads());
+    of_runs_ =
+        pairs_of_runs(scene_, plan_.runs, settings.clearance, settings.neighbours, plan_.threads);
     Stage stage = stage_of_runs(plan_);
     stage.ms = start.ms();
     stage.out = of_runs_.size();
     out_.stages.push_back(stage);
+  }
+
+  // Views tell nothing about the next frame.
+  void remember() {
+    memory_.complete = plan_.regions.triangles.empty();
+    memory_.pairs = memory_.complete ? of_runs_ : std::vector<TrianglePair>();
+    memory_.overlaps = plan_.runs.overlaps;
+    memory_.meetings = plan_.runs.meetings;
+    memory_.triangles = plan_.runs.triangles;
+    memory_.object_pairs = plan_.regions.pairs;
+    memory_.self = plan_.regions.self;
   }
 
   bool asks_whether_to_go_on() {
@@ -265,6 +273,7 @@ class Finding {
   const PairPlan& plan_;
   PairBackend& backend_;
   PairScene& seen_;
+  PairMemory& memory_;
   const Progress& progress_;
   PairResult out_;
   std::vector<TrianglePair> of_runs_;
@@ -276,13 +285,13 @@ class Finding {
 }  // namespace
 
 PairResult find_pairs(const Scene& scene, const PairPlan& plan, PairBackend& backend,
-                      PairScene& workspace, const Progress& progress) {
+                      PairWorkspace& workspace, const Progress& progress) {
   return Finding(scene, plan, backend, workspace, progress).result();
 }
 
 PairResult find_pairs(const Scene& scene, const PairSettings& settings, PairBackend& backend) {
   const PairPlan plan = plan_pairs(scene, settings, backend.threads());
-  PairScene workspace;
+  PairWorkspace workspace;
   PairResult result = find_pairs(scene, plan, backend, workspace);
   result.stages.insert(result.stages.begin(), plan.trace.begin(), plan.trace.end());
   return result;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
@@ -52,10 +53,12 @@ std::optional<PairWindow> window_of(const PairPlan& plan, const PairChoice& choi
 }
 
 Stage stage_of_runs(const PairPlan& plan) {
+  const std::size_t compared = plan.runs.between.size() + plan.runs.inside.size();
   return {.kind = StageKind::runs,
           .ran = true,
           .reason = Reason::run_pairs,
-          .n = plan.runs.between.size() + plan.runs.inside.size(),
+          .detail = compared < plan.runs.overlaps ? std::to_string(compared) : "",
+          .n = plan.runs.overlaps,
           .m = plan.runs.meetings,
           .in = plan.runs.triangles,
           .unit = Unit::pairs};
@@ -81,12 +84,58 @@ std::vector<PairChoice> given_choices(const Scene& scene, const PairRegions& reg
   return choices;
 }
 
+// Triangles that take part in what runs decide, or views, or both.
+std::uint64_t taking_part(const Scene& scene, const PairPlan& plan) {
+  if (plan.runs.empty()) return plan.regions.triangles.size();
+  if (plan.regions.triangles.empty()) return plan.runs.triangles;
+  std::vector<std::uint8_t> takes_part(scene.triangles.size(), 0);
+  for (const std::uint32_t t : plan.regions.triangles) takes_part[t] = 1;
+  const auto mark = [&](std::uint32_t index) {
+    const Run& run = plan.runs.of->runs[index];
+    for (std::uint32_t k = 0; k < run.count; ++k) {
+      takes_part[plan.runs.of->triangle(run.first + k)] = 1;
+    }
+  };
+  for (const RunPair& pair : plan.runs.between) mark(pair.a), mark(pair.b);
+  for (const RunPair& pair : plan.runs.inside) mark(pair.a), mark(pair.b);
+  return static_cast<std::uint64_t>(std::ranges::count(takes_part, 1));
+}
+
+enum class LastFrame : std::uint8_t { unknown, known, ignored };
+
+// What the memory knows of the scene's last frame; unless that is ignored, it becomes this one.
+LastFrame last_frame(const Scene& scene, const PairSettings& settings, PairMemory& memory) {
+  const bool complete = std::exchange(memory.complete, false);  // until this frame is found
+  if (memory.patience.waits()) {
+    memory.moved.forget();
+    return LastFrame::ignored;
+  }
+  const bool known = memory.moved.update(scene) && complete &&
+                     memory.clearance == settings.clearance &&
+                     memory.neighbours == settings.neighbours;
+  if (known) {
+    const bool worth_while = mostly_unmoved(scene, memory.moved, memory.pairs);
+    memory.patience.tell(worth_while);
+    if (worth_while) return LastFrame::known;
+  }
+  memory.clearance = settings.clearance;
+  memory.neighbours = settings.neighbours;
+  memory.runs.reset();
+  return LastFrame::unknown;
+}
+
 // Splits the meetings of a scene into those that boxes of runs decide and those that views do, and
 // chooses the views.
-void split_and_choose(const Scene& scene, unsigned threads, PairPlan& plan) {
+void split_and_choose(const Scene& scene, unsigned threads, PairMemory* memory, PairPlan& plan) {
   const PairSettings& settings = plan.settings;
   const Stopwatch planning;
-  PairParts parts = split_meetings(scene, settings.clearance, threads);
+  const LastFrame last = memory ? last_frame(scene, settings, *memory) : LastFrame::ignored;
+  plan.remembers = last != LastFrame::ignored;
+  const auto split = [&](bool all) {
+    return last == LastFrame::known ? split_next_frame(scene, threads, all, *memory)
+                                    : split_meetings(scene, settings.clearance, threads, all);
+  };
+  PairParts parts = split(false);
   const double split_ms = planning.ms();
   const Stopwatch choosing;
   if (!parts.rest.triangles.empty()) {
@@ -94,23 +143,24 @@ void split_and_choose(const Scene& scene, unsigned threads, PairPlan& plan) {
     // Where triangles lie on each other no view parts them, and boxes are found faster.
     if (!parts.sample.empty() && kept_by(scene, parts.rest, plan.choices.front(),
                                          settings.clearance, parts.sample) > kKeptByView) {
-      plan.choices.clear();
-      parts = split_meetings(scene, settings.clearance, threads, true);
+      PairParts by_runs = split(true);
+      if (by_runs.rest.triangles.empty()) {
+        plan.choices.clear();
+        parts = std::move(by_runs);
+      }
     }
   }
   plan.runs = std::move(parts.runs);
   plan.regions = std::move(parts.rest);
-  plan.trace.push_back(
-      {.kind = StageKind::boxes,
-       .ran = true,
-       .reason = Reason::meetings,
-       .n = plan.regions.pairs,
-       .m = plan.regions.self,
-       .ms = split_ms,
-       .in = scene.triangles.size(),
-       .out = std::min<std::uint64_t>(plan.runs.triangles + plan.regions.triangles.size(),
-                                      scene.triangles.size()),
-       .unit = Unit::triangles});
+  plan.trace.push_back({.kind = StageKind::boxes,
+                        .ran = true,
+                        .reason = plan.regions.crowded ? Reason::crowded : Reason::meetings,
+                        .n = plan.regions.pairs,
+                        .m = plan.regions.self,
+                        .ms = split_ms,
+                        .in = scene.triangles.size(),
+                        .out = taking_part(scene, plan),
+                        .unit = Unit::triangles});
   if (plan.choices.empty()) {
     plan.trace.push_back(
         {.kind = StageKind::views,
@@ -136,7 +186,9 @@ void leave_to_views(const Scene& scene, unsigned threads, PairPlan& plan) {
   plan.regions = pair_regions(scene, settings.clearance, settings.full, threads);
   plan.trace.push_back({.kind = StageKind::boxes,
                         .ran = true,
-                        .reason = settings.full ? Reason::full : Reason::meetings,
+                        .reason = settings.full          ? Reason::full
+                                  : plan.regions.crowded ? Reason::crowded
+                                                         : Reason::meetings,
                         .n = settings.full ? 0 : plan.regions.pairs,
                         .m = settings.full ? 0 : plan.regions.self,
                         .ms = planning.ms(),
@@ -163,7 +215,8 @@ void leave_to_views(const Scene& scene, unsigned threads, PairPlan& plan) {
 
 }  // namespace
 
-PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned threads) {
+PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned threads,
+                    PairMemory* memory) {
   if (!(settings.clearance >= 0) || !std::isfinite(settings.clearance)) {
     throw std::logic_error("plan_pairs: the clearance is negative or not finite");
   }
@@ -172,9 +225,11 @@ PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned t
   }
   PairPlan plan;
   plan.settings = settings;
+  plan.threads = threads;
   if (settings.runs && settings.views.empty() && settings.resolution == 0 && !settings.full) {
-    split_and_choose(scene, threads, plan);
+    split_and_choose(scene, threads, memory, plan);
   } else {
+    if (memory) memory->complete = false;
     leave_to_views(scene, threads, plan);
   }
   std::size_t resolved = 0;

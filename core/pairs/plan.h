@@ -25,8 +25,7 @@ struct PairSettings {
   double clearance = 0;  // world units, finite, >= 0: pairs at this distance or less count too
   bool full = false;     // leave nothing out: every triangle takes part, three views are looked at
   bool runs = true;      // false: views decide everything
-  bool neighbours = true;  // false: nobody asks for pairs of one object that share a vertex
-                           // index; views leave them out
+  bool neighbours = true;  // false: pairs of one object that share a vertex index are left out
 };
 
 /// Everything about a scene that needs no pixels: who takes part, and which views are looked at.
@@ -38,13 +37,18 @@ struct PairPlan {
   /// Of the first choices, those that are looked at whatever the candidates; empty: unresolvable.
   std::vector<std::optional<PairWindow>> windows;
   std::vector<Stage> trace;  // of the planning itself
+  unsigned threads = 0;      // of the CPU, as given
+  bool remembers = false;    // find_pairs() keeps what it finds in its workspace's memory
   bool nothing_can_meet() const { return runs.empty() && regions.triangles.empty(); }
 };
 
 /// Finds the triangles that take part and chooses the views. threads: of the CPU; 0: as many as
-/// there are cores. Throws Error for a scene that is too large, std::logic_error for a clearance
-/// that is negative or not finite.
-PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned threads = 0);
+/// there are cores. memory: of the scene's last frame, planned and found with the same one; null:
+/// nothing is kept. Which triangles views decide about may depend on it, and no colliding pair
+/// does. Throws Error for a scene that is too large, std::logic_error for a clearance that is
+/// negative or not finite.
+PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned threads = 0,
+                    PairMemory* memory = nullptr);
 
 /// The stages that find_pairs() will go through, in order. Those that candidates decide about are
 /// marked so, with the rule.

@@ -8,35 +8,64 @@
 
 #include "core/base/parallel.h"
 #include "core/base/uninitialized.h"
-#include "core/pairs/box_check.h"
+#include "core/pairs/grown_box.h"
 #include "core/scene/box_join.h"
 #include "core/scene/pair_sort.h"
 
 namespace farcull {
 namespace {
 
-// Two objects whose boxes overlap, or one that collides with itself (a == b). a has fewer runs.
+// Two objects whose boxes overlap, or one that collides with itself (a == b). a has no more runs
+// than b.
 struct Meeting {
   std::uint32_t a, b;
-  Box common;
 };
 
-std::vector<Meeting> meetings_of(const Runs& runs) {
-  std::vector<std::uint32_t> objects(runs.objects.size());
-  std::iota(objects.begin(), objects.end(), 0u);
-  std::vector<Meeting> out;
-  for (const auto& [a, b] : box_join(runs.objects, objects, objects)) {
-    const bool ordered = runs.count(a) <= runs.count(b);
-    out.push_back(
-        {ordered ? a : b, ordered ? b : a, intersection(runs.objects[a], runs.objects[b])});
-  }
-  return out;
+// What the boxes of both have in common.
+Box common_of(const Runs& runs, const Meeting& meeting) {
+  return intersection(runs.objects[meeting.a], runs.objects[meeting.b]);
 }
 
 bool collides_with_itself(const Object& object) { return object.self && object.triangle_count > 1; }
 
+// All meetings of a scene; or, where those of two objects would be more than kMeetingsPerRun for
+// each run, none but `crowded`, since to list them would take more memory than the scene, and time
+// that grows with the square of the objects.
+struct Meetings {
+  std::vector<Meeting> all;
+  bool crowded = false;
+};
+constexpr std::size_t kMeetingsPerRun = 8;
+
+Meetings meetings_of(const Scene& scene, const Runs& runs) {
+  std::vector<std::uint32_t> objects(runs.objects.size());
+  std::iota(objects.begin(), objects.end(), 0u);
+  const std::size_t most = kMeetingsPerRun * runs.runs.size();
+  Meetings out;
+  const std::vector<TrianglePair> pairs = box_join(runs.objects, objects, objects, most);
+  if (pairs.size() > most) return {.all = {}, .crowded = true};
+  for (const auto& [a, b] : pairs) {
+    const bool ordered = runs.count(a) <= runs.count(b);
+    out.all.push_back({ordered ? a : b, ordered ? b : a});
+  }
+  for (const std::uint32_t o : objects) {
+    if (collides_with_itself(scene.objects[o])) out.all.push_back({o, o});
+  }
+  return out;
+}
+
 void append_triangles(const Runs& runs, std::uint32_t object, const Box& box,
                       std::vector<std::uint32_t>& out) {
+  if (runs.is_gathered(object)) {
+    const FloatBox region = relative(box, runs.origin);
+    for (std::uint32_t k = 0; k < runs.count(object); ++k) {
+      const RunBlock& block = runs.blocks[runs.gathered[object].first + k];
+      for (std::uint32_t t = 0; t < runs.runs[runs.first[object] + k].count; ++t) {
+        if (overlap(block.boxes.get(t), region)) out.push_back(block.triangles[t]);
+      }
+    }
+    return;
+  }
   for (std::uint32_t k = runs.first[object]; k < runs.first[object + 1]; ++k) {
     const Box& own = runs.boxes[k];
     if ((own.lo.array() > box.hi.array()).any() || (box.lo.array() > own.hi.array()).any())
@@ -47,15 +76,34 @@ void append_triangles(const Runs& runs, std::uint32_t object, const Box& box,
   }
 }
 
-// Where these meetings are.
-PairRegions regions_of(const Runs& runs, const std::vector<Meeting>& meetings) {
-  PairRegions out;
-  out.objects.assign(runs.objects.size(), Box::empty());
-  for (const Meeting& meeting : meetings) {
-    out.objects[meeting.a].add(meeting.common);
-    out.objects[meeting.b].add(meeting.common);
-    (meeting.a == meeting.b ? out.self : out.pairs) += 1;
+constexpr std::uint32_t kNoBlock = 0xffffffff;
+
+// Per run its block, or kNoBlock.
+std::vector<std::uint32_t> blocks_by_run(const Runs& runs) {
+  std::vector<std::uint32_t> out(runs.runs.size(), kNoBlock);
+  for (std::uint32_t o = 0; o < runs.objects.size(); ++o) {
+    if (!runs.is_gathered(o)) continue;
+    const auto from = out.begin() + runs.first[o];
+    std::iota(from, from + runs.count(o), runs.gathered[o].first);
   }
+  return out;
+}
+
+// Per object where it can meet another one or itself; empty where it cannot.
+std::vector<Box> boxes_of_meetings(const Runs& runs, std::span<const Meeting> meetings) {
+  std::vector<Box> out(runs.objects.size(), Box::empty());
+  for (const Meeting& meeting : meetings) {
+    const Box common = common_of(runs, meeting);
+    out[meeting.a].add(common);
+    out[meeting.b].add(common);
+  }
+  return out;
+}
+
+// Of meetings in these boxes.
+PairRegions regions_in(const Runs& runs, std::vector<Box> boxes) {
+  PairRegions out;
+  out.objects = std::move(boxes);
   for (std::uint32_t o = 0; o < out.objects.size(); ++o) {
     if (out.objects[o].is_empty()) continue;
     out.reach.add(runs.objects[o]);
@@ -65,12 +113,10 @@ PairRegions regions_of(const Runs& runs, const std::vector<Meeting>& meetings) {
   return out;
 }
 
-std::vector<Meeting> all_meetings(const Scene& scene, const Runs& runs) {
-  std::vector<Meeting> out = meetings_of(runs);
-  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
-    if (collides_with_itself(scene.objects[o])) out.push_back({o, o, runs.objects[o]});
-  }
-  return out;
+void count_meetings(const Scene& scene, const Meetings& meetings, PairRegions& out) {
+  out.self = static_cast<std::uint64_t>(std::ranges::count_if(scene.objects, collides_with_itself));
+  out.crowded = meetings.crowded;
+  out.pairs = meetings.crowded ? 0 : meetings.all.size() - out.self;
 }
 
 // A part of a meeting: some runs of the object a, and what they meet.
@@ -81,11 +127,18 @@ struct Part {
 };
 constexpr std::uint32_t kRunsOfPart = 256;
 
+// More pairs of runs than this of a meeting are more than kPairsPerRun for each run that overlaps
+// any.
+std::size_t most_pairs(const Runs& runs, const Meeting& meeting) {
+  const std::size_t b = meeting.a == meeting.b ? 0 : runs.count(meeting.b);
+  return kPairsPerRun * (runs.count(meeting.a) + b);
+}
+
 std::vector<Part> parts_of(const Runs& runs, const std::vector<Meeting>& meetings) {
   std::vector<Part> parts;
   for (std::uint32_t k = 0; k < meetings.size(); ++k) {
-    const std::uint32_t end = runs.first[meetings[k].a + 1];
-    for (std::uint32_t from = runs.first[meetings[k].a]; from < end; from += kRunsOfPart) {
+    const std::uint32_t a = meetings[k].a, end = runs.first[a] + runs.count(a);
+    for (std::uint32_t from = runs.first[a]; from < end; from += kRunsOfPart) {
       parts.push_back({.meeting = k, .from = from, .to = std::min(from + kRunsOfPart, end)});
     }
   }
@@ -109,93 +162,119 @@ class RunCounter {
   std::size_t count_ = 0;
 };
 
-// Meetings that are left to views, and some of their pairs.
-struct LeftMeetings {
-  std::vector<Meeting> meetings;
-  std::vector<RunPair> between, inside;
-};
-constexpr std::size_t kSampled = 64;  // pairs of runs
+// The runs of some pairs, ascending.
+std::vector<std::uint32_t> runs_of(std::span<const RunPair> between,
+                                   std::span<const RunPair> inside, std::size_t runs) {
+  std::vector<std::uint8_t> used(runs, 0);
+  for (const RunPair& pair : between) used[pair.a] = used[pair.b] = 1;
+  for (const RunPair& pair : inside) used[pair.a] = used[pair.b] = 1;
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t run = 0; run < runs; ++run) {
+    if (used[run]) out.push_back(run);
+  }
+  return out;
+}
+
+constexpr std::size_t kSampled = 64;  // pairs of runs, or runs
 
 // Appends at most `count` of the pairs, evenly.
-void draw(const std::vector<RunPair>& from, std::size_t count, std::vector<RunPair>& to) {
+void append_evenly(const std::vector<RunPair>& from, std::size_t count, std::vector<RunPair>& to) {
   count = std::min(count, from.size());
   for (std::size_t k = 0; k < count; ++k) to.push_back(from[from.size() * k / count]);
 }
 
-// Puts the pairs of each meeting where they belong, or leaves the meeting to views.
-LeftMeetings sort_in(const std::vector<Meeting>& all, std::span<Part> parts, std::size_t most,
-                     RunMeetings& out) {
-  LeftMeetings left;
-  RunCounter counter(out.runs.size());
+// Puts the pairs of each meeting where they belong; returns those that are left to views.
+std::vector<Meeting> sort_in(const std::vector<Meeting>& all, std::span<const Part> parts,
+                             const std::vector<std::uint8_t>& complete, bool none_left,
+                             RunMeetings& out) {
+  std::vector<Meeting> left;
+  RunCounter counter(out.of->runs.size());
   for (std::size_t begin = 0, end = 0; begin < parts.size(); begin = end) {
-    const Meeting& meeting = all[parts[begin].meeting];
+    const std::uint32_t own = parts[begin].meeting;
+    const Meeting& meeting = all[own];
     std::size_t pairs = 0;
-    bool complete = true;
     counter.start();
-    for (; end < parts.size() && parts[end].meeting == parts[begin].meeting; ++end) {
-      complete &= parts[end].pairs.size() <= most;
+    for (; end < parts.size() && parts[end].meeting == own; ++end) {
       pairs += parts[end].pairs.size();
       for (const RunPair& pair : parts[end].pairs) counter.add(pair.a), counter.add(pair.b);
     }
-    const bool inside = meeting.a == meeting.b;
-    if (!complete || (most != SIZE_MAX && pairs > kPairsPerRun * counter.count())) {
-      left.meetings.push_back(meeting);
-      const std::size_t parts_here = end - begin;
-      for (std::size_t k = begin; k < end; ++k) {
-        draw(parts[k].pairs, (kSampled + parts_here - 1) / parts_here,
-             inside ? left.inside : left.between);
-      }
+    if (!complete[own] || (!none_left && pairs > kPairsPerRun * counter.count())) {
+      left.push_back(meeting);
       continue;
     }
-    std::vector<RunPair>& to = inside ? out.inside : out.between;
+    std::vector<RunPair>& to = meeting.a == meeting.b ? out.inside : out.between;
     for (std::size_t k = begin; k < end; ++k) {
       to.insert(to.end(), parts[k].pairs.begin(), parts[k].pairs.end());
     }
     ++out.meetings;
   }
-  counter.start();
-  for (const RunPair& pair : out.between) counter.add(pair.a), counter.add(pair.b);
-  for (const RunPair& pair : out.inside) counter.add(pair.a), counter.add(pair.b);
-  out.triangles = kRun * counter.count();
+  for (const std::uint32_t run : runs_of(out.between, out.inside, out.of->runs.size())) {
+    out.triangles += out.of->runs[run].count;
+  }
+  out.overlaps = out.between.size() + out.inside.size();
   return left;
+}
+
+// Some pairs of runs of some meetings: of runs that are evenly chosen.
+struct RunSample {
+  std::vector<RunPair> between, inside;
+};
+RunSample sample_of(const Runs& runs, const RunTrees& trees, std::span<const Meeting> meetings) {
+  RunSample out;
+  const std::size_t from = std::min(kSampled, meetings.size());
+  for (std::size_t m = 0; m < from; ++m) {
+    const Meeting& meeting = meetings[meetings.size() * m / from];
+    const std::uint32_t first = runs.first[meeting.a], count = runs.count(meeting.a);
+    const std::size_t chosen = std::min<std::size_t>(count, (kSampled + from - 1) / from);
+    for (std::size_t k = 0; k < chosen; ++k) {
+      const auto run = first + static_cast<std::uint32_t>(std::uint64_t{count} * k / chosen);
+      std::vector<RunPair> found;
+      pair_runs(trees, meeting.a, meeting.b, run, run + 1, SIZE_MAX, found);
+      append_evenly(found, (2 * kSampled + chosen * from - 1) / (chosen * from),
+                    meeting.a == meeting.b ? out.inside : out.between);
+    }
+  }
+  return out;
 }
 
 // The blocks of the runs in some pairs, and the pairs of blocks.
 struct Blocks {
-  UninitializedVector<RunBlock> blocks;
-  UninitializedVector<VertexBlock> vertices;
+  UninitializedVector<RunBlock> more;         // behind those that the meetings have
+  UninitializedVector<VertexBlock> vertices;  // of all; only those of the pairs' runs are filled
   std::vector<BlockPair> pairs;
 };
 
 Blocks blocks_of(const Scene& scene, const RunMeetings& meetings, std::span<const RunPair> between,
                  std::span<const RunPair> inside, double clearance, bool neighbours,
                  unsigned threads) {
-  constexpr std::uint32_t kNone = 0xffffffff;
-  std::vector<std::uint32_t> place(meetings.runs.size(), kNone);
-  for (const RunPair& pair : between) place[pair.a] = place[pair.b] = 0;
-  for (const RunPair& pair : inside) place[pair.a] = place[pair.b] = 0;
-  std::vector<std::uint32_t> used;
-  for (std::uint32_t run = 0; run < place.size(); ++run) {
-    if (place[run] == kNone) continue;
-    place[run] = static_cast<std::uint32_t>(used.size());
-    used.push_back(run);
+  const Runs& runs = *meetings.of;
+  const std::vector<std::uint32_t> used = runs_of(between, inside, runs.runs.size());
+  std::vector<std::uint32_t> place = blocks_by_run(runs);
+  const auto given = static_cast<std::uint32_t>(runs.blocks.size());
+  std::uint32_t size = given;
+  for (const std::uint32_t run : used) {
+    if (place[run] == kNoBlock) place[run] = size++;
   }
   Blocks out;
-  out.blocks.resize(used.size());
+  out.more.resize(size - given);
   const bool drops = !neighbours && !inside.empty();
-  if (drops) out.vertices.resize(used.size());
+  if (drops) out.vertices.resize(size);
   for_chunks(used.size(), chunks_for(used.size(), 128, threads),
              [&](std::size_t, std::size_t begin, std::size_t end) {
                std::array<std::uint32_t, kRun> triangles;
                for (std::size_t k = begin; k < end; ++k) {
-                 const Run& run = meetings.runs[used[k]];
+                 const std::uint32_t block = place[used[k]];
+                 if (block < given && !drops) continue;
+                 const Run& run = runs.runs[used[k]];
                  for (std::uint32_t i = 0; i < run.count; ++i) {
-                   const std::uint32_t at = run.first + i;
-                   triangles[i] = meetings.order.empty() ? at : meetings.order[at];
+                   triangles[i] = runs.triangle(run.first + i);
                    prefetch(scene, triangles[i]);
                  }
-                 fill_block(scene, std::span(triangles).first(run.count), meetings.origin,
-                            clearance, out.blocks[k], drops ? &out.vertices[k] : nullptr);
+                 const auto own = std::span(triangles).first(run.count);
+                 if (block >= given) {
+                   fill_block(scene, own, half_of(clearance), runs.origin, out.more[block - given]);
+                 }
+                 if (drops) fill_vertices(scene, own, out.vertices[block]);
                }
              });
   out.pairs.reserve(between.size() + inside.size());
@@ -208,17 +287,30 @@ Blocks blocks_of(const Scene& scene, const RunMeetings& meetings, std::span<cons
   return out;
 }
 
-// Looks for the pairs of runs of each part, but no more than about `most`.
-void find_runs(const RunTrees& trees, const std::vector<Meeting>& all, std::size_t most,
-               unsigned threads, std::vector<Part>& parts) {
+// Looks for the pairs of runs of each part. Of a meeting with more than most_pairs() it gives up,
+// unless `all`; returns per meeting whether it did not.
+std::vector<std::uint8_t> find_runs(const Runs& runs, const RunTrees& trees,
+                                    const std::vector<Meeting>& meetings, bool all,
+                                    unsigned threads, std::vector<Part>& parts) {
+  std::vector<std::atomic<std::size_t>> found(meetings.size());
   const std::size_t chunks = chunks_for(parts.size(), 1, threads);
   std::atomic<std::size_t> next = 0;
   for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
     for (std::size_t k = next++; k < parts.size(); k = next++) {
-      const Meeting& meeting = all[parts[k].meeting];
-      pair_runs(trees, meeting.a, meeting.b, parts[k].from, parts[k].to, most, parts[k].pairs);
+      Part& part = parts[k];
+      const Meeting& meeting = meetings[part.meeting];
+      std::atomic<std::size_t>& of_meeting = found[part.meeting];
+      const std::size_t most = all ? SIZE_MAX : most_pairs(runs, meeting);
+      if (of_meeting > most) continue;
+      pair_runs(trees, meeting.a, meeting.b, part.from, part.to, most, part.pairs);
+      if ((of_meeting += part.pairs.size()) > most) part.pairs = {};
     }
   });
+  std::vector<std::uint8_t> complete(meetings.size());
+  for (std::size_t k = 0; k < meetings.size(); ++k) {
+    complete[k] = all || found[k] <= most_pairs(runs, meetings[k]);
+  }
+  return complete;
 }
 
 // The pairs of triangles that some pairs of runs give.
@@ -229,111 +321,180 @@ std::vector<TrianglePair> pairs_of_some(const Scene& scene, const RunMeetings& m
   const Blocks blocks = blocks_of(scene, meetings, between, inside, clearance, neighbours, threads);
   const std::size_t chunks = chunks_for(blocks.pairs.size(), 64, threads);
   std::vector<std::vector<TrianglePair>> found(chunks);
-  for_chunks(blocks.pairs.size(), chunks,
-             [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-               RunFindings findings;
-               compare_blocks(blocks.blocks, blocks.vertices,
-                              std::span(blocks.pairs).subspan(begin, end - begin), findings);
-               found[chunk] = std::move(findings.certain);
-               for (const TrianglePair& pair : findings.perhaps) {
-                 if (boxes_meet(scene, pair, half_of(clearance))) found[chunk].push_back(pair);
-               }
-             });
+  for_chunks(
+      blocks.pairs.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        RunFindings findings;
+        compare_blocks({.first = meetings.of->blocks, .second = blocks.more}, blocks.vertices,
+                       std::span(blocks.pairs).subspan(begin, end - begin), findings);
+        found[chunk] = std::move(findings.certain);
+        for (const TrianglePair& pair : findings.perhaps) {
+          if (boxes_meet(scene, pair, half_of(clearance))) found[chunk].push_back(pair);
+        }
+      });
   return sorted_unique(found, threads);
 }
 
 // Whether boxes of triangles overlap so often that views are worth while, by a sample of the pairs,
-// which is returned in `left` then.
+// which is returned in `sample` then.
 bool overlaps_often(const Scene& scene, const RunMeetings& meetings, double clearance,
-                    LeftMeetings& left) {
+                    RunSample& sample) {
   const std::size_t all = meetings.between.size() + meetings.inside.size();
   if (all == 0) return false;
-  std::vector<RunPair> between, inside;
-  draw(meetings.between, (kSampled * meetings.between.size() + all - 1) / all, between);
-  draw(meetings.inside, (kSampled * meetings.inside.size() + all - 1) / all, inside);
+  RunSample some;
+  append_evenly(meetings.between, (kSampled * meetings.between.size() + all - 1) / all,
+                some.between);
+  append_evenly(meetings.inside, (kSampled * meetings.inside.size() + all - 1) / all, some.inside);
   const std::size_t found =
-      pairs_of_some(scene, meetings, between, inside, clearance, false, 1).size();
+      pairs_of_some(scene, meetings, some.between, some.inside, clearance, false, 1).size();
   const double each =
-      static_cast<double>(found) / static_cast<double>(between.size() + inside.size());
+      static_cast<double>(found) / static_cast<double>(some.between.size() + some.inside.size());
   if (each * static_cast<double>(all) <=
       static_cast<double>(kOverlapsPerTriangle * meetings.triangles)) {
     return false;
   }
-  left.between = std::move(between);
-  left.inside = std::move(inside);
+  sample = std::move(some);
   return true;
 }
 
-// Some pairs of the meetings that are left to views; none where pairs of runs give fewer than one
-// each, since then there are many more pairs of runs than pairs of triangles.
-std::vector<TrianglePair> sample_of_left(const Scene& scene, const RunMeetings& meetings,
-                                         const LeftMeetings& left, double clearance) {
-  std::vector<RunPair> between, inside;
-  draw(left.between, 2 * kSampled, between);
-  draw(left.inside, 2 * kSampled, inside);
-  const std::size_t least = between.size() + inside.size();
-  std::vector<TrianglePair> sample =
-      pairs_of_some(scene, meetings, between, inside, clearance, false, 1);
-  if (sample.size() < least) sample.clear();
-  return sample;
+// The pairs of triangles of a sample; none where pairs of runs give fewer than one each, since then
+// there are many more pairs of runs than pairs of triangles.
+std::vector<TrianglePair> pairs_of_sample(const Scene& scene, const RunMeetings& meetings,
+                                          const RunSample& from, double clearance) {
+  RunSample some;
+  append_evenly(from.between, 2 * kSampled, some.between);
+  append_evenly(from.inside, 2 * kSampled, some.inside);
+  std::vector<TrianglePair> pairs =
+      pairs_of_some(scene, meetings, some.between, some.inside, clearance, false, 1);
+  if (pairs.size() < some.between.size() + some.inside.size()) pairs.clear();
+  return pairs;
 }
 
 }  // namespace
 
 PairRegions pair_regions(const Scene& scene, double clearance, bool full, unsigned threads) {
   const Runs runs = make_runs(scene, clearance, threads);
-  const std::vector<Meeting> meetings = all_meetings(scene, runs);
-  if (!full) return regions_of(runs, meetings);
-  std::vector<Meeting> each;
-  for (std::uint32_t o = 0; o < runs.objects.size(); ++o) {
-    if (runs.count(o) > 0) each.push_back({o, o, runs.objects[o]});
-  }
-  PairRegions out = regions_of(runs, each);
-  const PairRegions counts = regions_of(runs, meetings);
-  out.pairs = counts.pairs;
-  out.self = counts.self;
+  const Meetings meetings = meetings_of(scene, runs);
+  PairRegions out = regions_in(
+      runs, full || meetings.crowded ? runs.objects : boxes_of_meetings(runs, meetings.all));
+  count_meetings(scene, meetings, out);
   return out;
 }
 
-PairParts split_meetings(const Scene& scene, double clearance, unsigned threads, bool all) {
-  Runs runs = make_runs(scene, clearance, threads);
-  const std::vector<Meeting> meetings = all_meetings(scene, runs);
+namespace {
+
+// The meetings of a scene whose runs have their boxes or blocks. regions: where its objects meet.
+PairParts split(const Scene& scene, const Meetings& meetings, const std::vector<Box>& regions,
+                double clearance, unsigned threads, bool all, std::shared_ptr<const Runs> of) {
+  const Runs& runs = *of;
   PairParts out;
-  if (meetings.empty()) {
-    out.rest = regions_of(runs, meetings);
-    return out;
-  }
-  std::vector<Box> regions(runs.objects.size(), Box::empty());
-  for (const Meeting& meeting : meetings) {
-    regions[meeting.a].add(meeting.common);
-    regions[meeting.b].add(meeting.common);
-  }
-  gather_scattered(scene, clearance, regions, threads, runs);
+  out.runs.of = std::move(of);
   const RunTrees trees(runs, regions);
-  std::vector<Part> parts = parts_of(runs, meetings);
-  // A meeting with more pairs is left to views in any case.
-  const std::size_t most = all ? SIZE_MAX : 2 * kPairsPerRun * kRunsOfPart;
-  find_runs(trees, meetings, most, threads, parts);
-  out.runs.origin = trees.origin();
-  out.runs.runs = runs.runs;
-  out.runs.order = runs.order;
-  LeftMeetings left = sort_in(meetings, parts, most, out.runs);
-  if (!all && !out.runs.empty() && overlaps_often(scene, out.runs, clearance, left)) {
-    left.meetings = meetings;
+  std::vector<Part> parts = parts_of(runs, meetings.all);
+  const std::vector<std::uint8_t> complete =
+      find_runs(runs, trees, meetings.all, all, threads, parts);
+  std::vector<Meeting> left = sort_in(meetings.all, parts, complete, all, out.runs);
+  RunSample sample;
+  if (!all && !out.runs.empty() && overlaps_often(scene, out.runs, clearance, sample)) {
+    left = meetings.all;
+  } else if (!left.empty()) {
+    sample = sample_of(runs, trees, left);
   }
-  if (!left.meetings.empty()) out.sample = sample_of_left(scene, out.runs, left, clearance);
-  out.rest = regions_of(runs, left.meetings);
-  out.rest.self = static_cast<std::uint64_t>(
-      std::ranges::count_if(meetings, [](const Meeting& m) { return m.a == m.b; }));
-  out.rest.pairs = meetings.size() - out.rest.self;
-  if (left.meetings.size() == meetings.size()) out.runs = {};
+  if (!left.empty()) out.sample = pairs_of_sample(scene, out.runs, sample, clearance);
+  out.rest = regions_in(runs, boxes_of_meetings(runs, left));
+  count_meetings(scene, meetings, out.rest);
+  if (left.size() == meetings.all.size()) out.runs = {};
+  return out;
+}
+
+// Leaves out pairs of runs of which neither moved, and keeps the pairs that they gave before.
+void keep_unmoved(const Scene& scene, std::span<const std::uint8_t> moved,
+                  const std::vector<TrianglePair>& before, RunMeetings& out) {
+  const auto rests = [&](const RunPair& pair) { return !moved[pair.a] && !moved[pair.b]; };
+  std::erase_if(out.between, rests);
+  std::erase_if(out.inside, rests);
+  std::vector<std::uint8_t> of_moved(scene.triangles.size(), 0);
+  for (std::size_t k = 0; k < moved.size(); ++k) {
+    if (!moved[k]) continue;
+    const Run& run = out.of->runs[k];
+    for (std::uint32_t i = 0; i < run.count; ++i) of_moved[out.of->triangle(run.first + i)] = 1;
+  }
+  std::ranges::copy_if(before, std::back_inserter(out.kept), [&](const TrianglePair& pair) {
+    return !of_moved[pair.a] && !of_moved[pair.b];
+  });
+}
+
+}  // namespace
+
+PairParts split_meetings(const Scene& scene, double clearance, unsigned threads, bool all) {
+  ScatteredBoxes scattered;
+  const auto runs = std::make_shared<Runs>(make_runs(scene, clearance, threads, &scattered));
+  const Meetings meetings = meetings_of(scene, *runs);
+  if (meetings.crowded) return {.runs = {}, .rest = pair_regions(scene, clearance, false, threads)};
+  const std::vector<Box> regions = boxes_of_meetings(*runs, meetings.all);
+  gather_scattered(scene, clearance, regions, threads, scattered, *runs);
+  return split(scene, meetings, regions, clearance, threads, all, runs);
+}
+
+namespace {
+
+// Of a frame in which nothing moved: everything is as before.
+PairParts unmoved_parts(const Scene& scene, const PairMemory& memory) {
+  PairParts out;
+  out.rest.objects.assign(scene.objects.size(), Box::empty());
+  out.rest.pairs = memory.object_pairs;
+  out.rest.self = memory.self;
+  out.runs.kept = memory.pairs;
+  out.runs.overlaps = memory.overlaps;
+  out.runs.meetings = memory.meetings;
+  out.runs.triangles = memory.triangles;
+  return out;
+}
+
+}  // namespace
+
+PairParts split_next_frame(const Scene& scene, unsigned threads, bool all, PairMemory& memory) {
+  const double clearance = memory.clearance;
+  if (!memory.moved.any()) return unmoved_parts(scene, memory);
+  const bool ordered = memory.runs != nullptr;
+  if (!ordered) {
+    memory.runs = std::make_shared<Runs>(make_ordered_runs(scene, clearance, threads));
+  } else if (memory.runs.use_count() > 1) {  // somebody has the last frame's plan
+    memory.runs = std::make_shared<Runs>(*memory.runs);
+  }
+  Runs& runs = *memory.runs;
+  const std::size_t n = runs.runs.size();
+  std::vector<std::uint8_t> moved(n, 0);
+  for_chunks(n, chunks_for(n, 256, threads), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const Run& run = runs.runs[k];
+      std::uint8_t any = 0;
+      for (std::uint32_t i = 0; i < run.count; ++i) {
+        any |= memory.moved.triangle(scene, runs.triangle(run.first + i));
+      }
+      moved[k] = any;
+    }
+  });
+  if (ordered) update_boxes(scene, clearance, moved, threads, runs);
+  const Meetings meetings = meetings_of(scene, runs);
+  if (meetings.crowded) return {.runs = {}, .rest = pair_regions(scene, clearance, false, threads)};
+  PairParts out = split(scene, meetings, boxes_of_meetings(runs, meetings.all), clearance, threads,
+                        all, memory.runs);
+  if (out.rest.triangles.empty() && !out.runs.empty()) {
+    keep_unmoved(scene, moved, memory.pairs, out.runs);
+  }
   return out;
 }
 
 std::vector<TrianglePair> pairs_of_runs(const Scene& scene, const RunMeetings& meetings,
                                         double clearance, bool neighbours, unsigned threads) {
-  return pairs_of_some(scene, meetings, meetings.between, meetings.inside, clearance, neighbours,
-                       threads);
+  if (meetings.between.empty() && meetings.inside.empty()) return meetings.kept;
+  std::vector<TrianglePair> found = pairs_of_some(scene, meetings, meetings.between,
+                                                  meetings.inside, clearance, neighbours, threads);
+  if (meetings.kept.empty()) return found;
+  std::vector<TrianglePair> out;
+  out.reserve(found.size() + meetings.kept.size());
+  std::ranges::merge(found, meetings.kept, std::back_inserter(out));
+  return out;
 }
 
 }  // namespace farcull

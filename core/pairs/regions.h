@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "core/pairs/memory.h"
 #include "core/pairs/run_pairs.h"
 #include "core/pairs/runs.h"
 #include "core/scene/scene.h"
@@ -15,9 +17,10 @@ namespace farcull {
 struct PairRegions {
   std::vector<Box>
       objects;  // per object: contains all its points that can belong to a pair; empty: none
-  Box reach = Box::empty();              // of all their triangles, grown by the clearance
-  std::uint64_t pairs = 0;               // of objects whose boxes overlap (grown by the clearance)
-  std::uint64_t self = 0;                // objects that collide with themselves
+  Box reach = Box::empty();  // of all their triangles, grown by half the clearance
+  std::uint64_t pairs = 0;   // of objects whose boxes, grown by half the clearance, overlap
+  std::uint64_t self = 0;    // objects that collide with themselves
+  bool crowded = false;  // so many boxes of objects overlap that they were not counted; pairs is 0
   std::vector<std::uint32_t> triangles;  // ascending: contains those that can meet anything
 };
 /// full: every object can meet anything, anywhere. threads: 0 for as many as there are cores.
@@ -28,18 +31,19 @@ PairRegions pair_regions(const Scene& scene, double clearance, bool full = false
 /// boxes with a common point, which lies in the boxes of their runs: so their runs are a pair here,
 /// or their objects are left to views.
 struct RunMeetings {
-  std::vector<Run> runs;
-  std::vector<std::uint32_t> order;  // as in Runs
-  Vec3 origin = Vec3::Zero();
-  std::vector<RunPair> between;  // of different objects
-  std::vector<RunPair> inside;   // of one object that collides with itself; a <= b
-  std::uint64_t meetings = 0;    // of two objects, or of one with itself, that these decide
-  std::uint64_t triangles = 0;   // of all runs in a pair
+  std::shared_ptr<const Runs> of;
+  std::vector<RunPair> between;    // of different objects
+  std::vector<RunPair> inside;     // of one object that collides with itself; a <= b
+  std::vector<TrianglePair> kept;  // pairs of the frame before that are right in this one too
+  std::uint64_t overlaps = 0;      // pairs of runs whose boxes overlap, also those of which nothing
+                                   // moved, which stand in no list
+  std::uint64_t meetings = 0;      // of two objects, or of one with itself, that these decide
+  std::uint64_t triangles = 0;     // of all runs in a pair
   bool empty() const { return meetings == 0; }
 };
 
 /// What boxes say about a scene: pairs of runs for the meetings that are cheapest so, and the
-/// regions of all others.
+/// regions of all others. Their `pairs` and `self` count all meetings of the scene.
 struct PairParts {
   RunMeetings runs;
   PairRegions rest;
@@ -51,11 +55,16 @@ struct PairParts {
 /// then takes many away. all: nothing is left to views. threads: 0 for as many as there are cores.
 PairParts split_meetings(const Scene& scene, double clearance, unsigned threads = 0,
                          bool all = false);
+/// The same for the frame that comes after the one in `memory`. Preconditions: memory.moved says
+/// what moved since that frame; it was complete; its clearance and neighbours are those of now.
+PairParts split_next_frame(const Scene& scene, unsigned threads, bool all, PairMemory& memory);
+/// Where boxes of objects overlap more than eight times for each run, all is left to views,
+/// whatever `all` says.
 constexpr std::size_t kPairsPerRun = 32;
 constexpr std::size_t kOverlapsPerTriangle = 16;
 
-/// The pairs a < b of triangles of the runs whose boxes overlap, sorted, each once. neighbours:
-/// false leaves out pairs of one object that share a vertex index.
+/// The pairs a < b of triangles of the runs whose boxes overlap, sorted, each once, with those that
+/// were kept. neighbours: false leaves out pairs of one object that share a vertex index.
 std::vector<TrianglePair> pairs_of_runs(const Scene& scene, const RunMeetings& meetings,
                                         double clearance, bool neighbours, unsigned threads);
 

@@ -26,19 +26,19 @@ struct OneBox {
   hn::Vec<Numbers> x0, y0, z0, x1, y1, z1;
 
   HWY_INLINE OneBox(const BoxBlock& block, std::size_t lane)
-      : x0(hn::Set(Numbers(), block.column[0][lane])),
-        y0(hn::Set(Numbers(), block.column[1][lane])),
-        z0(hn::Set(Numbers(), block.column[2][lane])),
-        x1(hn::Set(Numbers(), block.column[3][lane])),
-        y1(hn::Set(Numbers(), block.column[4][lane])),
-        z1(hn::Set(Numbers(), block.column[5][lane])) {}
-  HWY_INLINE explicit OneBox(const std::array<float, 6>& box)
-      : x0(hn::Set(Numbers(), box[0])),
-        y0(hn::Set(Numbers(), box[1])),
-        z0(hn::Set(Numbers(), box[2])),
-        x1(hn::Set(Numbers(), box[3])),
-        y1(hn::Set(Numbers(), box[4])),
-        z1(hn::Set(Numbers(), box[5])) {}
+      : OneBox(block.column[0][lane], block.column[1][lane], block.column[2][lane],
+               block.column[3][lane], block.column[4][lane], block.column[5][lane]) {}
+  HWY_INLINE explicit OneBox(const FloatBox& box)
+      : OneBox(box.lo[0], box.lo[1], box.lo[2], box.hi[0], box.hi[1], box.hi[2]) {}
+
+ private:
+  HWY_INLINE OneBox(float ax, float ay, float az, float bx, float by, float bz)
+      : x0(hn::Set(Numbers(), ax)),
+        y0(hn::Set(Numbers(), ay)),
+        z0(hn::Set(Numbers(), az)),
+        x1(hn::Set(Numbers(), bx)),
+        y1(hn::Set(Numbers(), by)),
+        z1(hn::Set(Numbers(), bz)) {}
 };
 
 HWY_INLINE hn::Vec<Numbers> column(const BoxBlock& block, std::size_t k, std::size_t from) {
@@ -82,9 +82,10 @@ class Query {
   HWY_INLINE Query(const RunTrees& trees, std::uint32_t b, const OneBox& box, std::uint32_t least)
       : trees_(trees), tree_(trees.tree(b)), box_(box), least_(least) {}
 
-  // Visits a block of a level. Runs before `least_` (counted in b) are left out.
+  // Calls visit(run) for each run of b, counted from 0 within b, whose box overlaps. Runs before
+  // `least_` are left out.
   template <class Visit>
-  HWY_INLINE void look(const Visit& visit) const {
+  HWY_INLINE void for_each_run(const Visit& visit) const {
     struct Place {
       int level;
       std::uint32_t block;
@@ -191,13 +192,13 @@ void pair_runs_here(const RunTrees& trees, std::uint32_t a, std::uint32_t b, std
     const std::uint32_t own = run - first_a;
     const BoxBlock& block = trees.blocks()[trees.tree(a).first[0] + own / 16];
     const OneBox box(block, own % 16);
-    Query(trees, b, box, a == b ? own : 0).look([&](std::uint32_t other) {
+    Query(trees, b, box, a == b ? own : 0).for_each_run([&](std::uint32_t other) {
       out.push_back({run, first_b + other});
     });
   }
 }
 
-void compare_blocks_here(std::span<const RunBlock> blocks, std::span<const VertexBlock> vertices,
+void compare_blocks_here(const BlockSpans& blocks, std::span<const VertexBlock> vertices,
                          std::span<const BlockPair> pairs, RunFindings& out) {
   constexpr std::size_t kRoom = 17 * 16, kFlush = 4096;
   std::vector<TrianglePair> certain(kFlush + kRoom), perhaps(kFlush + kRoom);
@@ -233,7 +234,7 @@ void pair_runs(const RunTrees& trees, std::uint32_t a, std::uint32_t b, std::uin
                std::uint32_t to, std::size_t most, std::vector<RunPair>& out) {
   HWY_DYNAMIC_DISPATCH(pair_runs_here)(trees, a, b, from, to, most, out);
 }
-void compare_blocks(std::span<const RunBlock> blocks, std::span<const VertexBlock> vertices,
+void compare_blocks(const BlockSpans& blocks, std::span<const VertexBlock> vertices,
                     std::span<const BlockPair> pairs, RunFindings& out) {
   HWY_DYNAMIC_DISPATCH(compare_blocks_here)(blocks, vertices, pairs, out);
 }

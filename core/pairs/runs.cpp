@@ -8,9 +8,11 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/base/parallel.h"
+#include "core/pairs/grown_box.h"
 
 namespace farcull {
 namespace {
@@ -18,10 +20,9 @@ namespace {
 // Triangles whose corners are fetched ahead.
 constexpr std::size_t kAhead = 16;
 
-// The box of the triangles at the positions from .. to - 1. Each of the three corners has minima
-// and maxima of its own, so that none waits for another.
-template <class Triangle>
-Box box_of(const Scene& scene, std::size_t from, std::size_t to, const Triangle& triangle) {
+// The box of the triangles from .. to - 1. Each of the three corners has minima and maxima of its
+// own, so that none waits for another.
+Box box_of(const Scene& scene, std::size_t from, std::size_t to) {
 #ifdef __SSE2__
   struct Corner {
     __m128d lo_xy, hi_xy, lo_z, hi_z;
@@ -41,13 +42,11 @@ Box box_of(const Scene& scene, std::size_t from, std::size_t to, const Triangle&
   };
   const __m128d inf = _mm_set1_pd(HUGE_VAL), minus = _mm_set1_pd(-HUGE_VAL);
   Corner a{inf, minus, inf, minus}, b = a, c = a;
-  const std::size_t end = scene.triangles.size() - 1;
+  const std::size_t last = scene.triangles.size() - 1;
   for (std::size_t t = from; t < to; ++t) {
     // Their corners may lie anywhere, so they are fetched ahead.
-    for (const std::uint32_t v : scene.triangles[triangle(std::min(t + kAhead, end))]) {
-      _mm_prefetch(reinterpret_cast<const char*>(scene.vertices[v].data()), _MM_HINT_T0);
-    }
-    const std::array<std::uint32_t, 3>& v = scene.triangles[triangle(t)];
+    prefetch(scene, static_cast<std::uint32_t>(std::min(t + kAhead, last)));
+    const std::array<std::uint32_t, 3>& v = scene.triangles[t];
     a.add(scene.vertices[v[0]].data());
     b.add(scene.vertices[v[1]].data());
     c.add(scene.vertices[v[2]].data());
@@ -63,38 +62,104 @@ Box box_of(const Scene& scene, std::size_t from, std::size_t to, const Triangle&
 #else
   Box box = Box::empty();
   for (std::size_t t = from; t < to; ++t) {
-    for (const std::uint32_t v : scene.triangles[triangle(t)]) box.add(scene.vertices[v]);
+    for (const std::uint32_t v : scene.triangles[t]) box.add(scene.vertices[v]);
   }
   return box;
 #endif
 }
 
+double length(const Box& box) { return (box.hi - box.lo).sum(); }
+
+// Whether boxes of runs are much longer than those of compact parts of a surface would be: `sum` is
+// the length of all that were looked at, `mean` of one.
+bool are_scattered(double mean, std::uint32_t runs, const Box& object) {
+  return mean * std::sqrt(runs) > kScattered * length(object);
+}
+
+bool is_scattered(const Runs& runs, std::uint32_t object) {
+  const std::uint32_t count = runs.first[object + 1] - runs.first[object];
+  double sum = 0;
+  for (std::uint32_t k = 0; k < count; ++k) sum += length(runs.boxes[runs.first[object] + k]);
+  return are_scattered(sum / count, count, runs.objects[object]);
+}
+
+// Runs of a sample. An object with four times as many is judged by one.
+constexpr std::uint32_t kSampledRuns = 64;
+
+// Whether an object with many runs is scattered, by a sample; `box` becomes that of the sample.
+bool seems_scattered(const Scene& scene, const Runs& runs, std::uint32_t object, Box& box) {
+  const std::uint32_t count = runs.first[object + 1] - runs.first[object];
+  if (count < 4 * kSampledRuns) return false;
+  double sum = 0;
+  for (std::uint32_t k = 0; k < kSampledRuns; ++k) {
+    const std::uint64_t at = std::uint64_t{count} * k / kSampledRuns;
+    const Run& run = runs.runs[runs.first[object] + at];
+    const Box own = box_of(scene, run.first, run.first + run.count);
+    sum += length(own);
+    box.add(own);
+  }
+  return are_scattered(sum / kSampledRuns, count, box);
+}
+
+// The boxes of an object's triangles, grown, relative to the origin; returns the box of all, not
+// grown.
+Box fill_boxes(const Scene& scene, const Object& object, double half, const Vec3& origin,
+               unsigned threads, FloatBox* out) {
+  const std::size_t n = object.triangle_count, chunks = chunks_for(n, 4096, threads);
+  std::vector<Box> parts(chunks, Box::empty());
+  for_chunks(n, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    const std::uint32_t first = object.first_triangle;
+    parts[chunk] =
+        relative_boxes(scene, first + static_cast<std::uint32_t>(begin),
+                       first + static_cast<std::uint32_t>(end), half, origin, out + begin);
+  });
+  Box all = Box::empty();
+  for (const Box& part : parts) all.add(part);
+  return all;
+}
+
+// Calls work(k, threads) for k in 0 .. count - 1: one after the other in all threads where there
+// are few, else each in one.
+template <class Work>
+void for_each_of(std::size_t count, unsigned threads, const Work& work) {
+  const std::size_t cores = chunks_for(SIZE_MAX, 1, threads);
+  const std::size_t chunks = count < cores ? 1 : cores;
+  std::atomic<std::size_t> next = 0;
+  for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
+    for (std::size_t k = next++; k < count; k = next++) work(k, chunks > 1 ? 1 : threads);
+  });
+}
+
+// Of the boxes' middle; finite even where they are not.
+Vec3 middle(const Box& box) {
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  if (box.is_empty()) return Vec3::Zero();
+  return 0.5 * box.lo.cwiseMax(-kLargest) + 0.5 * box.hi.cwiseMin(kLargest);
+}
+
+// The boxes of the triangles of all its objects. Those of the objects are written to `objects`.
+void fill_scattered(const Scene& scene, double half, unsigned threads, ScatteredBoxes& scattered,
+                    std::span<Box> objects) {
+  std::size_t size = 0;
+  scattered.first.clear();
+  for (const std::uint32_t o : scattered.objects) {
+    scattered.first.push_back(size);
+    size += scene.objects[o].triangle_count;
+  }
+  scattered.boxes.resize(size);
+  for_each_of(scattered.objects.size(), threads, [&](std::size_t k, unsigned own_threads) {
+    const std::uint32_t o = scattered.objects[k];
+    objects[o] = grow(fill_boxes(scene, scene.objects[o], half, scattered.origin, own_threads,
+                                 &scattered.boxes[scattered.first[k]]),
+                      half);
+  });
+}
+
 }  // namespace
 
-double half_of(double clearance) {
-  return clearance == 0 ? 0 : std::nextafter(0.5 * clearance, HUGE_VAL);
-}
-
-// Never decreasing, and beyond the exact sum.
-Box grow(const Box& box, double half) {
-  if (half == 0 || box.is_empty()) return box;
-  Box out = box;
-  for (int axis = 0; axis < 3; ++axis) {
-    out.lo[axis] = std::nextafter(box.lo[axis] - half, -HUGE_VAL);
-    out.hi[axis] = std::nextafter(box.hi[axis] + half, HUGE_VAL);
-  }
-  return out;
-}
-
-Box grown_box(const Scene& scene, std::uint32_t triangle, double clearance) {
-  Box box = Box::empty();
-  for (const std::uint32_t v : scene.triangles[triangle]) box.add(scene.vertices[v]);
-  return grow(box, half_of(clearance));
-}
-
-Runs make_runs(const Scene& scene, double clearance, unsigned threads) {
+Runs make_runs(const Scene& scene, double clearance, unsigned threads, ScatteredBoxes* scattered) {
   Runs out;
-  const std::size_t objects = scene.objects.size();
+  const auto objects = static_cast<std::uint32_t>(scene.objects.size());
   out.first.resize(objects + 1, 0);
   for (std::size_t o = 0; o < objects; ++o) {
     const Object& object = scene.objects[o];
@@ -103,37 +168,49 @@ Runs make_runs(const Scene& scene, double clearance, unsigned threads) {
     }
     out.first[o + 1] = static_cast<std::uint32_t>(out.runs.size());
   }
-  const std::size_t n = out.runs.size();
+  out.objects.assign(objects, Box::empty());
   const double half = half_of(clearance);
+  std::vector<std::uint8_t> seems(objects, 0);
+  if (scattered) {
+    Box sampled = Box::empty();
+    for (std::uint32_t o = 0; o < objects; ++o) {
+      Box box = Box::empty();
+      seems[o] = seems_scattered(scene, out, o, box);
+      if (seems[o]) sampled.add(box);
+    }
+    scattered->origin = middle(sampled);
+  }
+  const std::size_t n = out.runs.size();
   out.boxes.resize(n);
-  const auto in_file = [](std::size_t t) { return t; };
   for_chunks(n, chunks_for(n, 256, threads), [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::size_t o = 0;
     for (std::size_t k = begin; k < end; ++k) {
+      while (out.first[o + 1] <= k) ++o;
+      if (seems[o]) {
+        k = std::min<std::size_t>(out.first[o + 1], end) - 1;
+        continue;
+      }
       const Run& run = out.runs[k];
-      out.boxes[k] = grow(box_of(scene, run.first, run.first + run.count, in_file), half);
+      out.boxes[k] = grow(box_of(scene, run.first, run.first + run.count), half);
     }
   });
-  out.objects.assign(objects, Box::empty());
-  for (std::size_t o = 0; o < objects; ++o) {
-    for (std::uint32_t k = out.first[o]; k < out.first[o + 1]; ++k)
+  for (std::uint32_t o = 0; o < objects; ++o) {
+    if (seems[o]) continue;
+    for (std::uint32_t k = out.first[o]; k < out.first[o + 1]; ++k) {
       out.objects[o].add(out.boxes[k]);
+    }
   }
+  if (!scattered) return out;
+  for (std::uint32_t o = 0; o < objects; ++o) {
+    if (seems[o] || (out.first[o] < out.first[o + 1] && is_scattered(out, o))) {
+      scattered->objects.push_back(o);
+    }
+  }
+  fill_scattered(scene, half, threads, *scattered, out.objects);
   return out;
 }
 
 namespace {
-
-double length(const Box& box) { return (box.hi - box.lo).sum(); }
-
-// Whether the boxes of an object's runs are much longer than those of compact parts of a surface.
-bool is_scattered(const Runs& runs, std::uint32_t object) {
-  const std::uint32_t count = runs.count(object);
-  double sum = 0;
-  for (std::uint32_t k = runs.first[object]; k < runs.first[object + 1]; ++k) {
-    sum += length(runs.boxes[k]);
-  }
-  return sum > kScattered * std::sqrt(count) * length(runs.objects[object]);
-}
 
 // The lower 10 bits of x, two zeros before each.
 std::uint32_t spread(std::uint32_t x) {
@@ -148,9 +225,9 @@ struct Coded {
 };
 
 // By the codes' lower `bits` bits, those of equal codes in their order before.
-void sort_by_code(std::vector<Coded>& all, int bits) {
+void sort_by_code(UninitializedVector<Coded>& all, int bits) {
   constexpr int kDigit = 12;
-  std::vector<Coded> other(all.size());
+  UninitializedVector<Coded> other(all.size());
   for (int shift = 0; shift < bits; shift += kDigit) {
     std::array<std::uint32_t, (1 << kDigit) + 1> first{};
     const auto digit = [&](const Coded& c) { return c.code >> shift & ((1 << kDigit) - 1); };
@@ -165,108 +242,193 @@ void sort_by_code(std::vector<Coded>& all, int bits) {
 class MortonGrid {
  public:
   // Cells half as wide as a run of a surface of so many triangles, about.
-  MortonGrid(const Box& box, std::uint32_t triangles)
+  MortonGrid(const FloatBox& box, std::uint32_t triangles)
       : bits_(
             std::clamp(static_cast<int>(std::ceil(0.5 * std::log2(triangles / 16.0))) + 1, 4, 10)),
-        most_((1 << bits_) - 1),
-        lo_(box.lo),
-        scale_(std::min(most_ / std::max((0.5 * box.hi - 0.5 * box.lo).maxCoeff(), 0x1p-1000),
-                        0x1p1000)) {}
+        most_(static_cast<float>((1 << bits_) - 1)),
+        lo_(box.lo) {
+    float size = 0x1p-100f;
+    for (std::size_t k = 0; k < 3; ++k) size = std::max(size, 0.5f * box.hi[k] - 0.5f * box.lo[k]);
+    scale_ = most_ / size;
+  }
   int bits() const { return 3 * bits_; }
-  std::uint32_t code(const Vec3& p) const {
-    // By halves, which cannot be infinite.
-    const Vec3 at = ((0.5 * p - 0.5 * lo_) * scale_).cwiseMax(0.0).cwiseMin(most_);
-    const Eigen::Vector3i cell = at.cast<int>();
-    const auto part = [&](int axis) { return spread(static_cast<std::uint32_t>(cell[axis])); };
-    return part(0) | part(1) << 1 | part(2) << 2;
+  // Of the box's lower corner.
+  std::uint32_t code(const FloatBox& box) const {
+    const auto cell = [&](std::size_t axis) {
+      // By halves, which cannot be infinite.
+      const float at = (0.5f * box.lo[axis] - 0.5f * lo_[axis]) * scale_;
+      return spread(static_cast<std::uint32_t>(std::min(std::max(at, 0.0f), most_)));
+    };
+    return cell(0) | cell(1) << 1 | cell(2) << 2;
   }
 
  private:
   int bits_;
-  double most_;
-  Vec3 lo_;
-  double scale_;
+  float most_;
+  std::array<float, 4> lo_;
+  float scale_;
 };
 
-bool meets(const Scene& scene, std::uint32_t triangle, const Box& box) {
-  const auto& [i, j, k] = scene.triangles[triangle];
-  const Vec3 &p = scene.vertices[i], &q = scene.vertices[j], &r = scene.vertices[k];
-  const Vec3 lo = p.cwiseMin(q).cwiseMin(r), hi = p.cwiseMax(q).cwiseMax(r);
-  return (lo.array() <= box.hi.array()).all() && (box.lo.array() <= hi.array()).all();
+// Puts the triangles of an object that meet the region in Morton order, then the others; returns
+// how many meet it.
+std::uint32_t order_object(std::span<const FloatBox> boxes, const FloatBox& region,
+                           std::uint32_t first_triangle, unsigned threads,
+                           std::span<std::uint32_t> order) {
+  const std::size_t n = boxes.size(), chunks = chunks_for(n, 8192, threads);
+  const MortonGrid grid(region, static_cast<std::uint32_t>(n));
+  std::vector<UninitializedVector<Coded>> inside(chunks);
+  std::vector<UninitializedVector<std::uint32_t>> outside(chunks);
+  for_chunks(n, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    // Both are written, and one of them grows: which one would often be foretold wrongly.
+    UninitializedVector<Coded> in(end - begin);
+    UninitializedVector<std::uint32_t> out(end - begin);
+    std::size_t ins = 0, outs = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t triangle = first_triangle + static_cast<std::uint32_t>(k);
+      in[ins] = {grid.code(boxes[k]), triangle};
+      out[outs] = triangle;
+      const bool meets = overlap(boxes[k], region);
+      ins += meets;
+      outs += !meets;
+    }
+    in.resize(ins);
+    out.resize(outs);
+    inside[chunk] = std::move(in);
+    outside[chunk] = std::move(out);
+  });
+  for (std::size_t k = 1; k < chunks; ++k) {
+    inside[0].insert(inside[0].end(), inside[k].begin(), inside[k].end());
+  }
+  sort_by_code(inside[0], grid.bits());
+  std::uint32_t* next = order.data();
+  for (const Coded& coded : inside[0]) *next++ = coded.triangle;
+  for (const auto& part : outside) next = std::copy(part.begin(), part.end(), next);
+  return static_cast<std::uint32_t>(inside[0].size());
 }
 
-// The triangles of an object that meet `region` in Morton order, then the others; returns how many
-// meet it.
-std::uint32_t order_object(const Scene& scene, const Object& object, const Box& region,
-                           unsigned threads, std::span<std::uint32_t> order) {
-  const MortonGrid grid(region, object.triangle_count);
-  const std::size_t n = object.triangle_count, chunks = chunks_for(n, 8192, threads);
-  std::vector<std::vector<Coded>> parts(chunks);
-  std::vector<std::vector<std::uint32_t>> outside(chunks);
-  for_chunks(n, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    std::vector<Coded> inside;
-    inside.reserve(end - begin);
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::uint32_t t = object.first_triangle + static_cast<std::uint32_t>(k);
-      prefetch(scene,
-               object.first_triangle + static_cast<std::uint32_t>(std::min(k + kAhead, end - 1)));
-      if (meets(scene, t, region)) {
-        inside.push_back({grid.code(scene.vertices[scene.triangles[t][0]]), t});
-      } else {
-        outside[chunk].push_back(t);
-      }
-    }
-    parts[chunk] = std::move(inside);
-  });
-  std::vector<Coded> inside = std::move(parts[0]);
-  for (std::size_t k = 1; k < chunks; ++k) {
-    inside.insert(inside.end(), parts[k].begin(), parts[k].end());
-  }
-  sort_by_code(inside, grid.bits());
-  std::uint32_t* next = order.data();
-  for (const Coded& coded : inside) *next++ = coded.triangle;
-  for (const auto& part : outside) next = std::copy(part.begin(), part.end(), next);
-  return static_cast<std::uint32_t>(inside.size());
+// Whether floats relative to `from` are nearly as fine as those relative to the middle of a box.
+bool is_near(const Vec3& from, const Box& box) {
+  return (from - middle(box)).cwiseAbs().maxCoeff() <= 4 * (box.hi - box.lo).maxCoeff();
 }
 
 }  // namespace
 
 void gather_scattered(const Scene& scene, double clearance, std::span<const Box> regions,
-                      unsigned threads, Runs& runs) {
-  std::vector<std::uint32_t> scattered;
-  for (std::uint32_t o = 0; o < regions.size(); ++o) {
-    if (!regions[o].is_empty() && is_scattered(runs, o)) scattered.push_back(o);
+                      unsigned threads, ScatteredBoxes& scattered, Runs& runs) {
+  Box all = Box::empty();
+  for (std::size_t o = 0; o < regions.size(); ++o) {
+    if (!regions[o].is_empty()) all.add(runs.objects[o]);
   }
-  if (scattered.empty()) return;
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < scattered.objects.size(); ++k) {
+    if (regions[scattered.objects[k]].is_empty()) continue;
+    scattered.objects[kept] = scattered.objects[k];
+    scattered.first[kept++] = scattered.first[k];
+  }
+  scattered.objects.resize(kept);
+  runs.origin = middle(all);
+  if (scattered.objects.empty()) return;
+  if (is_near(scattered.origin, all)) {
+    runs.origin = scattered.origin;
+  } else {
+    scattered.origin = runs.origin;
+    fill_scattered(scene, half_of(clearance), threads, scattered, runs.objects);
+  }
   runs.order.resize(scene.triangles.size());
   std::iota(runs.order.begin(), runs.order.end(), 0u);
-  const double half = half_of(clearance);
-  std::vector<std::uint32_t> inside(scattered.size());
-  // One object after the other in several threads where there are few, else each in one.
-  const std::size_t cores = chunks_for(SIZE_MAX, 1, threads);
-  const std::size_t chunks = scattered.size() < cores ? 1 : cores;
-  std::atomic<std::size_t> next = 0;
-  for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
-    for (std::size_t k = next++; k < scattered.size(); k = next++) {
-      const std::uint32_t o = scattered[k];
-      const Object& object = scene.objects[o];
-      inside[k] =
-          order_object(scene, object, grow(regions[o], half), chunks > 1 ? 1 : threads,
-                       std::span(runs.order).subspan(object.first_triangle, object.triangle_count));
+  runs.gathered.resize(scene.objects.size());
+  std::vector<std::uint32_t> inside(scattered.objects.size());
+  const auto boxes_of = [&](std::size_t k) {
+    return std::span<const FloatBox>(scattered.boxes)
+        .subspan(scattered.first[k], scene.objects[scattered.objects[k]].triangle_count);
+  };
+  for_each_of(inside.size(), threads, [&](std::size_t k, unsigned own_threads) {
+    const std::uint32_t o = scattered.objects[k];
+    const Object& object = scene.objects[o];
+    inside[k] = order_object(
+        boxes_of(k), relative(regions[o], runs.origin), object.first_triangle, own_threads,
+        std::span(runs.order).subspan(object.first_triangle, object.triangle_count));
+  });
+  std::uint32_t blocks = 0;
+  for (std::size_t k = 0; k < inside.size(); ++k) {
+    const auto count = (inside[k] + kRun - 1) / kRun;
+    runs.gathered[scattered.objects[k]] = {.first = blocks, .count = count, .any = true};
+    blocks += count;
+  }
+  runs.blocks.resize(blocks);
+  for_each_of(inside.size(), threads, [&](std::size_t k, unsigned own_threads) {
+    const std::uint32_t o = scattered.objects[k], first = scene.objects[o].first_triangle;
+    const std::span<const FloatBox> boxes = boxes_of(k);
+    const auto order = std::span<const std::uint32_t>(runs.order).subspan(first, inside[k]);
+    const std::size_t n = runs.gathered[o].count;
+    for_chunks(
+        n, chunks_for(n, 256, own_threads), [&](std::size_t, std::size_t begin, std::size_t end) {
+          for (std::size_t run = begin; run < end; ++run) {
+            const std::size_t from = run * kRun;
+            const auto own = order.subspan(from, std::min<std::size_t>(kRun, order.size() - from));
+            fill_block(own, boxes.data(), first, runs.blocks[runs.gathered[o].first + run]);
+          }
+        });
+  });
+}
+
+Runs make_ordered_runs(const Scene& scene, double clearance, unsigned threads) {
+  ScatteredBoxes scattered;
+  Runs runs = make_runs(scene, clearance, threads, &scattered);
+  const std::vector<Box> regions = runs.objects;
+  gather_scattered(scene, clearance, regions, threads, scattered, runs);
+  update_boxes(scene, clearance, std::vector<std::uint8_t>(runs.runs.size(), 1), threads, runs);
+  return runs;
+}
+
+namespace {
+
+void update_some(const Scene& scene, double half, std::span<const std::uint8_t> moved,
+                 std::uint32_t object, unsigned threads, Runs& runs) {
+  const std::uint32_t first = runs.first[object], n = runs.first[object + 1] - first;
+  const bool gathered = runs.is_gathered(object);
+  for_chunks(n, chunks_for(n, 256, threads), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t k = first + begin; k < first + end; ++k) {
+      if (!moved.empty() && !moved[k]) continue;
+      const Run& run = runs.runs[k];
+      if (!gathered) {
+        runs.boxes[k] = grow(box_of(scene, run.first, run.first + run.count), half);
+        continue;
+      }
+      RunBlock& block = runs.blocks[runs.gathered[object].first + k - first];
+      const std::span<const std::uint32_t> order(runs.order);
+      for (std::uint32_t i = 0; i < run.count; ++i) {
+        prefetch(scene, order[std::min<std::size_t>(run.first + kAhead + i, order.size() - 1)]);
+      }
+      runs.boxes[k] = grow(
+          fill_block(scene, order.subspan(run.first, run.count), half, runs.origin, block), half);
     }
   });
-  const auto ordered = [&](std::size_t position) { return runs.order[position]; };
-  for (std::size_t i = 0; i < scattered.size(); ++i) {
-    const std::uint32_t o = scattered[i], begin = runs.first[o];
-    const std::uint32_t n = (inside[i] + kRun - 1) / kRun;
-    std::fill(runs.boxes.begin() + begin + n, runs.boxes.begin() + runs.first[o + 1], Box::empty());
-    for_chunks(n, chunks_for(n, 256, threads), [&](std::size_t, std::size_t from, std::size_t to) {
-      for (std::size_t k = begin + from; k < begin + to; ++k) {
-        const Run& run = runs.runs[k];
-        runs.boxes[k] = grow(box_of(scene, run.first, run.first + run.count, ordered), half);
-      }
+}
+
+}  // namespace
+
+void update_boxes(const Scene& scene, double clearance, std::span<const std::uint8_t> moved,
+                  unsigned threads, Runs& runs) {
+  const double half = half_of(clearance);
+  const auto objects = static_cast<std::uint32_t>(runs.objects.size());
+  const auto update = [&](std::span<const std::uint8_t> which) {
+    for_each_of(objects, threads, [&](std::size_t o, unsigned own_threads) {
+      update_some(scene, half, which, static_cast<std::uint32_t>(o), own_threads, runs);
     });
+  };
+  update(moved);
+  Box all = Box::empty();
+  for (std::uint32_t o = 0; o < objects; ++o) {
+    runs.objects[o] = Box::empty();
+    for (std::uint32_t k = runs.first[o]; k < runs.first[o + 1]; ++k) {
+      runs.objects[o].add(runs.boxes[k]);
+    }
+    all.add(runs.objects[o]);
   }
+  if (is_near(runs.origin, all)) return;
+  runs.origin = middle(all);
+  if (!runs.blocks.empty()) update({});
 }
 
 }  // namespace farcull

@@ -25,9 +25,8 @@ namespace farcull {
 struct TileRules {
   /// True: a pair is settled also where its intervals do not overlap.
   static constexpr bool kSettlesApart = false;
-  /// What a whole triangle has where its pixels began to the left of this one, or below. Two that
-  /// have something in common are not reported here, but in the first pixel of their common
-  /// rectangle.
+  /// Bits of a whole triangle in a pixel: 1 if it has pixels of this tile to the left as well, 2 if
+  /// below. Two triangles with a bit in common have an earlier common pixel, which reports them.
   static std::uint32_t begun(bool left, bool below) { return (left ? 1 : 0) | (below ? 2 : 0); }
 };
 
@@ -105,10 +104,7 @@ bool TileWorker<Rules>::meet(const Entry& a, const Shown& s, const Entry& b, con
 template <class Rules>
 bool TileWorker<Rules>::left_out(const Shown& a, const Shown& b) const {
   if (grid_->task().neighbours || a.owner != b.owner) return false;
-  const auto& [p, q, r] = b.vertices;
-  bool shared = false;
-  for (const std::uint32_t v : a.vertices) shared |= (v == p) | (v == q) | (v == r);
-  return shared;
+  return share_index(a.vertices, b.vertices);
 }
 
 // Two whole triangles overlap in all their common pixels or in none: the first of these alone, in

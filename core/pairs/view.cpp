@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
-#include "core/pairs/runs.h"
+#include "core/pairs/grown_box.h"
 
 namespace farcull {
 namespace {

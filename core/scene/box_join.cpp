@@ -50,7 +50,7 @@ Axes choose_axes(std::span<const Box> boxes, std::span<const std::uint32_t> item
 
 std::vector<TrianglePair> box_join(std::span<const Box> boxes,
                                    std::span<const std::uint32_t> owners,
-                                   std::span<const std::uint32_t> items) {
+                                   std::span<const std::uint32_t> items, std::size_t most) {
   std::vector<TrianglePair> pairs;
   std::vector<std::uint32_t> order;
   for (const std::uint32_t i : items) {
@@ -81,6 +81,7 @@ std::vector<TrianglePair> box_join(std::span<const Box> boxes,
         if (owners[i] == owners[next] || !overlap(other, box)) continue;
         if (strip(std::max(other.lo[axes.strips], box.lo[axes.strips])) != s) continue;
         pairs.push_back({std::min(i, next), std::max(i, next)});
+        if (pairs.size() > most) return pairs;
       }
       open[s].resize(kept);
       open[s].push_back(next);

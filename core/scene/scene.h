@@ -67,6 +67,16 @@ struct TrianglePair {
   auto operator<=>(const TrianglePair&) const = default;
 };
 
+/// Whether two triangles have a vertex index in common.
+inline bool share_index(const std::array<std::uint32_t, 3>& a,
+                        const std::array<std::uint32_t, 3>& b) {
+  bool shared = false;
+  for (const std::uint32_t v : a) {
+    shared = static_cast<bool>(shared | (v == b[0]) | (v == b[1]) | (v == b[2]));
+  }
+  return shared;
+}
+
 /// Throws Error naming `where` unless every index is in range, every coordinate finite and the
 /// ranges gapless.
 void validate(const Scene& scene, const std::string& where);

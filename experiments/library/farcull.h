@@ -34,7 +34,8 @@ class ColliderError : public std::runtime_error {
 enum class ColliderDevice {
   cpu,   // threads
   gl,    // OpenGL 4.3 without a window, through EGL: hardware first, then a software renderer
-  best,  // gl where hardware answers, else cpu; the report says which, and why
+  best,  // the CPU where boxes of runs decide, else gl where hardware answers, else the CPU; the
+         // report says which, and why
 };
 
 struct ColliderOptions {

@@ -146,6 +146,7 @@ struct Collider::State {
 
   explicit State(const ColliderOptions& given)
       : options(given), run(run_options(given)), session(device_of(given), given.threads, Say()) {
+    session.remember_frames();
     device();
     promise();
   }
@@ -155,23 +156,40 @@ struct Collider::State {
 
   // Of the device that is open, whatever an earlier one promised.
   Promise promise() {
-    return promise_of(run, {.gl = device().gl, .cpu = !device().gl, .note = "", .relies = relies()},
+    const std::optional<Reliance> relies =
+        device().gl ? std::optional(Reliance::pairs) : std::nullopt;
+    return promise_of(run, {.gl = device().gl, .cpu = !device().gl, .note = "", .relies = relies},
                       session);
   }
-  std::optional<Reliance> relies() {
-    return device().gl ? std::optional(Reliance::pairs) : std::nullopt;
-  }
+  // Of an answer that a device took part in, or none did.
+  void report_device(const UsedDevice& used, ColliderReport& report);
 
   /// The collisions of the scene; `start`: when the call began. After an exception nothing on the
   /// device may be believed.
   ColliderResult find(const Stopwatch& start);
 };
 
-ColliderResult Collider::State::find(const Stopwatch& start) {
+void Collider::State::report_device(const UsedDevice& used, ColliderReport& report) {
   const PairDevice& open = device();
+  if (open.gl && !used.gl) {
+    report.device = "cpu";
+    report.device_reason = used.note;
+    report.promises = true;
+    report.promises_reason = "on the CPU nothing rests on a device";
+    return;
+  }
+  report.device = open.backend->name();
+  report.device_reason = options.device == ColliderDevice::best ? open.reason : "asked for";
+  const Promise kept = promise();
+  report.promises = kept.holds;
+  report.promises_reason = open.gl ? kept.reason : "on the CPU nothing rests on a device";
+}
+
+ColliderResult Collider::State::find(const Stopwatch& start) {
+  device();
   const unsigned threads =
       options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
-  const Plan planned = plan(scene, run, options.threads);
+  const Plan planned = plan(scene, run, options.threads, {}, session.pair_memory());
   const Candidates found = farcull::find(scene, planned, session);
   ColliderResult out;
   ColliderReport& report = out.report;
@@ -179,7 +197,7 @@ ColliderResult Collider::State::find(const Stopwatch& start) {
   report.candidates = found.count;
 
   const Stopwatch deciding;
-  const Collisions decided = decide(
+  const Collisions decided = session.frame_decider()->decide(
       scene, found.pairs,
       {.clearance = options.clearance, .threads = threads, .neighbours = options.neighbours});
   out.pairs = given_out(decided.pairs);
@@ -190,11 +208,7 @@ ColliderResult Collider::State::find(const Stopwatch& start) {
   require_proved("arithmetic");  // the driver's code ran in this thread too
   const FloatingPoint callers = callers_floating_point();
   if (callers != kProved) report.callers_arithmetic = to_string(callers);
-  report.device = open.backend->name();
-  report.device_reason = options.device == ColliderDevice::best ? open.reason : "asked for";
-  const Promise kept = promise();
-  report.promises = kept.holds;
-  report.promises_reason = open.gl ? kept.reason : "on the CPU nothing rests on a device";
+  report_device(found.device, report);
   std::vector<Stage> stages = planned.trace;
   stages.insert(stages.end(), found.trace.begin(), found.trace.end());
   stages.push_back({.kind = StageKind::exact,

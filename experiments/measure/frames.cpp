@@ -168,12 +168,14 @@ FrameTimes summary_of_sorted(const std::vector<double>& ms) {
 // Of the frames up to now.
 struct Totals {
   std::vector<double> ms;  // ascending
+  double first_ms = 0;     // of the first frame
   double setup_ms = 0;
   std::uint64_t missed = 0;
   long topologies = 0;
 
   void add(const Record& record, bool topology_changed) {
     const double time = record.ms.cull + record.ms.exact;
+    if (ms.empty()) first_ms = time;
     ms.insert(std::upper_bound(ms.begin(), ms.end(), time), time);
     setup_ms += record.ms.setup;
     topologies += topology_changed;
@@ -184,11 +186,23 @@ struct Totals {
     const FrameTimes times = summary_of_sorted(ms);
     return {{"frames", ms.size()},
             {"wanted", question.range.count()},
-            {"ms", {{"median", times.median}, {"p95", times.p95}, {"max", times.max}}},
+            {"ms",
+             {{"first", first_ms},
+              {"median", times.median},
+              {"p95", times.p95},
+              {"max", times.max},
+              {"following", ms.size() > 1 ? Json(following()) : Json(nullptr)}}},
             {"fps", {{"median", rate_json(times.median)}, {"p95", rate_json(times.p95)}}},
             {"setup_ms", setup_ms},
             {"topology_changes", topologies},
             {"missed", question.options.verify ? Json(missed) : Json(nullptr)}};
+  }
+
+  // The median of all frames but the first.
+  double following() const {
+    std::vector<double> others = ms;
+    others.erase(std::ranges::find(others, first_ms));
+    return summary_of_sorted(others).median;
   }
 
   std::string text() const {
@@ -197,6 +211,10 @@ struct Totals {
         "\nper frame  median {:.1f} ms, 95% within {:.1f} ms, at most {:.1f} ms (cull + exact; "
         "setup {:.1f} ms besides)\n",
         times.median, times.p95, times.max, setup_ms);
+    if (ms.size() > 1) {
+      out += fmt::format("           the first {:.1f} ms, the following ones median {:.1f} ms\n",
+                         first_ms, following());
+    }
     if (topologies > 0)
       out += fmt::format("topology  changed {} times between frames\n", topologies);
     return out;
@@ -245,6 +263,7 @@ FramesResult run_frames(const std::vector<std::string>& arguments, const FramesQ
 FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
                         const Progress& progress, const FrameSink& sink) {
   Session session(question.options.device);
+  session.remember_frames();
   FramesResult out;
   Json frames = Json::array();
   Totals totals;

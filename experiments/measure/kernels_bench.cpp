@@ -5,8 +5,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/pairs/cpu.h"
 #include "core/pairs/interval.h"
+#include "core/pairs/pairs.h"
 #include "experiments/measure/peers/peer.h"
+#include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/shapes.h"
 #include "offsets/fit.h"
 #include "offsets/minkowski.h"
@@ -136,6 +139,58 @@ void exact_without_filter(benchmark::State& state) {
 BENCHMARK(filter_alone)->Arg(0)->Arg(1)->Arg(4);
 BENCHMARK(exact_with_filter)->Arg(0)->Arg(1)->Arg(4);
 BENCHMARK(exact_without_filter)->Arg(0)->Arg(1)->Arg(4);
+
+// far-pairs and the exact tests of one frame in one thread, of which `range` percent of the
+// vertices moved since the last one; by itself, or with what is kept of the last one.
+void frame(benchmark::State& state, const char* name, bool self, bool remembers) {
+  Scene scene = make_builtin_scene(name);
+  for (Object& object : scene.objects) object.self = self;
+  const auto moving = scene.vertices.size() * static_cast<std::size_t>(state.range(0)) / 100;
+  const auto backend = cpu_pair_backend(1);
+  const PairSettings settings{.neighbours = false};
+  const ExactQuestion question{.threads = 1, .neighbours = false};
+  PairWorkspace workspace;
+  FrameDecider decider;
+  double by = 1e-4;
+  std::size_t pairs = 0;
+  const auto show = [&] {
+    PairMemory* memory = remembers ? &workspace.memory : nullptr;
+    const PairPlan plan = plan_pairs(scene, settings, 1, memory);
+    const auto found = find_pairs(scene, plan, *backend, workspace).candidates;
+    pairs = (remembers ? decider.decide(scene, found, question) : decide(scene, found, question))
+                .pairs.size();
+  };
+  show();
+  show();
+  for (auto _ : state) {
+    state.PauseTiming();
+    for (std::size_t v = 0; v < moving; ++v) scene.vertices[v].x() += by;
+    by = -by;
+    state.ResumeTiming();
+    show();
+  }
+  state.counters["pairs"] = static_cast<double>(pairs);
+}
+BENCHMARK_CAPTURE(frame, crumpled_by_itself, "crumpled", true, false)
+    ->Arg(0)
+    ->Arg(10)
+    ->Arg(100)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frame, crumpled_next, "crumpled", true, true)
+    ->Arg(0)
+    ->Arg(10)
+    ->Arg(100)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frame, spheres_by_itself, "spheres", false, false)
+    ->Arg(0)
+    ->Arg(10)
+    ->Arg(100)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frame, spheres_next, "spheres", false, true)
+    ->Arg(0)
+    ->Arg(10)
+    ->Arg(100)
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace farcull

@@ -1,4 +1,5 @@
-// Interval pairs (core/pairs/pairs.h) on the device of the session.
+// FAR pairs (core/pairs/pairs.h): boxes of runs on the CPU, or interval pairs on the device of the
+// session.
 #include "experiments/method/far_pairs.h"
 
 #include "core/base/stopwatch.h"
@@ -16,7 +17,7 @@ void plan_far_pairs(const Scene& scene, unsigned threads, const Progress&, Plan&
                         .runs = options.device.empty() || is_cpu(options.device),
                         .neighbours = options.neighbours};
   if (!views_of(options).empty()) settings.views = parse_views(views_of(options));
-  PairPlan pairs = plan_pairs(scene, settings, threads);
+  PairPlan pairs = plan_pairs(scene, settings, threads, plan.memory);
   plan.trace = pairs.trace;
   Stage setup{.kind = StageKind::setup};
   if (pairs.choices.empty()) {

@@ -13,7 +13,8 @@ namespace farcull {
 
 /// far: FAR (2004), CULLIDE's passes on fattened primitives. cullide: CULLIDE (2003).
 /// quick_cullide: Quick-CULLIDE (2005). s_cullide: S-CULLIDE (2005), every triangle an owner.
-/// i_collide: sweep and prune (I-COLLIDE, 1995). far_pairs: interval pairs. exact: no culling.
+/// i_collide: sweep and prune (I-COLLIDE, 1995). far_pairs: boxes of runs, or interval
+/// pairs. exact: no culling.
 /// docs/methods.md tells each one's source and where it can miss.
 enum class Method {
   far,

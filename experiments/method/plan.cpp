@@ -14,14 +14,15 @@ std::vector<Stage> Plan::stages() const {
   return all;
 }
 
-Plan plan(const Scene& scene, const RunOptions& options, unsigned threads,
-          const Progress& progress) {
+Plan plan(const Scene& scene, const RunOptions& options, unsigned threads, const Progress& progress,
+          PairMemory* memory) {
   const FloatingPointGuard guard;
   const Stopwatch watch;
   validate(options);
   require_scene(scene, options.method);
   if (progress) progress("planning");
   Plan out{.options = options, .work = {}, .trace = {}, .ahead = {}};
+  out.memory = memory;
   const Traits& method = traits(options.method);
   method.plan(scene, threads, progress, out);
   const bool always = options.full || !method.culls;

@@ -28,16 +28,17 @@ struct Plan {
   std::vector<Stage> trace;  // the stages of planning itself: they have run
   std::vector<Stage> ahead;  // the stages to come, in order; those that pixels decide are marked
   double ms = 0;             // that planning took
+  PairMemory* memory = nullptr;  // of the scene's last frame, for far-pairs
 
   /// trace and ahead.
   std::vector<Stage> stages() const;
 };
 
 /// Plans the run. The same scene and options give the same plan. No device is opened. threads: of
-/// the CPU; 0: as many as there are cores. Throws Error for options that are out of range or do not
-/// go together, and for a scene that the method has no use for.
+/// the CPU; 0: as many as there are cores. memory: as plan_pairs(). Throws Error for options that
+/// are out of range or do not go together, and for a scene that the method has no use for.
 Plan plan(const Scene& scene, const RunOptions& options, unsigned threads = 0,
-          const Progress& progress = {});
+          const Progress& progress = {}, PairMemory* memory = nullptr);
 
 /// Throws Error where an object of the scene is tested against itself and the method does not look
 /// for that, or none is and it looks for nothing else.

@@ -18,7 +18,7 @@ void count_kept(const Scene& scene, Candidates& found) {
   found.object_count = count_objects(scene, found.triangles);
 }
 
-void decide_stage(const Scene& scene, const Progress& progress, Record& record) {
+void decide_stage(const Scene& scene, Session& session, const Progress& progress, Record& record) {
   Stage stage{.kind = StageKind::exact,
               .depends = !record.options.full,
               .reason = Reason::no_candidates,
@@ -32,9 +32,11 @@ void decide_stage(const Scene& scene, const Progress& progress, Record& record) 
   if (!record.found.pairs.empty() || record.options.full) {
     if (progress) progress("exact tests");
     const Stopwatch watch;
-    record.collisions =
-        decide(scene, record.found,
-               {.clearance = record.options.clearance, .neighbours = record.options.neighbours});
+    const ExactQuestion question{.clearance = record.options.clearance,
+                                 .neighbours = record.options.neighbours};
+    FrameDecider* frames = record.found.decided ? nullptr : session.frame_decider();
+    record.collisions = frames ? frames->decide(scene, record.found.pairs, question)
+                               : decide(scene, record.found, question);
     stage.ran = true;
     stage.reason = Reason::predicates;
     stage.ms = record.ms.exact = watch.ms();
@@ -100,7 +102,7 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   Record record;
   record.callers = callers_floating_point();
   record.options = options;
-  const Plan planned = plan(scene, options, session.threads(), progress);
+  const Plan planned = plan(scene, options, session.threads(), progress, session.pair_memory());
   record.plan = planned.stages();
   record.trace = planned.trace;
   record.scene_hash = scene_hash(scene);
@@ -117,7 +119,7 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   }
   record.ms.setup = record.found.setup_ms;
   record.ms.cull = planned.ms + record.found.ms;
-  decide_stage(scene, progress, record);
+  decide_stage(scene, session, progress, record);
   record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
   verify_stage(scene, progress, record);
   require_proved("arithmetic");  // a driver's code ran in this thread too

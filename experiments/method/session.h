@@ -11,10 +11,11 @@
 #include "core/gl/canvas.h"
 #include "core/gl/context.h"
 #include "core/native/canvas.h"
-#include "core/pairs/view.h"
+#include "core/pairs/pairs.h"
 #include "core/sweep/sweep_prune.h"
 #include "experiments/method/device_verdict.h"
 #include "experiments/method/pair_device.h"
+#include "verify/exact.h"
 
 namespace farcull {
 
@@ -50,7 +51,13 @@ class Session {
   /// px; the largest resolution of its canvases.
   int max_resolution();
   PairDevice& pairs();
-  PairScene& pair_workspace() { return pair_workspace_; }
+  PairWorkspace& pair_workspace() { return pair_workspace_; }
+  /// From now on runs are frames of a scene, one after the other: far-pairs and the exact tests
+  /// keep what did not move. Answers stay the same.
+  void remember_frames() { frames_ = std::make_unique<FrameDecider>(); }
+  /// Null where frames are not remembered.
+  PairMemory* pair_memory() { return frames_ ? &pair_workspace_.memory : nullptr; }
+  FrameDecider* frame_decider() { return frames_.get(); }
   SweepPrune& sweep() { return sweep_; }
   /// Drops the canvases, the pair device and the context: after a failure nothing that lies on a
   /// device is believed. Each is made again when it is next needed.
@@ -67,7 +74,8 @@ class Session {
   std::optional<CanvasDevice> canvas_device_;
   std::map<std::tuple<std::string, DepthFormat, QueryMode>, std::unique_ptr<Canvas>> canvases_;
   std::optional<PairDevice> pairs_;  // these two go before the context
-  PairScene pair_workspace_;
+  PairWorkspace pair_workspace_;
+  std::unique_ptr<FrameDecider> frames_;
   SweepPrune sweep_;
 };
 

@@ -1,6 +1,7 @@
 // FAR pairs on the CPU: no intersecting pair is ever missed, and the answer depends on nothing that
 // it should not depend on. Each property has a twin that must fail.
 #include "core/pairs/pairs.h"
+#include "core/pairs/grown_box.h"
 
 #include <gtest/gtest.h>
 
@@ -202,20 +203,103 @@ TEST(Pairs, LeaveOutWhatCannotMeet) {
 TEST(Pairs, LeaveOutNeighboursByIndexOnly) {
   const Scene scene = with_self(make_builtin_scene("two-spheres"));
   const auto backend = cpu_pair_backend(2);
-  const PairResult all = find_pairs(scene, {}, *backend);
-  const PairResult fewer = find_pairs(scene, {.neighbours = false}, *backend);
-  std::vector<TrianglePair> expected = all.candidates;
   const std::vector<std::uint32_t> owner = owners(scene);
-  std::erase_if(expected, [&](const TrianglePair& pair) {
-    if (owner[pair.a] != owner[pair.b]) return false;
-    for (const std::uint32_t v : scene.triangles[pair.a]) {
-      const auto& other = scene.triangles[pair.b];
-      if (std::find(other.begin(), other.end(), v) != other.end()) return true;
+  for (const bool runs : {true, false}) {
+    const PairResult all = find_pairs(scene, {.runs = runs}, *backend);
+    EXPECT_EQ(all.views.empty(), runs);
+    const PairResult fewer = find_pairs(scene, {.runs = runs, .neighbours = false}, *backend);
+    std::vector<TrianglePair> expected = all.candidates;
+    std::erase_if(expected, [&](const TrianglePair& pair) {
+      if (owner[pair.a] != owner[pair.b]) return false;
+      for (const std::uint32_t v : scene.triangles[pair.a]) {
+        const auto& other = scene.triangles[pair.b];
+        if (std::find(other.begin(), other.end(), v) != other.end()) return true;
+      }
+      return false;
+    });
+    EXPECT_EQ(fewer.candidates, expected);
+    EXPECT_LT(fewer.candidates.size(), all.candidates.size() / 4);
+  }
+}
+
+// The objects of both scenes, those of the second one moved.
+Scene joined(Scene scene, const Scene& other, const Vec3& by) {
+  const auto vertices = static_cast<std::uint32_t>(scene.vertices.size());
+  const auto triangles = static_cast<std::uint32_t>(scene.triangles.size());
+  for (const Vec3& v : other.vertices) scene.vertices.push_back(v + by);
+  for (const auto& [p, q, r] : other.triangles) {
+    scene.triangles.push_back({p + vertices, q + vertices, r + vertices});
+  }
+  scene.source_face.insert(scene.source_face.end(), other.source_face.begin(),
+                           other.source_face.end());
+  for (Object object : other.objects) {
+    object.first_triangle += triangles;
+    scene.objects.push_back(object);
+  }
+  return scene;
+}
+
+// Two bundles of needles along one direction: the boxes of all runs overlap.
+Scene bundles(lab::Random& random) {
+  const Vec3 along = Vec3(1, 0.9, 0.8).normalized();
+  const auto coordinate = [&] { return random.between(-1, 1); };
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+  for (auto& object : objects) {
+    for (int k = 0; k < 1500; ++k) {
+      const Vec3 p(coordinate(), coordinate(), coordinate());
+      const Vec3 tip = 0.02 * Vec3(coordinate(), coordinate(), coordinate());
+      object.push_back({p - 3 * along, p + 3 * along + 0.1 * tip, p + tip});
     }
-    return false;
-  });
-  EXPECT_EQ(fewer.candidates, expected);
-  EXPECT_LT(fewer.candidates.size(), all.candidates.size() / 4);
+  }
+  return lab::scene_of(objects);
+}
+
+// Where runs decide some meetings and views others, the pairs of both are found.
+TEST(Pairs, OfRunsAndOfViewsAreFoundTogether) {
+  lab::Random random(3);
+  const Scene scene = joined(bundles(random), make_builtin_scene("two-spheres"), Vec3(50, 0, 0));
+  const auto backend = cpu_pair_backend(2);
+  const PairPlan plan = plan_pairs(scene, {}, 2);
+  ASSERT_FALSE(plan.runs.empty());
+  ASSERT_FALSE(plan.regions.triangles.empty());
+  PairWorkspace workspace;
+  const std::vector<TrianglePair> truth = lab::truth_of(scene);
+  EXPECT_EQ(lab::missed(truth, find_pairs(scene, plan, *backend, workspace).candidates), 0u);
+  EXPECT_EQ(plan.trace.front().out, plan.runs.triangles + plan.regions.triangles.size());
+  // Twins: without either half pairs are lost.
+  PairPlan views = plan, runs = plan;
+  views.runs = {};
+  runs.choices.clear();
+  runs.regions.triangles.clear();
+  EXPECT_GT(lab::missed(truth, find_pairs(scene, views, *backend, workspace).candidates), 0u);
+  EXPECT_GT(lab::missed(truth, find_pairs(scene, runs, *backend, workspace).candidates), 0u);
+}
+
+// Objects whose boxes all overlap: their pairs are not listed, which would take memory that grows
+// with the square of the objects.
+TEST(Pairs, OfManyObjectsThatAllOverlapAreFound) {
+  lab::Random random(5);
+  const auto coordinate = [&] { return random.between(-1, 1); };
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(300);
+  for (auto& object : objects) {
+    for (int k = 0; k < 20; ++k) {
+      const auto point = [&](double size) {
+        return Vec3(size * coordinate(), size * coordinate(), size * coordinate());
+      };
+      const Vec3 p = point(1);
+      object.push_back({p, p + point(0.3), p + point(0.3)});
+    }
+  }
+  const Scene scene = lab::scene_of(objects);
+  const PairPlan plan = plan_pairs(scene, {}, 2);
+  EXPECT_TRUE(plan.regions.crowded);
+  EXPECT_TRUE(plan.runs.empty());
+  const auto backend = cpu_pair_backend(2);
+  for (const bool runs : {true, false}) {
+    EXPECT_EQ(lab::missed(scene, {.runs = runs}, *backend), 0u);
+    EXPECT_EQ(lab::missed(with_self(scene), {.runs = runs}, *backend), 0u);
+  }
+  EXPECT_GT(lab::truth_of(scene).size(), 1000u);
 }
 
 TEST(Pairs, LookAlongTheNeedles) {

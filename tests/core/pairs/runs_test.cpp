@@ -10,7 +10,7 @@
 #include <set>
 
 #include "core/native/lanes.h"
-#include "core/pairs/box_check.h"
+#include "core/pairs/grown_box.h"
 #include "core/pairs/regions.h"
 #include "core/pairs/run_pairs.h"
 #include "core/pairs/sweep.h"
@@ -84,35 +84,71 @@ std::vector<Scene> small_scenes() {
   return out;
 }
 
-std::vector<Box> regions_of(const Runs& runs) { return runs.objects; }
+// The middle half of each object's box.
+std::vector<Box> middles_of(const Runs& runs) {
+  std::vector<Box> out = runs.objects;
+  for (Box& box : out) {
+    if (box.is_empty()) continue;
+    const Vec3 size = box.hi - box.lo;
+    box = {box.lo + 0.25 * size, box.hi - 0.25 * size};
+  }
+  return out;
+}
 
 TEST(Runs, HoldEachTriangleOnceInItsBox) {
-  std::size_t ordered = 0;
+  std::size_t gathered = 0, outside = 0;
   for (const Scene& scene : small_scenes()) {
     for (const double clearance : {0.0, 0.01}) {
-      Runs runs = make_runs(scene, clearance, 2);
-      gather_scattered(scene, clearance, regions_of(runs), 2, runs);
-      ordered += !runs.order.empty();
-      std::set<std::uint32_t> seen;
-      for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
-        const Object& object = scene.objects[o];
-        for (std::uint32_t k = runs.first[o]; k < runs.first[o + 1]; ++k) {
-          for (std::uint32_t i = 0; i < runs.runs[k].count; ++i) {
-            const std::uint32_t t = runs.triangle(runs.runs[k].first + i);
-            ASSERT_TRUE(seen.insert(t).second);
-            ASSERT_LT(t - object.first_triangle, object.triangle_count);
-            const Box box = grown_box(scene, t, clearance);
-            Box both = runs.boxes[k];
-            both.add(box);
-            ASSERT_EQ(both.lo, runs.boxes[k].lo);
-            ASSERT_EQ(both.hi, runs.boxes[k].hi);
+      for (const bool all : {true, false}) {
+        ScatteredBoxes scattered;
+        Runs runs = make_runs(scene, clearance, 2, &scattered);
+        const std::vector<Box> regions = all ? runs.objects : middles_of(runs);
+        gather_scattered(scene, clearance, regions, 2, scattered, runs);
+        std::set<std::uint32_t> seen;
+        for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+          const Object& object = scene.objects[o];
+          gathered += runs.is_gathered(o);
+          for (std::uint32_t k = 0; k < runs.first[o + 1] - runs.first[o]; ++k) {
+            const farcull::Run& run = runs.runs[runs.first[o] + k];
+            for (std::uint32_t i = 0; i < run.count; ++i) {
+              const std::uint32_t t = runs.triangle(run.first + i);
+              ASSERT_TRUE(seen.insert(t).second);
+              ASSERT_LT(t - object.first_triangle, object.triangle_count);
+              const Box box = grown_box(scene, t, clearance);
+              const FloatBox own = relative(box, runs.origin);
+              if (k >= runs.count(o)) {
+                ++outside;
+                ASSERT_FALSE(overlap(box, regions[o]));
+                continue;
+              }
+              const FloatBox bound = runs.bound(o, k);
+              const bool holds =
+                  !runs.is_gathered(o) ||
+                  runs.blocks[runs.gathered[o].first + k].boxes.get(i).lo != kNowhere.lo;
+              if (!holds) {  // the last run may go on behind those that meet the region
+                ASSERT_EQ(k + 1, runs.count(o));
+                ASSERT_FALSE(overlap(box, regions[o]));
+                ++outside;
+                continue;
+              }
+              for (std::size_t axis = 0; axis < 3; ++axis) {
+                ASSERT_LE(bound.lo[axis], own.lo[axis]);
+                ASSERT_GE(bound.hi[axis], own.hi[axis]);
+              }
+              if (!runs.is_gathered(o)) continue;
+              const RunBlock& block = runs.blocks[runs.gathered[o].first + k];
+              ASSERT_EQ(block.triangles[i], t);
+              ASSERT_EQ(block.boxes.get(i).lo, own.lo);
+              ASSERT_EQ(block.boxes.get(i).hi, own.hi);
+            }
           }
         }
+        ASSERT_EQ(seen.size(), scene.triangles.size());
       }
-      ASSERT_EQ(seen.size(), scene.triangles.size());
     }
   }
-  EXPECT_GT(ordered, 5u);
+  EXPECT_GT(gathered, 20u);
+  EXPECT_GT(outside, 1000u);
 }
 
 TEST(Runs, ThatOverlapAreFoundInTheTrees) {
@@ -170,12 +206,26 @@ TEST(Runs, GiveThePairsWhoseBoxesOverlap) {
 
 // What is decided by runs does not depend on threads.
 TEST(Runs, SplitAlikeWhateverTheThreads) {
-  for (const Scene& scene : small_scenes()) {
+  std::vector<Scene> scenes = small_scenes();
+  scenes.push_back(
+      shuffled(make_builtin_scene("crumpled:60000"), 1));  // ordered in several threads
+  scenes.push_back(make_builtin_scene("needles"));
+  std::size_t ordered = 0, sampled = 0;
+  for (const Scene& scene : scenes) {
     const PairParts one = split_meetings(scene, 0, 1), five = split_meetings(scene, 0, 5);
     ASSERT_EQ(one.runs.between, five.runs.between);
     ASSERT_EQ(one.runs.inside, five.runs.inside);
+    ASSERT_EQ(one.runs.of != nullptr, five.runs.of != nullptr);
+    if (one.runs.of) {
+      ASSERT_EQ(one.runs.of->order, five.runs.of->order);
+      ordered += one.runs.of->order.size() > 50'000;
+    }
     ASSERT_EQ(one.rest.triangles, five.rest.triangles);
+    ASSERT_EQ(one.sample, five.sample);
+    sampled += !one.sample.empty();
   }
+  EXPECT_GT(ordered, 0u);
+  EXPECT_GT(sampled, 0u);
 }
 
 // Boxes that touch in one point, edge or face, wherever they lie; or with a gap between them.
@@ -206,8 +256,8 @@ TEST(Runs, GoBeyondWhatFloatHolds) {
   for (const double scale : {1e-320, 1e-50, 1e38, 1e60, 1e300}) {
     Scene scene = make_builtin_scene("two-spheres");
     for (Vec3& v : scene.vertices) v *= scale;
-    const PairParts parts = split_meetings(scene, 0, 1);
-    if (parts.runs.empty()) continue;
+    const PairParts parts = split_meetings(scene, 0, 1, true);
+    ASSERT_FALSE(parts.runs.empty()) << scale;
     EXPECT_EQ(pairs_of_runs(scene, parts.runs, 0, true, 2), overlapping(scene, 0, true)) << scale;
   }
 }
@@ -235,16 +285,16 @@ TEST(Runs, GrowBeyondWhatDoubleHolds) {
 TEST(RunsTwin, WithoutThePairsThatTouchInFloatsPairsAreLost) {
   const Scene scene = touching(0);
   const PairParts parts = split_meetings(scene, 0, 1);
-  std::vector<RunBlock> blocks(parts.runs.runs.size());
+  std::vector<RunBlock> blocks(parts.runs.of->runs.size());
   for (std::size_t k = 0; k < blocks.size(); ++k) {
-    std::vector<std::uint32_t> triangles(parts.runs.runs[k].count);
-    std::iota(triangles.begin(), triangles.end(), parts.runs.runs[k].first);
-    fill_block(scene, triangles, parts.runs.origin, 0, blocks[k]);
+    std::vector<std::uint32_t> triangles(parts.runs.of->runs[k].count);
+    std::iota(triangles.begin(), triangles.end(), parts.runs.of->runs[k].first);
+    fill_block(scene, triangles, 0, parts.runs.of->origin, blocks[k]);
   }
   std::vector<BlockPair> pairs;
   for (const RunPair& pair : parts.runs.between) pairs.push_back({pair.a, pair.b, false});
   RunFindings found;
-  compare_blocks(blocks, {}, pairs, found);
+  compare_blocks({.first = blocks, .second = {}}, {}, pairs, found);
   std::sort(found.certain.begin(), found.certain.end());
   EXPECT_GT(missed(overlapping(scene, 0, true), found.certain), 0u);
 }

@@ -1,0 +1,206 @@
+// Frames of a scene one after the other: what is kept from the last one changes no answer, whatever
+// moved, and whatever happened in between. Each property has a twin that must fail.
+#include "core/pairs/memory.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/pairs/regions.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/core/pairs/pairs_lab.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+using lab::Random;
+using lab::with_self;
+
+// The triangles of each object in another order, so that they have to be gathered.
+Scene scattered(Scene scene) {
+  Random random(1);
+  for (const Object& object : scene.objects) {
+    for (std::uint32_t k = object.triangle_count; k > 1; --k) {
+      std::swap(scene.triangles[object.first_triangle + k - 1],
+                scene.triangles[object.first_triangle + random.below(k)]);
+    }
+  }
+  return scene;
+}
+
+double size_of(const Scene& scene) {
+  Box box = Box::empty();
+  for (const Vec3& v : scene.vertices) box.add(v);
+  return (box.hi - box.lo).maxCoeff();
+}
+
+// Moves nothing, one vertex, a part of them, an object or all; a little or far.
+void move(Random& random, Scene& scene) {
+  const double by = size_of(scene) * (random.below(3) == 0 ? 0.2 : 0.005);
+  const auto step = [&] {
+    return by * Vec3(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+  };
+  switch (random.below(5)) {
+    case 0:
+      return;
+    case 1:
+      scene.vertices[static_cast<std::size_t>(random.below(scene.vertices.size()))] += step();
+      return;
+    case 2: {
+      const std::size_t from = random.below(scene.vertices.size());
+      const std::size_t to = std::min(from + 40, scene.vertices.size());
+      for (std::size_t v = from; v < to; ++v) scene.vertices[v] += step();
+      return;
+    }
+    case 3: {
+      const Object& object = scene.objects[random.below(scene.objects.size())];
+      const Vec3 all = step();
+      std::vector<std::uint32_t> own;
+      for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+        for (const std::uint32_t v : scene.triangles[object.first_triangle + t]) own.push_back(v);
+      }
+      std::ranges::sort(own);
+      own.erase(std::unique(own.begin(), own.end()), own.end());
+      for (const std::uint32_t v : own) scene.vertices[v] += all;
+      return;
+    }
+    default:
+      for (Vec3& v : scene.vertices) v += 0.1 * step();
+  }
+}
+
+std::vector<Scene> scenes() {
+  std::vector<Scene> out;
+  for (const char* name : {"two-spheres", "crowd", "field:1000", "spheres:1000", "rope:2000",
+                           "crumpled:1000", "degenerate", "needles"}) {
+    const Scene scene = make_builtin_scene(name);
+    out.push_back(scene);
+    out.push_back(with_self(scattered(scene)));
+  }
+  return out;
+}
+
+// Frames of one scene with a memory, and what it did.
+struct Film {
+  PairWorkspace workspace;
+  FrameDecider decider;
+  std::size_t kept = 0, decided = 0, candidates = 0;
+
+  // The candidates and collisions are those without a memory.
+  void show(const Scene& scene, const PairSettings& settings) {
+    const auto backend = cpu_pair_backend(2);
+    const PairPlan plan = plan_pairs(scene, settings, 2, &workspace.memory);
+    const std::vector<TrianglePair> found = find_pairs(scene, plan, *backend, workspace).candidates;
+    const PairResult fresh = find_pairs(scene, settings, *backend);
+    kept += plan.runs.kept.size();
+    const bool by_runs = plan.choices.empty() && fresh.views.empty();
+    if (by_runs) {
+      ASSERT_EQ(found, fresh.candidates);
+    }
+    const ExactQuestion question{.clearance = settings.clearance,
+                                 .neighbours = settings.neighbours};
+    const Collisions expected = decide(scene, fresh.candidates, question);
+    const Collisions collisions = decider.decide(scene, found, question);
+    ASSERT_EQ(collisions.pairs, expected.pairs);
+    ASSERT_EQ(collisions.neighbour_pairs, expected.neighbour_pairs);
+    if (by_runs) {
+      ASSERT_EQ(collisions.neighbours, expected.neighbours);
+      ASSERT_EQ(collisions.apart, expected.apart);
+    }
+    decided += decider.decided();
+    candidates += found.size();
+  }
+};
+
+TEST(PairMemory, ChangesNoAnswerWhateverMoves) {
+  std::size_t kept = 0, decided = 0, candidates = 0;
+  Random random(11);
+  for (Scene scene : scenes()) {
+    for (const double clearance : {0.0, 0.01}) {
+      SCOPED_TRACE(scene.name);
+      Film film;
+      for (int frame = 0; frame < 12; ++frame) {
+        film.show(scene, {.clearance = clearance, .neighbours = clearance > 0});
+        if (testing::Test::HasFatalFailure()) return;
+        move(random, scene);
+      }
+      kept += film.kept, decided += film.decided, candidates += film.candidates;
+    }
+  }
+  EXPECT_GT(kept, candidates / 4);  // much is kept indeed,
+  EXPECT_LT(decided, 3 * candidates / 4);
+  EXPECT_GT(decided, candidates / 10);  // and much is not
+}
+
+// A memory that was used for another scene, other settings, or a frame that was never found.
+TEST(PairMemory, IsNotMisledByWhatHappenedBetweenTwoFrames) {
+  Random random(12);
+  std::vector<Scene> all = scenes();
+  Film film;
+  for (int frame = 0; frame < 300; ++frame) {
+    Scene& scene = all[random.below(3)];  // mostly another one than before
+    switch (random.below(8)) {
+      case 0:  // planned, and not found
+        plan_pairs(scene, {}, 2, &film.workspace.memory);
+        break;
+      case 1: {  // found without a plan of the memory
+        PairWorkspace& workspace = film.workspace;
+        const auto backend = cpu_pair_backend(1);
+        find_pairs(scene, plan_pairs(scene, {}, 1), *backend, workspace);
+        break;
+      }
+      case 2:
+        scene.objects[0].self = !scene.objects[0].self;
+        break;
+      case 3: {  // other triangles on the same corners
+        auto& triangles = scene.triangles;
+        std::swap(triangles[random.below(triangles.size())][0],
+                  triangles[random.below(triangles.size())][1]);
+        break;
+      }
+      default:
+        move(random, scene);
+    }
+    PairSettings settings{.clearance = random.below(3) == 0 ? 0.02 : 0.0,
+                          .neighbours = random.below(3) != 0};
+    if (random.below(6) == 0) settings.runs = false;
+    film.show(scene, settings);
+    if (testing::Test::HasFatalFailure()) return;
+  }
+  EXPECT_GT(film.kept, 0u);
+}
+
+TEST(PairMemory, OfAFrameInWhichNothingMovedComparesAndDecidesNothing) {
+  const Scene scene = with_self(make_builtin_scene("crumpled:4000"));
+  PairWorkspace workspace;
+  FrameDecider decider;
+  const auto backend = cpu_pair_backend(2);
+  for (int frame = 0; frame < 3; ++frame) {
+    const PairPlan plan = plan_pairs(scene, {}, 2, &workspace.memory);
+    const auto found = find_pairs(scene, plan, *backend, workspace).candidates;
+    decider.decide(scene, found);
+    ASSERT_GT(found.size(), 1000u);
+    EXPECT_EQ(plan.runs.between.size() + plan.runs.inside.size() > 0, frame == 0);
+    EXPECT_EQ(decider.decided(), frame == 0 ? found.size() : 0);
+  }
+}
+
+// Twin: a memory that takes a frame for the last one keeps pairs that are no longer right.
+TEST(PairMemoryTwin, ThatDoesNotSeeWhatMovedMisses) {
+  Scene scene = make_builtin_scene("two-spheres");
+  const auto backend = cpu_pair_backend(2);
+  PairWorkspace workspace;
+  FrameDecider decider;
+  const auto show = [&] {
+    return find_pairs(scene, plan_pairs(scene, {}, 2, &workspace.memory), *backend, workspace)
+        .candidates;
+  };
+  decider.decide(scene, show());
+  for (std::size_t v = 0; v < scene.vertices.size() / 2; ++v) scene.vertices[v].x() += 0.1;
+  workspace.memory.moved.update(scene);  // so it does not see it later
+  EXPECT_GT(lab::missed(lab::truth_of(scene), show()), 0u);
+}
+
+}  // namespace
+}  // namespace farcull
