@@ -15,13 +15,14 @@ CLI::App* CompareCommand::add_to(CLI::App& app) {
   add_option(*command, "--methods", arguments_.methods, "LIST",
              "separated by commas;\ndefault far,cullide,far-pairs,exact");
   add_option(*command, "--resolutions", arguments_.resolutions, "LIST",
-             "separated by commas;\ndefault 128,256,512,1024,2048; for far-pairs auto");
+             "separated by commas;\ndefault 128,256,512,1024,2048; for far-pairs auto;\n"
+             "far-pairs: with a number views decide");
   add_option(*command, "--offsets", arguments_.offsets, "LIST",
              "for far, separated by commas: obb, exact;\ndefault obb");
   add_option(*command, "--repeat", arguments_.repeat, "N",
              "runs of each, the one with the median time is shown;\ndefault 1");
   add_option(*command, "--views", views_, "VIEWS", kViewsHelp);
-  add_option(*command, "--device", device_, "DEVICE", kDeviceHelp);
+  add_option(*command, "--device", device_, "DEVICE", device_help_of_methods());
   add_flag(*command, "--self", arguments_.self, kSelfHelp);
   add_option(*command, "--clearance", clearance_, "D", kClearanceHelp);
   add_option(*command, "--json", outputs_.json, "FILE", kJsonHelp);

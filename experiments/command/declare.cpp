@@ -15,6 +15,7 @@ void allow_one_command(CLI::App& command) { command.require_subcommand(0, 1); }
 void add_footer(CLI::App& command, const std::string& text) { command.footer(text); }
 
 void add_footer(CLI::App& command, std::function<std::string()> text) {
+  command.footer("");  // that of the parent, which comes behind the text otherwise
   command.footer(std::move(text));
 }
 

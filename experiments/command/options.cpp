@@ -30,6 +30,10 @@ void add_scene(CLI::App& command, std::vector<std::string>& scene) {
   add_required(command, "SCENE", scene, kSceneHelp);
 }
 
+std::string device_help_of_methods() {
+  return std::string(kDeviceHelp) + ";\nfar-pairs: with a GL device views decide";
+}
+
 void complain(const std::string& message) {
   std::fprintf(stderr, "farcull: %s\n", clean_name(message).c_str());
 }

@@ -76,20 +76,23 @@ void write_json(const nlohmann::ordered_json& json, const std::string& path);
 
 inline constexpr const char* kViewsHelp =
     "axes or directions to look along, by commas, as in\n"
-    "x,-y,1:1:0.5; default x,y,z; for far-pairs auto:\n"
-    "chosen by the scene";
+    "x,-y,1:1:0.5; default x,y,z; for far-pairs auto: the\n"
+    "scene decides whether views are needed, and which";
 inline constexpr const char* kDeviceHelp =
     "native (alias cpu: the cores of the CPU, no GPU), gl,\n"
     "software, hardware or a number that `farcull doctor`\n"
     "lists; default GL where hardware answers and keeps the\n"
     "assumptions, else native";
+/// kDeviceHelp for commands that take far-pairs, which obeys a GL device that is named.
+std::string device_help_of_methods();
 inline constexpr const char* kSelfHelp =
     "every object is tested against itself as well\n"
     "(far, far-pairs, s-cullide, i-collide, exact); collisions\n"
     "of triangles that share a vertex position are listed apart";
 inline constexpr const char* kFullHelp =
     "leave nothing out that the scene does not need, to\n"
-    "measure what leaving out saves (see farcull plan)";
+    "measure what leaving out saves (see farcull plan);\n"
+    "far-pairs: with this option views decide";
 inline constexpr const char* kClearanceHelp =
     "pairs at this distance or less collide, in world\n"
     "units (far-pairs, exact); default 0";

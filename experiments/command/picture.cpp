@@ -93,7 +93,7 @@ void PictureCommand::add_options(CLI::App& app) {
   add("--radius", radius_, "RADIUS", "for far: budget, published, or a factor");
   add("--offset", offset_, "OFFSET", "for far: obb or exact; default obb");
   add("--depth", depth_, "fragment|fixed", "for far; default fragment");
-  add("--device", device_, "DEVICE", kDeviceHelp);
+  add_option(*command, "--device", device_, "DEVICE", device_help_of_methods());
   add_flag(*command, "--self", self_, kSelfHelp);
   add("--frame", frame_, "F", "of a scene that moves");
   add("--frames", frames_, "N|A:B",

@@ -95,7 +95,7 @@ void RunCommand::add_method_options(CLI::App& command) {
       "far, cullide, quick-cullide, s-cullide, i-collide,\nfar-pairs or exact; default far");
   add("--resolution", resolution_, "N|auto",
       "pixels along the larger side of each view's window;\ndefault 512; for far-pairs auto: "
-      "chosen by the scene");
+      "chosen by the scene;\nfar-pairs: with a number views decide");
   add("--radius", radius_, "RADIUS",
       "of the ball that fattens a primitive, for far: budget,\n"
       "published, or a factor on the budget; default budget");
@@ -114,7 +114,7 @@ void RunCommand::add_method_options(CLI::App& command) {
       "single ones, for far, cullide and quick-cullide; default\n"
       "32 with occlusion queries and more than 32768 triangles");
   add("--views", views_, "VIEWS", kViewsHelp);
-  add("--device", device_, "DEVICE", kDeviceHelp);
+  add_option(command, "--device", device_, "DEVICE", device_help_of_methods());
   add_flag(command, "--self", self_, kSelfHelp);
   add("--clearance", clearance_, "D", kClearanceHelp);
   add_flag(command, "--full", full_, kFullHelp);
