@@ -111,8 +111,8 @@ std::vector<Figure> figures_of(const std::vector<NamedRows>& scenes) {
               .title = "Candidates that do not collide against run time",
               .caption =
                   "Candidates that are handed to exact tests and do not collide, over colliding "
-                  "pairs. FCL's own test of triangles comes instead of exact tests, so what it "
-                  "hands on is its answer."};
+                  "pairs. FCL and ODE use their own tests of triangles instead of exact tests, so "
+                  "what they hand on is their answer."};
   for (const NamedRows& scene : scenes) {
     error.panels.push_back(panel_of(scene, "missed + wrong pairs", error_of));
     error.panels.back().series.push_back(front_series(scene));
@@ -217,7 +217,8 @@ Chapter error_time_chapter(const StoredStudy& stored) {
       "Contexts, shaders and Embree's device are made before; hierarchies and boxes belong to the "
       "run.",
       "On a scene tested against itself libraries leave pairs that share a vertex out, ours count "
-      "those that collide beyond it."};
+      "those that collide beyond it. So on such a scene our times include the exact tests of all "
+      "neighbours, which those of libraries do not. farcull bench leaves neighbours out for all."};
   add_gaps(stored, out);
   if (scenes.empty()) return out;
   out.figures = figures_of(scenes);
