@@ -86,19 +86,24 @@ bool is_scattered(const Runs& runs, std::uint32_t object) {
 // Runs of a sample. An object with four times as many is judged by one.
 constexpr std::uint32_t kSampledRuns = 64;
 
-// Whether an object with many runs is scattered, by a sample; `box` becomes that of the sample.
-bool seems_scattered(const Scene& scene, const Runs& runs, std::uint32_t object, Box& box) {
+// The mean length of some runs of an object, where it has many and that says that they are
+// scattered; else 0. `box` becomes that of the sample.
+double sampled_length(const Scene& scene, const Runs& runs, std::uint32_t object, Box& box) {
   const std::uint32_t count = runs.first[object + 1] - runs.first[object];
-  if (count < 4 * kSampledRuns) return false;
+  if (count < 4 * kSampledRuns) return 0;
   double sum = 0;
   for (std::uint32_t k = 0; k < kSampledRuns; ++k) {
-    const std::uint64_t at = std::uint64_t{count} * k / kSampledRuns;
-    const Run& run = runs.runs[runs.first[object] + at];
+    // Multiples of the golden ratio: as even as a grid, without its period, since surfaces often
+    // have one.
+    const double at = 0.6180339887498949 * k;
+    const auto position = static_cast<std::uint32_t>((at - std::floor(at)) * count);
+    const Run& run = runs.runs[runs.first[object] + std::min(position, count - 1)];
     const Box own = box_of(scene, run.first, run.first + run.count);
     sum += length(own);
     box.add(own);
   }
-  return are_scattered(sum / kSampledRuns, count, box);
+  const double mean = sum / kSampledRuns;
+  return are_scattered(mean, count, box) ? mean : 0;
 }
 
 // The boxes of an object's triangles, grown, relative to the origin; returns the box of all, not
@@ -137,6 +142,31 @@ Vec3 middle(const Box& box) {
   return 0.5 * box.lo.cwiseMax(-kLargest) + 0.5 * box.hi.cwiseMin(kLargest);
 }
 
+// The boxes of the runs of an object.
+void fill_run_boxes(const Scene& scene, std::uint32_t object, double half, unsigned threads,
+                    Runs& runs) {
+  const std::uint32_t first = runs.first[object], n = runs.first[object + 1] - first;
+  for_chunks(n, chunks_for(n, 256, threads), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t k = first + begin; k < first + end; ++k) {
+      const Run& run = runs.runs[k];
+      runs.boxes[k] = grow(box_of(scene, run.first, run.first + run.count), half);
+    }
+  });
+}
+
+// Drops those objects for which `keeps` is false.
+template <class Keeps>
+void keep_objects(ScatteredBoxes& scattered, const Keeps& keeps) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < scattered.objects.size(); ++k) {
+    if (!keeps(scattered.objects[k])) continue;
+    scattered.objects[kept] = scattered.objects[k];
+    scattered.first[kept++] = scattered.first[k];
+  }
+  scattered.objects.resize(kept);
+  scattered.first.resize(kept);
+}
+
 // The boxes of the triangles of all its objects. Those of the objects are written to `objects`.
 void fill_scattered(const Scene& scene, double half, unsigned threads, ScatteredBoxes& scattered,
                     std::span<Box> objects) {
@@ -170,13 +200,13 @@ Runs make_runs(const Scene& scene, double clearance, unsigned threads, Scattered
   }
   out.objects.assign(objects, Box::empty());
   const double half = half_of(clearance);
-  std::vector<std::uint8_t> seems(objects, 0);
+  std::vector<double> seems(objects, 0);  // the mean length of its runs, where it seems scattered
   if (scattered) {
     Box sampled = Box::empty();
     for (std::uint32_t o = 0; o < objects; ++o) {
       Box box = Box::empty();
-      seems[o] = seems_scattered(scene, out, o, box);
-      if (seems[o]) sampled.add(box);
+      seems[o] = sampled_length(scene, out, o, box);
+      if (seems[o] > 0) sampled.add(box);
     }
     scattered->origin = middle(sampled);
   }
@@ -186,7 +216,7 @@ Runs make_runs(const Scene& scene, double clearance, unsigned threads, Scattered
     std::size_t o = 0;
     for (std::size_t k = begin; k < end; ++k) {
       while (out.first[o + 1] <= k) ++o;
-      if (seems[o]) {
+      if (seems[o] > 0) {
         k = std::min<std::size_t>(out.first[o + 1], end) - 1;
         continue;
       }
@@ -195,18 +225,25 @@ Runs make_runs(const Scene& scene, double clearance, unsigned threads, Scattered
     }
   });
   for (std::uint32_t o = 0; o < objects; ++o) {
-    if (seems[o]) continue;
+    if (seems[o] > 0) continue;
     for (std::uint32_t k = out.first[o]; k < out.first[o + 1]; ++k) {
       out.objects[o].add(out.boxes[k]);
     }
   }
   if (!scattered) return out;
   for (std::uint32_t o = 0; o < objects; ++o) {
-    if (seems[o] || (out.first[o] < out.first[o + 1] && is_scattered(out, o))) {
+    if (seems[o] > 0 || (out.first[o] < out.first[o + 1] && is_scattered(out, o))) {
       scattered->objects.push_back(o);
     }
   }
   fill_scattered(scene, half, threads, *scattered, out.objects);
+  // A sample sees less than the whole box.
+  keep_objects(*scattered, [&](std::uint32_t o) {
+    const std::uint32_t count = out.first[o + 1] - out.first[o];
+    if (seems[o] == 0 || are_scattered(seems[o], count, out.objects[o])) return true;
+    fill_run_boxes(scene, o, half, threads, out);
+    return false;
+  });
   return out;
 }
 
@@ -319,13 +356,7 @@ void gather_scattered(const Scene& scene, double clearance, std::span<const Box>
   for (std::size_t o = 0; o < regions.size(); ++o) {
     if (!regions[o].is_empty()) all.add(runs.objects[o]);
   }
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < scattered.objects.size(); ++k) {
-    if (regions[scattered.objects[k]].is_empty()) continue;
-    scattered.objects[kept] = scattered.objects[k];
-    scattered.first[kept++] = scattered.first[k];
-  }
-  scattered.objects.resize(kept);
+  keep_objects(scattered, [&](std::uint32_t o) { return !regions[o].is_empty(); });
   runs.origin = middle(all);
   if (scattered.objects.empty()) return;
   if (is_near(scattered.origin, all)) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numeric>
 #include <set>
@@ -149,6 +150,38 @@ TEST(Runs, HoldEachTriangleOnceInItsBox) {
   }
   EXPECT_GT(gathered, 20u);
   EXPECT_GT(outside, 1000u);
+}
+
+// Objects whose runs are scattered, by the boxes of all runs.
+std::vector<std::uint32_t> scattered_objects(const Scene& scene) {
+  const Runs runs = make_runs(scene, 0, 2);
+  const auto length = [](const Box& box) { return (box.hi - box.lo).sum(); };
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    double sum = 0;
+    for (std::uint32_t k = runs.first[o]; k < runs.first[o + 1]; ++k) sum += length(runs.boxes[k]);
+    if (sum > kScattered * std::sqrt(runs.count(o)) * length(runs.objects[o])) out.push_back(o);
+  }
+  return out;
+}
+
+// Large objects are judged by a sample, which must not follow the period of a surface: the turns of
+// the rope.
+TEST(Runs, AreGatheredOnlyWhereTheFileScattersThem) {
+  std::size_t gathered = 0, others = 0;
+  for (const char* name :
+       {"rope:40000", "rope:80000", "rope:160000", "crumpled:60000", "spheres:40000"}) {
+    const Scene scene = make_builtin_scene(name);
+    for (const Scene& either : {scene, shuffled(scene, 1)}) {
+      ScatteredBoxes scattered;
+      make_runs(either, 0, 2, &scattered);
+      EXPECT_EQ(scattered.objects, scattered_objects(either)) << name;
+      gathered += scattered.objects.size();
+      others += scene.objects.size() - scattered.objects.size();
+    }
+  }
+  EXPECT_GT(gathered, 4u);
+  EXPECT_GT(others, 4u);
 }
 
 TEST(Runs, ThatOverlapAreFoundInTheTrees) {
