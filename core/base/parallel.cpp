@@ -5,8 +5,8 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <exception>
 #include <mutex>
-#include <system_error>
 
 #ifndef _WIN32
 #include <csignal>
@@ -66,9 +66,9 @@ class Pool {
     {
       const std::lock_guard lock(mutex_);
       batch.next = 1;
+      need_threads(batch.parts - 1);
       batches_.push_back(&batch);
       waiting_ += batch.parts - 1;
-      need_threads(batch.parts - 1);
     }
     wake_.notify_all();
     batch.part(batch.data, 0);
@@ -105,7 +105,7 @@ class Pool {
         std::thread([this] { work(); }).detach();
         ++threads_;
       }
-    } catch (const std::system_error&) {
+    } catch (const std::exception&) {
       // Those that there are do it, at worst the caller alone.
     }
   }

@@ -137,6 +137,23 @@ FloatBox relative(const Box& box, const Vec3& origin) {
   return box.is_empty() ? kNowhere : of(box).relative_to(Bounds::of(origin));
 }
 
+Box box_of(const Scene& scene, std::uint32_t from, std::uint32_t to) {
+  // Each of the three corners has bounds of its own, so that none waits for another.
+  Bounds a = Bounds::empty(), b = a, c = a;
+  const auto last = static_cast<std::uint32_t>(scene.triangles.size() - 1);
+  for (std::uint32_t t = from; t < to; ++t) {
+    // They may lie anywhere, so they are fetched ahead.
+    prefetch(scene, std::min(t + kAhead, last));
+    const auto& [p, q, r] = scene.triangles[t];
+    a.add(Bounds::of(scene.vertices[p]));
+    b.add(Bounds::of(scene.vertices[q]));
+    c.add(Bounds::of(scene.vertices[r]));
+  }
+  a.add(b);
+  a.add(c);
+  return a.box();
+}
+
 Box relative_boxes(const Scene& scene, std::uint32_t from, std::uint32_t to, double half,
                    const Vec3& origin, FloatBox* out) {
   const Bounds zero = Bounds::of(origin);

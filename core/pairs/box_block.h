@@ -42,6 +42,8 @@ inline bool overlap(const FloatBox& a, const FloatBox& b) {
 #endif
 }
 
+/// The closed box of the triangles from .. to - 1.
+Box box_of(const Scene& scene, std::uint32_t from, std::uint32_t to);
 /// Relative to the origin, the closed boxes of the triangles from .. to - 1, grown outward by at
 /// least `half` (world units, >= 0) on every side. Returns the box of all of them, not grown.
 Box relative_boxes(const Scene& scene, std::uint32_t from, std::uint32_t to, double half,

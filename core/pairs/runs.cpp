@@ -1,9 +1,5 @@
 #include "core/pairs/runs.h"
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -20,58 +16,10 @@ namespace {
 // Triangles whose corners are fetched ahead.
 constexpr std::size_t kAhead = 16;
 
-// The box of the triangles from .. to - 1. Each of the three corners has minima and maxima of its
-// own, so that none waits for another.
-Box box_of(const Scene& scene, std::size_t from, std::size_t to) {
-#ifdef __SSE2__
-  struct Corner {
-    __m128d lo_xy, hi_xy, lo_z, hi_z;
-    void add(const double* p) {
-      const __m128d xy = _mm_loadu_pd(p), z = _mm_load_sd(p + 2);
-      lo_xy = _mm_min_pd(lo_xy, xy);
-      hi_xy = _mm_max_pd(hi_xy, xy);
-      lo_z = _mm_min_sd(lo_z, z);
-      hi_z = _mm_max_sd(hi_z, z);
-    }
-    void add(const Corner& c) {
-      lo_xy = _mm_min_pd(lo_xy, c.lo_xy);
-      hi_xy = _mm_max_pd(hi_xy, c.hi_xy);
-      lo_z = _mm_min_sd(lo_z, c.lo_z);
-      hi_z = _mm_max_sd(hi_z, c.hi_z);
-    }
-  };
-  const __m128d inf = _mm_set1_pd(HUGE_VAL), minus = _mm_set1_pd(-HUGE_VAL);
-  Corner a{inf, minus, inf, minus}, b = a, c = a;
-  const std::size_t last = scene.triangles.size() - 1;
-  for (std::size_t t = from; t < to; ++t) {
-    // Their corners may lie anywhere, so they are fetched ahead.
-    prefetch(scene, static_cast<std::uint32_t>(std::min(t + kAhead, last)));
-    const std::array<std::uint32_t, 3>& v = scene.triangles[t];
-    a.add(scene.vertices[v[0]].data());
-    b.add(scene.vertices[v[1]].data());
-    c.add(scene.vertices[v[2]].data());
-  }
-  a.add(b);
-  a.add(c);
-  Box box;
-  _mm_storeu_pd(box.lo.data(), a.lo_xy);
-  _mm_store_sd(box.lo.data() + 2, a.lo_z);
-  _mm_storeu_pd(box.hi.data(), a.hi_xy);
-  _mm_store_sd(box.hi.data() + 2, a.hi_z);
-  return box;
-#else
-  Box box = Box::empty();
-  for (std::size_t t = from; t < to; ++t) {
-    for (const std::uint32_t v : scene.triangles[t]) box.add(scene.vertices[v]);
-  }
-  return box;
-#endif
-}
-
 double length(const Box& box) { return (box.hi - box.lo).sum(); }
 
-// Whether boxes of runs are much longer than those of compact parts of a surface would be: `sum` is
-// the length of all that were looked at, `mean` of one.
+// Whether boxes of runs are much longer than those of compact parts of a surface would be. mean: of
+// their lengths.
 bool are_scattered(double mean, std::uint32_t runs, const Box& object) {
   return mean * std::sqrt(runs) > kScattered * length(object);
 }

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace farcull {
 
 bool MovedCorners::update(const Scene& scene) {
+  // Where an allocation fails, the copy is not whole.
+  const bool known = std::exchange(known_, false);
   std::vector<Part> objects;
   objects.reserve(scene.objects.size());
   for (const Object& o : scene.objects) {
@@ -13,7 +16,7 @@ bool MovedCorners::update(const Scene& scene) {
   }
   const std::size_t n = scene.vertices.size();
   const bool same =
-      known_ && vertices_.size() == n && objects_ == objects && triangles_ == scene.triangles;
+      known && vertices_.size() == n && objects_ == objects && triangles_ == scene.triangles;
   any_ = false;
   if (same) {
     moved_.resize(n);
@@ -44,7 +47,7 @@ std::vector<std::uint8_t> MovedCorners::triangles(const Scene& scene) const {
 bool mostly_unmoved(const Scene& scene, const MovedCorners& moved,
                     std::span<const TrianglePair> pairs) {
   constexpr std::size_t kSampled = 256;
-  if (pairs.empty()) return true;
+  if (pairs.empty()) return !moved.any();
   const std::size_t count = std::min(kSampled, pairs.size());
   std::size_t unmoved = 0;
   for (std::size_t k = 0; k < count; ++k) {

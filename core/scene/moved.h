@@ -56,8 +56,8 @@ class Patience {
   int frames_left_ = 0, next_ = 1;
 };
 
-/// Whether less than half of some of the pairs, evenly chosen, have a triangle that moved. True
-/// where there is no pair.
+/// Whether less than half of some of the pairs, evenly chosen, have a triangle that moved. Where
+/// there is no pair: whether nothing moved.
 bool mostly_unmoved(const Scene& scene, const MovedCorners& moved,
                     std::span<const TrianglePair> pairs);
 

@@ -174,15 +174,13 @@ void Collider::State::report_device(const UsedDevice& used, ColliderReport& repo
   if (open.gl && !used.gl) {
     report.device = "cpu";
     report.device_reason = used.note;
-    report.promises = true;
-    report.promises_reason = "on the CPU nothing rests on a device";
-    return;
+  } else {
+    report.device = open.backend->name();
+    report.device_reason = options.device == ColliderDevice::best ? open.reason : "asked for";
   }
-  report.device = open.backend->name();
-  report.device_reason = options.device == ColliderDevice::best ? open.reason : "asked for";
-  const Promise kept = promise();
+  const Promise kept = promise_of(run, used, session);
   report.promises = kept.holds;
-  report.promises_reason = open.gl ? kept.reason : "on the CPU nothing rests on a device";
+  report.promises_reason = used.gl ? kept.reason : "on the CPU nothing rests on a device";
 }
 
 ColliderResult Collider::State::find(const Stopwatch& start) {

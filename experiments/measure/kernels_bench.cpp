@@ -171,26 +171,14 @@ void frame(benchmark::State& state, const char* name, bool self, bool remembers)
   }
   state.counters["pairs"] = static_cast<double>(pairs);
 }
-BENCHMARK_CAPTURE(frame, crumpled_by_itself, "crumpled", true, false)
-    ->Arg(0)
-    ->Arg(10)
-    ->Arg(100)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(frame, crumpled_next, "crumpled", true, true)
-    ->Arg(0)
-    ->Arg(10)
-    ->Arg(100)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(frame, spheres_by_itself, "spheres", false, false)
-    ->Arg(0)
-    ->Arg(10)
-    ->Arg(100)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(frame, spheres_next, "spheres", false, true)
-    ->Arg(0)
-    ->Arg(10)
-    ->Arg(100)
-    ->Unit(benchmark::kMillisecond);
+void percents(benchmark::internal::Benchmark* frames) {
+  for (const int percent : {0, 10, 100}) frames->Arg(percent);
+  frames->Unit(benchmark::kMillisecond);
+}
+BENCHMARK_CAPTURE(frame, crumpled_by_itself, "crumpled", true, false)->Apply(percents);
+BENCHMARK_CAPTURE(frame, crumpled_next, "crumpled", true, true)->Apply(percents);
+BENCHMARK_CAPTURE(frame, spheres_by_itself, "spheres", false, false)->Apply(percents);
+BENCHMARK_CAPTURE(frame, spheres_next, "spheres", false, true)->Apply(percents);
 
 }  // namespace
 }  // namespace farcull

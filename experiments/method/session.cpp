@@ -86,6 +86,8 @@ void Session::forget_device() {
   context_.reset();
   verdicts_.clear();  // another device may answer next time
   canvas_device_.reset();
+  pair_workspace_.memory = {};
+  if (frames_) remember_frames();
 }
 
 }  // namespace farcull

@@ -60,7 +60,8 @@ class Session {
   FrameDecider* frame_decider() { return frames_.get(); }
   SweepPrune& sweep() { return sweep_; }
   /// Drops the canvases, the pair device and the context: after a failure nothing that lies on a
-  /// device is believed. Each is made again when it is next needed.
+  /// device is believed, nor what was kept of the last frame, which a device helped to find. Each
+  /// is made again when it is next needed.
   void forget_device();
 
  private:

@@ -315,6 +315,57 @@ TEST(Runs, GrowBeyondWhatDoubleHolds) {
 }
 
 // Twins: what each ingredient is there for.
+// Every triangle of a run lies in the run's box, and in floats in its block's.
+void expect_boxes_hold(const Scene& scene, const Runs& runs, double clearance) {
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    for (std::uint32_t k = 0; k < runs.count(o); ++k) {
+      const std::uint32_t at = runs.first[o] + k;
+      const FloatBox bound = runs.bound(o, k);
+      for (std::uint32_t i = 0; i < runs.runs[at].count; ++i) {
+        const Box own = grown_box(scene, runs.triangle(runs.runs[at].first + i), clearance);
+        EXPECT_TRUE((own.lo.array() >= runs.boxes[at].lo.array()).all());
+        EXPECT_TRUE((own.hi.array() <= runs.boxes[at].hi.array()).all());
+        const FloatBox floats = relative(own, runs.origin);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          EXPECT_GE(floats.lo[axis], bound.lo[axis]);
+          EXPECT_LE(floats.hi[axis], bound.hi[axis]);
+        }
+      }
+    }
+  }
+}
+
+TEST(Runs, FollowWhatMoved) {
+  for (const double by : {0.001, 1.0, 1e6}) {
+    for (const bool scattered : {false, true}) {
+      Scene scene = make_builtin_scene("two-tori");
+      if (scattered) scene = shuffled(scene, 7);
+      Runs runs = make_ordered_runs(scene, 0.01, 1);
+      // Half of the runs, of which every vertex moves.
+      std::vector<std::uint8_t> moved(runs.runs.size(), 0);
+      std::set<std::uint32_t> vertices;
+      for (std::size_t r = 0; r < runs.runs.size(); r += 2) {
+        for (std::uint32_t i = 0; i < runs.runs[r].count; ++i) {
+          const auto& corners = scene.triangles[runs.triangle(runs.runs[r].first + i)];
+          vertices.insert(corners.begin(), corners.end());
+        }
+      }
+      for (const std::uint32_t v : vertices) scene.vertices[v].x() += by;
+      for (std::size_t r = 0; r < runs.runs.size(); ++r) {
+        for (std::uint32_t i = 0; i < runs.runs[r].count; ++i) {
+          for (const std::uint32_t v : scene.triangles[runs.triangle(runs.runs[r].first + i)])
+            moved[r] = moved[r] || vertices.contains(v);
+        }
+      }
+      for (const unsigned threads : {1u, 2u}) {
+        Runs updated = runs;
+        update_boxes(scene, 0.01, moved, threads, updated);
+        expect_boxes_hold(scene, updated, 0.01);
+      }
+    }
+  }
+}
+
 TEST(RunsTwin, WithoutThePairsThatTouchInFloatsPairsAreLost) {
   const Scene scene = touching(0);
   const PairParts parts = split_meetings(scene, 0, 1);

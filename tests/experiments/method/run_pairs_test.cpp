@@ -75,6 +75,17 @@ TEST(RunPairs, GivesTheExactPairs) {
   }
 }
 
+TEST(Session, DropsWhatItKeptOfTheLastFrameAfterAFailure) {
+  Session session("cpu");
+  session.remember_frames();
+  const Scene scene = self_scene("crumpled:2000");
+  run(scene, on_cpu(Method::far_pairs), session);
+  EXPECT_TRUE(session.pair_memory()->moved.update(scene));
+  session.forget_device();
+  ASSERT_TRUE(session.pair_memory());
+  EXPECT_FALSE(session.pair_memory()->moved.update(scene));
+}
+
 TEST(RunPairs, GivesTheExactPairsOfObjectsAgainstThemselves) {
   expect_as_exact(folded());
   for (const char* name : {"degenerate", "needles", "random-soup"})
