@@ -184,7 +184,7 @@ void append_evenly(const std::vector<RunPair>& from, std::size_t count, std::vec
 }
 
 // Puts the pairs of each meeting where they belong; returns those that are left to views.
-std::vector<Meeting> sort_in(const std::vector<Meeting>& all, std::span<const Part> parts,
+std::vector<Meeting> sort_in(const std::vector<Meeting>& all, std::span<Part> parts,
                              const std::vector<std::uint8_t>& complete, bool none_left,
                              RunMeetings& out) {
   std::vector<Meeting> left;
@@ -205,6 +205,7 @@ std::vector<Meeting> sort_in(const std::vector<Meeting>& all, std::span<const Pa
     std::vector<RunPair>& to = meeting.a == meeting.b ? out.inside : out.between;
     for (std::size_t k = begin; k < end; ++k) {
       to.insert(to.end(), parts[k].pairs.begin(), parts[k].pairs.end());
+      parts[k].pairs = {};  // to make room
     }
     ++out.meetings;
   }
@@ -237,11 +238,11 @@ RunSample sample_of(const Runs& runs, const RunTrees& trees, std::span<const Mee
   return out;
 }
 
-// The blocks of the runs in some pairs, and the pairs of blocks.
+// The blocks of the runs in some pairs.
 struct Blocks {
+  std::vector<std::uint32_t> place;           // per run: of its block, or kNoBlock
   UninitializedVector<RunBlock> more;         // behind those that the meetings have
   UninitializedVector<VertexBlock> vertices;  // of all; only those of the pairs' runs are filled
-  std::vector<BlockPair> pairs;
 };
 
 Blocks blocks_of(const Scene& scene, const RunMeetings& meetings, std::span<const RunPair> between,
@@ -249,13 +250,14 @@ Blocks blocks_of(const Scene& scene, const RunMeetings& meetings, std::span<cons
                  unsigned threads) {
   const Runs& runs = *meetings.of;
   const std::vector<std::uint32_t> used = runs_of(between, inside, runs.runs.size());
-  std::vector<std::uint32_t> place = blocks_by_run(runs);
+  Blocks out;
+  out.place = blocks_by_run(runs);
+  std::vector<std::uint32_t>& place = out.place;
   const auto given = static_cast<std::uint32_t>(runs.blocks.size());
   std::uint32_t size = given;
   for (const std::uint32_t run : used) {
     if (place[run] == kNoBlock) place[run] = size++;
   }
-  Blocks out;
   out.more.resize(size - given);
   const bool drops = !neighbours && !inside.empty();
   if (drops) out.vertices.resize(size);
@@ -277,13 +279,6 @@ Blocks blocks_of(const Scene& scene, const RunMeetings& meetings, std::span<cons
                  if (drops) fill_vertices(scene, own, out.vertices[block]);
                }
              });
-  out.pairs.reserve(between.size() + inside.size());
-  for (const RunPair& pair : between) {
-    out.pairs.push_back({place[pair.a], place[pair.b], false});
-  }
-  for (const RunPair& pair : inside) {
-    out.pairs.push_back({place[pair.a], place[pair.b], !neighbours});
-  }
   return out;
 }
 
@@ -313,25 +308,47 @@ std::vector<std::uint8_t> find_runs(const Runs& runs, const RunTrees& trees,
   return complete;
 }
 
+// Pairs of blocks that are compared at a time.
+constexpr std::size_t kBlockPairs = 2048;
+
+// The pairs of triangles that some pairs of runs give, in several parts and unsorted.
+std::vector<std::vector<TrianglePair>> unsorted_pairs(
+    const Scene& scene, const RunMeetings& meetings, std::span<const RunPair> between,
+    std::span<const RunPair> inside, double clearance, bool neighbours, unsigned threads) {
+  const Blocks blocks = blocks_of(scene, meetings, between, inside, clearance, neighbours, threads);
+  const auto block_pair = [&](std::size_t k) {
+    const bool same = k >= between.size();
+    const RunPair& pair = same ? inside[k - between.size()] : between[k];
+    return BlockPair{blocks.place[pair.a], blocks.place[pair.b], same && !neighbours};
+  };
+  const std::size_t all = between.size() + inside.size(), chunks = chunks_for(all, 64, threads);
+  std::vector<std::vector<TrianglePair>> found(chunks);
+  for_chunks(all, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    std::vector<BlockPair> pairs;
+    pairs.reserve(std::min(end - begin, kBlockPairs));
+    RunFindings findings;
+    for (std::size_t k = begin; k < end; ++k) {
+      pairs.push_back(block_pair(k));
+      if (pairs.size() < kBlockPairs && k + 1 < end) continue;
+      compare_blocks({.first = meetings.of->blocks, .second = blocks.more}, blocks.vertices, pairs,
+                     findings);
+      pairs.clear();
+    }
+    found[chunk] = std::move(findings.certain);
+    for (const TrianglePair& pair : findings.perhaps) {
+      if (boxes_meet(scene, pair, half_of(clearance))) found[chunk].push_back(pair);
+    }
+  });
+  return found;
+}
+
 // The pairs of triangles that some pairs of runs give.
 std::vector<TrianglePair> pairs_of_some(const Scene& scene, const RunMeetings& meetings,
                                         std::span<const RunPair> between,
                                         std::span<const RunPair> inside, double clearance,
                                         bool neighbours, unsigned threads) {
-  const Blocks blocks = blocks_of(scene, meetings, between, inside, clearance, neighbours, threads);
-  const std::size_t chunks = chunks_for(blocks.pairs.size(), 64, threads);
-  std::vector<std::vector<TrianglePair>> found(chunks);
-  for_chunks(
-      blocks.pairs.size(), chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-        RunFindings findings;
-        compare_blocks({.first = meetings.of->blocks, .second = blocks.more}, blocks.vertices,
-                       std::span(blocks.pairs).subspan(begin, end - begin), findings);
-        found[chunk] = std::move(findings.certain);
-        for (const TrianglePair& pair : findings.perhaps) {
-          if (boxes_meet(scene, pair, half_of(clearance))) found[chunk].push_back(pair);
-        }
-      });
-  return sorted_unique(found, threads);
+  return sorted_unique(
+      unsorted_pairs(scene, meetings, between, inside, clearance, neighbours, threads), threads);
 }
 
 // Whether boxes of triangles overlap so often that views are worth while, by a sample of the pairs,
@@ -432,6 +449,7 @@ PairParts split_meetings(const Scene& scene, double clearance, unsigned threads,
   if (meetings.crowded) return {.runs = {}, .rest = pair_regions(scene, clearance, false, threads)};
   const std::vector<Box> regions = boxes_of_meetings(*runs, meetings.all);
   gather_scattered(scene, clearance, regions, threads, scattered, *runs);
+  scattered = {};  // to make room
   return split(scene, meetings, regions, clearance, threads, all, runs);
 }
 

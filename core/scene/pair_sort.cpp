@@ -73,9 +73,9 @@ std::vector<TrianglePair> sorted_range(Parts parts, std::uint64_t from, std::uin
   return out;
 }
 
-}  // namespace
-
-std::vector<TrianglePair> sorted_unique(Parts parts, unsigned threads) {
+// `release` is called when the parts are no longer read.
+template <class Release>
+std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads, const Release& release) {
   std::uint64_t least = UINT64_MAX, most = 0;
   std::size_t total = 0;
   for (const auto& part : parts) {
@@ -101,11 +101,28 @@ std::vector<TrianglePair> sorted_unique(Parts parts, unsigned threads) {
   for_chunks(range, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     sorted[chunk] = sorted_range(parts, least + begin, least + end);
   });
-  std::vector<TrianglePair> out = std::move(sorted[0]);
-  for (std::size_t k = 1; k < chunks; ++k) {
-    out.insert(out.end(), sorted[k].begin(), sorted[k].end());
+  release();
+  if (chunks == 1) return std::move(sorted[0]);
+  std::size_t distinct = 0;
+  for (const auto& part : sorted) distinct += part.size();
+  std::vector<TrianglePair> out;
+  out.reserve(distinct);
+  for (auto& part : sorted) {
+    out.insert(out.end(), part.begin(), part.end());
+    part = {};
   }
   return out;
+}
+
+}  // namespace
+
+std::vector<TrianglePair> sorted_unique(Parts parts, unsigned threads) {
+  return sorted_of(parts, threads, [] {});
+}
+
+std::vector<TrianglePair> sorted_unique(std::vector<std::vector<TrianglePair>>&& parts,
+                                        unsigned threads) {
+  return sorted_of(parts, threads, [&] { parts.clear(); });
 }
 
 PairPool::PairPool(std::size_t lists, std::size_t buffer)
@@ -142,7 +159,7 @@ std::vector<TrianglePair> PairPool::take(unsigned threads) {
   for (List& list : lists_) parts.push_back(std::move(list.pairs));
   lists_.clear();
   if (!distinct_.empty()) parts.push_back(std::exchange(distinct_, {}));
-  return sorted_unique(parts, threads);
+  return sorted_unique(std::move(parts), threads);
 }
 
 }  // namespace farcull

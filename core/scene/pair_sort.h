@@ -18,6 +18,9 @@ namespace farcull {
 /// cores).
 std::vector<TrianglePair> sorted_unique(std::span<const std::vector<TrianglePair>> parts,
                                         unsigned threads);
+/// The same; empties the parts as soon as it has read them, to make room.
+std::vector<TrianglePair> sorted_unique(std::vector<std::vector<TrianglePair>>&& parts,
+                                        unsigned threads);
 
 /// Collects pairs from several threads, each pair as often as it is found. A thread adds to a list
 /// of its own. A list that reaches its share of the larger of `buffer` and the number of distinct

@@ -385,8 +385,10 @@ TEST(PairSort, SortsAndDropsDuplicates) {
       const std::vector<TrianglePair> sorted = sorted_unique(parts, threads);
       ASSERT_TRUE(std::equal(sorted.begin(), sorted.end(), expected.begin(), expected.end()));
     }
+    const std::vector<TrianglePair> sorted = sorted_unique(std::move(parts), 2);
+    ASSERT_TRUE(std::equal(sorted.begin(), sorted.end(), expected.begin(), expected.end()));
   }
-  EXPECT_TRUE(sorted_unique({}, 1).empty());
+  EXPECT_TRUE(sorted_unique(std::span<const std::vector<TrianglePair>>(), 1).empty());
 }
 
 }  // namespace
