@@ -27,6 +27,8 @@ farcull_packages=(
   # exact predicates, linear algebra, tests, command line, records
   libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev libhwy-dev libgtest-dev librapidcheck-dev libcli11-dev
   nlohmann-json3-dev libfmt-dev
+  # compressed meshes
+  zlib1g-dev
   # results, pictures, figures
   libsqlitecpp-dev libsqlite3-dev libpng-dev gnuplot-nox
   # libraries that farcull bench compares with, and benchmarks of kernels; the build works without

@@ -97,7 +97,8 @@ inline constexpr const char* kClearanceHelp =
     "pairs at this distance or less collide, in world\n"
     "units (far-pairs, exact); default 0";
 inline constexpr const char* kSceneHelp =
-    "mesh files (.obj .off .ply .stl), each an object;\n"
+    "mesh files (.obj .off .ply .stl, also .obj.gz and\n"
+    "so on), each an object;\n"
     "or one scene file (.json); or one built-in scene\n"
     "(`farcull scenes` lists them)";
 inline constexpr const char* kJsonHelp =
