@@ -34,8 +34,9 @@ farcull_packages=(
   # libraries that farcull bench compares with, and benchmarks of kernels; the build works without
   libfcl-dev libembree-dev libbullet-dev libode-dev libtbb-dev libbenchmark-dev
 )
-# What only the test of the report needs: it opens the page in a browser, prints it and reads the PDF.
-farcull_test_packages=(chromium poppler-utils sqlite3)
+# What only tests need, which skip what is missing and name it: the test of the report opens the page
+# in a browser, prints it and reads the PDF; another one reads the manual and tries completion.
+farcull_test_packages=(chromium poppler-utils sqlite3 mandoc groff-base man-db zsh fish)
 
 # Prints those of farcull_packages that are not completely installed, one per line.
 farcull_missing() {

@@ -13,6 +13,7 @@
 
 namespace farcull {
 
+inline constexpr const char* kVersion = "farcull 0.1";
 inline constexpr int kExitDone = 0, kExitBroken = 1, kExitBad = 2;  // exit statuses
 
 /// Declares SCENE, which has to be given.
