@@ -27,13 +27,16 @@ farcull_packages=(
   # exact predicates, linear algebra, tests, command line, records
   libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev libhwy-dev libgtest-dev librapidcheck-dev libcli11-dev
   nlohmann-json3-dev libfmt-dev
+  # compressed meshes
+  zlib1g-dev
   # results, pictures, figures
   libsqlitecpp-dev libsqlite3-dev libpng-dev gnuplot-nox
   # libraries that farcull bench compares with, and benchmarks of kernels; the build works without
   libfcl-dev libembree-dev libbullet-dev libode-dev libtbb-dev libbenchmark-dev
 )
-# What only the test of the report needs: it opens the page in a browser, prints it and reads the PDF.
-farcull_test_packages=(chromium poppler-utils sqlite3)
+# What only tests need, which skip what is missing and name it: the test of the report opens the page
+# in a browser, prints it and reads the PDF; another one reads the manual and tries completion.
+farcull_test_packages=(chromium poppler-utils sqlite3 mandoc groff-base man-db zsh fish)
 
 # Prints those of farcull_packages that are not completely installed, one per line.
 farcull_missing() {

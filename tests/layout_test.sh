@@ -61,6 +61,7 @@ export libraries='
 EGL/OpenGL ^(epoxy|EGL|GL|GLES[0-9]*|KHR)/ core/gl tests/faults/*
 CGAL       ^CGAL/                          verify experiments/measure/peers/cgal* tests
 GMP/MPFR   ^(gmp|gmpxx|mpfr)\.h$           verify verify/certificate tests
+zlib       ^zlib\.h$                       experiments/scenes/mesh tests
 '
 
 export most_folders=16 # in experiments/

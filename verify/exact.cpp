@@ -115,9 +115,9 @@ bool meet_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s
            CGAL::coplanar_orientation(point(p), point(q), point(r), point(s)) == CGAL::POSITIVE;
   }
   // Segments on one line, ordered as their coordinates are: beyond the same end?
-  const auto [lo, hi] = std::minmax(p, q, lexicographically_less);
-  const auto below = [&](const Vec3& x) { return lexicographically_less(x, lo); };
-  const auto above = [&](const Vec3& x) { return lexicographically_less(hi, x); };
+  const auto ends = std::minmax(p, q, lexicographically_less);
+  const auto below = [&](const Vec3& x) { return lexicographically_less(x, ends.first); };
+  const auto above = [&](const Vec3& x) { return lexicographically_less(ends.second, x); };
   return (below(r) && below(s)) || (above(r) && above(s));
 }
 

@@ -101,4 +101,9 @@ std::vector<float> GlCanvas::samples(Verb verb, const std::vector<Draw>& draws) 
   return guarded([&] { return state_->samples(verb, draws); });
 }
 
+std::unique_ptr<Canvas> gl_canvas(const GlContext& context, DepthMode mode,
+                                  const SolidProgram& solid, const GlCanvasOptions& options) {
+  return std::make_unique<GlCanvas>(context, mode, solid, options);
+}
+
 }  // namespace farcull

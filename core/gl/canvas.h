@@ -46,4 +46,8 @@ class GlCanvas final : public Canvas {
   std::unique_ptr<CanvasState> state_;  // null after a failure
 };
 
+/// The same behind the interface.
+std::unique_ptr<Canvas> gl_canvas(const GlContext& context, DepthMode mode,
+                                  const SolidProgram& solid, const GlCanvasOptions& options = {});
+
 }  // namespace farcull

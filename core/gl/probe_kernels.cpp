@@ -43,13 +43,6 @@ std::uint32_t bits(float value) { return std::bit_cast<std::uint32_t>(value); }
 
 }  // namespace
 
-SolidCase solid_case_at(std::size_t i) {
-  constexpr float kHalf = 0.5f * kSolidSide;
-  return {static_cast<float>(i % kSolidSide) + 0.5f - kHalf,
-          static_cast<float>(i / kSolidSide) + 0.5f - kHalf,
-          {}};
-}
-
 std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProgram& solid,
                                        std::span<const SolidCase> cases) {
   if (cases.size() != kSolidCases) throw std::logic_error("device_solids: not as many cases");

@@ -17,7 +17,12 @@ namespace farcull {
 constexpr int kSolidSide = 128;
 constexpr std::size_t kSolidCases = std::size_t{kSolidSide} * kSolidSide;
 /// The pixel centre at which case i is asked.
-SolidCase solid_case_at(std::size_t i);
+inline SolidCase solid_case_at(std::size_t i) {
+  constexpr float kHalf = 0.5f * kSolidSide;
+  return {static_cast<float>(i % kSolidSide) + 0.5f - kHalf,
+          static_cast<float>(i / kSolidSide) + 0.5f - kHalf,
+          {}};
+}
 
 /// The answers of `solid` for kSolidCases cases, each with the centre of solid_case_at. This
 /// function and the next two make the context current while they run. Throws Error as GlCanvas

@@ -10,7 +10,6 @@
 namespace farcull {
 namespace {
 
-constexpr double kUnit = 0x1p-53;
 constexpr double kLargest = 0x1p20;         // px, of a coordinate that kernels take
 constexpr double kSmallest = 0x1p-60;       // px, of one that is not zero
 constexpr double kLeastWidening = 0x1p-40;  // px

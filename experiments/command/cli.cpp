@@ -18,8 +18,10 @@
 #include "experiments/command/bench.h"
 #include "experiments/command/check.h"
 #include "experiments/command/compare.h"
+#include "experiments/command/completion.h"
 #include "experiments/command/doctor.h"
 #include "experiments/command/experiment.h"
+#include "experiments/command/manual.h"
 #include "experiments/command/options.h"
 #include "experiments/command/picture.h"
 #include "experiments/command/report.h"
@@ -93,7 +95,7 @@ Error refusal(const CLI::App& app, const CLI::ParseError& error) {
 void describe(CLI::App& app) {
   app.get_formatter()->column_width(28);
   app.set_help_flag("-h,--help", "print this and exit");
-  app.set_version_flag("--version", std::string("farcull 0.1, commit ") + FARCULL_COMMIT,
+  app.set_version_flag("--version", std::string(kVersion) + ", commit " + FARCULL_COMMIT,
                        "print the version and exit");
   app.require_subcommand(0, 1);
   app.footer(
@@ -123,12 +125,14 @@ int dispatch(int argc, char** argv) {
   PictureCommand picture;
   ReportCommand report;
   ScenesCommand scenes;
+  CompletionCommand completion;
+  ManualCommand manual;
   std::vector<std::pair<const CLI::App*, std::function<int()>>> commands;
   const auto add = [&](auto&... command) {  // in the order of the help
     (commands.emplace_back(command.add_to(app), [&command] { return command.run(); }), ...);
   };
-  add(run, verify, plan, compare, bench, doctor, check, experiments, merge, picture, report,
-      scenes);
+  add(run, verify, plan, compare, bench, doctor, check, experiments, merge, picture, report, scenes,
+      completion, manual);
 
   try {
     app.parse(argc, argv);

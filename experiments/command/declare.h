@@ -46,6 +46,27 @@ CLI::Option* add_bare_option(CLI::App& command, const char* name, std::vector<st
 /// Declares an option without a value.
 void add_flag(CLI::App& command, const char* name, bool& value, const char* help);
 
+/// An option, or an argument where `names` is empty, as the help shows it.
+struct DeclaredOption {
+  std::vector<std::string> names;  // with their dashes, as in "-o", "--out"
+  std::string type;  // stands for the value; empty for a flag. The name of an argument
+  std::string help;  // lines as in the help
+  bool flag = false;
+  bool bare = false;      // its value may be left out
+  bool many = false;      // an argument that may be given several times
+  bool required = false;  // an argument that has to be given
+};
+/// A command as it was declared, with all below it: completion and the manual are made of this.
+struct DeclaredCommand {
+  std::string name;  // with those of its parents, as in "farcull experiment all"
+  std::string title;
+  std::string footer;
+  std::vector<DeclaredOption> options;    // in the order of the help
+  std::vector<DeclaredOption> arguments;  // in their order
+  std::vector<DeclaredCommand> commands;
+};
+DeclaredCommand declared(const CLI::App& app);
+
 /// Whether the parsed command line has this.
 bool given(const CLI::App& command);
 bool given(const CLI::Option& option);

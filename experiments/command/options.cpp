@@ -1,9 +1,6 @@
 // Checks values and places of output before a command runs.
 #include "experiments/command/options.h"
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,6 +14,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/terminal.h"
 #include "core/base/text.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"
@@ -40,7 +38,7 @@ void complain(const std::string& message) {
 
 Progress TerminalProgress::callback() {
   const char* const terminal = std::getenv("TERM");
-  if (!::isatty(STDERR_FILENO) || terminal == nullptr || std::string_view(terminal) == "dumb")
+  if (!is_terminal(stderr) || terminal == nullptr || std::string_view(terminal) == "dumb")
     return {};
   return [this](const std::string& stage) { show(stage + " ..."); };
 }
@@ -51,9 +49,8 @@ void TerminalProgress::clear() {
 
 // A line that wraps could not be written over, so it is cut to the terminal as it is now.
 void TerminalProgress::show(std::string line) {
-  winsize size = {};
-  if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1)
-    line = line.substr(0, size.ws_col - 1u);
+  if (const unsigned columns = terminal_columns(stderr); columns > 1)
+    line = line.substr(0, columns - 1);
   std::fprintf(stderr, "\r\033[K%s", line.c_str());
   std::fflush(stderr);
   shown_ = true;

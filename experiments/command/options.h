@@ -13,6 +13,7 @@
 
 namespace farcull {
 
+inline constexpr const char* kVersion = "farcull 0.1";
 inline constexpr int kExitDone = 0, kExitBroken = 1, kExitBad = 2;  // exit statuses
 
 /// Declares SCENE, which has to be given.
@@ -97,7 +98,8 @@ inline constexpr const char* kClearanceHelp =
     "pairs at this distance or less collide, in world\n"
     "units (far-pairs, exact); default 0";
 inline constexpr const char* kSceneHelp =
-    "mesh files (.obj .off .ply .stl), each an object;\n"
+    "mesh files (.obj .off .ply .stl, also .obj.gz and\n"
+    "so on), each an object;\n"
     "or one scene file (.json); or one built-in scene\n"
     "(`farcull scenes` lists them)";
 inline constexpr const char* kJsonHelp =

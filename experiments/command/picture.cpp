@@ -3,11 +3,11 @@
 #include "experiments/command/picture.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <charconv>
 
 #include "core/base/error.h"
+#include "core/base/terminal.h"
 #include "experiments/scenes/mesh/mesh.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/system/output_file.h"
@@ -62,7 +62,7 @@ std::string checked_output(const Text& output, const std::vector<NamedFile>& inp
     throw Error("-o", "it does not say where the picture goes",
                 "give -o FILE.png, or -o - for standard output");
   const std::string path = *checked({.picture = output}, inputs).picture;
-  if (path == "-" && ::isatty(STDOUT_FILENO)) {
+  if (path == "-" && is_terminal(stdout)) {
     throw Error("-o", "standard output is a terminal, which shows no PNG",
                 "let it go somewhere, or give -o FILE.png");
   }

@@ -3,7 +3,6 @@
 #include "experiments/lemma/doctor.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +15,7 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
+#include "core/base/terminal.h"
 #include "core/gl/canvas.h"
 #include "core/gl/probe.h"
 #include "core/native/canvas.h"
@@ -289,13 +289,13 @@ int doctor_command(const DoctorArguments& arguments) {
   // Where nothing fits, the context says so in an Error.
   const GlContext context(chosen ? std::to_string(*chosen) : arguments.device);
   const GlInfo& gl = context.info();
-  const int resolution = GlCanvas(context, DepthMode::fixed, {}).limits().max_resolution;
+  const int resolution = gl_canvas(context, DepthMode::fixed, {})->limits().max_resolution;
   const bool people = arguments.json != "-";
   if (people)
     write_output("-", native_text(native) + "\n" + devices_table(devices, chosen.value_or(-1)) +
                           limits_table(gl, resolution) + arithmetic_line(callers_floating_point()));
 
-  const bool terminal = isatty(STDERR_FILENO) != 0;
+  const bool terminal = is_terminal(stderr);
   const Stopwatch probing;
   const std::vector<ProbeResult> probes =
       all_probes(context, [terminal](const std::string& assumption) {

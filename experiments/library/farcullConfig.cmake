@@ -3,7 +3,7 @@ include(CMakeFindDependencyMacro)
 find_dependency(Threads)
 find_dependency(PkgConfig)
 # Each as NAME:MODULE:DEBIAN-PACKAGE.
-foreach(needed epoxy:epoxy:libepoxy-dev hwy:libhwy:libhwy-dev)
+foreach(needed @farcull_links@)
   string(REPLACE ":" ";" needed ${needed})
   list(GET needed 0 name)
   list(GET needed 1 module)

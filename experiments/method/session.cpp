@@ -1,11 +1,10 @@
 // Contexts, canvases and devices are opened on demand.
 #include "experiments/method/session.h"
 
-#include <unistd.h>
-
 #include <cstdio>
 
 #include "core/base/error.h"
+#include "core/base/terminal.h"
 #include "experiments/method/kernel_probes.h"
 #include "experiments/method/options.h"
 
@@ -13,8 +12,7 @@ namespace farcull {
 
 Say say_on_stderr() {
   return [](const std::string& line) {
-    std::fprintf(stderr, "%sfarcull: %s\n", ::isatty(STDERR_FILENO) ? "\r\033[K" : "",
-                 line.c_str());
+    std::fprintf(stderr, "%sfarcull: %s\n", is_terminal(stderr) ? "\r\033[K" : "", line.c_str());
   };
 }
 
@@ -63,14 +61,14 @@ Canvas& Session::canvas(const Fattener& fattener, const GlCanvasOptions& options
         NativeCanvasOptions{.depth_bits = options.depth_format == DepthFormat::fixed24 ? 24 : 32,
                             .threads = threads_});
   } else {
-    canvas = std::make_unique<GlCanvas>(context(), fattener.mode, fattener.solid, options);
+    canvas = gl_canvas(context(), fattener.mode, fattener.solid, options);
   }
   return *canvas;
 }
 
 int Session::max_resolution() {
   if (canvas_device().native) return native_limits().max_resolution;
-  return GlCanvas(context(), DepthMode::fixed, {}).limits().max_resolution;
+  return gl_canvas(context(), DepthMode::fixed, {})->limits().max_resolution;
 }
 
 PairDevice& Session::pairs() {

@@ -11,10 +11,12 @@
 #include <initializer_list>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "core/base/error.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/mesh/foreign.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
@@ -82,8 +84,6 @@ std::string mesh_path(const std::string& scene_file, const std::string& mesh) {
   return (std::filesystem::path(scene_file).parent_path() / mesh).string();
 }
 
-std::string stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
-
 // The readers of values: each takes the value and its place in the file, as in objects[1].scale.
 class SceneFile {
  public:
@@ -92,7 +92,7 @@ class SceneFile {
   Scene read(const json& root) {
     require(root.is_object(), "", "the file must be a JSON object", "write {\"objects\": [...]}");
     check_keys(root, "", {"name", "objects"});
-    const std::string name = root.contains("name") ? text(root["name"], "name") : stem(path_);
+    const std::string name = root.contains("name") ? text(root["name"], "name") : mesh_stem(path_);
     const std::string form = "write \"objects\": [{\"mesh\": FILE}, ...]";
     require(root.contains("objects"), "objects", "is missing", form);
     const json& objects = root["objects"];
@@ -117,7 +117,7 @@ class SceneFile {
     // The system would end the path there and give a mesh that was read before.
     require(mesh.find('\0') == std::string::npos, place + ".mesh", "contains a NUL byte",
             "name a mesh file");
-    std::string name = stem(mesh);
+    std::string name = mesh_stem(mesh);
     if (object.contains("name")) name = text(object["name"], place + ".name");
     const Placement placement = read_placement(object, place);
     Split split = Split::kNone;
@@ -254,11 +254,12 @@ Scene scene_of_meshes(const std::vector<std::string>& paths, MeshCache& meshes) 
     }
     mesh_format(path);
   }
-  std::string name = stem(paths[0]);
-  for (std::size_t i = 1; i < paths.size() && i < 3; ++i) name += "+" + stem(paths[i]);
+  std::string name = mesh_stem(paths[0]);
+  for (std::size_t i = 1; i < paths.size() && i < 3; ++i) name += "+" + mesh_stem(paths[i]);
   if (paths.size() > 3) name += fmt::format("+{} more", paths.size() - 3);
   SceneBuilder builder(clean_name(name), paths[0]);
-  for (const std::string& path : paths) builder.add(meshes.get(path), stem(path), Split::kNone, {});
+  for (const std::string& path : paths)
+    builder.add(meshes.get(path), mesh_stem(path), Split::kNone, {});
   return builder.finish();
 }
 
@@ -272,6 +273,7 @@ Scene load_any_scene(const std::vector<std::string>& arguments, MeshCache& meshe
   if (is_builtin_scene(name)) return make_builtin_scene(name);
   if (is_scene_file(name)) return parse(read_file(name, kMaxSceneFileBytes), name, meshes);
   if (has_mesh_extension(name)) return scene_of_meshes(arguments, meshes);
+  if (const std::optional<Error> foreign = foreign_mesh(name)) throw *foreign;
   throw Error(name,
               "neither a built-in scene nor a file that ends in .obj, .off, .ply, .stl or .json",
               "correct the name; farcull scenes lists the built-in scenes");

@@ -10,8 +10,8 @@
 namespace farcull {
 
 /// The scene that the arguments name. They are one of
-/// - one or more mesh files (.obj, .off, .ply, .stl), each an object named by its file without
-/// extension;
+/// - one or more mesh files (.obj, .off, .ply, .stl, or these and .gz), each an object named by its
+///   file without extension;
 /// - one built-in scene, perhaps with suffixes (builtin_scenes.h);
 /// - one scene file, JSON:
 ///     {"name": "two-bunnies", "objects": [

@@ -2,7 +2,6 @@
 #include "experiments/studies/run_studies.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -11,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
+#include "core/base/terminal.h"
 #include "experiments/measure/lab.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/packaged.h"
@@ -146,7 +146,7 @@ class Runner {
     const std::int64_t run = store_.begin_run(request_.provenance);
     Interruptible interruptible(static_cast<long>(now_.points), "points",
                                 "they are kept; the same command with --resume goes on",
-                                ::isatty(STDERR_FILENO));
+                                is_terminal(stderr));
     interruptible.done(static_cast<long>(now_.done));
     for (std::size_t t = 0; t < tasks_.size(); ++t) {
       Task& task = tasks_[t];

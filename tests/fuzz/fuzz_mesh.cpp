@@ -1,11 +1,14 @@
 // The mesh readers.
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <map>
 #include <set>
 #include <string_view>
 
+#include "experiments/scenes/mesh/builder.h"
+#include "experiments/scenes/mesh/gzip.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
@@ -96,14 +99,54 @@ void check_rewritten(const Mesh& mesh) {
           "vertices that change when written and read");
 }
 
+// What comes out of gzip data is a string that grows by doubling, so at most 2 bytes for each byte
+// of the text in one block, and 3 while it is copied. Deflate makes at most 1032 bytes of one.
+constexpr AllocationLimits kGunzipLimits = {
+    .once_per_byte = 2 * 1032, .all_per_byte = 3 * 1032, .constant = 16 << 10};
+
+std::string gzipped(std::string_view bytes) {
+  z_stream stream = {};
+  require(deflateInit2(&stream, 1, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY) == Z_OK,
+          "zlib does not start");
+  std::string out(deflateBound(&stream, bytes.size()) + 64, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  const int code = deflate(&stream, Z_FINISH);
+  out.resize(out.size() - stream.avail_out);
+  deflateEnd(&stream);
+  require(code == Z_STREAM_END, "zlib does not end");
+  return out;
+}
+
+/// The mesh in words, or the Error.
+std::string told(std::string_view bytes, MeshFormat format) {
+  try {
+    const Mesh mesh = parse_mesh(bytes, format, "fuzz");
+    return fmt::format("{} vertices, {} triangles, {} groups", mesh.vertices.size(),
+                       mesh.triangles.size(), mesh.group_names.size());
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
 }  // namespace
 
 Answer fuzz_mesh(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return Answer::refused;
   const MeshFormat format = kFormats[data[0] & 3];
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
-  const auto mesh =
-      answer_of(kLimits, bytes.size(), [&] { return parse_mesh(bytes, format, "fuzz"); });
+  std::size_t paid = bytes.size();
+  if (is_gzip(bytes) && !(format == MeshFormat::kStl && is_binary_stl(bytes))) {
+    const auto text = answer_of(kGunzipLimits, bytes.size(), [&] { return gunzip(bytes, "fuzz"); });
+    if (!text) return Answer::refused;
+    paid += text->size();
+  } else if ((data[0] & 4) != 0) {
+    require(told(gzipped(bytes), format) == told(bytes, format),
+            "another answer where the file is compressed");
+  }
+  const auto mesh = answer_of(kLimits, paid, [&] { return parse_mesh(bytes, format, "fuzz"); });
   if (!mesh) return Answer::refused;
   check_mesh(*mesh);
   check_rewritten(*mesh);

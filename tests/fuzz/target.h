@@ -22,7 +22,8 @@ namespace farcull {
 enum class Answer : std::uint8_t { refused, accepted, proved, refuted, not_proved };
 
 /// The first byte picks the format by its two lowest bits, OBJ, OFF, PLY, STL ('0' .. '3' will do);
-/// the others are the file.
+/// the others are the file. With the bit above them ('4' .. '7') the file is compressed as well,
+/// and must be answered alike.
 Answer fuzz_mesh(const std::uint8_t* data, std::size_t size);
 /// The text of a scene file beside the meshes of tests/fuzz/meshes.
 Answer fuzz_scene_file(const std::uint8_t* data, std::size_t size);

@@ -49,4 +49,7 @@ Mesh parse_off(std::string_view bytes, const std::string& name);
 Mesh parse_ply(std::string_view bytes, const std::string& name);
 Mesh parse_stl(std::string_view bytes, const std::string& name);
 
+/// Whether the length of the bytes is what a binary STL file with their header has.
+bool is_binary_stl(std::string_view bytes);
+
 }  // namespace farcull

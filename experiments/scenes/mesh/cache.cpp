@@ -1,12 +1,12 @@
 // Keeps meshes by their real paths; of a numbered mesh, the frame that was read last.
 #include "experiments/scenes/mesh/cache.h"
-#include "experiments/scenes/mesh/load.h"
 
 #include <fmt/format.h>
 
-#include <cstdlib>
-#include <memory>
 #include <utility>
+
+#include "experiments/scenes/mesh/load.h"
+#include "experiments/system/real_path.h"
 
 namespace farcull {
 namespace {
@@ -58,9 +58,7 @@ const Mesh& MeshCache::get(const std::string& path) {
     if (moving.frame != *frame_) moving = {*frame_, load_mesh(file)};
     return moving.mesh;
   }
-  // realpath: std::filesystem would hold several more paths at once.
-  const std::unique_ptr<char, void (*)(void*)> file(realpath(path.c_str(), nullptr), &std::free);
-  const std::string key = file ? file.get() : path;
+  const std::string key = real_path(path);
   auto entry = meshes_.find(key);
   if (entry == meshes_.end()) entry = meshes_.emplace(key, load_mesh(path)).first;
   return entry->second;

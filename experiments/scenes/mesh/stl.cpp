@@ -73,11 +73,6 @@ bool is_text(std::string_view bytes) {
   return bytes.substr(0, 4096).find('\0') == std::string_view::npos;
 }
 
-bool is_exactly_binary(std::string_view bytes) {
-  return bytes.size() >= kHeaderBytes &&
-         bytes.size() - kHeaderBytes == std::uint64_t{little_word(bytes, 80)} * kTriangleBytes;
-}
-
 Mesh parse_binary(std::string_view bytes, const std::string& name) {
   if (bytes.size() < kHeaderBytes) {
     throw Error(
@@ -88,7 +83,7 @@ Mesh parse_binary(std::string_view bytes, const std::string& name) {
         "give an STL file, whole");
   }
   const std::uint64_t triangles = little_word(bytes, 80);
-  if (!is_exactly_binary(bytes)) {
+  if (!is_binary_stl(bytes)) {
     throw Error(
         name,
         fmt::format("the header promises {} triangles, {} bytes in all, but the file has {} bytes",
@@ -172,8 +167,13 @@ Mesh parse_text(std::string_view bytes, const std::string& name) {
 
 }  // namespace
 
+bool is_binary_stl(std::string_view bytes) {
+  return bytes.size() >= kHeaderBytes &&
+         bytes.size() - kHeaderBytes == std::uint64_t{little_word(bytes, 80)} * kTriangleBytes;
+}
+
 Mesh parse_stl(std::string_view bytes, const std::string& name) {
-  if (!is_exactly_binary(bytes) && is_text(bytes)) return parse_text(bytes, name);
+  if (!is_binary_stl(bytes) && is_text(bytes)) return parse_text(bytes, name);
   return parse_binary(bytes, name);
 }
 

@@ -26,6 +26,13 @@ if grep -rnF -e "$build" -e "$source" "$work/prefix" --include='*.cmake' --inclu
   fail 'what is installed names the folder that it was built in'
 fi
 "$work/prefix/bin/farcull" --version >/dev/null
+share=$work/prefix/share
+for file in man/man1/farcull.1 bash-completion/completions/farcull zsh/site-functions/_farcull \
+  fish/vendor_completions.d/farcull.fish; do
+  grep -q farcull "$share/$file" || fail "share/$file is not installed, or empty"
+done
+"$work/prefix/bin/farcull" man | cmp -s - "$share/man/man1/farcull.1" ||
+  fail 'the manual is not that of the program'
 
 "$cmake" -S "$source/docs/example" -B "$work/by_cmake" -DCMAKE_PREFIX_PATH="$work/prefix" \
   -DCMAKE_CXX_COMPILER="$cxx" >"$work/log" || fail "$(cat "$work/log")"

@@ -1,0 +1,61 @@
+// Compiled in place of the rest of this folder where farcull is built without OpenGL
+// (-DFARCULL_GL=OFF). GlContext cannot be made then, so that nothing that takes one is ever called;
+// those functions are here for the linker, and end in the same Error.
+#include "core/base/error.h"
+#include "core/gl/canvas.h"
+#include "core/gl/context.h"
+#include "core/gl/pairs.h"
+#include "core/gl/picture.h"
+#include "core/gl/probe.h"
+#include "core/gl/probe_kernels.h"
+
+namespace farcull {
+namespace {
+
+[[noreturn]] void refuse(const std::string& device = "") {
+  throw Error(device.empty() ? "OpenGL" : "--device " + device,
+              "this farcull was built without OpenGL",
+              "use --device native, or build it with -DFARCULL_GL=ON (Debian: libepoxy-dev, "
+              "libegl-dev)");
+}
+
+}  // namespace
+
+struct GlContext::Handles {};
+
+GlContext::GlContext(const std::string& device) { refuse(device); }
+GlContext::~GlContext() = default;
+const GlInfo& GlContext::info() const { refuse(); }
+std::vector<GlDevice> GlContext::list_devices() { return {}; }
+bool GlContext::hardware_listed() { refuse(); }
+
+std::unique_ptr<Canvas> gl_canvas(const GlContext&, DepthMode, const SolidProgram&,
+                                  const GlCanvasOptions&) {
+  refuse();
+}
+
+std::unique_ptr<PairBackend> gl_pair_backend(const GlContext&, std::size_t) { refuse(); }
+
+std::vector<ProbeResult> run_probes(const GlContext&, const ProbeOptions&,
+                                    const std::function<void(const std::string&)>&) {
+  refuse();
+}
+
+std::vector<SolidAnswer> device_solids(const GlContext&, const SolidProgram&,
+                                       std::span<const SolidCase>) {
+  refuse();
+}
+
+std::vector<IntervalAnswer> device_intervals(const GlContext&, std::span<const IntervalCase>,
+                                             const std::string&) {
+  refuse();
+}
+
+std::vector<SliceAnswer> device_slices(const GlContext&, std::span<const SliceCase>) { refuse(); }
+
+Image draw_picture(const GlContext&, const Scene&, const Window&, std::span<const PictureTriangle>,
+                   const PictureSettings&) {
+  refuse();
+}
+
+}  // namespace farcull

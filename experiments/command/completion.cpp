@@ -1,0 +1,338 @@
+// A script is a table and a function that reads it. The table has a line for each word of each
+// command, and for each option or argument with a value how that is completed. The functions differ
+// by shell: all find the command among the words so far, and pass over the values of its options.
+#include "experiments/command/completion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <functional>
+
+#include "core/base/error.h"
+#include "experiments/method/method.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/system/output_file.h"
+#include "experiments/system/shell_word.h"
+
+namespace farcull {
+namespace {
+
+// The words of "fragment|fixed", without placeholders such as N or A:B.
+std::vector<std::string> alternatives(const std::string& type) {
+  std::vector<std::string> out;
+  if (type.find('|') == std::string::npos) return out;
+  for (std::size_t at = 0; at <= type.size();) {
+    const std::size_t end = std::min(type.find('|', at), type.size());
+    const std::string word = type.substr(at, end - at);
+    const auto capital = [](unsigned char c) { return std::isupper(c) != 0; };
+    if (std::none_of(word.begin(), word.end(), capital)) out.push_back(word);
+    at = end + 1;
+  }
+  return out;
+}
+
+std::vector<std::string> scene_names() {
+  std::vector<std::string> out;
+  for (const BuiltinScene& scene : builtin_scenes()) out.push_back(scene.name);
+  return out;
+}
+
+std::vector<std::string> all_method_names() {
+  std::vector<std::string> out;
+  for (const Method method : all_methods()) out.push_back(to_string(method));
+  return out;
+}
+
+// Help as one line.
+std::string line_of(std::string help) {
+  std::replace(help.begin(), help.end(), '\n', ' ');
+  return help;
+}
+
+std::string joined(const std::vector<std::string>& words, const char* between = " ") {
+  return fmt::format("{}", fmt::join(words, between));
+}
+
+// How a value is completed, in one word of the table: "words w1 w2", with "files", "meshes" or
+// "folders" among them as @files, @meshes, @folders.
+std::string how(const std::string& type) {
+  const CompletedValues values = completed_values(type);
+  std::vector<std::string> words = values.words;
+  if (values.files) words.push_back("@files");
+  if (values.meshes) words.push_back("@meshes");
+  if (values.folders) words.push_back("@folders");
+  return joined(words);
+}
+
+void visit(const DeclaredCommand& command, const std::function<void(const DeclaredCommand&)>& see) {
+  see(command);
+  for (const DeclaredCommand& below : command.commands) visit(below, see);
+}
+
+// The last word of a command's name.
+std::string last_word(const std::string& name) { return name.substr(name.find_last_of(' ') + 1); }
+
+// The branches of `case "$1" in`, one for each command: `words` sets what may follow, `values` the
+// way an option's value is completed.
+std::string table_of_words(const DeclaredCommand& program) {
+  std::string out;
+  visit(program, [&](const DeclaredCommand& command) {
+    std::vector<std::string> commands, options;
+    for (const DeclaredCommand& below : command.commands) commands.push_back(last_word(below.name));
+    for (const DeclaredOption& option : command.options)
+      options.insert(options.end(), option.names.begin(), option.names.end());
+    const std::string argument = command.arguments.empty() ? "" : how(command.arguments[0].type);
+    const std::string last = command.arguments.empty() ? "" : how(command.arguments.back().type);
+    out += fmt::format("    {})\n      below={} flags={}\n      first={} others={} ;;\n",
+                       quoted(command.name), quoted(joined(commands)), quoted(joined(options)),
+                       quoted(argument), quoted(last));
+  });
+  return out;
+}
+
+std::string table_of_values(const DeclaredCommand& program) {
+  std::string out;
+  visit(program, [&](const DeclaredCommand& command) {
+    for (const DeclaredOption& option : command.options) {
+      if (option.flag || option.bare) continue;
+      std::vector<std::string> patterns;
+      for (const std::string& name : option.names)
+        patterns.push_back(quoted(command.name + " " + name));
+      out +=
+          fmt::format("    {}) values={} ;;\n", joined(patterns, " | "), quoted(how(option.type)));
+    }
+  });
+  return out;
+}
+
+// Two functions that bash and zsh read alike.
+std::string shared_tables(const DeclaredCommand& program) {
+  return fmt::format(
+      R"sh(# _farcull_words COMMAND: sets what may follow the command.
+_farcull_words() {{
+  below='' flags='' first='' others=''
+  case $1 in
+{}  esac
+}}
+
+# _farcull_values "COMMAND OPTION": sets how the value is completed; status 1 where there is none.
+_farcull_values() {{
+  values=''
+  case $1 in
+{}    *) return 1 ;;
+  esac
+}}
+
+# _farcull_read WORDS...: reads the words before the one to complete. Sets `candidates`.
+_farcull_read() {{
+  local command=farcull pending='' given=0 word below flags first others values
+  _farcull_words "$command"
+  for word in "$@"; do
+    if [[ -n $pending ]]; then
+      pending=''
+    elif [[ $word == -* ]]; then
+      if [[ $word != *=* ]] && _farcull_values "$command $word"; then pending=$word; fi
+    elif [[ " $below " == *" $word "* ]]; then
+      command="$command $word"
+      _farcull_words "$command"
+    else
+      given=$((given + 1))
+    fi
+  done
+  if [[ -n $pending ]]; then
+    _farcull_values "$command $pending"
+    candidates=$values
+  elif [[ $current == -*=* ]]; then
+    _farcull_values "$command ${{current%%=*}}"
+    candidates=$values
+  elif [[ $current == -* ]]; then
+    candidates=$flags
+  elif ((given == 0)); then
+    candidates="$below $first"
+  else
+    candidates="$below $others"
+  fi
+}}
+)sh",
+      table_of_words(program), table_of_values(program));
+}
+
+std::string bash_script(const DeclaredCommand& program) {
+  return "# Completion of farcull for bash; made by `farcull completion bash`.\n" +
+         shared_tables(program) + R"sh(
+_farcull() {
+  local current='' candidates='' line=${COMP_LINE:0:COMP_POINT} word prefix=''
+  # Bash divides words at = and : as well, so they are put together again.
+  local -a words=()
+  read -ra words <<<"$line"
+  if [[ $line != *[[:space:]] ]]; then
+    current=${words[${#words[@]} - 1]}
+    unset 'words[${#words[@]}-1]'
+  fi
+  _farcull_read "${words[@]:1}"
+  if [[ $current == -*=* ]]; then current=${current#*=}; fi
+  if [[ $current == *[:=]* ]]; then prefix=${current%"${current##*[:=]}"}; fi
+  COMPREPLY=()
+  for word in $candidates; do
+    case $word in
+      @files)
+        compopt -o filenames 2>/dev/null
+        while IFS= read -r word; do COMPREPLY+=("$word"); done < <(compgen -f -- "$current")
+        ;;
+      @folders)
+        compopt -o filenames 2>/dev/null
+        while IFS= read -r word; do COMPREPLY+=("$word"); done < <(compgen -d -- "$current")
+        ;;
+      @meshes)
+        compopt -o filenames 2>/dev/null
+        while IFS= read -r word; do
+          case $word in
+            *.[oO][bB][jJ] | *.[oO][fF][fF] | *.[pP][lL][yY] | *.[sS][tT][lL] | *.json | \
+              *.obj.gz | *.off.gz | *.ply.gz | *.stl.gz) COMPREPLY+=("$word") ;;
+            *) if [[ -d $word ]]; then COMPREPLY+=("$word"); fi ;;
+          esac
+        done < <(compgen -f -- "$current")
+        ;;
+      "$current"*) COMPREPLY+=("${word#"$prefix"}") ;;
+    esac
+  done
+}
+complete -F _farcull farcull
+)sh";
+}
+
+std::string zsh_script(const DeclaredCommand& program) {
+  return "#compdef farcull\n# Completion of farcull for zsh; made by `farcull completion zsh`.\n" +
+         shared_tables(program) + R"sh(
+_farcull() {
+  local current=${words[CURRENT]} candidates='' word
+  local -a plain
+  _farcull_read "${(@)words[2,CURRENT-1]}"
+  if [[ $current == -*=* ]]; then compset -P '*='; fi
+  for word in ${=candidates}; do
+    case $word in
+      @files) _files ;;
+      @folders) _files -/ ;;
+      @meshes) _files -g '*.(#i)(obj|off|ply|stl|json|obj.gz|off.gz|ply.gz|stl.gz)' ;;
+      *) plain+=("$word") ;;
+    esac
+  done
+  compadd -- "${plain[@]}"
+}
+
+if [[ $funcstack[1] == _farcull ]]; then _farcull "$@"; else compdef _farcull farcull; fi
+)sh";
+}
+
+std::string fish_script(const DeclaredCommand& program) {
+  std::string with_value;
+  visit(program, [&](const DeclaredCommand& command) {
+    std::vector<std::string> names;
+    for (const DeclaredOption& option : command.options) {
+      if (!option.flag && !option.bare)
+        names.insert(names.end(), option.names.begin(), option.names.end());
+    }
+    std::vector<std::string> commands;
+    for (const DeclaredCommand& below : command.commands) commands.push_back(last_word(below.name));
+    with_value += fmt::format("    case {}\n      set commands {}\n      set valued {}\n",
+                              quoted(command.name), joined(commands), joined(names));
+  });
+  std::string out = fmt::format(
+      R"sh(# Completion of farcull for fish; made by `farcull completion fish`.
+# Whether the words before the one to complete end in this command.
+function __farcull_at
+  set -g __farcull_command farcull
+  set -l pending 0
+  set -l commands
+  set -l valued
+  for word in (commandline -opc)[2..-1] ''
+    switch "$__farcull_command"
+{}    end
+    if test $pending -eq 1
+      set pending 0
+    else if contains -- "$word" $valued
+      set pending 1
+    else if contains -- "$word" $commands
+      set -g __farcull_command "$__farcull_command $word"
+    end
+  end
+  test "$__farcull_command" = "$argv[1]"
+end
+
+complete -c farcull -f
+)sh",
+      with_value);
+  visit(program, [&](const DeclaredCommand& command) {
+    const std::string at =
+        "complete -c farcull -n " + quoted("__farcull_at " + quoted(command.name));
+    for (const DeclaredCommand& below : command.commands) {
+      out += at + " -a " + quoted(last_word(below.name)) + " -d " + quoted(below.title) + "\n";
+    }
+    const auto values_of = [](const std::string& type) {
+      const CompletedValues values = completed_values(type);
+      std::string list = joined(values.words);
+      if (values.folders) list += " (__fish_complete_directories)";
+      if (!list.empty()) list = " -a " + quoted(list);
+      return (values.files || values.meshes ? " -F" : "") + list;
+    };
+    for (const DeclaredOption& option : command.options) {
+      out += at;
+      for (const std::string& name : option.names)
+        out += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+      if (!option.flag && !option.bare) out += " -r" + values_of(option.type);
+      out += " -d " + quoted(line_of(option.help)) + "\n";
+    }
+    for (const DeclaredOption& argument : command.arguments) {
+      const std::string values = values_of(argument.type);
+      if (!values.empty()) out += at + values + "\n";
+    }
+  });
+  return out;
+}
+
+}  // namespace
+
+CompletedValues completed_values(const std::string& type) {
+  if (type == "METHOD") return {.words = all_method_names()};
+  if (type == "RADIUS") return {.words = {"budget", "published"}};
+  if (type == "OFFSET") return {.words = {"obb", "exact"}};
+  if (type == "DEVICE") return {.words = {"native", "cpu", "gl", "software", "hardware"}};
+  if (type == "VIEWS") return {.words = {"auto", "x", "y", "z", "x,y,z"}};
+  if (type == "AXIS") return {.words = {"x", "y", "z"}};
+  if (type == "SHELL") return {.words = {"bash", "zsh", "fish"}};
+  if (type == "SCENE") return {.words = scene_names(), .meshes = true};
+  if (type == "NAME") return {.words = scene_names()};
+  if (type == "FILE" || type == "CERTIFICATE") return {.words = {}, .files = true};
+  if (type == "DIR") return {.words = {}, .folders = true};
+  if (type == "SHARDS") return {.words = {}, .files = true};
+  return {.words = alternatives(type)};
+}
+
+std::string completion_script(const DeclaredCommand& program, const std::string& shell) {
+  if (shell == "bash") return bash_script(program);
+  if (shell == "zsh") return zsh_script(program);
+  if (shell == "fish") return fish_script(program);
+  throw Error("SHELL", quoted(shell) + " is no shell that is known here", "give bash, zsh or fish");
+}
+
+CLI::App* CompletionCommand::add_to(CLI::App& app) {
+  program_ = &app;
+  CLI::App* command =
+      add_command(app, "completion", "what a shell needs to complete farcull's words");
+  add_required(*command, "SHELL", shell_, "bash, zsh or fish");
+  add_footer(*command,
+             "Examples:\n"
+             "  source <(farcull completion bash)\n"
+             "  farcull completion zsh >~/.zfunc/_farcull\n"
+             "  farcull completion fish >~/.config/fish/completions/farcull.fish\n\n"
+             "`cmake --install` puts all three in place.");
+  return command;
+}
+
+int CompletionCommand::run() const {
+  write_output("-", completion_script(declared(*program_), shell_));
+  return 0;
+}
+
+}  // namespace farcull

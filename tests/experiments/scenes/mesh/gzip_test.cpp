@@ -1,0 +1,247 @@
+// Meshes compressed by gzip, and files of formats that are not read.
+#include "experiments/scenes/mesh/gzip.h"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <optional>
+#include <stdexcept>
+
+#include "experiments/scenes/mesh/cache.h"
+#include "experiments/scenes/mesh/foreign.h"
+#include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/scene_file.h"
+#include "tests/experiments/scenes/mesh/mesh_samples.h"
+
+namespace farcull {
+namespace {
+
+// One member; level 0 stores the text as it is.
+std::string gzipped(const std::string& text, int level = 9) {
+  z_stream stream = {};
+  if (deflateInit2(&stream, level, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY) != Z_OK)
+    throw std::runtime_error("zlib does not start");
+  std::string out(deflateBound(&stream, text.size()) + 64, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+  stream.avail_in = static_cast<uInt>(text.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  const int code = deflate(&stream, Z_FINISH);
+  out.resize(out.size() - stream.avail_out);
+  deflateEnd(&stream);
+  if (code != Z_STREAM_END) throw std::runtime_error("zlib does not end");
+  return out;
+}
+
+bool same(const Mesh& a, const Mesh& b) {
+  return a.vertices == b.vertices && a.triangles == b.triangles && a.source_face == b.source_face &&
+         a.group == b.group && a.group_names == b.group_names;
+}
+
+const std::string kObj = kThree + "g first part\nf 1 2 3\nv 0 0 1\nf 1 2 4\n";
+const std::string kStlText = "solid s\n" + kFacet + "endsolid s\n";
+
+struct Sample {
+  const char* name;
+  MeshFormat format;
+  std::string text;
+};
+
+std::vector<Sample> samples() {
+  return {{"m.obj", MeshFormat::kObj, kObj},
+          {"m.off", MeshFormat::kOff, kOff + "3 0 1 2\n3 0 2 3\n"},
+          {"m.ply", MeshFormat::kPly, kPlyHeader + kPlyVertices + "4 0 1 2 3\n"},
+          {"b.ply", MeshFormat::kPly, binary_ply(true)},
+          {"m.stl", MeshFormat::kStl, kStlText},
+          {"b.stl", MeshFormat::kStl, binary_stl("b", {{0, 0, 0, 1, 0, 0, 0, 1, 0}})}};
+}
+
+TEST(GzipMesh, IsReadByNameAndByContentsInEveryFormat) {
+  const ScratchFolder folder;
+  for (const Sample& sample : samples()) {
+    const Mesh plain = parse_mesh(sample.text, sample.format, sample.name);
+    for (const int level : {0, 1, 9}) {
+      const std::string bytes = gzipped(sample.text, level);
+      EXPECT_TRUE(same(parse_mesh(bytes, sample.format, sample.name), plain)) << sample.name;
+      const std::string name = std::string(sample.name) + ".gz";
+      EXPECT_EQ(mesh_format(name), sample.format);
+      EXPECT_TRUE(has_mesh_extension(name));
+      EXPECT_TRUE(same(load_mesh(folder.write(name, bytes)), plain)) << name;
+      // The contents decide, not the name.
+      EXPECT_TRUE(same(load_mesh(folder.write(sample.name, bytes)), plain)) << sample.name;
+    }
+  }
+  EXPECT_EQ(mesh_format("A.OBJ.GZ"), MeshFormat::kObj);
+}
+
+TEST(GzipMesh, KeepsTheLinesOfTheText) {
+  const std::string wrong = kThree + "\nf 1 2 3\nf 1 2 x\n";
+  const Error plain = error_of([&] { parse_mesh(wrong, MeshFormat::kObj, "m.obj.gz"); });
+  EXPECT_EQ(plain.line, 6);
+  const Error packed = error_of([&] { parse_mesh(gzipped(wrong), MeshFormat::kObj, "m.obj.gz"); });
+  EXPECT_STREQ(packed.what(), plain.what());
+}
+
+TEST(GzipMesh, RefusesAWrongName) {
+  const ScratchFolder folder;
+  const std::string plain = folder.write("plain.obj.gz", kObj);
+  expect_error(error_of([&] { load_mesh(plain); }), plain, 0, "not compressed by gzip");
+  expect_error(error_of([] { mesh_format("bunny.gz"); }), "bunny.gz", 0, "before .gz");
+  expect_error(error_of([] { mesh_format("a.txt.gz"); }), "a.txt.gz", 0, "'.txt.gz'");
+  const std::string nothing = folder.write("nothing.obj.gz", gzipped(""));
+  expect_error(error_of([&] { load_mesh(nothing); }), nothing, 0, "empty");
+  const std::string empty = folder.write("empty.obj.gz", "");
+  expect_error(error_of([&] { load_mesh(empty); }), empty, 0, "empty");
+}
+
+TEST(GzipMesh, RefusesEveryPrefix) {
+  const ScratchFolder folder;
+  for (const Sample& sample : samples()) {
+    const std::string bytes = gzipped(sample.text);
+    for (std::size_t size = 3; size < bytes.size(); ++size) {
+      const Error error =
+          error_of([&] { parse_mesh(bytes.substr(0, size), sample.format, sample.name); });
+      EXPECT_NE(error.reason.find("end too early"), std::string::npos) << size << error.what();
+      EXPECT_NE(error.remedy.find("whole file"), std::string::npos);
+    }
+  }
+}
+
+// The text is stored as it is, so that a changed digit leaves a mesh, though another one: the twin
+// reads it. The checksum alone notices.
+TEST(GzipMesh, RefusesAChangedDigitThatWouldBeAMesh) {
+  std::string bytes = gzipped(kObj, 0);
+  const std::size_t at = bytes.find("v 1 0 0");
+  ASSERT_NE(at, std::string::npos);
+  bytes[at + 2] = '9';
+  EXPECT_EQ(obj(replaced(kObj, "v 1 0 0", "v 9 0 0")).vertices[1].x(), 9);
+  expect_error(error_of([&] { obj(bytes); }), "m.obj", 0, "damaged");
+}
+
+TEST(GzipMesh, AnswersEveryFlippedBitWithTheMeshOrAnError) {
+  const std::string bytes = gzipped(kObj);
+  const Mesh plain = obj(kObj);
+  int read = 0, refused = 0;
+  for (std::size_t bit = 24; bit < 8 * bytes.size(); ++bit) {
+    std::string changed = bytes;
+    changed[bit / 8] = static_cast<char>(changed[bit / 8] ^ (1 << bit % 8));
+    try {
+      EXPECT_TRUE(same(obj(changed), plain)) << "bit " << bit;
+      ++read;
+    } catch (const Error& error) {
+      EXPECT_FALSE(error.remedy.empty());
+      ++refused;
+    }
+  }
+  // Time, hints and system in the header mean nothing, and one of its flags; all else does.
+  EXPECT_LE(read, 8 * 6 + 8);
+  EXPECT_GT(refused, 8 * 40);
+}
+
+TEST(GzipMesh, JoinsMembersAndRefusesWhatIsNone) {
+  const std::string first = gzipped(kThree), second = gzipped("f 1 2 3\n");
+  EXPECT_TRUE(same(obj(first + second), obj(kThree + "f 1 2 3\n")));
+  EXPECT_TRUE(same(obj(first + second + std::string(512, '\0')), obj(kThree + "f 1 2 3\n")));
+  expect_error(error_of([&] { obj(first + second + "f 1 2 3\n"); }), "m.obj", 0, "follow");
+  expect_error(error_of([&] { obj(first + second.substr(0, 9)); }), "m.obj", 0, "end too early");
+}
+
+TEST(GzipMesh, RefusesABombBeforeItFillsTheMemory) {
+  const std::string text(1 << 20, '\n');
+  const std::string bomb = gzipped(text);
+  ASSERT_LT(bomb.size() * 500, text.size());
+  const GzipLimits limits = {.max_bytes = 1 << 30, .free_bytes = 1 << 16, .most_ratio = 100};
+  const Error error = error_of([&] { gunzip(bomb, "b.obj.gz", limits); });
+  expect_error(error, "b.obj.gz", 0, "more than 100 times");
+  EXPECT_NE(error.remedy.find("gzip -d"), std::string::npos);
+  // Each limit alone lets it pass, and so do contents that are not compressed so far.
+  EXPECT_EQ(gunzip(bomb, "b", {.max_bytes = 1 << 30, .free_bytes = 1 << 20, .most_ratio = 100}),
+            text);
+  EXPECT_EQ(gunzip(bomb, "b", {.max_bytes = 1 << 30, .free_bytes = 1 << 16, .most_ratio = 2000}),
+            text);
+  EXPECT_EQ(gunzip(gzipped(text, 0), "b", limits), text);
+  expect_error(
+      error_of([&] { gunzip(bomb, "b", {.max_bytes = (1 << 20) - 1, .free_bytes = 1 << 30}); }),
+      "b", 0, "more than 1048575 bytes");
+}
+
+TEST(GzipMesh, IsNoStlFileWhoseHeaderBeginsLikeGzip) {
+  const std::string bytes = binary_stl("\x1f\x8b\x08", {{0, 0, 0, 1, 0, 0, 0, 1, 0}});
+  ASSERT_TRUE(is_gzip(bytes));
+  EXPECT_EQ(stl(bytes).triangles.size(), 1u);
+  EXPECT_THROW(stl(bytes + "x"), Error);
+}
+
+TEST(GzipMesh, MayBeNumberedAndNamesItsObject) {
+  const ScratchFolder folder;
+  folder.write("f_0003.obj.gz", gzipped(kObj));
+  folder.write("f_0004.obj.gz", gzipped(kThree + "f 3 2 1\n"));
+  MeshCache meshes(3);
+  const std::string name = folder.path("f_%04d.obj.gz");
+  EXPECT_EQ(meshes.get(name).triangles.size(), 2u);
+  meshes.set_frame(4);
+  EXPECT_EQ(meshes.get(name).triangles.size(), 1u);
+  const Scene scene = load_scene({folder.path("f_0003.obj.gz"), folder.path("f_0004.obj.gz")});
+  EXPECT_EQ(scene.objects[0].name, "f_0003");
+  EXPECT_EQ(scene.name, "f_0003+f_0004");
+}
+
+TEST(ForeignMesh, IsNamedByItsExtensionWithItsCommand) {
+  struct Case {
+    const char *path, *format, *command;
+  };
+  for (const auto& [path, format, command] :
+       {Case{"d/a b.GLB", "glTF", "assimp export 'd/a b.GLB' 'd/a b.obj'"},
+        Case{"a.fbx", "FBX", "assimp export a.fbx a.obj"},
+        Case{"a.dae", "COLLADA", "assimp export a.dae a.obj"},
+        Case{"a.3ds", "3DS", "assimp export a.3ds a.obj"},
+        Case{"a.vtu", "VTK", "meshio convert a.vtu a.off"},
+        Case{"a.msh", "Gmsh", "gmsh a.msh -save -o a.stl"},
+        Case{"a.stp", "STEP", "gmsh a.stp -2 -o a.stl"},
+        Case{"a.usdz", "USD", "usd_import(filepath=\"a.usdz\")"},
+        Case{"a.blend", "Blender", "obj_export(filepath=\"a.obj\")"},
+        Case{"a.obj.xz", "xz", "xz -dk a.obj.xz"}}) {
+    const Error error = error_of([&] { mesh_format(path); });
+    expect_error(error, path, 0, format);
+    EXPECT_NE(error.remedy.find(command), std::string::npos) << error.remedy;
+    // One argument alone could be a built-in scene as well.
+    EXPECT_STREQ(error_of([&] { load_scene({path}); }).what(), error.what());
+  }
+  EXPECT_FALSE(foreign_name("a.obj"));
+  EXPECT_FALSE(foreign_name("a.xyz"));
+}
+
+TEST(ForeignMesh, IsKnownByItsContents) {
+  const ScratchFolder folder;
+  const std::string gltf = std::string("glTF\2\0\0\0", 8);
+  for (const auto& [contents, format] : std::vector<std::pair<std::string, std::string>>{
+           {gltf, "glTF"},
+           {"{\"asset\":{\"version\":\"2.0\"}}", "glTF"},
+           {"Kaydara FBX Binary  ", "FBX"},
+           {"ISO-10303-21;\nHEADER;\n", "STEP"},
+           {"<?xml version=\"1.0\"?>\n<COLLADA>", "COLLADA"},
+           {"# vtk DataFile Version 5.1\n", "VTK"},
+           {"$MeshFormat\n", "Gmsh"},
+           {std::string("MM\4\2\0\0==\0\0\0\0\0\0\0\0", 16), "3DS"},
+           {"BZh91AY&SYabcd", "bzip2"},
+           {"PK\3\4....", "zip"}}) {
+    for (const char* name : {"a.obj", "a.off", "a.ply", "a.stl"}) {
+      const std::string path = folder.write(name, contents);
+      expect_error(error_of([&] { load_mesh(path); }), path, 0, format);
+    }
+    const std::string path = folder.write("unknown.xyz", contents);
+    expect_error(error_of([&] { load_scene({path}); }), path, 0, format);
+    expect_error(error_of([&] { obj(gzipped(contents)); }), "m.obj", 0, format);
+  }
+}
+
+// A mesh that is one stays one, whatever its comments and headers say.
+TEST(ForeignMesh, IsNoMeshThatCanBeRead) {
+  EXPECT_EQ(obj("# vtk DataFile Version 5.1\n# <COLLADA\n" + kObj).triangles.size(), 2u);
+  EXPECT_EQ(stl(binary_stl("glTF", {{0, 0, 0, 1, 0, 0, 0, 1, 0}})).triangles.size(), 1u);
+  // What is wrong with a mesh is still said as before.
+  EXPECT_EQ(error_of([] { obj(kThree + "f 1 2\n"); }).line, 4);
+}
+
+}  // namespace
+}  // namespace farcull
