@@ -5,8 +5,11 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <utility>
+
+#include "core/base/error.h"
 
 namespace farcull {
 namespace {
@@ -57,6 +60,13 @@ const Mesh& MeshCache::get(const std::string& path) {
     Moving& moving = found->second;
     if (moving.frame != *frame_) moving = {*frame_, load_mesh(file)};
     return moving.mesh;
+  }
+  std::error_code error;
+  if (!frame_ && is_numbered(path) && !std::filesystem::exists(path, error)) {
+    throw Error(
+        path, "stands for numbered files, and it is not said which",
+        "add --frames FIRST:LAST to farcull run or verify, as in --frames 1:100, or name one "
+        "file");
   }
   // realpath: std::filesystem would hold several more paths at once.
   const std::unique_ptr<char, void (*)(void*)> file(realpath(path.c_str(), nullptr), &std::free);
