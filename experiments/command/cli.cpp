@@ -20,6 +20,7 @@
 #include "experiments/command/compare.h"
 #include "experiments/command/doctor.h"
 #include "experiments/command/experiment.h"
+#include "experiments/command/help.h"
 #include "experiments/command/options.h"
 #include "experiments/command/picture.h"
 #include "experiments/command/report.h"
@@ -99,10 +100,13 @@ void describe(CLI::App& app) {
   app.footer(
       "Each has its own --help. Exit status: 0 done; 1 a guarantee is broken; 2 bad input or\n"
       "environment.\n\n"
+      "Topics:\n" +
+      help_topics_text() +
+      "\n"
       "Examples:\n"
       "  farcull run two-spheres\n"
       "  farcull run a.obj b.ply --resolution 1024 --pairs pairs.csv\n"
-      "  farcull run cloth.obj --method far-pairs --self\n"
+      "  farcull run cloth.obj --self\n"
       "  farcull compare two-tori\n"
       "  farcull doctor");
 }
@@ -123,12 +127,13 @@ int dispatch(int argc, char** argv) {
   PictureCommand picture;
   ReportCommand report;
   ScenesCommand scenes;
+  HelpCommand help;
   std::vector<std::pair<const CLI::App*, std::function<int()>>> commands;
   const auto add = [&](auto&... command) {  // in the order of the help
     (commands.emplace_back(command.add_to(app), [&command] { return command.run(); }), ...);
   };
-  add(run, verify, plan, compare, bench, doctor, check, experiments, merge, picture, report,
-      scenes);
+  add(run, verify, plan, compare, bench, doctor, check, experiments, merge, picture, report, scenes,
+      help);
 
   try {
     app.parse(argc, argv);

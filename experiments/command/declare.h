@@ -46,6 +46,10 @@ CLI::Option* add_bare_option(CLI::App& command, const char* name, std::vector<st
 /// Declares an option without a value.
 void add_flag(CLI::App& command, const char* name, bool& value, const char* help);
 
+/// What --help prints for the program (no names), a command of it, or a command below that one.
+/// Empty where there is no such command.
+std::string help_of(const CLI::App& app, const std::vector<std::string>& names);
+
 /// Whether the parsed command line has this.
 bool given(const CLI::App& command);
 bool given(const CLI::Option& option);
