@@ -63,7 +63,7 @@ std::vector<std::string> cells_of(const std::string& line) {
 std::string line_with(const std::string& text, const std::string& begin) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
-    if (line.find_first_not_of(' ') == line.find(begin)) return line;
+    if (!line.empty() && line.find_first_not_of(' ') == line.find(begin)) return line;
   }
   ADD_FAILURE() << "no line begins with " << begin << " in\n" << text;
   return "";
