@@ -1,10 +1,18 @@
 // Words for stages. Every text that a person reads about a stage is made here.
 #include "core/base/stage.h"
 
+#include "core/base/count.h"
+
 namespace farcull {
 namespace {
 
 std::string number(std::uint64_t n) { return std::to_string(n); }
+
+std::string objects(std::uint64_t n) { return counted(n, "object", "objects"); }
+std::string triangles(std::uint64_t n) { return counted(n, "triangle", "triangles"); }
+std::string triangles_left(std::uint64_t n) {
+  return counted(n, "triangle is left", "triangles are left");
+}
 
 // "fatten" of "fatten x, round 2".
 std::string verb_of(StageKind kind) {
@@ -76,15 +84,14 @@ std::string name_of(const Stage& stage) {
 }
 
 std::string reason_of(const Stage& stage) {
-  const std::string n = number(stage.n), m = number(stage.m);
+  const std::string n = grouped(stage.n), m = grouped(stage.m);
   switch (stage.reason) {
     case Reason::none:
       return "";
     case Reason::full:
       return "--full: nothing is left out";
     case Reason::regions:
-      return stage.n == 1 ? "1 pair of objects' boxes overlaps"
-                          : n + " pairs of objects' boxes overlap";
+      return counted(stage.n, "pair of objects' boxes overlaps", "pairs of objects' boxes overlap");
     case Reason::meetings:
       return "pairs of objects whose boxes overlap: " + n +
              "; objects tested against themselves: " + m;
@@ -110,7 +117,7 @@ std::string reason_of(const Stage& stage) {
       return "canvas for " + stage.detail;
     case Reason::fattener:
       return stage.detail +
-             (stage.n > 0 ? "; " + n + " triangles beyond the budget, kept" : std::string());
+             (stage.n > 0 ? "; " + triangles(stage.n) + " beyond the budget, kept" : std::string());
     case Reason::unresolvable:
       return "double arithmetic cannot resolve the region in pixels; nothing is culled here";
     case Reason::unresolvable_view:
@@ -120,31 +127,31 @@ std::string reason_of(const Stage& stage) {
     case Reason::set_unchanged:
       return "what its passes store has not changed since the last visit";
     case Reason::passes:
-      return n + (stage.n == 1 ? " pass" : " passes") +
+      return counted(stage.n, "pass", "passes") +
              (stage.n < 2 ? ", the other stores what it stored at the last visit" : "");
     case Reason::few_left:
-      return n + " triangles are left, at most " + m + " are enough";
+      return triangles_left(stage.n) + ", at most " + m + " are enough";
     case Reason::few_to_test:
-      return n + " triangles are left: " + m + " or fewer are cheaper to test";
+      return triangles_left(stage.n) + ": " + m + " or fewer are cheaper to test";
     case Reason::patches_cut:
-      return n + " patches of at most " + m +
-             " triangles: drawn against each other, each joined with itself by boxes";
+      return counted(stage.n, "patch", "patches") + " of at most " + triangles(stage.m) +
+             ": drawn against each other, each joined with itself by boxes";
     case Reason::patches_whole:
-      return "no object tested against itself has more than " + m +
-             " triangles: each is joined with itself by boxes alone";
+      return "no object tested against itself has more than " + triangles(stage.m) +
+             ": each is joined with itself by boxes alone";
     case Reason::few_objects:
-      return n + " objects, fewer than " + m + ": one seldom hides all of another";
+      return objects(stage.n) + ", fewer than " + m + ": one seldom hides all of another";
     case Reason::little_culled:
-      return "round " + std::to_string(stage.round) + " culled " + n + " of " + m +
-             " triangles: testing the rest is cheaper than another round";
+      return "round " + std::to_string(stage.round) + " culled " + n + " of " + triangles(stage.m) +
+             ": testing the rest is cheaper than another round";
     case Reason::owners:
       return "every triangle is an owner";
     case Reason::clusters_given:
       return "--clusters";
     case Reason::clusters_large:
-      return "occlusion queries, more than " + n + " triangles";
+      return "occlusion queries, more than " + triangles(stage.n);
     case Reason::clusters_small:
-      return n + " triangles, at most " + m;
+      return triangles(stage.n) + ", at most " + m;
     case Reason::clusters_flags:
       return "flags: a question costs nothing";
     case Reason::views_chosen:
@@ -152,16 +159,19 @@ std::string reason_of(const Stage& stage) {
     case Reason::views_given:
       return "views given";
     case Reason::chosen:
-      return stage.detail + (stage.n > 0 ? ": " + n + " x " + m + " px" : std::string());
+      return stage.detail + (stage.n > 0 ? ": " + number(stage.n) + " x " + number(stage.m) + " px"
+                                         : std::string());
     case Reason::few_candidates:
-      return "exact tests of " + n + " candidates are cheaper than a further view";
+      return "exact tests of " + counted(stage.n, "candidate", "candidates") +
+             " are cheaper than a further view";
     case Reason::enough_views:
       return "enough views were looked at";
     case Reason::keeps_sample:
       return "it keeps all of a sample of the candidates";
     case Reason::sweep:
       if (stage.detail.empty()) return "boxes of objects, then of their triangles";
-      return "boxes of " + n + " objects overlap, which have " + m + " triangles; " + stage.detail;
+      return "boxes of " + objects(stage.n) + " overlap, which have " + triangles(stage.m) + "; " +
+             stage.detail;
     case Reason::join_kept:
       return "boxes of what is kept";
     case Reason::join_patches:
@@ -179,9 +189,10 @@ std::string reason_of(const Stage& stage) {
     case Reason::not_asked:
       return "--no-verify";
     case Reason::if_more_left:
-      return stage.n > 0 ? "if more than " + n + " triangles are left" : "if any triangle is left";
+      return stage.n > 0 ? "if more than " + triangles_left(stage.n) : "if any triangle is left";
     case Reason::if_more_candidates:
-      return "if more than " + n + " candidates are left for each triangle that takes part";
+      return "if more than " + counted(stage.n, "candidate is", "candidates are") +
+             " left for each triangle that takes part";
     case Reason::if_changed:
       return "if the round before changed something";
     case Reason::if_culled:

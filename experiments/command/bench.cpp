@@ -72,7 +72,8 @@ CLI::App* BenchCommand::add_to(CLI::App& app) {
            "  farcull bench needles-layers --threads 1 --peers fcl-obbrss,embree-low\n"
            "  farcull bench field:1000000 --peers none --methods far-pairs --json field.json\n\n" +
            peers_text() +
-           "docs/bench.md says what is measured. Exit status 1: two of them disagree about a pair.";
+           "farcull help terms explains the columns; docs/bench.md says what is\n"
+           "measured. Exit status 1: two of them disagree about a pair.";
   });
   return command;
 }

@@ -21,6 +21,7 @@
 #include "experiments/command/completion.h"
 #include "experiments/command/doctor.h"
 #include "experiments/command/experiment.h"
+#include "experiments/command/help.h"
 #include "experiments/command/manual.h"
 #include "experiments/command/options.h"
 #include "experiments/command/picture.h"
@@ -101,10 +102,13 @@ void describe(CLI::App& app) {
   app.footer(
       "Each has its own --help. Exit status: 0 done; 1 a guarantee is broken; 2 bad input or\n"
       "environment.\n\n"
+      "Topics:\n" +
+      help_topics_text() +
+      "\n"
       "Examples:\n"
       "  farcull run two-spheres\n"
       "  farcull run a.obj b.ply --resolution 1024 --pairs pairs.csv\n"
-      "  farcull run cloth.obj --method far-pairs --self\n"
+      "  farcull run cloth.obj --self\n"
       "  farcull compare two-tori\n"
       "  farcull doctor");
 }
@@ -125,6 +129,7 @@ int dispatch(int argc, char** argv) {
   PictureCommand picture;
   ReportCommand report;
   ScenesCommand scenes;
+  HelpCommand help;
   CompletionCommand completion;
   ManualCommand manual;
   std::vector<std::pair<const CLI::App*, std::function<int()>>> commands;
@@ -132,7 +137,7 @@ int dispatch(int argc, char** argv) {
     (commands.emplace_back(command.add_to(app), [&command] { return command.run(); }), ...);
   };
   add(run, verify, plan, compare, bench, doctor, check, experiments, merge, picture, report, scenes,
-      completion, manual);
+      help, completion, manual);
 
   try {
     app.parse(argc, argv);

@@ -31,6 +31,7 @@ CLI::App* CompareCommand::add_to(CLI::App& app) {
              "  farcull compare two-tori\n"
              "  farcull compare two-bunnies --methods far,exact --resolutions 256,512 --repeat 5\n"
              "  farcull compare mannequin-devil --methods far-pairs,exact --self\n\n"
+             "farcull help terms explains the columns, farcull help methods the methods.\n\n"
              "Exit status 1: a method that promises missed a pair.");
   return command;
 }
@@ -57,10 +58,15 @@ int CompareCommand::run() const {
   terminal.clear();
   const std::vector<Record> records = comparison.median_records();
   if (outputs.json) write_json(to_json(scene, comparison), *outputs.json);
-  if (!outputs.to_stdout()) write_output("-", comparison_table(scene, records));
+  if (!outputs.to_stdout()) {
+    write_output("-",
+                 comparison_table(scene, records) +
+                     nothing_note(nothing_to_test(scene),
+                                  command_with("farcull compare", arguments_.scene) + " --self"));
+  }
   for (const Record& record : records) {
     if (!broken(record, false)) continue;
-    complain(missed(record));
+    complain_broken(missed(record));
     return kExitBroken;
   }
   return kExitDone;

@@ -86,6 +86,24 @@ void add_flag(CLI::App& command, const char* name, bool& value, const char* help
   command.add_flag(name, value, help)->disable_flag_override();
 }
 
+std::string help_of(const CLI::App& app, const std::vector<std::string>& names) {
+  const CLI::App* command = &app;
+  std::string before;
+  for (const std::string& name : names) {
+    const CLI::App* found = nullptr;
+    for (const CLI::App* below : command->get_subcommands({})) {
+      if (below->get_name() == name) found = below;
+    }
+    if (found == nullptr) return "";
+    before += (before.empty() ? "" : " ") + command->get_name();
+    command = found;
+  }
+  // The formatter itself, since App::help() describes the command that was parsed, which is `help`.
+  return command->get_formatter()->make_help(
+      command, before.empty() ? command->get_name() : before + " " + command->get_name(),
+      CLI::AppFormatMode::Normal);
+}
+
 bool given(const CLI::App& command) { return command.parsed(); }
 
 bool given(const CLI::Option& option) { return option.count() > 0; }

@@ -66,6 +66,9 @@ struct DeclaredCommand {
   std::vector<DeclaredCommand> commands;
 };
 DeclaredCommand declared(const CLI::App& app);
+/// What --help prints for the program (no names), a command of it, or a command below that one.
+/// Empty where there is no such command.
+std::string help_of(const CLI::App& app, const std::vector<std::string>& names);
 
 /// Whether the parsed command line has this.
 bool given(const CLI::App& command);

@@ -19,7 +19,9 @@
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
+#include "experiments/system/colour.h"
 #include "experiments/system/output_file.h"
+#include "experiments/system/shell_word.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
@@ -34,6 +36,24 @@ std::string device_help_of_methods() {
 
 void complain(const std::string& message) {
   std::fprintf(stderr, "farcull: %s\n", clean_name(message).c_str());
+}
+
+void complain_broken(const std::string& message) {
+  const std::string line = "farcull: " + clean_name(message);
+  std::fprintf(stderr, "%s\n", coloured(line, Colour::bad, STDERR_FILENO).c_str());
+}
+
+std::string command_with(const std::string& command, const std::vector<std::string>& scene) {
+  std::string out = command;
+  for (const std::string& word : scene) out += " " + quoted(clean_name(word));
+  return out;
+}
+
+std::string nothing_note(const NothingToTest& nothing, const std::string& command) {
+  if (nothing.reason.empty()) return "";
+  const std::string line = "nothing to test: " + nothing.reason;
+  return coloured(line, Colour::doubtful, STDOUT_FILENO) + "\n" +
+         (nothing.with_self ? "this tests it: " + command + "\n" : "");
 }
 
 Progress TerminalProgress::callback() {

@@ -10,6 +10,7 @@
 #include "experiments/command/declare.h"
 #include "experiments/command/files.h"
 #include "experiments/method/run.h"
+#include "experiments/record/tables.h"
 
 namespace farcull {
 
@@ -22,6 +23,15 @@ void add_scene(CLI::App& command, std::vector<std::string>& scene);
 /// The one line of a failure, on standard error. A path may hold anything, so control characters do
 /// not get through.
 void complain(const std::string& message);
+
+/// The same, in red on a terminal: a guarantee is broken.
+void complain_broken(const std::string& message);
+
+/// Two lines for people: why nothing was tested, and `command`, which tests it. Empty where
+/// something was tested.
+std::string nothing_note(const NothingToTest& nothing, const std::string& command);
+/// A command with the words of a scene, as a shell takes it.
+std::string command_with(const std::string& command, const std::vector<std::string>& scene);
 
 /// One line on standard error that is written over, on a terminal only.
 class TerminalProgress {
@@ -94,14 +104,17 @@ inline constexpr const char* kFullHelp =
     "leave nothing out that the scene does not need, to\n"
     "measure what leaving out saves (see farcull plan);\n"
     "far-pairs: with this option views decide";
+inline constexpr const char* kFacesHelp =
+    "with --pairs: two more columns, face_a and face_b, the\n"
+    "faces of the mesh files (see farcull help pairs)";
 inline constexpr const char* kClearanceHelp =
     "pairs at this distance or less collide, in world\n"
     "units (far-pairs, exact); default 0";
 inline constexpr const char* kSceneHelp =
     "mesh files (.obj .off .ply .stl, also .obj.gz and\n"
     "so on), each an object;\n"
-    "or one scene file (.json); or one built-in scene\n"
-    "(`farcull scenes` lists them)";
+    "or one scene file (.json: farcull help scene-file); or\n"
+    "one built-in scene (farcull scenes lists them)";
 inline constexpr const char* kJsonHelp =
     "write the record as JSON to this file; - for standard\n"
     "output, without the table";

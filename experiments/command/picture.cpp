@@ -85,11 +85,11 @@ void PictureCommand::add_options(CLI::App& app) {
     add_option(*command, name, text, type, help);
   };
   add("-o,--output", output_, "FILE", "where the PNG goes; - for standard output");
-  add("--method", method_, "METHOD", "as farcull run takes it; default far");
+  add("--method", method_, "METHOD", "as farcull run takes it; default far-pairs");
   add("--compare", compare_, "LIST",
       "several methods, a panel each, by commas, each perhaps\nwith a resolution: "
       "cullide:128,far:128");
-  add("--resolution", resolution_, "N", "px, as farcull run takes it; default 512");
+  add("--resolution", resolution_, "N", "px, as farcull run takes it");
   add("--radius", radius_, "RADIUS", "for far: budget, published, or a factor");
   add("--offset", offset_, "OFFSET", "for far: obb or exact; default obb");
   add("--depth", depth_, "fragment|fixed", "for far; default fragment");
@@ -114,8 +114,8 @@ void PictureCommand::add_options(CLI::App& app) {
       "  farcull picture two-bunnies --compare cullide,far --resolution 256 -o compare.png\n"
       "  farcull picture two-bunnies --compare cullide:128,cullide:512,far:128 --zoom -o c.png\n"
       "  farcull picture mannequin-devil --method s-cullide --self -o self.png\n"
-      "  farcull picture two-tori --resolution 64 --view-depth x -o depth.png\n"
-      "  farcull picture cloth --frame 100 --frames 101 --method far-pairs --up z -o cloth.png\n\n"
+      "  farcull picture two-tori --method far --resolution 64 --view-depth x -o depth.png\n"
+      "  farcull picture cloth --frame 100 --frames 101 --up z -o cloth.png\n\n"
       "Exit status 1: a method that promises missed a pair; the picture shows it.");
 }
 
@@ -157,7 +157,8 @@ PictureArguments PictureCommand::arguments() const {
   if (method_ && compare_)
     throw Error("--compare", "names the methods, and so does --method", "give one of the two");
   bool far = false;
-  for (const std::string& word : split_list(compare_.value_or(method_.value_or("far")))) {
+  for (const std::string& word :
+       split_list(compare_.value_or(method_.value_or(to_string(kDefaultMethod))))) {
     if (compare_) {
       out.panels.push_back(parse_panel(word, usual));
     } else {
@@ -180,7 +181,9 @@ PictureArguments PictureCommand::arguments() const {
     for (const auto& [option, text] :
          {std::pair("--radius", radius_), std::pair("--offset", offset_),
           std::pair("--depth", depth_)}) {
-      if (text) throw Error(option, "has a meaning for far alone", "leave it out");
+      if (text) {
+        throw Error(option, "has a meaning for far alone", "leave it out, or use --method far");
+      }
     }
   }
   validate(out);
@@ -203,7 +206,8 @@ int PictureCommand::run() const {
     lines += panel.title + ": " + panel.headline + "\n";
     if (!panel.broken) continue;
     status = kExitBroken;
-    complain(fmt::format("{} culled pairs that collide: {}", panel.title, grouped(panel.missed)));
+    complain_broken(
+        fmt::format("{} culled pairs that collide: {}", panel.title, grouped(panel.missed)));
   }
   if (path != "-")
     write_output("-", lines + result.not_asked + "The picture is in " + clean_name(path) + "\n");

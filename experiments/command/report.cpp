@@ -12,6 +12,7 @@
 #include "experiments/picture/picture.h"
 #include "experiments/report/report.h"
 #include "experiments/system/output_file.h"
+#include "experiments/system/text_table.h"
 
 namespace farcull {
 
@@ -63,11 +64,13 @@ int ReportCommand::run() {
   terminal.clear();
   std::string text;
   for (const std::string& note : summary.notes) text += note + "\n";
-  text += fmt::format("{} studies, {} figures, {} tables, {} pictures\n{}/index.html\n",
-                      summary.studies, summary.figures, summary.tables, summary.pictures,
-                      summary.folder);
+  text += fmt::format(
+      "{}, {}, {}, {}\n{}/index.html\n", counted(summary.studies, "study", "studies"),
+      counted(summary.figures, "figure", "figures"), counted(summary.tables, "table", "tables"),
+      counted(summary.pictures, "picture", "pictures"), summary.folder);
   write_output("-", text);
-  for (const std::string& broken : summary.broken) complain("a promise is broken: " + broken);
+  for (const std::string& broken : summary.broken)
+    complain_broken("a promise is broken: " + broken);
   return summary.broken.empty() ? 0 : 1;
 }
 

@@ -1,6 +1,8 @@
 // Reads the options of the three commands, then plans or runs.
 #include "experiments/command/run.h"
 
+#include <unistd.h>
+
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -11,7 +13,9 @@
 #include "experiments/record/plan.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/scene_file.h"
+#include "experiments/system/colour.h"
 #include "experiments/system/output_file.h"
+#include "experiments/system/shell_word.h"
 
 namespace farcull {
 namespace {
@@ -30,11 +34,13 @@ constexpr const char* kRunExamples =
     "Examples:\n"
     "  farcull run two-spheres\n"
     "  farcull run bunny.off dragon.off --method cullide --resolution 256\n"
-    "  farcull run cloth.obj --method far-pairs --self --pairs pairs.csv\n"
-    "  farcull run a.obj b.obj --method far-pairs --clearance 0.001\n"
-    "  farcull run 'cloth_%04d.obj' body.obj --method far-pairs --frames 1:100 --no-verify\n"
+    "  farcull run cloth.obj --self --pairs pairs.csv\n"
+    "  farcull run a.obj b.obj --clearance 0.001\n"
+    "  farcull run 'cloth_%04d.obj' body.obj --frames 1:100 --no-verify\n"
     "  farcull run scene.json --json - | jq .verification\n"
-    "  farcull run two-spheres --radius published --depth fixed --depth-format 24\n\n"
+    "  farcull run two-spheres --method far --radius published --depth fixed --depth-format 24\n\n"
+    "farcull help methods: which method does what; farcull help terms: the words of the\n"
+    "table; farcull help pairs: the columns of --pairs.\n\n"
     "Exit status 1: a method that promises missed a pair. i-collide and far-pairs promise,\n"
     "and far at the budget radius or more with fragment depth; on OpenGL only where the\n"
     "probes of the device pass (farcull doctor), but the status is 1 all the same.\n"
@@ -43,14 +49,16 @@ constexpr const char* kVerifyExamples =
     "Examples:\n"
     "  farcull verify two-spheres\n"
     "  farcull verify two-spheres --method cullide --resolution 64\n"
-    "  farcull verify two-spheres --method far-pairs --frames 30\n"
+    "  farcull verify two-spheres --frames 30\n"
     "  farcull verify scene.json --json record.json\n\n"
+    "The last lines are the verdict and the classes of all pairs (farcull help terms). On a\n"
+    "terminal the verdict is green or red, unless NO_COLOR is set.\n\n"
     "Exit status 1: a culled pair intersects, whatever the method.";
 constexpr const char* kPlanExamples =
     "Examples:\n"
     "  farcull plan two-bunnies\n"
     "  farcull plan two-bunnies --method far --offset exact\n"
-    "  farcull plan bunnies-far-apart --method far-pairs --json -\n\n"
+    "  farcull plan bunnies-far-apart --json -\n\n"
     "The same scene and options give the same plan. farcull run --full leaves nothing out.";
 
 }  // namespace
@@ -92,7 +100,9 @@ void RunCommand::add_method_options(CLI::App& command) {
     add_option(command, name, text, type, help);
   };
   add("--method", method_, "METHOD",
-      "far, cullide, quick-cullide, s-cullide, i-collide,\nfar-pairs or exact; default far");
+      "far-pairs, far, cullide, quick-cullide, s-cullide,\ni-collide or exact (see farcull help "
+      "methods); "
+      "default\nfar-pairs");
   add("--resolution", resolution_, "N|auto",
       "pixels along the larger side of each view's window;\ndefault 512; for far-pairs auto: "
       "chosen by the scene;\nfar-pairs: with a number views decide");
@@ -129,8 +139,12 @@ void RunCommand::add_outputs(CLI::App& command) {
       "meshes with %d or %04d in their names, or of a\n"
       "built-in scene that moves (see farcull scenes)");
   add("--pairs", outputs_.pairs, "FILE",
-      "write the colliding pairs as CSV to this file; - for\n"
-      "standard output, without the table");
+      "write the colliding pairs as CSV to this file (- for\n"
+      "standard output, without the table): object_a,\n"
+      "triangle_a, object_b, triangle_b, all counted from 0,\n"
+      "triangles within their object; with --self also\n"
+      "neighbours, 0 or 1 (see farcull help pairs)");
+  add_flag(command, "--faces", faces_, kFacesHelp);
   add("--json", outputs_.json, "FILE", kJsonHelp);
   add("--certificate", outputs_.certificate, "FILE",
       "write evidence for every pair to this file, for\n`farcull check`");
@@ -139,6 +153,7 @@ void RunCommand::add_outputs(CLI::App& command) {
 RunOptions RunCommand::parse() const {
   RunOptions out;
   if (method_) out.method = parse_method(*method_);
+  out.method_is_default = !method_;
   const bool pairs = chooses_views(out.method);
   if (resolution_ == "auto") {
     if (!pairs) {
@@ -207,6 +222,21 @@ void RunCommand::refuse_idle(Method chosen) const {
     throw Error("--full", "exact leaves nothing out", "leave --full out");
 }
 
+std::string RunCommand::with_self() const {
+  std::string command = kind_ == Kind::run ? "run" : kind_ == Kind::verify ? "verify" : "plan";
+  command = command_with("farcull " + command, scene_);
+  const bool can = !method_ || tests_self(parse_method(*method_));
+  if (method_) command += " --method " + (can ? *method_ : to_string(kDefaultMethod));
+  if (frames_) command += " --frames " + quoted(*frames_);
+  return command + " --self";
+}
+
+std::string RunCommand::verdict_line(const Accounting& accounting) const {
+  if (kind_ != Kind::verify) return "";
+  const Colour colour = accounting.false_negatives == 0 ? Colour::good : Colour::bad;
+  return coloured(verdict_text(accounting), colour, STDOUT_FILENO) + "\n";
+}
+
 int RunCommand::run() const {
   const RunOptions options = parse();
   check_scene(scene_);
@@ -218,6 +248,10 @@ int RunCommand::run() const {
   if (outputs_.certificate && frames_) {
     throw Error("--certificate", "is about one scene, not about frames",
                 "leave --certificate or --frames out");
+  }
+  if (faces_ && !outputs_.pairs) {
+    throw Error("--faces", "adds columns to the file of --pairs, which is not asked for",
+                "give --pairs FILE.csv as well");
   }
   std::optional<FrameRange> range;
   if (frames_) range = parse_frames(*frames_);
@@ -231,7 +265,10 @@ int RunCommand::plan(const RunOptions& options) const {
   if (self_) make_self(scene);
   const Plan planned = farcull::plan(scene, options);
   if (outputs.json) write_json(plan_json(scene, planned), *outputs.json);
-  if (!outputs.to_stdout()) write_output("-", plan_table(scene, planned));
+  if (!outputs.to_stdout()) {
+    write_output("-",
+                 plan_table(scene, planned) + nothing_note(nothing_to_test(scene), with_self()));
+  }
   return kExitDone;
 }
 
@@ -244,14 +281,19 @@ int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) cons
   Session session(options.device);
   const Record record = farcull::run(scene, options, session, progress);
   terminal.clear();
-  if (outputs.pairs) write_output(*outputs.pairs, pairs_csv(scene, record));
+  if (outputs.pairs) write_output(*outputs.pairs, pairs_csv(scene, record, faces_));
   if (outputs.certificate) {
     write_output(*outputs.certificate, to_text(certificate_of(scene, record)));
   }
   if (outputs.json) write_json(to_json(scene, record), *outputs.json);
-  if (!outputs.to_stdout()) write_output("-", run_table(scene, record));
+  if (!outputs.to_stdout()) {
+    const NothingToTest nothing = nothing_to_test(scene);
+    std::string verdict;
+    if (record.verification && nothing.reason.empty()) verdict = verdict_line(*record.verification);
+    write_output("-", run_table(scene, record, verdict) + nothing_note(nothing, with_self()));
+  }
   if (!broken(record, kind_ == Kind::verify)) return kExitDone;
-  complain(missed(record));
+  complain_broken(missed(record));
   return kExitBroken;
 }
 
@@ -263,7 +305,8 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
                           .range = range,
                           .self = self_,
                           .strict = kind_ == Kind::verify,
-                          .pairs = outputs.pairs.has_value()};
+                          .pairs = outputs.pairs.has_value(),
+                          .faces = faces_};
   if (progress) progress("reading the scene");
   FrameSource source(scene_, range, self_);
   if (const std::optional<Error> missing = source.missing()) {
@@ -284,9 +327,14 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
   terminal.clear();
   if (json) json->finish();
   if (pairs) pairs->finish();
-  if (!outputs.to_stdout()) write_output("-", result.table);
+  if (!outputs.to_stdout()) {
+    std::string end = result.table;
+    if (kind_ == Kind::verify && result.nothing.reason.empty())
+      end += verdict_line(result.sum) + accounting_sum(result.sum);
+    write_output("-", end + nothing_note(result.nothing, with_self()));
+  }
   if (result.broken.empty()) return kExitDone;
-  complain(result.broken);
+  complain_broken(result.broken);
   return kExitBroken;
 }
 

@@ -24,6 +24,10 @@ class RunCommand {
   void add_outputs(CLI::App& command);
   RunOptions parse() const;
   void refuse_idle(Method chosen) const;
+  /// The command line that tests a scene of one object.
+  std::string with_self() const;
+  /// Of verify: the verdict, green or red on a terminal; else empty.
+  std::string verdict_line(const Accounting& accounting) const;
   int plan(const RunOptions& options) const;
   int run_once(const RunOptions& options, const Outputs& outputs) const;
   int run_frames(const RunOptions& options, const Outputs& outputs, FrameRange range) const;
@@ -34,7 +38,7 @@ class RunCommand {
       device_;
   Text clearance_, frames_;
   Outputs outputs_;
-  bool self_ = false, no_verify_ = false, full_ = false;
+  bool self_ = false, no_verify_ = false, full_ = false, faces_ = false;
 };
 
 }  // namespace farcull

@@ -66,8 +66,7 @@ std::string motions_text() {
   for (const BuiltinScene& scene : builtin_scenes()) {
     if (!scene.motion.empty()) table.add({scene.name, scene.motion});
   }
-  return "These move, as in farcull run two-bunnies --method far-pairs --frames 30:\n" +
-         table.text();
+  return "These move, as in farcull run two-bunnies --frames 30:\n" + table.text();
 }
 
 std::string suffixes_text() {
@@ -163,9 +162,10 @@ void ScenesCommand::write() const {
     written = write_scene(make_builtin_scene(*name_), *folder_);
   }
   terminal.clear();
-  write_output("-", fmt::format("{} files, {} bytes\nfarcull run {}{}\n", grouped(written.files),
-                                grouped(written.bytes), written.scene_file,
-                                range ? " --method far-pairs --frames " + *frames_ : ""));
+  write_output("-",
+               fmt::format("{}, {}\nfarcull run {}{}\n", counted(written.files, "file", "files"),
+                           counted(written.bytes, "byte", "bytes"), written.scene_file,
+                           range ? " --frames " + *frames_ : ""));
 }
 
 }  // namespace farcull

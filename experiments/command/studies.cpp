@@ -14,6 +14,7 @@
 #include "experiments/studies/run_studies.h"
 #include "experiments/studies/study.h"
 #include "experiments/system/output_file.h"
+#include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {
@@ -48,8 +49,8 @@ class PlainProgress {
     study_ = p.study;
     last_ = now;
     try {
-      write_output("-",
-                   fmt::format("{}: {} of {} points{}\n", p.study, p.done, p.points, left_text(p)));
+      write_output("-", fmt::format("{}: {} of {}{}\n", p.study, p.done,
+                                    counted(p.points, "point", "points"), left_text(p)));
     } catch (const Error&) {
       // The measurement goes on where the progress cannot be written.
     }
@@ -149,10 +150,10 @@ int StudiesCommand::run() {
   write_output("-", summary_table(summary));
   for (const std::string& point : summary.failed) complain(point);
   if (!summary.failed.empty()) {
-    complain(fmt::format("{} points could not be measured; --resume tries them again",
-                         summary.failed.size()));
+    complain(counted(summary.failed.size(), "point", "points") +
+             " could not be measured; --resume tries again");
   }
-  for (const std::string& point : summary.broken) complain("a promise is broken: " + point);
+  for (const std::string& point : summary.broken) complain_broken("a promise is broken: " + point);
   if (!summary.broken.empty()) return 1;
   return summary.failed.empty() ? 0 : 2;
 }
@@ -183,8 +184,9 @@ int MergeCommand::run() {
   }
   const std::string out = out_ ? *out_ : store_path(folder.empty() ? "." : folder);
   const MergeSummary summary = merge_stores(files, out);
-  write_output("-", fmt::format("{} rows of {} studies from {} shards: {}\n", summary.rows,
-                                summary.studies, summary.files, out));
+  write_output("-", fmt::format("{} of {} from {}: {}\n", counted(summary.rows, "row", "rows"),
+                                counted(summary.studies, "study", "studies"),
+                                counted(summary.files, "shard", "shards"), out));
   if (summary.machines > 1) {
     write_output("-", fmt::format("note: the shards are of {} machines that differ: their counts "
                                   "need not be those of one\n",

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commit.h"
+#include "core/scene/members.h"
 #include "experiments/measure/bench.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
@@ -119,9 +120,10 @@ nlohmann::ordered_json to_json(const Scene& scene, const BenchOptions& options,
 
 std::string bench_table(const Scene& scene, const BenchOptions& options,
                         const BenchResult& result) {
-  std::string out = fmt::format("{}: {} objects, {} triangles; {} thread{}, {}\n\n", scene.name,
-                                grouped(scene.objects.size()), grouped(scene.triangles.size()),
-                                options.threads, options.threads == 1 ? "" : "s", cpu_model());
+  std::string out = fmt::format("{}: {}, {}; {}, {}\n\n", scene.name,
+                                counted(scene.objects.size(), "object", "objects"),
+                                counted(scene.triangles.size(), "triangle", "triangles"),
+                                counted(options.threads, "thread", "threads"), cpu_model());
   if (const std::string line = not_asked_line(scene); !line.empty())
     out.insert(out.size() - 1, line);
   const BenchRow* best = best_far_pairs(result);
@@ -149,6 +151,11 @@ std::string bench_table(const Scene& scene, const BenchOptions& options,
       "beyond "
       "before.\n",
       options.repeat);
+  if (has_self(scene)) {
+    out +=
+        "candidates, pairs: without neighbours (farcull help terms); farcull run --self counts "
+        "those too.\n";
+  }
   if (result.fastest_peer) {
     out += fmt::format("x fastest: of the fastest peer, {}, in this run.\n",
                        result.rows[*result.fastest_peer].name);

@@ -238,8 +238,8 @@ std::vector<FamilyCell> run_family(const FamilyArguments& arguments, const Progr
 std::string broken(const std::vector<FamilyCell>& cells) {
   for (const FamilyCell& cell : cells) {
     if (cell.broken()) {
-      return fmt::format("{}: {} missed {} pairs", cell.scene, label(cell),
-                         grouped(cell.missed().value_or(0)));
+      return fmt::format("{}: {} missed {}", cell.scene, label(cell),
+                         counted(cell.missed().value_or(0), "pair", "pairs"));
     }
   }
   return "";

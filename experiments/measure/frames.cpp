@@ -23,9 +23,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // The keys of a run's record that each frame has of its own; the others hold for all frames.
-constexpr std::array kOfFrame = {
-    "views",           "stages",          "pcs",        "object_triangles", "candidate_pairs",
-    "colliding_pairs", "neighbour_pairs", "neighbours", "verification",     "time_ms"};
+constexpr std::array kOfFrame = {"views",
+                                 "stages",
+                                 "pcs",
+                                 "object_triangles",
+                                 "candidate_pairs",
+                                 "colliding_pairs",
+                                 "neighbour_pairs",
+                                 "all_colliding_pairs",
+                                 "neighbours",
+                                 "verification",
+                                 "time_ms"};
 
 Json rate_json(double ms) {
   const std::optional<double> rate = per_second(ms);
@@ -114,7 +122,9 @@ void add_row(const Scene& scene, const Record& record, long frame, const FrameNo
   table.add("frame", std::to_string(frame));
   table.add("candidates", grouped(record.found.count));
   table.add("colliding", grouped(record.collisions.pairs.size()));
-  if (has_self(scene)) table.add("neighbours", grouped(record.collisions.neighbour_pairs.size()));
+  if (has_self(scene)) {
+    table.add("+ neighbours", "+ " + grouped(record.collisions.neighbour_pairs.size()));
+  }
   if (record.verification) table.add("missed", grouped(record.verification->false_negatives));
   table.add("cull ms", fmt::format("{:.1f}", record.ms.cull));
   table.add("exact ms", fmt::format("{:.1f}", record.ms.exact));
@@ -163,6 +173,16 @@ FrameTimes summary_of_sorted(const std::vector<double>& ms) {
   const std::size_t n = ms.size();
   const auto rank = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(n)));
   return {.median = 0.5 * (ms[(n - 1) / 2] + ms[n / 2]), .p95 = ms[rank - 1], .max = ms[n - 1]};
+}
+
+void add(const Accounting& frame, Accounting& sum) {
+  sum.pairs_total += frame.pairs_total;
+  sum.pairs_kept += frame.pairs_kept;
+  sum.certified_by_boxes += frame.certified_by_boxes;
+  sum.neighbours += frame.neighbours;
+  sum.certified_by_predicates += frame.certified_by_predicates;
+  sum.false_negatives += frame.false_negatives;
+  sum.ms += frame.ms;
 }
 
 // Of the frames up to now.
@@ -215,8 +235,10 @@ struct Totals {
       out += fmt::format("           the first {:.1f} ms, the following ones median {:.1f} ms\n",
                          first_ms, following());
     }
-    if (topologies > 0)
-      out += fmt::format("topology  changed {} times between frames\n", topologies);
+    if (topologies > 0) {
+      out += fmt::format("topology  changed {} between frames\n",
+                         counted(static_cast<std::uint64_t>(topologies), "time", "times"));
+    }
     return out;
   }
 };
@@ -283,15 +305,20 @@ FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
     const double read_ms = reading.ms();
     const Record record = run(scene, question.options, session, named);
     totals.add(record, source.topology_changed());
+    if (record.verification) add(*record.verification, out.sum);
+    const NothingToTest nothing = nothing_to_test(scene);
+    if (frame == question.range.first || nothing.reason.empty()) out.nothing = nothing;
     add_row(scene, record, frame, source.notes(), table);
     warnings.add(frame, source.notes().warning);
     std::string rows = table.row(), csv;
-    if (question.pairs) csv = pairs_rows(scene, record, std::to_string(frame) + ",");
+    if (question.pairs) {
+      csv = pairs_rows(scene, record, std::to_string(frame) + ",", question.faces);
+    }
     if (frame == question.range.first) {
       out.json = to_json(scene, record);
       for (const char* key : kOfFrame) out.json.erase(key);
       rows.insert(0, run_heading(scene, record) + "\n");
-      if (question.pairs) csv.insert(0, "frame," + pairs_header(scene));
+      if (question.pairs) csv.insert(0, "frame," + pairs_header(scene, question.faces));
     }
     Json one = frame_json(scene, record, frame, read_ms, source);
     if (sink) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/method/run.h"
+#include "experiments/record/tables.h"
 #include "experiments/scenes/frames.h"
 #include "experiments/system/output_file.h"
 
@@ -19,6 +20,7 @@ struct FramesQuestion {
   bool self = false;
   bool strict = false;  // farcull verify: ask the guarantee of every method
   bool pairs = false;   // the CSV is wanted
+  bool faces = false;   // with its columns of faces
 };
 
 /// Milliseconds of frames: candidates and exact tests, without reading and accounting.
@@ -57,6 +59,8 @@ struct FramesResult {
   std::string table;            // for people; of a run with a sink what follows the rows
   std::string pairs_csv;        // of a run without a sink
   std::string broken;           // the first guarantee that was broken; empty: none
+  Accounting sum;               // of all frames, without examples; 0 where there is none
+  NothingToTest nothing;        // why no frame has a pair to test; empty where one has
 };
 
 /// Runs every frame of the scene; `sink` gets each one as soon as it is done. SIGINT, SIGTERM and

@@ -22,6 +22,7 @@
 #include <optional>
 #include <sstream>
 
+#include "core/base/count.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
 #include "core/gl/probe.h"
@@ -244,9 +245,9 @@ std::string to_string(const DeviceVerdict& verdict, Reliance reliance) {
     return out;
   }
   if (!verdict.holds) return "the probes of this device broke off: " + verdict.problem;
-  return std::to_string(verdict.probes) + " probes of " + assumptions(reliance) +
-         " pass on this device (probed " + verdict.made +
-         (verdict.remembered ? ", remembered)" : ")");
+  return counted(static_cast<std::uint64_t>(verdict.probes), "probe", "probes") + " of " +
+         assumptions(reliance) + (verdict.probes == 1 ? " passes" : " pass") +
+         " on this device (probed " + verdict.made + (verdict.remembered ? ", remembered)" : ")");
 }
 
 VerdictInputs verdict_inputs(const GlInfo& device, Reliance reliance) {

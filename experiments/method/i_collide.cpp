@@ -1,6 +1,7 @@
 // Sweep and prune on the boxes of objects, then of their triangles (I-COLLIDE, 1995).
 #include "experiments/method/i_collide.h"
 
+#include "core/base/count.h"
 #include "core/base/stopwatch.h"
 #include "core/scene/members.h"
 
@@ -53,8 +54,8 @@ Candidates find_by_sweep(const Scene& scene, const Plan& plan, Session& session,
   Stage stage = sweep_stage(scene);
   stage.n = result.counts.objects;
   stage.m = swept;
-  stage.detail = std::to_string(result.counts.swaps) + " places changed, " +
-                 std::to_string(result.counts.sorts) + " lists sorted from scratch";
+  stage.detail = counted(result.counts.swaps, "place", "places") + " changed, " +
+                 counted(result.counts.sorts, "list", "lists") + " sorted from scratch";
   stage.ms = out.ms;
   stage.out = out.count;
   out.trace.push_back(stage);

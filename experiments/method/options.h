@@ -26,8 +26,13 @@ std::vector<std::uint32_t> parse_clusters(const std::string& text);
 /// A number of runs, 1 or more. Throws Error naming --repeat.
 int parse_repeat(const std::string& text);
 
+/// The method where none is named, on every device. It misses nothing, and on most scenes it is the
+/// fastest (docs/bench.md).
+inline constexpr Method kDefaultMethod = Method::far_pairs;
+
 struct RunOptions {
-  Method method = Method::far;
+  Method method = kDefaultMethod;
+  bool method_is_default = false;  // nobody named it, so the record says why it is this one
   int resolution = 0;      // px along the larger side of a view's window; 0: 512, but chosen by the
                            // scene for far-pairs
   RadiusRule radius = {};  // far only
@@ -67,6 +72,9 @@ QueryMode query_of(const RunOptions& options);
 bool promises(const RunOptions& options);
 /// The method in words for messages, such as "cullide at 512 px".
 std::string describe(const RunOptions& options);
+
+/// Why the method was run, as "--method" or "no --method: far-pairs misses nothing, ...".
+std::string method_reason(const RunOptions& options);
 
 /// Throws Error naming the option where one is out of range or options do not go together. Opens no
 /// device.

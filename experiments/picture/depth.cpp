@@ -111,8 +111,7 @@ void add_legend(DrawnPanel& panel, bool fattened) {
   if (result.second_pass > 0)
     entry(kSecond, fmt::format("in the second pass alone: {}", grouped(result.second_pass)));
   if (result.missed > 0) {
-    entry(kMissedColour,
-          fmt::format("culled though they collide: {} pairs", grouped(result.missed)));
+    entry(kMissedColour, "culled though they collide: " + counted(result.missed, "pair", "pairs"));
   }
   if (result.rings > 0) {
     panel.sheet.legend.push_back({.sign = LegendEntry::Sign::ring,
@@ -150,6 +149,7 @@ DrawnPanel depth_panel(const RunOptions& options, const PictureArguments& argume
   result.title = panel_title(options) + ", along " + *arguments.depth_view;
   result.device = run.found.device.gl->renderer;
   result.colliding = truth.pairs.size();
+  result.neighbours = result.colliding - without_neighbours(scene, truth).pairs.size();
   result.kept = run.found.triangles.size();
   std::vector<PictureTriangle> visible;
   for (const std::uint32_t t : run.triangles) {

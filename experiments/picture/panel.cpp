@@ -139,8 +139,14 @@ std::string panel_title(const RunOptions& options) {
 
 void set_headline(DrawnPanel& panel, const std::string& verb) {
   const PanelResult& result = panel.result;
-  panel.result.headline = fmt::format("{} {} of {} colliding pair{}", verb, grouped(result.missed),
-                                      grouped(result.colliding), result.colliding == 1 ? "" : "s");
+  panel.result.headline =
+      fmt::format("{} {} of {}", verb, grouped(result.missed),
+                  counted(result.colliding, "colliding pair", "colliding pairs"));
+  if (result.neighbours > 0) {
+    panel.result.headline +=
+        fmt::format(" = {} + {} of neighbours", grouped(result.colliding - result.neighbours),
+                    grouped(result.neighbours));
+  }
   panel.sheet.title = result.title;
   panel.sheet.headline = panel.result.headline;
   panel.sheet.headline_colour = result.missed > 0 ? kMissedColour : kGood;

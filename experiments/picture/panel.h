@@ -16,6 +16,7 @@ struct PanelResult {
   std::string title;                   // "cullide at 128 px"
   std::string headline;                // "missed 12 of 4,268 colliding pairs"
   std::uint64_t colliding = 0;         // pairs, by the exact method
+  std::uint64_t neighbours = 0;        // of these, pairs of neighbours
   std::uint64_t missed = 0;            // of them, not found by the method (in a view of depth_view:
                                        // with a culled triangle)
   std::uint64_t missed_triangles = 0;  // in one of those

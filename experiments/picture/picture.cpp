@@ -125,6 +125,7 @@ DrawnPanel panel_of(const RunOptions& options, const Scene& scene, const Window&
   PanelResult& result = panel.result;
   result.title = panel_title(options);
   result.colliding = truth.pairs.size();
+  result.neighbours = result.colliding - without_neighbours(scene, truth).pairs.size();
   result.missed = missed.size();
   result.kept = record.found.triangles.size();
   result.idle = static_cast<std::uint64_t>(std::count(kind.begin(), kind.end(), kKept));
@@ -144,10 +145,10 @@ DrawnPanel panel_of(const RunOptions& options, const Scene& scene, const Window&
     panel.sheet.legend.push_back({.sign = LegendEntry::Sign::box, .colour = colour, .text = text});
   };
   entry(kFound,
-        fmt::format("collide and found: {} pairs", grouped(truth.pairs.size() - missed.size())));
+        "collide and found: " + counted(truth.pairs.size() - missed.size(), "pair", "pairs"));
   if (!missed.empty()) {
-    entry(kMissedColour, fmt::format("missed: {} pairs of {} triangles", grouped(missed.size()),
-                                     grouped(lost.size())));
+    entry(kMissedColour, fmt::format("missed: {} of {}", counted(missed.size(), "pair", "pairs"),
+                                     counted(lost.size(), "triangle", "triangles")));
   }
   if (result.rings > 0) {
     panel.sheet.legend.push_back({.sign = LegendEntry::Sign::ring,
@@ -157,8 +158,7 @@ DrawnPanel panel_of(const RunOptions& options, const Scene& scene, const Window&
   if (culls(options.method)) {
     Rgba idle = kObjects[0];
     blend(idle, kIdle, kIdlePart);
-    entry(idle, fmt::format("kept, collide with nothing: {} triangle{}", grouped(result.idle),
-                            result.idle == 1 ? "" : "s"));
+    entry(idle, "kept, collide with nothing: " + counted(result.idle, "triangle", "triangles"));
   }
   return panel;
 }
@@ -192,12 +192,9 @@ PngTexts provenance(const PictureArguments& arguments, const PictureResult& resu
 
 std::string subtitle(const PictureArguments& arguments, const PictureResult& result,
                      const Truth& truth) {
-  const auto counted = [](std::uint64_t n, const char* one) {
-    return grouped(n) + " " + one + (n == 1 ? "" : "s");
-  };
-  std::string out = counted(result.objects, "object") + ", " +
-                    counted(result.triangles, "triangle") + ", " +
-                    counted(truth.pairs.size(), "colliding pair");
+  std::string out = counted(result.objects, "object", "objects") + ", " +
+                    counted(result.triangles, "triangle", "triangles") + ", " +
+                    counted(truth.pairs.size(), "colliding pair", "colliding pairs");
   if (arguments.frame) {
     const FrameRange range = frames_of(arguments);
     out += fmt::format(", frame {}", *arguments.frame);

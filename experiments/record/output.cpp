@@ -145,6 +145,7 @@ Json not_asked_json(const Scene& scene) {
 nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
   const RunOptions& o = record.options;
   const bool drawn = draws(o.method);
+  const std::string nothing = nothing_to_test(scene).reason;
   Json resolution = nullptr;
   if (looks(o.method)) resolution = resolution_of(o) > 0 ? Json(resolution_of(o)) : Json("auto");
   Json views = Json::array();
@@ -172,10 +173,12 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
         {"objects", scene.objects.size()},
         {"self_objects", self_objects(scene)},
         {"self_not_asked", not_asked_json(scene)},
+        {"nothing_to_test", nothing.empty() ? Json(nullptr) : Json(nothing)},
         {"triangles", scene.triangles.size()},
         {"degenerate_triangles", record.degenerate_triangles},
         {"hash", record.scene_hash}}},
       {"method", to_string(o.method)},
+      {"method_reason", method_reason(o)},
       {"resolution", resolution},
       {"radius", fattens(o.method) ? Json(radius_text(o.radius)) : Json(nullptr)},
       {"offset", fattens(o.method) ? Json(o.offset) : Json(nullptr)},
@@ -201,6 +204,8 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
       {"candidate_pairs", record.found.count},
       {"colliding_pairs", record.collisions.pairs.size()},
       {"neighbour_pairs", record.collisions.neighbour_pairs.size()},
+      {"all_colliding_pairs",
+       record.collisions.pairs.size() + record.collisions.neighbour_pairs.size()},
       {"neighbours", record.collisions.neighbours},
       {"verification", verification_json(scene, record)},
       {"time_ms",
@@ -212,14 +217,23 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
       {"commit", FARCULL_COMMIT}};
 }
 
-std::string pairs_header(const Scene& scene) { return pair_list_header(scene); }
+std::string pairs_header(const Scene& scene, bool faces) {
+  std::string header = pair_list_header(scene);
+  if (faces) header.replace(header.size() - 1, 1, ",face_a,face_b\n");
+  return header;
+}
 
-std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before) {
+std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before,
+                       bool faces) {
   const PairListRows rows(scene);
   std::string out;
   const auto add = [&](const TrianglePair& pair) {
     out += before;
     rows.append(pair, out);
+    if (!faces) return;
+    out.back() = ',';
+    out += std::to_string(scene.source_face[pair.a]) + ',' +
+           std::to_string(scene.source_face[pair.b]) + '\n';
   };
   auto next = record.collisions.neighbour_pairs.begin();
   for (const TrianglePair& p : record.collisions.pairs) {
@@ -230,8 +244,8 @@ std::string pairs_rows(const Scene& scene, const Record& record, const std::stri
   return out;
 }
 
-std::string pairs_csv(const Scene& scene, const Record& record) {
-  return pairs_header(scene) + pairs_rows(scene, record, "");
+std::string pairs_csv(const Scene& scene, const Record& record, bool faces) {
+  return pairs_header(scene, faces) + pairs_rows(scene, record, "", faces);
 }
 
 }  // namespace farcull

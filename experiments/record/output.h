@@ -20,10 +20,12 @@ nlohmann::ordered_json floating_point_json(const FloatingPoint& callers, const F
 nlohmann::ordered_json not_asked_json(const Scene& scene);
 
 /// The colliding pairs as verify/certificate/pair_list.h writes them, sorted, each once; neighbours
-/// among them where an object of the scene is tested against itself.
-std::string pairs_csv(const Scene& scene, const Record& record);
+/// among them where an object of the scene is tested against itself. faces: two more columns at the
+/// end, face_a and face_b, 0-based in the files that the objects come from.
+std::string pairs_csv(const Scene& scene, const Record& record, bool faces = false);
 /// Its parts, `before` at the start of each row.
-std::string pairs_header(const Scene& scene);
-std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before);
+std::string pairs_header(const Scene& scene, bool faces = false);
+std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before,
+                       bool faces = false);
 
 }  // namespace farcull

@@ -28,10 +28,11 @@ std::string plan_table(const Scene& scene, const Plan& plan) {
                                        : fmt::format("self       {} tested against {}\n",
                                                      counted(self, "object is", "objects are"),
                                                      self == 1 ? "itself" : "themselves");
-  return fmt::format("{}: {} objects, {} triangles, {}{}\n{}\n{}", scene.name,
-                     grouped(scene.objects.size()), grouped(scene.triangles.size()),
-                     describe(options), options.full ? ", --full" : "",
-                     tested + not_asked_line(scene), table.text());
+  return fmt::format("{}: {}, {}, {}{}\n{}\n{}", scene.name,
+                     counted(scene.objects.size(), "object", "objects"),
+                     counted(scene.triangles.size(), "triangle", "triangles"), describe(options),
+                     options.full ? ", --full" : "",
+                     default_method_line(options) + tested + not_asked_line(scene), table.text());
 }
 
 nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan) {
@@ -40,10 +41,14 @@ nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan) {
     list.push_back(
         {{"step", name_of(stage)}, {"decision", decision_of(stage)}, {"reason", reason_of(stage)}});
   }
+  const std::string nothing = nothing_to_test(scene).reason;
   return {{"scene", scene.name},
           {"objects", scene.objects.size()},
           {"triangles", scene.triangles.size()},
+          {"nothing_to_test",
+           nothing.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(nothing)},
           {"method", to_string(plan.options.method)},
+          {"method_reason", method_reason(plan.options)},
           {"full", plan.options.full},
           {"steps", list}};
 }

@@ -138,7 +138,8 @@ void fold(const Stage& stage, Row& row) {
   row.note += fmt::format("{}{} {:.1f}", row.note.empty() ? "" : ", ",
                           fattened ? "fatten" : stage.level, stage.ms);
   if (fattened && stage.n > 0)
-    row.note += fmt::format(" ({} triangles beyond the budget, kept)", stage.n);
+    row.note +=
+        fmt::format(" ({} beyond the budget, kept)", counted(stage.n, "triangle", "triangles"));
 }
 
 std::vector<Row> folded(const std::vector<Stage>& stages) {
@@ -177,13 +178,7 @@ std::string stage_table(const std::vector<Stage>& stages) {
 std::string accounting_lines(const Scene& scene, const Record& record) {
   if (!record.verification) return "accounted  not at all (--no-verify)\n";
   const Accounting& v = *record.verification;
-  std::string out = fmt::format(
-      "accounted  {} = {} kept + {} disjoint boxes\n           + {} proved disjoint{} + {} "
-      "missed\n",
-      counted(v.pairs_total, "pair", "pairs"), grouped(v.pairs_kept), grouped(v.certified_by_boxes),
-      grouped(v.certified_by_predicates),
-      v.neighbours > 0 ? " + " + grouped(v.neighbours) + " neighbours" : "",
-      grouped(v.false_negatives));
+  std::string out = accounting_sum(v);
   if (v.false_negatives > 0 && record.missed) {
     out += fmt::format("           of those missed {} touching, {} penetrating\n",
                        grouped(record.missed->touching), grouped(record.missed->penetrating));
@@ -242,6 +237,33 @@ const ViewReport* widest_budget(const std::vector<ViewReport>& views) {
   return widest;
 }
 
+NothingToTest nothing_to_test(const Scene& scene) {
+  std::uint64_t with_triangles = 0;
+  for (const Object& object : scene.objects) {
+    with_triangles += object.triangle_count > 0;
+    if (object.self && object.triangle_count > 1) return {};
+  }
+  if (with_triangles > 1) return {};
+  if (scene.triangles.size() < 2) return {.reason = "the scene has fewer than two triangles"};
+  const std::string one = scene.objects.size() == 1 ? "the scene is one object"
+                                                    : "one object of the scene has all triangles";
+  return {.reason = one + ", and an object is tested against itself only with --self",
+          .with_self = true};
+}
+
+std::string default_method_line(const RunOptions& options) {
+  if (!options.method_is_default) return "";
+  return fmt::format("default    {};\n           others: {} (farcull help methods)\n",
+                     method_reason(options),
+                     method_names([](const Traits& t) { return t.method != kDefaultMethod; }));
+}
+
+std::string colliding_text(std::uint64_t pairs, std::uint64_t neighbour_pairs, bool self) {
+  const std::string all = counted(pairs + neighbour_pairs, "pair", "pairs");
+  if (!self) return all;
+  return fmt::format("{} = {} + {} of neighbours", all, grouped(pairs), grouped(neighbour_pairs));
+}
+
 std::string not_asked_text(const Scene& scene) {
   constexpr std::size_t kNamed = 3;
   const NotAsked unasked = not_asked(scene);
@@ -253,8 +275,8 @@ std::string not_asked_text(const Scene& scene) {
   }
   std::string where = fmt::format("{}", fmt::join(names, ", "));
   if (names.size() > kNamed) {
-    where =
-        fmt::format("{} of {} objects", grouped(unasked.objects), grouped(scene.objects.size()));
+    where = fmt::format("{} of {}", grouped(unasked.objects),
+                        counted(scene.objects.size(), "object", "objects"));
   }
   return counted(unasked.pairs, "pair", "pairs") + " of triangles inside " + where;
 }
@@ -269,7 +291,7 @@ std::string not_asked_line(const Scene& scene, const std::string& options) {
 std::string run_heading(const Scene& scene, const Record& record) {
   std::string out =
       scene_line(scene, record) + "device     " + device_text(record) + "\n" + "method     " +
-      method_text(record) + "\n" + promise_line(record) +
+      method_text(record) + "\n" + default_method_line(record.options) + promise_line(record) +
       not_asked_line(scene,
                      tests_self(record.options.method) ? "--self" : "--method far-pairs --self");
   if (record.callers == kProved) return out;
@@ -277,7 +299,25 @@ std::string run_heading(const Scene& scene, const Record& record) {
          to_string(record.callers) + "\n";
 }
 
-std::string run_table(const Scene& scene, const Record& record) {
+std::string verdict_text(const Accounting& accounting) {
+  const std::string all = counted(accounting.pairs_total, "pair", "pairs") + " accounted for";
+  if (accounting.false_negatives == 0) return "verified: no colliding pair was culled, " + all;
+  return fmt::format(
+      "NOT verified: {} culled, {}",
+      counted(accounting.false_negatives, "colliding pair was", "colliding pairs were"), all);
+}
+
+std::string accounting_sum(const Accounting& v) {
+  return fmt::format(
+      "accounted  {} = {} kept + {} disjoint boxes\n           + {} proved disjoint{} + {} "
+      "missed\n",
+      counted(v.pairs_total, "pair", "pairs"), grouped(v.pairs_kept), grouped(v.certified_by_boxes),
+      grouped(v.certified_by_predicates),
+      v.neighbours > 0 ? " + " + grouped(v.neighbours) + " neighbours" : "",
+      grouped(v.false_negatives));
+}
+
+std::string run_table(const Scene& scene, const Record& record, const std::string& verdict) {
   std::string out = run_heading(scene, record);
   if (!record.found.views().empty()) out += "views      " + views_text(record.found.views()) + "\n";
   if (!record.found.pair_views().empty())
@@ -288,18 +328,21 @@ std::string run_table(const Scene& scene, const Record& record) {
                      counted(record.found.object_count, "object", "objects"),
                      counted(record.found.triangle_count, "triangle", "triangles"),
                      counted(record.found.count, "candidate pair", "candidate pairs"));
-  out += fmt::format("colliding  {}{}\n", counted(record.collisions.pairs.size(), "pair", "pairs"),
-                     has_self(scene) ? fmt::format(" and {} of {}",
-                                                   counted(record.collisions.neighbour_pairs.size(),
-                                                           "neighbour pair", "neighbour pairs"),
-                                                   grouped(record.collisions.neighbours))
-                                     : "");
+  const bool self = has_self(scene);
+  out += fmt::format(
+      "colliding  {}{}\n",
+      colliding_text(record.collisions.pairs.size(), record.collisions.neighbour_pairs.size(),
+                     self),
+      self ? "; " + counted(record.collisions.neighbours, "candidate is", "candidates are") +
+                 " of neighbours"
+           : "");
   out += work_line(record);
-  out += accounting_lines(scene, record);
   out += fmt::format(
       "time       {:.1f} ms = setup {:.1f} + cull {:.1f} + exact {:.1f}{}\n", record.ms.total,
       record.ms.setup, record.ms.cull, record.ms.exact,
       record.verification ? fmt::format("; accounting {:.1f} more", record.verification->ms) : "");
+  out += verdict;
+  out += accounting_lines(scene, record);
   return out;
 }
 
@@ -325,7 +368,7 @@ std::string comparison_table(const Scene& scene, const std::vector<Record>& reco
   out += not_asked_line(scene) + "\n";
   Table table("llrrrrrrrrrr");
   table.add({"method", "offset", "resolution", "objects", "triangles", "candidates", "colliding",
-             self ? "neighbours" : "", "missed", "cull ms", "exact ms",
+             self ? "+ neighbours" : "", "missed", "cull ms", "exact ms",
              reference ? "x exact" : ""});
   for (const Record& r : records) {
     const double ratio =
@@ -333,7 +376,7 @@ std::string comparison_table(const Scene& scene, const std::vector<Record>& reco
     table.add({to_string(r.options.method), fattens(r.options.method) ? r.options.offset : "-",
                resolution_text(r), grouped(r.found.object_count), grouped(r.found.triangle_count),
                grouped(r.found.count), grouped(r.collisions.pairs.size()),
-               self ? grouped(r.collisions.neighbour_pairs.size()) : "", missed_text(r),
+               self ? "+ " + grouped(r.collisions.neighbour_pairs.size()) : "", missed_text(r),
                fmt::format("{:.1f}", r.ms.cull), fmt::format("{:.1f}", r.ms.exact),
                reference ? fmt::format("{:.2f}", ratio) : ""});
   }
@@ -341,7 +384,10 @@ std::string comparison_table(const Scene& scene, const std::vector<Record>& reco
   out +=
       "\nobjects, triangles: kept by culling; candidates: pairs of kept triangles whose boxes "
       "overlap;\n"
-      "missed: colliding pairs that culling lost, found by exact predicates over all pairs.\n";
+      "missed: colliding pairs that culling lost, found by exact predicates over all pairs";
+  out += self ? ";\n+ neighbours: colliding pairs of triangles of one object that share a vertex "
+                "position.\n"
+              : ".\n";
   if (reference) {
     out +=
         "x exact: cull + exact ms over those of the method exact in this run\n"

@@ -15,6 +15,21 @@ std::string radius_text(const RadiusRule& radius);
 /// The view with the largest budget: the one that a reader should quote. Null where none was drawn.
 const ViewReport* widest_budget(const std::vector<ViewReport>& views);
 
+/// Why a scene has no pair of triangles to test.
+struct NothingToTest {
+  std::string reason;      // such as "the scene is one object, and ..."; empty: it has one
+  bool with_self = false;  // with --self it would have
+};
+NothingToTest nothing_to_test(const Scene& scene);
+
+/// The line that says which method is the default and what else there is; empty where the method
+/// was named.
+std::string default_method_line(const RunOptions& options);
+
+/// "298 pairs"; where `self`, an object is tested against itself, "1,643 pairs = 1,581 + 62 of
+/// neighbours".
+std::string colliding_text(std::uint64_t pairs, std::uint64_t neighbour_pairs, bool self);
+
 /// What the scene does not ask (verify/certificate/not_asked.h): "12 pairs of triangles inside a
 /// and b"; empty where it leaves out nothing.
 std::string not_asked_text(const Scene& scene);
@@ -25,7 +40,15 @@ std::string not_asked_line(const Scene& scene, const std::string& options = "--s
 std::string run_heading(const Scene& scene, const Record& record);
 
 /// One run. The stages of a view are folded into one row, and so are all rounds after the first.
-std::string run_table(const Scene& scene, const Record& record);
+/// The accounting is at the end, after `verdict`, lines of the caller.
+std::string run_table(const Scene& scene, const Record& record, const std::string& verdict = "");
+
+/// What an accounting shows, in one line without its end: "verified: no colliding pair was culled,
+/// 26,214,400 pairs accounted for".
+std::string verdict_text(const Accounting& accounting);
+
+/// The pairs, and the classes that they are in: two lines.
+std::string accounting_sum(const Accounting& accounting);
 
 /// Several runs of one scene, a line each. `repeat` > 1: times are medians, the spread is in the
 /// JSON.

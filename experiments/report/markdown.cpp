@@ -153,9 +153,9 @@ std::string page_markdown(const Page& page, const std::string& folder) {
     }
     if (!chapter.limits.empty()) out += "What it does not show:\n\n" + bullets(chapter.limits);
     const Declaration& d = drawn.stored.declaration;
-    out += fmt::format("Again: {} ({} grid, seed {}, {} points), then `farcull report`.\n\n",
+    out += fmt::format("Again: {} ({} grid, seed {}, {}), then `farcull report`.\n\n",
                        markdown_code(chapter.command), d.choice.quick ? "quick" : "full",
-                       d.choice.seed, grouped(d.points.size()));
+                       d.choice.seed, counted(d.points.size(), "point", "points"));
   }
   out += "## Where it was measured\n\n" + machine_of(page);
   return out;

@@ -25,8 +25,8 @@ std::string counted(std::size_t n, const std::string& one, const std::string& ma
 
 std::string grid_text(const StoredStudy& stored) {
   const Declaration& d = stored.declaration;
-  return fmt::format("{} grid, seed {}, {} of {} points", d.choice.quick ? "quick" : "full",
-                     d.choice.seed, grouped(stored.rows.size()), grouped(d.points.size()));
+  return fmt::format("{} grid, seed {}, {} of {}", d.choice.quick ? "quick" : "full", d.choice.seed,
+                     grouped(stored.rows.size()), counted(d.points.size(), "point", "points"));
 }
 
 class Writer {
@@ -135,11 +135,11 @@ class Writer {
         broken() ? "FAR and CULLIDE cull with graphics hardware."
                  : "FAR culls with graphics hardware and never misses a pair that collides; "
                    "CULLIDE, from which it comes, can.";
-    add("<p>{} This page reports {} on {}: {} rows, {}. All its numbers come from "
+    add("<p>{} This page reports {} on {}: {}, {}. All its numbers come from "
         "<code>{}</code>. Counts are the same, bit for bit, on the same device and CPU features; "
         "times are of this machine.</p>",
         claim, counted(page_.chapters.size(), "study", "studies"),
-        html_text(listed(machines(runs))), grouped(rows),
+        html_text(listed(machines(runs))), counted(rows, "row", "rows"),
         quick && full ? "quick grids and full ones"
         : quick       ? "of quick grids, which are made for a first look"
                       : "of full grids",
@@ -235,8 +235,9 @@ class Writer {
 
   void show(const DataTable& table) {
     if (!table.in_text) {
-      add("<p class=\"longer\">{} ({} rows): <a href=\"tables/{}.csv\">{}.csv</a>.</p>",
-          html_prose(table.caption), grouped(table.rows.size()), table.name, table.name);
+      add("<p class=\"longer\">{} ({}): <a href=\"tables/{}.csv\">{}.csv</a>.</p>",
+          html_prose(table.caption), counted(table.rows.size(), "row", "rows"), table.name,
+          table.name);
       return;
     }
     const std::string files = fmt::format(

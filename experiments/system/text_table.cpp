@@ -25,18 +25,4 @@ std::string Table::text() const {
   return out;
 }
 
-std::string grouped(std::uint64_t n) {
-  const std::string digits = std::to_string(n);
-  std::string out;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) out += ',';
-    out += digits[i];
-  }
-  return out;
-}
-
-std::string counted(std::uint64_t n, const std::string& one, const std::string& many) {
-  return grouped(n) + " " + (n == 1 ? one : many);
-}
-
 }  // namespace farcull

@@ -1,11 +1,12 @@
-// Aligned tables and numbers for people to read.
+// Aligned tables for people to read.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "core/base/count.h"
 
 namespace farcull {
 
@@ -22,10 +23,5 @@ class Table {
   std::string alignment_;
   std::vector<std::vector<std::string>> rows_;
 };
-
-/// 1234567 as 1,234,567.
-std::string grouped(std::uint64_t n);
-/// A number and its noun: "1 pair", "1,234 pairs".
-std::string counted(std::uint64_t n, const std::string& one, const std::string& many);
 
 }  // namespace farcull

@@ -128,7 +128,8 @@ std::vector<BuiltinScene> packaged_scenes() {
             .needs_meshes = true},
            make_bunnies_far_apart),
       made({.name = "mannequin-devil",
-            .description = "a mannequin with horns: 1581 pairs of its triangles collide",
+            .description =
+                "a mannequin with horns; inside it 1,643 pairs = 1,581 + 62 of neighbours collide",
             .objects = 1,
             .triangles = 25888,
             .needs_meshes = true},

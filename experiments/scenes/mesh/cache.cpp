@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <utility>
 
+#include "core/base/error.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/system/real_path.h"
 
@@ -57,6 +59,13 @@ const Mesh& MeshCache::get(const std::string& path) {
     Moving& moving = found->second;
     if (moving.frame != *frame_) moving = {*frame_, load_mesh(file)};
     return moving.mesh;
+  }
+  std::error_code error;
+  if (!frame_ && is_numbered(path) && !std::filesystem::exists(path, error)) {
+    throw Error(
+        path, "stands for numbered files, and it is not said which",
+        "add --frames FIRST:LAST to farcull run or verify, as in --frames 1:100, or name one "
+        "file");
   }
   const std::string key = real_path(path);
   auto entry = meshes_.find(key);

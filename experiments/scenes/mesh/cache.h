@@ -27,7 +27,8 @@ class MeshCache {
   void set_frame(long frame) { frame_ = frame; }
 
   /// The mesh of the path; valid until the same path is asked for in another frame. Throws Error as
-  /// load_mesh. The meshes of two frames may differ in their triangles.
+  /// load_mesh, and for a numbered name without frames that is no file. The meshes of two frames
+  /// may differ in their triangles.
   const Mesh& get(const std::string& path);
 
   /// The numbered names that were asked for.

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "core/base/count.h"
 #include "core/cull/clusters.h"
 #include "tests/core/cull/cull_lab.h"
 
@@ -373,8 +374,8 @@ TEST(CullLeftOut, EnoughEndsTheRunAfterAView) {
   const Stage* stage = stage_named(one, "further views");
   ASSERT_NE(stage, nullptr);
   EXPECT_FALSE(stage->ran);
-  EXPECT_EQ(reason_of(*stage),
-            std::to_string(one.live.size()) + " triangles are left, at most 1000 are enough");
+  EXPECT_EQ(reason_of(*stage), counted(one.live.size(), "triangle is left", "triangles are left") +
+                                   ", at most 1,000 are enough");
   EXPECT_EQ(stage_named(one, " y, round 1"), nullptr);
   EXPECT_TRUE(subset(all.live, one.live));
 }

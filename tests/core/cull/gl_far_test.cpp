@@ -28,7 +28,7 @@ Session& session() {
   return shared;
 }
 
-Record run(const Scene& scene, int resolution, RunOptions options = {}) {
+Record run(const Scene& scene, int resolution, RunOptions options = {.method = Method::far}) {
   options.resolution = resolution;
   return run(scene, options, session());
 }
@@ -70,7 +70,7 @@ TEST(GlFar, MissesNothingInObliqueAndRepeatedViews) {
     SCOPED_TRACE(views);
     for (const char* name : {"random-soup", "degenerate", "needles"}) {
       const Scene scene = make_builtin_scene(name);
-      RunOptions options;
+      RunOptions options{.method = Method::far};
       options.views = views;
       expect_right(scene, run(scene, 100, options));
     }
@@ -81,7 +81,7 @@ TEST(GlFar, QueriesAndDepthFormatsAgree) {
   for (const char* name : {"random-soup", "degenerate", "two-spheres", "crowd"}) {
     SCOPED_TRACE(name);
     const Scene scene = make_builtin_scene(name);
-    RunOptions options;
+    RunOptions options{.method = Method::far};
     const Record flags = run(scene, 128, options);
     options.query = QueryMode::occlusion;
     const Record occlusion = run(scene, 128, options);
@@ -101,7 +101,7 @@ TEST(GlFar, QueriesAndDepthFormatsAgree) {
 
 TEST(GlFar, PublishedPathRunsAndPromisesNothing) {
   const Scene scene = make_builtin_scene("two-spheres");
-  RunOptions options;
+  RunOptions options{.method = Method::far};
   options.depth = DepthMode::fixed;
   options.radius = {.published = true, .factor = 1};
   const Record record = run(scene, 128, options);
@@ -124,7 +124,7 @@ TEST(GlFar, CullideMissesPairsThatFarKeeps) {
 TEST(GlFar, RadiusTwinsFailNearPixelCorners) {
   const int side = 256;
   const Scene scene = corner_scene(side);
-  RunOptions options;
+  RunOptions options{.method = Method::far};
   options.views = "z";
   expect_right(scene, run(scene, side, options));
   const std::uint64_t pairs = all_colliding_pairs(scene).pairs.size();
@@ -144,7 +144,7 @@ TEST(GlFar, UndrawableItemKeepsItsSmallPartner) {
   ASSERT_GT(all_colliding_pairs(scene).pairs.size(), 0u);
   for (const char* views : {"1:1:1", "x,y,z", "1:1:1.0000001"}) {
     SCOPED_TRACE(views);
-    RunOptions options;
+    RunOptions options{.method = Method::far};
     options.views = views;
     const Record record = run(scene, 256, options);
     expect_right(scene, record);

@@ -80,6 +80,7 @@ bad 'a certificate of another version' 'older\.json: version is not 3' check old
 
 # Two triangles of one object that pierce each other.
 obj 'v 0.2 0.2 -1' 'v 0.2 0.2 1' 'v 0.3 0.6 1' 'f 1 2 3' 'f 5 6 7' >pierced.obj
+obj 'f 1 2 3' >good_of_claims.obj
 line='not asked +whether an object meets itself: 1 pair of triangles inside pierced \('
 unasked() { # CASE ARGUMENTS...: the text says it
   good "$1" 0 "${@:2}"
@@ -90,10 +91,40 @@ expect 'run asks by an option' "$out" '^not asked .*\(--self asks\)$'
 expect 'run promises' "$out" 'promises to miss nothing$'
 expect 'the record says it' <(tr -d ' \n' <r.json) '"self_not_asked":{"objects":1,"pairs":1,"which":\[\[0,0\]\]}'
 expect 'the certificate says it' <(tr -d ' \n' <p.json) '"not_asked":{"objects":1,"pairs":1}'
+# One object leaves nothing to test. That is said, with the command that tests it.
+nothing='^nothing to test: the scene is one object, and an object is tested .* only with --self$'
+for command in run verify plan; do
+  good "nothing for $command" 0 "$command" pierced.obj
+  expect "nothing for $command" "$out" "$nothing"
+  expect "nothing for $command" "$out" "^this tests it: farcull $command pierced\\.obj --self$"
+done
+((cases += 1))
+grep -q '^verified' "$out" && fail 'nothing for verify' 'it is verified'
+good 'nothing for compare' 0 compare pierced.obj --methods far-pairs,exact
+expect 'nothing for compare' "$out" '^this tests it: farcull compare pierced\.obj --self$'
+good 'nothing for cullide' 0 run pierced.obj --method cullide --device software --resolution 64
+expect 'nothing for cullide' "$out" \
+  '^this tests it: farcull run pierced\.obj --method far-pairs --self$'
+printf '{"objects": [{"mesh": "pierced.obj"}]}' >one.json
+good 'nothing in a scene file' 0 verify one.json
+expect 'nothing in a scene file' "$out" '^this tests it: farcull verify one\.json --self$'
+expect 'the record says it' r.json '^    "nothing_to_test": "the scene is one object, and '
+good 'plan as JSON' 0 plan pierced.obj --json -
+expect 'the plan says it' "$out" '^  "nothing_to_test": "the scene is one object, and '
+good 'something for verify' 0 verify pierced.obj --self --json something.json
+expect 'something for verify' "$out" '^verified: no colliding pair was culled, 1 pair accounted for$'
+expect 'something for verify' something.json '^    "nothing_to_test": null,$'
+((cases += 1))
+grep -q 'nothing to test' "$out" && fail 'something for verify' 'it says that there is nothing'
+printf '{"objects": [{"mesh": "pierced.obj", "self": true}]}' >one.json
+good 'something in a scene file' 0 verify one.json
+expect 'something in a scene file' "$out" '^verified: '
+good 'two objects' 0 verify pierced.obj good_of_claims.obj
+expect 'two objects' "$out" '^verified: '
 answers 'check' 0 '^proved: no pair of the scene meets$' check p.json pierced.obj
 expect 'check says what was not asked' "$out" "^$line"
 unasked verify verify pierced.obj --method far-pairs
-unasked 'run far' run pierced.obj --device software --resolution 64
+unasked 'run far' run pierced.obj --method far --device software --resolution 64
 expect 'run far asks by an option' "$out" '^not asked .*\(--self asks\)$'
 unasked 'run cullide' run pierced.obj --method cullide --device software --resolution 64
 expect 'run cullide asks by a method' "$out" '^not asked .*\(--method far-pairs --self asks\)$'
@@ -101,6 +132,7 @@ unasked compare compare pierced.obj --methods far-pairs,exact
 unasked bench bench pierced.obj --device cpu --repeat 1 --peers none
 cp pierced.obj pierced0.obj
 good 'frames' 0 run 'pierced%d.obj' --method far-pairs --frames 1
+expect 'frames leave nothing' "$out" "^this tests it: farcull run pierced%d\\.obj --method far-pairs --frames 1 --self$"
 expect 'frames say what was not asked' "$out" '^not asked .* 1 pair of triangles inside pierced'
 good 'frames' 0 run 'pierced%d.obj' --method far-pairs --frames 1 --json -
 expect 'frames say what was not asked' <(tr -d ' \n' <"$out") '"self_not_asked":{"objects":1,"pairs":1,'

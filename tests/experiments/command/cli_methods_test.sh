@@ -38,7 +38,7 @@ bad 'i-collide with a clearance' '--clearance: ' run two-spheres --method i-coll
 bad 'exact with full' '--full: ' run two-spheres --method exact --full
 bad 'a value for --full' '--full: ' run two-spheres --full=7
 for sizes in '' 1 0 x 32,32 16,32 32, 1e3; do
-  bad "clusters '$sizes'" '--clusters: ' run two-spheres --clusters "$sizes"
+  bad "clusters '$sizes'" '--clusters: ' run two-spheres --method far --clusters "$sizes"
 done
 bad 'clusters with far-pairs' '--clusters: ' run two-spheres --method far-pairs --clusters 32
 for method in i-collide exact; do
@@ -72,6 +72,23 @@ bad 'savings by no method' '--methods: ' experiment savings far-apart --methods 
 
 # --- good cases --------------------------------------------------------------------------------
 
+# The default, and what is not it.
+good 'the default' 0 run two-spheres --json default.json
+expect 'the default' "$out" '^method     far-pairs; promises to miss nothing$'
+expect 'the default' "$out" '^default    no --method: far-pairs misses nothing, and is the fastest on '
+expect 'the default' "$out" \
+  '^           others: far, cullide, quick-cullide, s-cullide, i-collide or exact \('
+expect 'the default' default.json '^  "method": "far-pairs",$'
+expect 'the default' default.json '^  "method_reason": "no --method: far-pairs misses nothing, '
+good 'the default of plan' 0 plan two-spheres
+expect 'the default of plan' "$out" '^default    no --method: far-pairs '
+good 'named' 0 run two-spheres --method far-pairs --json named.json
+expect 'named' named.json '^  "method_reason": "--method",$'
+((cases += 1))
+grep -q '^default' "$out" && fail 'named' 'it is called the default'
+rm default.json named.json
+bad 'a radius of the default' '--radius: .*far-pairs; .*--method far' run two-spheres --radius 1
+
 good 'plan' 0 plan far-apart --method far
 expect 'plan' "$out" '^draw +left out +no two objects'
 expect 'plan' "$out" '^not asked +whether an object meets itself: '
@@ -82,9 +99,9 @@ good 'plan as JSON' 0 plan two-spheres --method far-pairs --json -
 expect 'plan as JSON' "$out" '"decision": "depends"'
 good 'plan of self-collision' 0 plan folded.obj --method far-pairs --self
 expect 'plan of self-collision' "$out" '^self +1 object is tested against itself'
-good 'plan of far inside objects' 0 plan two-spheres --self
+good 'plan of far inside objects' 0 plan two-spheres --method far --self
 expect 'plan of far inside objects' "$out" '^patches +.*32 patches of at most 320 triangles'
-good 'far inside a small object' 0 verify folded.obj --self
+good 'far inside a small object' 0 verify folded.obj --method far --self
 expect 'far inside a small object' "$out" '^patches .*boxes alone$'
 expect 'far inside a small object' "$out" 'promises to miss nothing$'
 
@@ -101,7 +118,7 @@ expect 'i-collide' "$out" '^colliding  298 pairs$'
 good 'i-collide in motion' 0 verify two-spheres --method i-collide --frames 3
 good 'clusters' 0 run crowd --method cullide --clusters 64,8 --resolution 64 --device software
 expect 'clusters' "$out" 'clusters of 8'
-good 'exact offsets' 0 verify crowd --offset exact --resolution 64 --device software
+good 'exact offsets' 0 verify crowd --method far --offset exact --resolution 64 --device software
 good 'full' 0 verify far-apart --method far-pairs --device cpu --full
 expect 'full' "$out" '^colliding  0 pairs$'
 good 'compare the family' 0 compare two-spheres --methods cullide,quick-cullide,i-collide,exact \

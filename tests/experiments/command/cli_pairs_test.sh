@@ -26,10 +26,11 @@ bad 'far-pairs beyond its resolution' '--resolution: .*limit of far-pairs' run "
   --resolution 16385
 bad 'far-pairs compared beyond it' '--resolutions: .*limit of far-pairs' compare two-spheres \
   --methods far-pairs --resolutions 16385
-bad 'far at auto' '--resolution: auto .*far-pairs' run two-spheres --resolution auto
+bad 'far at auto' '--resolution: auto .*far-pairs' run two-spheres --method far \
+  --resolution auto
 bad 'compare far at auto' '--resolutions: auto ' compare two-spheres --methods far \
   --resolutions auto
-bad 'far with views auto' '--views: auto .*far-pairs' run two-spheres --views auto
+bad 'far with views auto' '--views: auto .*far-pairs' run two-spheres --method far --views auto
 bad 'compare far with views auto' '--views: auto ' compare two-spheres --methods far --views auto
 for method in far cullide; do
   bad "$method with a clearance" '--clearance: .*far-pairs' run two-spheres --method "$method" \
@@ -74,9 +75,16 @@ expect 'a frame that is missing' missing.csv '^frame,'
 rm -f missing.json missing.csv
 bad 'frames from another number' 'cloth_00\.obj: the file does not exist' run cloth_%02d.obj \
   --method far-pairs --frames 3
+bad 'numbered files without frames' 'cloth_%02d\.obj: .*; add --frames FIRST:LAST ' run cloth_%02d.obj
+printf '{"objects": [{"mesh": "cloth_%%02d.obj"}]}' >cloth.json
+bad 'numbered files of a scene file' '.*cloth_%02d\.obj: .*; add --frames' run cloth.json
+bad 'numbered files to compare' 'cloth_%02d\.obj: .*, or name one file' compare cloth_%02d.obj
+obj 'f 1 2 3' >'really_%d.obj'
+good 'a file with such a name' 0 run 'really_%d.obj'
+bad 'faces without pairs' '--faces: .*--pairs' run "${pairs[@]}" --faces
 obj 'f 1 2 3' >cloth_05.obj
 good 'a frame with fewer triangles' 0 run cloth_%02d.obj --method far-pairs --frames 3:5
-expect 'a frame with fewer triangles' "$out" '^topology  changed 1 times between frames$'
+expect 'a frame with fewer triangles' "$out" '^topology  changed 1 time between frames$'
 printf 'v 0 0 nan\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n' >cloth_05.obj
 bad 'a first frame that is no mesh' 'cloth_05\.obj:1: ' run cloth_%02d.obj --method far-pairs \
   --frames 5:5 --json old.json --pairs new.csv
@@ -116,7 +124,28 @@ good 'self-collision' 0 verify folded.obj --method far-pairs --self --pairs -
 expect 'self-collision' "$out" '^object_a,triangle_a,object_b,triangle_b,neighbours$'
 expect 'self-collision' "$out" '^0,0,0,2,0$'
 good 'self-collision by exact' 0 verify folded.obj --method exact --self
-expect 'self-collision by exact' "$out" '^colliding  1 pair and 0 neighbour pairs of 1$'
+expect 'self-collision by exact' "$out" '^colliding  1 pair = 1 \+ 0 of neighbours; 1 candidate is of neighbours$'
+# Faces of the file: a square and a concave hexagon, six triangles of two faces, and a blade.
+printf 'v %s\n' '0 0 0' '1 0 0' '1 1 0' '0 1 0' '2 0 0' '4 0 0' '4 1 0' '3 0.2 0' '2.5 1 0' '2 1 0' \
+  >faces.obj
+printf 'f 1 2 3 4\nf 5 6 7 8 9 10\n' >>faces.obj
+printf 'v %s\n' '0.1 0.6 -1' '0.1 0.6 1' '0.1 0.7 0' '2.1 0.6 -1' '2.1 0.6 1' '2.1 0.7 0' >blade.obj
+printf 'f 1 2 3\nf 4 5 6\n' >>blade.obj
+good 'faces' 0 run faces.obj blade.obj --pairs faces.csv --faces
+expect 'faces' <(head -n 1 faces.csv) '^object_a,triangle_a,object_b,triangle_b,face_a,face_b$'
+expect 'faces' faces.csv '^0,1,1,0,0,0$'
+expect 'faces' faces.csv '^0,[2-5],1,1,1,1$'
+good 'without faces' 0 run faces.obj blade.obj --pairs plain.csv
+((cases += 1))
+cmp -s plain.csv <(cut -d, -f1-4 faces.csv) || fail 'faces' 'the other columns differ'
+good 'faces of self-collision' 0 run faces.obj blade.obj --self --pairs - --faces
+expect 'faces of self-collision' "$out" \
+  '^object_a,triangle_a,object_b,triangle_b,neighbours,face_a,face_b$'
+expect 'faces of self-collision' "$out" '^0,1,1,0,0,0,0$'
+good 'faces of frames' 0 run two-spheres --frames 1 --pairs - --faces
+expect 'faces of frames' "$out" '^frame,object_a,triangle_a,object_b,triangle_b,face_a,face_b$'
+expect 'faces of frames' "$out" '^0,0,([0-9]+),1,([0-9]+),\1,\2$'
+rm faces.csv
 good 'certificate of self-collision' 0 run folded.obj --method far-pairs --self --certificate c.json
 good 'check of it' 0 check c.json folded.obj --self
 expect 'check of it' "$out" '^proved: '
@@ -130,7 +159,7 @@ expect 'no self-collision' "$out" '^colliding  0 pairs$'
 good 'scene that collides with itself' 0 verify self.json --method far-pairs
 good 'compare with self' 0 compare folded.obj --self --clearance 0.5
 expect 'compare with self' "$out" '^far-pairs +- +auto'
-expect 'compare with self' "$out" '^method .* neighbours '
+expect 'compare with self' "$out" '^method .* colliding  \+ neighbours '
 
 # Frames: a triangle that falls through another.
 for i in 1 2 3; do
@@ -146,7 +175,7 @@ expect 'frames' falls.csv '^2,0,0,1,3$'
 rm falls.csv
 printf '{"objects": [{"mesh": "fall_%%d.obj", "self": true}, {"mesh": "good.obj"}]}' >fall.json
 good 'frames of a scene file' 0 run fall.json --method exact --frames 1:3 --no-verify
-expect 'frames of a scene file' "$out" '^frame +candidates +colliding +neighbours +cull ms'
+expect 'frames of a scene file' "$out" '^frame +candidates +colliding +\+ neighbours +cull ms'
 expect 'frames of a scene file' "$out" '^per frame  median '
 good 'frames of a built-in scene' 0 verify two-spheres@far@ground --method far-pairs --frames 3
 expect 'frames of a built-in scene' "$out" '^ +2 .* 0 +[0-9.]+ +[0-9.]+ +[0-9.]+ +[0-9,]+ +[0-9,]+$'

@@ -41,9 +41,10 @@ p 'a bad resolution to compare' '--compare: ' --compare far:x -o new.png
 p 'a resolution for exact' '--compare: exact' --compare exact:64 -o new.png
 p 'both' '--compare: ' --compare far --method far -o new.png
 p 'seven panels' '--compare: 7' --compare far,far,far,far,far,far,far -o new.png
+p 'a radius of the default' '--radius: .*--method far' --radius 1 -o new.png
 p 'a radius without far' '--radius: ' --method cullide --radius 1 -o new.png
 p 'a depth without far' '--depth: ' --method cullide --depth fixed -o new.png
-p 'an unknown depth' '--depth: ' --depth deep -o new.png
+p 'an unknown depth' '--depth: ' --method far --depth deep -o new.png
 p 'a resolution without pixels' '--resolution: ' --resolution 0 -o new.png
 p 'a resolution that exact has not' '--resolution: ' --method exact --resolution 64 -o new.png
 for size in '' 100 100x 100xx80 x80 100x80x 61x80 100x4097 -100x80 99999999999x80 100X80; do
@@ -53,7 +54,7 @@ p 'an unknown direction' "--view: 'up'" --view up -o new.png
 p 'no direction' '--view: ' --view 0:0:0 -o new.png
 p 'an empty direction' '--view: ' --view '' -o new.png
 p 'up along the view' '--up: ' --view y --up y -o new.png
-p 'an unknown view of the method' '--view-depth: ' --view-depth top -o new.png
+p 'an unknown view of the method' '--view-depth: ' --method far --view-depth top -o new.png
 p 'the depth of exact' '--view-depth: exact' --method exact --view-depth -o new.png
 p 'a frame that is none' '--frame: ' --frame x -o new.png
 p 'a frame below' '--frame: ' --frame -1 -o new.png
@@ -84,7 +85,7 @@ expect 'compare' "$out" '^exact: missed 0 of '
 expect 'provenance' old.png 'Scene hash'
 good 'standard output' 0 picture crossing.obj --method exact --self "${small[@]}" -o -
 is_png 'standard output' "$out"
-good 'a view of the method' 0 picture two-spheres --resolution 32 --view-depth=-x "${small[@]}" -o v.png
+good 'a view of the method' 0 picture two-spheres --method far --resolution 32 --view-depth=-x "${small[@]}" -o v.png
 expect 'a view of the method' "$out" '^far at 32 px, along -x: this view loses 0 of '
 good 'a single mesh' 0 picture crossing.obj --method far-pairs --self --device cpu --view -z --up x \
   "${small[@]}" -o s.png

@@ -117,7 +117,7 @@ measure --out shards --shard 4/4 || fail shards "status $?"
 bad "a shard twice" '.*is shard 1/4 of radius, and so is' merge shards/results-1-of-4.sqlite \
   shards/results-1-of-4.sqlite -o new.sqlite
 good merge 0 merge shards
-expect merge "$out" "^$points rows of 1 studies from 4 shards: shards/results.sqlite$"
+expect merge "$out" "^$points rows of 1 study from 4 shards: shards/results.sqlite$"
 same shards shards
 bad "merged already" 'shards/results.sqlite: is there already' merge shards
 sqlite3 shards/results.sqlite "UPDATE rows SET counts = '{}' WHERE position = 3"

@@ -12,6 +12,7 @@ if [[ $# -ne 1 || ! -x $1 ]]; then
   exit 2
 fi
 program=$(realpath -- "$1")
+test_file=$(realpath -- "${BASH_SOURCE[0]}")
 work=$(mktemp -d) || exit 2
 trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
 
@@ -182,7 +183,8 @@ bad_scene 'scene file of 200000 brackets' 'deep\.json:1: ' deep.json
 
 # --- the command line --------------------------------------------------------------------------
 
-spheres=(two-spheres --device software --resolution 64)
+spheres=(two-spheres --device software --resolution 64 --method far)
+cullide=(two-spheres --device software --resolution 64 --method cullide)
 bad 'unknown command' 'frob: ' frob
 bad 'unknown option of the program' '--frob: ' --frob
 for command in run verify compare; do
@@ -214,21 +216,24 @@ for number in 0 -5 abc 1e99 1.5 '' 99999999999999999999 2147483648 ' 7' 7px 0x40
     --repeat "${number/2147483648/0}"
 done
 bad 'resolution beyond the device' '--resolution: .*limit of this device' run two-spheres \
-  --device software --resolution 2147483647 --json new.json
+  --method far --device software --resolution 2147483647 --json new.json
 bad 'compared resolution beyond the device' '--resolutions: .*limit of this device' \
   compare two-spheres --methods far --device software --resolutions 64,2147483647 --json new.json
 pairs=(two-spheres --method far-pairs)
 for radius in -1 -1e-9 nan inf 1e999 4.8e38 100001 big '' 1x; do
-  bad "radius '$radius'" '--radius: ' run two-spheres --radius "$radius"
+  bad "radius '$radius'" '--radius: ' run two-spheres --method far --radius "$radius"
 done
 for option in --method --offset --depth --depth-format --query; do
-  bad "$option unknown" "$option: 'nope'" run two-spheres "$option" nope
-  bad "$option empty" "$option: ''" run two-spheres "$option" ''
-  bad "$option without a value" "$option: " run two-spheres "$option"
+  far=(two-spheres --method far)
+  [[ $option == --method ]] && far=(two-spheres)
+  bad "$option unknown" "$option: 'nope'" run "${far[@]}" "$option" nope
+  bad "$option empty" "$option: ''" run "${far[@]}" "$option" ''
+  bad "$option without a value" "$option: " run "${far[@]}" "$option"
   bad "$option twice" "$option: " verify two-spheres "$option" far "$option" far
 done
 bad 'compare with an unknown method' '--methods: ' compare two-spheres --methods far,nope
-bad 'flags with 24 bits' '--query: ' run two-spheres --query flags --depth-format 24
+bad 'flags with 24 bits' '--query: ' run two-spheres --method far --query flags \
+  --depth-format 24
 bad 'fragment depth with cullide' '--depth: ' run two-spheres --method cullide --depth fragment
 bad 'radius with cullide' '--radius: ' run two-spheres --method cullide --radius 0.5
 bad 'depth with exact' '--depth: ' run two-spheres --method exact --depth fixed
@@ -339,6 +344,9 @@ echo 'not a library' >broken_egl/libEGL.so.1
 for command in run verify compare doctor; do
   arguments=("$command")
   [[ $command == doctor ]] || arguments+=(two-spheres --device gl --json old.json)
+  far=()
+  [[ $command == run || $command == verify ]] && far=(--method far)
+  arguments+=("${far[@]}")
   settings=(__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent)
   bad "$command without an EGL vendor" 'EGL: ' "${arguments[@]}"
   settings=("__EGL_VENDOR_LIBRARY_DIRS=$PWD/no_vendors")
@@ -346,7 +354,7 @@ for command in run verify compare doctor; do
   settings=("LD_LIBRARY_PATH=$PWD/broken_egl")
   bad "$command without libEGL" 'EGL: libEGL\.so\.1 cannot be loaded' "${arguments[@]}"
   settings=(GALLIUM_DRIVER=nonsense)
-  [[ $command == doctor ]] || arguments=("$command" two-spheres --json old.json)
+  [[ $command == doctor ]] || arguments=("$command" two-spheres "${far[@]}" --json old.json)
   bad "$command without a driver" 'EGL: ' "${arguments[@]}" --device software
   settings=(MESA_GL_VERSION_OVERRIDE=3.3 MESA_GLSL_VERSION_OVERRIDE=330)
   bad "$command with OpenGL 3.3" 'EGL: .*older than 4\.3' "${arguments[@]}" --device software
@@ -357,7 +365,7 @@ settings=(__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent)
 good 'far apart without EGL' 0 run far-apart
 good 'exact without EGL' 0 run two-spheres --method exact
 # What draws does so on the cores of the CPU where no device was asked for, and says why.
-good 'far without EGL' 0 verify two-spheres --resolution 64 --json -
+good 'far without EGL' 0 verify two-spheres --method far --resolution 64 --json -
 expect 'far without EGL' "$out" '^    "cpu": "no --device: GL where hardware answers, else the CPU; EGL'
 expect 'far without EGL' "$out" '^    "lanes": "[A-Za-z0-9_]+",$'
 settings=("LD_LIBRARY_PATH=$PWD/broken_egl")
@@ -367,7 +375,7 @@ settings=()
 
 # --- the native canvas -------------------------------------------------------------------------
 
-native=(two-spheres --resolution 64)
+native=(two-spheres --method far --resolution 64)
 for device in native cpu; do
   good "far on $device" 0 verify "${native[@]}" --device "$device" --json -
   expect "far on $device" "$out" "^    \"cpu\": \"--device $device\",\$"
@@ -397,7 +405,7 @@ for signal in INT TERM HUP; do
   for delay in 0.02 0.1 0.2; do
     ((cases += 1))
     before=$(snapshot)
-    timeout -s "$signal" "$delay" "$program" run random-soup --device software --json new.json \
+    timeout -s "$signal" "$delay" "$program" run random-soup --method far --device software --json new.json \
       --pairs new.csv >"$out" 2>"$err"
     status=$?
     case $status in
@@ -488,6 +496,31 @@ done
 good '--help' 0 --help
 expect '--help' "$out" '^  farcull run'
 good '--version' 0 --version
+good 'help' 0 help
+expect 'help' "$out" '^  farcull help terms '
+cp "$out" help.txt
+good '--help' 0 --help
+((cases += 1))
+cmp -s "$out" help.txt || fail 'help' 'it is not --help'
+good 'help run' 0 help run
+cp "$out" help.txt
+good 'run --help' 0 run --help
+((cases += 1))
+cmp -s "$out" help.txt || fail 'help run' 'it is not run --help'
+good 'help experiment accuracy' 0 help experiment accuracy
+cp "$out" help.txt
+good 'experiment accuracy --help' 0 experiment accuracy --help
+((cases += 1))
+cmp -s "$out" help.txt || fail 'help experiment accuracy' 'it is not experiment accuracy --help'
+rm help.txt
+for topic in methods pairs scene-file terms; do
+  good "help $topic" 0 help "$topic"
+  ((cases += 1))
+  cmp -s "$out" "$(dirname -- "$test_file")/../../../docs/help/$topic.txt" ||
+    fail "help $topic" 'it is not docs/help'
+done
+bad 'help of nothing known' 'nope: no such .*terms' help nope
+bad 'help of two topics' 'terms pairs: no such ' help terms pairs
 good scenes 0 scenes
 expect scenes "$out" '^two-spheres '
 good 'scenes as JSON' 0 scenes --json -
@@ -511,11 +544,43 @@ rm -r crowd tubes crowd.json tubes.json built.json hash-*
 good 'run' 0 run "${spheres[@]}"
 expect 'run' "$out" '^two-spheres: 2 objects, 10,240 triangles$'
 expect 'run' "$out" ' \+ 0 missed$'
-good 'cullide misses' 0 run "${spheres[@]}" --method cullide
+good 'cullide misses' 0 run "${cullide[@]}"
 expect 'cullide misses' "$out" ' \+ [1-9][0-9,]* missed$'
 good 'verify' 0 verify "${spheres[@]}"
-good 'verify cullide' 1 verify "${spheres[@]}" --method cullide
+verified='^verified: no colliding pair was culled, 26,214,400 pairs accounted for$'
+expect 'verify' <(tail -n 3 "$out" | head -n 1) "$verified"
+expect 'verify' <(tail -n 2 "$out") '^accounted  26,214,400 pairs = '
+good 'verify cullide' 1 verify "${cullide[@]}"
 expect 'verify cullide' "$err" '^farcull: cullide at 64 px '
+expect 'verify cullide' "$out" \
+  '^NOT verified: [1-9][0-9,]* colliding pairs were culled, 26,214,400 pairs accounted for$'
+((cases += 1))
+grep -qE "$verified" "$out" && fail 'verify cullide' 'it is verified'
+good 'verify frames' 0 verify two-spheres --frames 2
+expect 'verify frames' <(tail -n 3 "$out") \
+  '^verified: no colliding pair was culled, 52,428,800 pairs accounted for$'
+expect 'verify frames' <(tail -n 2 "$out") '^accounted  52,428,800 pairs = '
+
+# Colours are for terminals alone, and not where NO_COLOR is set.
+escape=$'\033'
+shown() { # FILE VARIABLE=VALUE... -- ARGUMENTS...: the answer on a terminal of its own
+  local variables=()
+  while [[ $2 != -- ]]; do variables+=("$2") && set -- "$1" "${@:3}"; done
+  script -qec "env ${variables[*]} '$program' ${*:3}" /dev/null >"$1" 2>&1 </dev/null
+}
+((cases += 4))
+shown shown.txt -u NO_COLOR TERM=xterm -- verify two-spheres
+grep -qF "$escape[1;32mverified: " shown.txt || fail 'colour' 'the verdict is not green'
+shown shown.txt -u NO_COLOR TERM=xterm -- verify "${cullide[@]}"
+grep -qF "$escape[1;31mNOT verified: " shown.txt || fail 'colour' 'the verdict is not red'
+grep -qF "$escape[1;31mfarcull: cullide at" shown.txt || fail 'colour' 'the message is not red'
+shown shown.txt NO_COLOR=1 TERM=xterm -- verify two-spheres
+grep -q '^verified: ' shown.txt || fail 'NO_COLOR' 'no plain verdict'
+rm shown.txt
+settings=(TERM=xterm)
+good 'a pipe' 0 verify two-spheres
+settings=()
+expect 'a pipe' "$out" "$verified"
 good 'negative direction' 0 run "${spheres[@]}" --views -y,x
 good 'compare' 0 compare two-spheres --device software --resolutions 32,64 --json compare.json
 expect 'compare' "$out" '^cullide +- +64 '
@@ -549,7 +614,7 @@ ply_binary 0 >good_binary.ply
 stl '0 0 0' '1 0 0' '0 1 0' >good.stl
 stl_binary 1 0 >good_binary.stl
 for mesh in good.off good.ply good_binary.ply good.stl good_binary.stl; do
-  good "$mesh" 0 run good.obj "$mesh" --device software --resolution 64 --pairs pairs.csv \
+  good "$mesh" 0 run good.obj "$mesh" --method far --device software --resolution 64 --pairs pairs.csv \
     --json old.json
   expect "pairs of $mesh" <(head -n 1 pairs.csv) '^object_a,triangle_a,object_b,triangle_b$'
   expect "pairs of $mesh" pairs.csv '^0,[0-9]+,1,[0-9]+$'
@@ -561,11 +626,11 @@ done
 printf '{"name": "s", "objects": [{"mesh": "good.obj"}, {"mesh": "good.off", "scale": 2}]}' \
   >good.json
 ln -s old.json link.json
-good 'scene file' 0 run good.json --device software --resolution 64 --json link.json
+good 'scene file' 0 run good.json --method far --device software --resolution 64 --json link.json
 expect 'scene file' old.json '"name": "s",'
 ((cases += 1))
 [[ -L link.json ]] || fail 'JSON through a link' 'the link was replaced'
-good 'JSON to /dev/stdout' 0 run good.json --device software --resolution 64 --json /dev/stdout
+good 'JSON to /dev/stdout' 0 run good.json --method far --device software --resolution 64 --json /dev/stdout
 expect 'JSON to /dev/stdout' "$out" '^  "method": "far",'
 ((cases += 1))
 [[ -z $(compgen -G '*.part-*') ]] || fail 'good runs' 'a part of a file is left'

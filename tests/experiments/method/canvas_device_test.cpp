@@ -16,7 +16,7 @@ namespace farcull {
 namespace {
 
 RunOptions far_on(const std::string& device) {
-  RunOptions options;
+  RunOptions options{.method = Method::far};
   options.resolution = 64;
   options.device = device;
   return options;

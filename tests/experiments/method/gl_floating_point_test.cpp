@@ -19,7 +19,7 @@ using lab::Environment;
 using lab::environments;
 
 TEST(GlFloatingPoint, EveryMethodThatPromises) {
-  RunOptions far;
+  RunOptions far{.method = Method::far};
   far.resolution = 64;
   std::vector<RunOptions> ways(4, far);
   ways[1].query = QueryMode::occlusion;

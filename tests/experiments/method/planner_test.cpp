@@ -53,7 +53,7 @@ bool has(const Plan& plan, StageKind kind) {
 
 TEST(Planner, LeavesTheDeviceOutWhereBoxesDecide) {
   const Scene scene = make_builtin_scene("far-apart");
-  RunOptions far;
+  RunOptions far{.method = Method::far};
   EXPECT_EQ(decision(plan(scene, far), "draw"), "left out");
   EXPECT_FALSE(has(plan(scene, far), StageKind::setup));
   far.full = true;
@@ -67,7 +67,7 @@ TEST(Planner, LeavesTheDeviceOutWhereBoxesDecide) {
 
 TEST(Planner, SaysWhatItLeavesOut) {
   const Scene scene = make_builtin_scene("two-spheres");
-  RunOptions far;
+  RunOptions far{.method = Method::far};
   EXPECT_FALSE(has(plan(scene, far), StageKind::offset));
   EXPECT_EQ(decision(plan(scene, far), "sub-object level"), "left out");
   EXPECT_EQ(decision(plan(scene, far), "fatten x, round 1"), "runs");

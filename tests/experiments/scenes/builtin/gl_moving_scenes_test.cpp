@@ -62,7 +62,7 @@ std::uint64_t missed_in(const RunOptions& options, const std::vector<long>& fram
 
 TEST(GlMovingScenes, FarMissesNothingWithEitherOffset) {
   for (const char* offset : {"obb", "exact"}) {
-    RunOptions options;
+    RunOptions options{.method = Method::far};
     options.device = "software";
     options.resolution = 48;
     options.offset = offset;

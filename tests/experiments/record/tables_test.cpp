@@ -1,0 +1,137 @@
+// What the tables say in words: numbers with their nouns, what collides, what there is to test, and
+// the verdict.
+#include "experiments/record/tables.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/base/count.h"
+#include "core/base/stage.h"
+#include "experiments/record/output.h"
+#include "experiments/record/plan.h"
+#include "tests/core/scene/scenes.h"
+
+namespace farcull {
+namespace {
+
+const std::array<Vec3, 3> kSome = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+
+// Objects of so many triangles each.
+Scene scene_of(std::vector<std::size_t> sizes, bool self = false) {
+  std::vector<std::vector<std::array<Vec3, 3>>> objects;
+  for (const std::size_t size : sizes) objects.emplace_back(size, kSome);
+  Scene scene = lab::scene_of(objects);
+  for (Object& object : scene.objects) object.self = self;
+  return scene;
+}
+
+TEST(Counted, OneIsSingular) {
+  EXPECT_EQ(counted(0, "study", "studies"), "0 studies");
+  EXPECT_EQ(counted(1, "study", "studies"), "1 study");
+  EXPECT_EQ(counted(2, "study", "studies"), "2 studies");
+  EXPECT_EQ(counted(1234567, "triangle is left", "triangles are left"),
+            "1,234,567 triangles are left");
+  EXPECT_EQ(grouped(999), "999");
+  EXPECT_EQ(grouped(1000), "1,000");
+}
+
+TEST(Counted, ReasonsOfStagesAgree) {
+  for (int reason = 0; reason <= static_cast<int>(Reason::if_candidates); ++reason) {
+    const auto text = [&](std::uint64_t n) {
+      return reason_of({.reason = static_cast<Reason>(reason), .n = n, .m = n});
+    };
+    for (const char* plural : {"1 triangles", "1 objects", "1 patches", "1 candidates", "1 passes",
+                               "1 pairs of objects"})
+      EXPECT_EQ(text(1).find(plural), std::string::npos) << text(1);
+    for (const char* singular : {"2 triangle ", "2 object ", "2 patch ", "2 candidate ", "2 pass,"})
+      EXPECT_EQ(text(2).find(singular), std::string::npos) << text(2);
+  }
+}
+
+TEST(Colliding, BothNumbersAndTheirSum) {
+  EXPECT_EQ(colliding_text(1, 0, false), "1 pair");
+  EXPECT_EQ(colliding_text(3857, 0, false), "3,857 pairs");
+  EXPECT_EQ(colliding_text(1581, 62, true), "1,643 pairs = 1,581 + 62 of neighbours");
+  EXPECT_EQ(colliding_text(1, 0, true), "1 pair = 1 + 0 of neighbours");
+  const Scene scene = scene_of({3}, true);
+  Record record;
+  record.options.method = Method::exact;
+  record.collisions.pairs = {{0, 1}};
+  record.collisions.neighbour_pairs = {{0, 2}, {1, 2}};
+  const auto json = to_json(scene, record);
+  EXPECT_EQ(json["colliding_pairs"], 1);
+  EXPECT_EQ(json["neighbour_pairs"], 2);
+  EXPECT_EQ(json["all_colliding_pairs"], 3);
+  EXPECT_NE(run_table(scene, record).find("\ncolliding  3 pairs = 1 + 2 of neighbours; "),
+            std::string::npos);
+}
+
+TEST(NothingToTest, IsOneObjectThatIsNotSelf) {
+  for (const Scene& scene : {scene_of({2}), scene_of({9}), scene_of({0, 2, 0})}) {
+    const NothingToTest nothing = nothing_to_test(scene);
+    EXPECT_NE(nothing.reason.find("only with --self"), std::string::npos) << nothing.reason;
+    EXPECT_TRUE(nothing.with_self);
+    EXPECT_EQ(plan_json(scene, plan(scene, {}))["nothing_to_test"], nothing.reason);
+  }
+  for (const Scene& scene : {scene_of({1}), scene_of({1}, true), scene_of({0, 1})}) {
+    const NothingToTest nothing = nothing_to_test(scene);
+    EXPECT_EQ(nothing.reason, "the scene has fewer than two triangles");
+    EXPECT_FALSE(nothing.with_self);
+  }
+  // The twins: each has a pair.
+  Scene second = scene_of({1, 2});
+  second.objects[1].self = true;
+  for (const Scene& scene : {scene_of({2}, true), scene_of({1, 1}), scene_of({0, 1, 1}), second}) {
+    EXPECT_TRUE(nothing_to_test(scene).reason.empty());
+    EXPECT_TRUE(plan_json(scene, plan(scene, {}))["nothing_to_test"].is_null());
+  }
+}
+
+// Whether there is nothing to test is decided by the sizes of the objects; the accounting counts
+// the pairs by itself.
+TEST(NothingToTest, AgreesWithTheAccounting) {
+  for (const bool self : {false, true}) {
+    for (const auto& sizes : std::vector<std::vector<std::size_t>>{
+             {1}, {2}, {0, 2}, {1, 1}, {0, 1}, {2, 0, 3}, {0, 0, 1}}) {
+      const Scene scene = scene_of(sizes, self);
+      const ExactResult exact = all_colliding_pairs(scene);
+      std::vector<TrianglePair> kept = exact.pairs;
+      kept.insert(kept.end(), exact.neighbour_pairs.begin(), exact.neighbour_pairs.end());
+      std::sort(kept.begin(), kept.end());
+      EXPECT_EQ(account(scene, kept).pairs_total == 0, !nothing_to_test(scene).reason.empty());
+    }
+  }
+}
+
+TEST(VerdictText, SaysWhetherAPairWasCulled) {
+  Accounting all;
+  all.pairs_total = 5736124416;
+  EXPECT_EQ(verdict_text(all),
+            "verified: no colliding pair was culled, 5,736,124,416 pairs accounted for");
+  all.false_negatives = 1;
+  EXPECT_EQ(verdict_text(all),
+            "NOT verified: 1 colliding pair was culled, 5,736,124,416 pairs accounted for");
+  all.false_negatives = 2;
+  EXPECT_EQ(verdict_text(all),
+            "NOT verified: 2 colliding pairs were culled, 5,736,124,416 pairs accounted for");
+}
+
+TEST(DefaultMethod, IsSaidWhereNoneIsNamed) {
+  RunOptions options;
+  EXPECT_EQ(options.method, kDefaultMethod);
+  EXPECT_EQ(default_method_line(options), "");
+  EXPECT_EQ(method_reason(options), "--method");
+  options.method_is_default = true;
+  const std::string line = default_method_line(options);
+  EXPECT_TRUE(line.starts_with("default    no --method: far-pairs ")) << line;
+  for (const Method method : all_methods()) {
+    EXPECT_EQ(line.find(" " + to_string(method)) != std::string::npos, true) << line;
+  }
+}
+
+}  // namespace
+}  // namespace farcull
