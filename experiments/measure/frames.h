@@ -19,6 +19,7 @@ struct FramesQuestion {
   bool self = false;
   bool strict = false;  // farcull verify: ask the guarantee of every method
   bool pairs = false;   // the CSV is wanted
+  bool certificates = false;
 };
 
 /// Milliseconds of frames: candidates and exact tests, without reading and accounting.
@@ -35,7 +36,9 @@ struct FrameReport {
   const nlohmann::ordered_json& frame;    // an element of `frames`
   const nlohmann::ordered_json& summary;  // of the frames up to this one
   std::string rows;                       // for people; before the first frame's what was run
-  std::string pairs_csv;  // as pairs_rows(), a column `frame` before; the header before the first
+  std::string pairs_csv;    // as pairs_rows(), a column `frame` before; the header before the first
+  long number = 0;          // of the frame
+  std::string certificate;  // its text, where certificates are wanted
 };
 using FrameSink = std::function<void(const FrameReport&)>;
 
