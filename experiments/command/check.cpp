@@ -1,19 +1,26 @@
-// Reads a certificate, a scene and a list of pairs, and prints what the checker of
-// verify/certificate finds.
+// Reads certificates, scenes and lists of pairs, and prints what the checker of verify/certificate
+// finds.
 #include "experiments/command/check.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
+#include <array>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <stdexcept>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
-#include "experiments/record/output.h"
-#include "experiments/record/tables.h"
+#include "core/base/stopwatch.h"
+#include "experiments/record/check_result.h"
+#include "experiments/scenes/mesh/cache.h"
+#include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/scenes/scene_file.h"
+#include "experiments/system/interrupt.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 #include "verify/certificate/certificate.h"
@@ -24,193 +31,355 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t kMaxCertificateBytes = std::uint64_t{4} << 30;
+constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30;  // of a certificate or a list
 
-struct Place {
-  std::uint32_t object, triangle;  // the triangle within its object
+// Text that a terminal can show, line by line.
+std::string clean_lines(const std::string& text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    out += clean_name(std::string_view(text).substr(at, end - at)) + "\n";
+    at = end + 1;
+  }
+  return out;
+}
+
+Certificate read_certificate(const std::string& path) {
+  return parse_certificate(read_file(path, kMaxBytes), clean_name(path));
+}
+
+std::string differences_text(const ListDifferences& differ) {
+  return differ.wrong > 0 ? fmt::format("line {}: {}", differ.wrong_line, differ.wrong_reason)
+                          : "a pair is missing";
+}
+
+// The evidence for a list is made here. The checker trusts it no more than any other.
+CheckResult check_list(const Scene& scene, const std::string& name,
+                       std::span<const ListedPair> rows, double clearance) {
+  const Stopwatch start;
+  std::vector<TrianglePair> listed;
+  for (const ListedPair& row : rows) {
+    const TrianglePair pair = pair_of(scene, name, row);
+    if (pair.a != pair.b) listed.push_back(pair);
+  }
+  CheckResult result =
+      check_certificate(certificate_of_list(scene, std::move(listed), clearance), scene);
+  result.unattested.clear();  // there is no run
+  result.ms = start.ms();
+  return result;
+}
+
+// Takes the list into account: the verdict is about both.
+void compare_list(const Scene& scene, const GivenList& list, std::span<const ListedPair> rows,
+                  SceneCheck& check) {
+  CheckResult& result = check.result;
+  check.list = list.name;
+  check.not_looked_at = list.not_looked_at;
+  if (result.list_sha256.empty()) return;  // nothing was decided
+  check.differences = find_differences(scene, list.name, rows, result.meeting, check.clearance);
+  const ListDifferences& differ = *check.differences;
+  const bool alone = check.certificate.empty();
+  if (differ.none()) {
+    if (alone && result.verdict != Verdict::proved)
+      throw std::logic_error("check: the evidence for a right list proves nothing: " +
+                             result.reason);
+    return;
+  }
+  if (!alone && result.verdict != Verdict::proved) return;
+  result.verdict = alone ? Verdict::refuted : Verdict::not_proved;
+  result.reason =
+      fmt::format("{} is {}: {}", list.name, alone ? "not the list of the pairs" : "another list",
+                  differences_text(differ));
+  result.pair = differ.wrong > 0 ? differ.wrong_pair : differ.missing_pair;
+}
+
+// `certificate`: the file of this scene, empty for none.
+SceneCheck check_scene_with(const CheckArguments& arguments, const std::string& file,
+                            const std::optional<Certificate>& certificate, const Scene& scene,
+                            const GivenList* list, std::span<const ListedPair> rows) {
+  SceneCheck out;
+  out.clearance = arguments.clearance.value_or(certificate ? certificate->clearance : 0);
+  if (certificate) {
+    out.certificate = clean_name(file);
+    out.claimed_sha256 = certificate->list_sha256;
+    out.claimed = certificate->claims;
+    if (out.clearance == certificate->clearance) {
+      out.result = check_certificate(*certificate, scene);
+    } else {
+      out.result.reason = fmt::format("the certificate is of another clearance: {}, given {}",
+                                      certificate->clearance, out.clearance);
+    }
+  } else {
+    out.result = check_list(scene, list->name, rows, out.clearance);
+  }
+  if (list) compare_list(scene, *list, rows, out);
+  return out;
+}
+
+GivenList read_list(const CheckArguments& arguments) {
+  GivenList list =
+      read_pair_list(read_file(arguments.pairs, kMaxBytes), clean_name(arguments.pairs));
+  for (std::string& column : list.not_looked_at) column = clean_name(column);
+  if (list.has_frames && !arguments.frames) {
+    throw Error(list.name, "has a column `frame`",
+                "say which frames with --frames N or --frames FIRST:LAST");
+  }
+  if (!list.has_frames && arguments.frames) {
+    throw Error(list.name, "has no column `frame`",
+                "give the list that farcull run --frames wrote, or leave --frames out");
+  }
+  if (!arguments.frames) return list;
+  const FrameRange range = *arguments.frames;
+  for (const ListedPair& row : list.rows) {
+    if (row.frame >= range.first && row.frame <= range.last) continue;
+    throw Error(list.name, fmt::format("frame {} is not among those that are checked", row.frame),
+                fmt::format("give all frames of the list instead of --frames {}:{}", range.first,
+                            range.last),
+                static_cast<long>(row.line));
+  }
+  std::ranges::stable_sort(list.rows, {}, &ListedPair::frame);
+  return list;
+}
+
+int check_one(const CheckArguments& arguments, const GivenList* list) {
+  // Before the scene, which may be large.
+  std::optional<Certificate> certificate;
+  if (!arguments.certificate.empty()) certificate = read_certificate(arguments.certificate);
+  Scene scene = load_scene(arguments.scene);
+  if (arguments.self) make_self(scene);
+  const SceneCheck done = check_scene_with(
+      arguments, arguments.certificate, certificate, scene, list,
+      list ? std::span<const ListedPair>(list->rows) : std::span<const ListedPair>());
+  if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
+  if (arguments.json != "-") write_output("-", clean_lines(check_text(scene, done)));
+  return done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
+}
+
+// The frames so far.
+struct FrameVerdicts {
+  std::array<std::uint64_t, 3> count{};        // by Verdict
+  std::array<std::optional<long>, 3> first{};  // by Verdict
+  std::uint64_t meeting = 0;
+
+  void add(long frame, const CheckResult& result) {
+    const auto verdict = static_cast<std::size_t>(result.verdict);
+    ++count[verdict];
+    if (!first[verdict]) first[verdict] = frame;
+    meeting += result.meeting.size();
+  }
+  std::uint64_t of(Verdict verdict) const { return count[static_cast<std::size_t>(verdict)]; }
+  Verdict in_all() const {
+    return of(Verdict::refuted) > 0      ? Verdict::refuted
+           : of(Verdict::not_proved) > 0 ? Verdict::not_proved
+                                         : Verdict::proved;
+  }
+  Json json(long wanted) const {
+    const Verdict verdict = in_all();
+    const auto& bad = first[static_cast<std::size_t>(verdict)];
+    return {{"frames", of(Verdict::proved) + of(Verdict::refuted) + of(Verdict::not_proved)},
+            {"wanted", wanted},
+            {"proved", of(Verdict::proved)},
+            {"refuted", of(Verdict::refuted)},
+            {"not_proved", of(Verdict::not_proved)},
+            {"verdict", to_string(verdict)},
+            {"first", verdict == Verdict::proved ? Json(nullptr) : Json(*bad)}};
+  }
+  std::string text(double clearance) const {
+    const Verdict verdict = in_all();
+    const std::uint64_t all = of(Verdict::proved) + of(Verdict::refuted) + of(Verdict::not_proved);
+    if (verdict == Verdict::proved) {
+      return fmt::format(
+          "proved: in {} these pairs {}, and no others: {} in all\n",
+          all == 1 ? "the one frame" : fmt::format("each of {} frames", grouped(all)),
+          clearance == 0 ? "of the scene meet"
+                         : fmt::format("are at distance {} or less", clearance),
+          grouped(meeting));
+    }
+    std::string out =
+        fmt::format("{}: {} of {}, the first is frame {}", to_string(verdict), grouped(of(verdict)),
+                    counted(all, "frame", "frames"), *first[static_cast<std::size_t>(verdict)]);
+    if (verdict == Verdict::refuted && of(Verdict::not_proved) > 0)
+      out += fmt::format("; {} not proved", grouped(of(Verdict::not_proved)));
+    return out + "\n";
+  }
 };
 
-Place place_of(const Scene& scene, std::uint32_t triangle) {
-  const auto after = std::upper_bound(
-      scene.objects.begin(), scene.objects.end(), triangle,
-      [](std::uint32_t t, const Object& object) { return t < object.first_triangle; });
-  // An object without triangles starts where the next one does: the last that starts there owns it.
-  const auto owner = static_cast<std::uint32_t>(after - scene.objects.begin() - 1);
-  return {owner, triangle - scene.objects[owner].first_triangle};
-}
-
-Json place_json(const Scene& scene, std::uint32_t triangle) {
-  const Place place = place_of(scene, triangle);
-  return {{"object", place.object},
-          {"name", scene.objects[place.object].name},
-          {"triangle", place.triangle},
-          {"face", scene.source_face[triangle]}};
-}
-
-Json claims_json(const Certificate::Claims& claims) {
-  return {{"box_pairs", claims.box_pairs},   {"kept", claims.kept},
-          {"culled", claims.culled},         {"separated", claims.separated},
-          {"neighbours", claims.neighbours}, {"meeting", claims.meeting}};
-}
-
-double ns_per_pair(const CheckResult& result) {
-  return result.found.box_pairs == 0
-             ? 0
-             : result.decide_ms * 1e6 / static_cast<double>(result.found.box_pairs);
-}
-
-// A proof is about the scene, not about the run.
-std::string proved_text(const CheckResult& result) {
-  const std::size_t pairs = result.meeting.size();
-  if (pairs == 0) return "no pair of the scene meets";
-  return pairs == 1 ? "this pair of the scene meets, and no other"
-                    : "these " + grouped(pairs) + " pairs of the scene meet, and no others";
-}
-
-// The first line in which a list that was given differs from that of the pairs that meet, for a
-// message; empty where they are the same.
-std::string difference(std::string_view given, std::string_view proved) {
-  if (given == proved) return {};
-  const auto [at, other] = std::mismatch(given.begin(), given.end(), proved.begin(), proved.end());
-  const auto same = static_cast<std::size_t>(at - given.begin());
-  const std::size_t begin = same == 0 ? 0 : given.rfind('\n', same - 1) + 1;
-  const auto line = [&](std::string_view text) {
-    const std::string_view rest = text.substr(begin);
-    return rest.empty() ? "nothing" : quote_token(rest.substr(0, rest.find('\n')));
-  };
-  const auto number =
-      1 + std::count(given.begin(), given.begin() + static_cast<std::ptrdiff_t>(begin), '\n');
-  std::string is = line(given);
-  std::string should = line(proved);
-  if (is == should) is += " and other bytes";  // the end of the line, or what a message cannot hold
-  return fmt::format("line {} is {}, and of the pairs that meet it is {}", number, is, should);
-}
-
-Json result_json(const CheckArguments& arguments, const Certificate& certificate,
-                 const Scene& scene, const CheckResult& result,
-                 const std::optional<std::string>& given) {
-  Json pair = nullptr;
-  if (result.pair) {
-    pair = {{"a", place_json(scene, result.pair->a)}, {"b", place_json(scene, result.pair->b)}};
+// A record whose frames are added one by one; its text is that of Json::dump(2).
+class FrameChecks {
+ public:
+  explicit FrameChecks(std::string path) : output_(std::move(path)) {}
+  void add(const Json& frame, const Json& summary) {
+    const std::string before = std::exchange(begun_, true) ? ",\n    " : "{\n  \"frames\": [\n    ";
+    output_.add(before + indented(frame, "    "),
+                "\n  ],\n  \"summary\": " + indented(summary, "  ") + "\n}\n");
   }
-  const bool decided = !result.list_sha256.empty();
-  return {{"certificate", clean_name(arguments.certificate)},
-          {"scene",
-           {{"name", scene.name},
-            {"hash", scene_hash(scene)},
-            {"self_not_asked", not_asked_json(scene)}}},
-          {"verdict", to_string(result.verdict)},
-          {"proves", result.verdict == Verdict::proved ? Json(proved_text(result)) : Json(nullptr)},
-          {"reason", result.reason.empty() ? Json(nullptr) : Json(result.reason)},
-          {"pair", pair},
-          {"list",
-           {{"claimed_sha256", certificate.list_sha256},
-            {"found_sha256", decided ? Json(result.list_sha256) : Json(nullptr)},
-            {"given", arguments.pairs.empty() ? Json(nullptr) : Json(clean_name(arguments.pairs))},
-            {"given_is_found", given ? Json(given->empty()) : Json(nullptr)}}},
-          {"claimed", claims_json(certificate.claims)},
-          {"found", claims_json(result.found)},
-          {"culled_meeting", result.culled_meeting},
-          {"unattested", result.unattested},
-          {"floating_point", floating_point_json(callers_floating_point(), floating_point())},
-          {"ms", result.ms},
-          {"decide_ms", result.decide_ms},
-          {"ns_per_pair", ns_per_pair(result)}};
-}
+  void finish() { output_.finish(); }
 
-std::string place_text(const Scene& scene, std::uint32_t triangle) {
-  const Place place = place_of(scene, triangle);
-  return fmt::format("{} triangle {}", scene.objects[place.object].name, place.triangle);
-}
-
-std::string result_text(const CheckArguments& arguments, const Scene& scene,
-                        const CheckResult& result, const std::optional<std::string>& given) {
-  std::string out =
-      to_string(result.verdict) + ": " +
-      (result.verdict == Verdict::proved ? proved_text(result) : clean_name(result.reason)) + "\n";
-  if (result.pair) {
-    out += fmt::format("  pair: {} and {}\n", place_text(scene, result.pair->a),
-                       place_text(scene, result.pair->b));
-  }
-  if (const Certificate::Claims& found = result.found; !result.list_sha256.empty()) {
-    out += fmt::format("list       SHA-256 of the pairs that meet: {}\n", result.list_sha256);
-    if (given) {
-      out += fmt::format("           {} is {}this list\n", clean_name(arguments.pairs),
-                         given->empty() ? "" : "not ");
+ private:
+  static std::string indented(const Json& json, const std::string& by) {
+    std::string out;
+    for (const char c : json.dump(2)) {
+      out += c;
+      if (c == '\n') out += by;
     }
-    out += not_asked_line(scene);
-    out += fmt::format(
-        "boxes      {} pairs overlap: {} separated, {} neighbours, {} meet\n"
-        "called     kept: {}; culled: {}, of which {} meet\n",
-        found.box_pairs, found.separated, found.neighbours, found.meeting, found.kept, found.culled,
-        result.culled_meeting);
+    return out;
   }
-  out += "unattested, since the evidence is about the scene and not about the run:\n";
-  for (const std::string& line : result.unattested) out += "  " + clean_name(line) + "\n";
-  if (callers_floating_point() != kProved) {
-    out += fmt::format("arithmetic: {}; the caller {}\n", to_string(floating_point()),
-                       to_string(callers_floating_point()));
+
+  GrowingOutput output_;
+  bool begun_ = false;
+};
+
+std::string row_of(long frame, const SceneCheck& check) {
+  const CheckResult& result = check.result;
+  return fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10.1f}\n", frame, to_string(result.verdict),
+                     grouped(result.found.box_pairs), grouped(result.found.meeting), result.ms);
+}
+
+int check_frames(const CheckArguments& arguments, const GivenList* list) {
+  const FrameRange range = *arguments.frames;
+  FrameSource source(arguments.scene, range, arguments.self);
+  std::optional<FrameChecks> json;
+  if (!arguments.json.empty()) json.emplace(arguments.json);
+  const bool table = arguments.json != "-";
+  FrameVerdicts verdicts;
+  SceneCheck last;
+  Interruptible interruptible(range.count(), "frames", "their verdicts are given", false);
+  if (table) {
+    write_output("-", fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10}\n", "frame", "verdict",
+                                  "box pairs", "meeting", "ms"));
   }
-  out += fmt::format("time: {:.1f} ms; {:.1f} of them for the decisions, {:.0f} ns per pair\n",
-                     result.ms, result.decide_ms, ns_per_pair(result));
-  return out;
+  for (long frame = range.first; frame <= range.last; ++frame) {
+    std::string file;
+    std::optional<Certificate> certificate;
+    if (!arguments.certificate.empty()) {
+      file = numbered(arguments.certificate, frame);
+      std::error_code error;
+      if (!std::filesystem::exists(file, error)) {
+        throw Error(file, "the file does not exist",
+                    fmt::format("give the numbers that there are: --frames FIRST:LAST instead of "
+                                "{}:{}",
+                                range.first, range.last));
+      }
+      certificate = read_certificate(file);
+    }
+    std::span<const ListedPair> rows;
+    if (list) {
+      const auto found = std::ranges::equal_range(list->rows, static_cast<std::uint32_t>(frame), {},
+                                                  &ListedPair::frame);
+      rows = {found.begin(), found.end()};
+    }
+    const Scene& scene = source.at(frame);
+    last = check_scene_with(arguments, file, certificate, scene, list, rows);
+    verdicts.add(frame, last.result);
+    if (table) {
+      std::string text = row_of(frame, last);
+      if (last.result.verdict != Verdict::proved) text += "         " + verdict_text(scene, last);
+      write_output("-", clean_lines(text));
+    }
+    if (json) {
+      Json one = {{"frame", frame}};
+      one.update(check_json(scene, last));
+      json->add(one, verdicts.json(range.count()));
+    }
+    interruptible.done(frame - range.first + 1);
+  }
+  if (json) json->finish();
+  if (table) {
+    write_output("-", "\n" + clean_lines(verdicts.text(last.clearance) + unattested_text(last)));
+  }
+  return verdicts.in_all() == Verdict::proved ? kExitDone : kExitBroken;
+}
+
+// Whether certificates are of frames and the frames are named, or neither.
+void require_number(const std::string& certificate, bool frames) {
+  if (certificate.empty() || is_numbered(certificate) == frames) return;
+  if (frames) {
+    throw Error("CERTIFICATE", "'" + certificate + "' has no place for the number of the frame",
+                "put %d or %04d there, as for farcull run --certificate");
+  }
+  throw Error("CERTIFICATE", "'" + certificate + "' has a place for the number of a frame",
+              "say which frames with --frames N or --frames FIRST:LAST");
 }
 
 }  // namespace
 
-int check_certificate_file(const CheckArguments& arguments) {
+int run_check(const CheckArguments& arguments) {
   const FloatingPointGuard guard;
-  const Certificate certificate = parse_certificate(
-      read_file(arguments.certificate, kMaxCertificateBytes), clean_name(arguments.certificate));
-  Scene scene = load_scene(arguments.scene);
-  if (arguments.self) make_self(scene);
-  std::string list;
-  if (!arguments.pairs.empty()) list = read_file(arguments.pairs, kMaxCertificateBytes);
-  CheckResult result = check_certificate(certificate, scene);
-  std::optional<std::string> given;  // difference() of the list
-  if (!arguments.pairs.empty() && !result.list_sha256.empty()) {
-    given = difference(list, pair_list(scene, result.meeting));
-    if (result.verdict == Verdict::proved && !given->empty()) {
-      result.verdict = Verdict::not_proved;
-      result.reason = clean_name(arguments.pairs) + " is another list: " + *given;
-    }
-  }
-  if (!arguments.json.empty()) {
-    write_output(arguments.json,
-                 result_json(arguments, certificate, scene, result, given).dump(2) + "\n");
-  }
-  if (arguments.json != "-") write_output("-", result_text(arguments, scene, result, given));
-  return result.verdict == Verdict::proved ? 0 : 1;
+  if (arguments.certificate.empty() && arguments.pairs.empty())
+    throw std::logic_error("run_check: neither a certificate nor a list");
+  std::optional<GivenList> list;
+  if (!arguments.pairs.empty()) list = read_list(arguments);
+  const GivenList* const given = list ? &*list : nullptr;
+  return arguments.frames ? check_frames(arguments, given) : check_one(arguments, given);
 }
 
 CLI::App* CheckCommand::add_to(CLI::App& app) {
-  CLI::App* command = add_command(app, "check", "prove or refute a certificate of a run");
-  add_required(*command, "CERTIFICATE", arguments_.certificate, "as written by run --certificate");
-  add_scene(*command, arguments_.scene);
+  CLI::App* command =
+      add_command(app, "check", "prove or refute a certificate of a run, or a list of pairs");
+  add_required(*command, "CERTIFICATE", arguments_.certificate,
+               "as written by run --certificate; may be left out\nbefore SCENE to check --pairs "
+               "alone");
+  add_option(*command, "SCENE", arguments_.scene, "", kSceneHelp);
   add_flag(*command, "--self", arguments_.self,
            "every object was tested against itself, as by\nfarcull run --self");
   add_option(*command, "--pairs", pairs_, "FILE",
-             "the list that farcull run --pairs wrote: is it the\none that is proved?");
+             "a list of pairs as farcull run --pairs writes it:\n"
+             "is it right and complete? Columns are found by their\n"
+             "names; rows may be in any order");
+  add_option(*command, "--clearance", clearance_, "D",
+             "the list is of pairs at this distance or less, in\n"
+             "world units; default 0, or that of the certificate");
+  add_option(*command, "--frames", frames_, "N|A:B",
+             "check these frames, as of farcull run --frames: with\n"
+             "a number (%d or %04d) in the name of CERTIFICATE and\n"
+             "a column `frame` in the list");
   add_option(*command, "--json", json_, "FILE", kJsonHelp);
   add_footer(
       *command,
       "Examples:\n"
       "  farcull run two-spheres --certificate c.json --pairs pairs.csv\n"
-      "  farcull check c.json two-spheres --pairs pairs.csv\n\n"
-      "Exit status 0: proved: these pairs of the scene meet, and no others; 1: refuted, or not\n"
-      "proved. Nothing is proved about the run: neither its method nor which pairs it kept.");
+      "  farcull check c.json two-spheres --pairs pairs.csv\n"
+      "  farcull check two-spheres --pairs pairs.csv\n"
+      "  farcull run two-spheres --method far-pairs --clearance 0.01 --certificate d.json\n"
+      "  farcull check d.json two-spheres\n"
+      "  farcull run two-spheres --method far-pairs --frames 10 --certificate c_%04d.json\n"
+      "  farcull check c_%04d.json two-spheres --frames 10\n\n"
+      "Exit status 0: proved: these pairs of the scene meet (or are within the clearance), and\n"
+      "no others; 1: refuted, or not proved. Nothing is proved about the run: neither its method\n"
+      "nor which pairs it kept. The file of a certificate, and its proof: docs/certificate.md.");
   return command;
 }
 
 int CheckCommand::run() {
-  check_scene(arguments_.scene);
+  CheckArguments& to = arguments_;
+  if (to.certificate.empty()) throw Error("CERTIFICATE", "the path is empty", "name a file");
   if (pairs_ == "") throw Error("--pairs", "the path is empty", "name the list");
-  arguments_.pairs = pairs_.value_or("");
-  std::vector<NamedFile> inputs = scene_files(arguments_.scene);
-  inputs.push_back({"CERTIFICATE", arguments_.certificate});
+  to.pairs = pairs_.value_or("");
+  // A scene of several names is of meshes alone, so a first name that is none is a certificate's.
+  const bool mesh = has_mesh_extension(to.certificate);
+  if (!pairs_ && mesh) {
+    throw Error("CERTIFICATE", "'" + to.certificate + "' is named like a mesh",
+                "name the certificate first, or give a list of pairs with --pairs FILE");
+  }
+  if (!pairs_ && to.scene.empty()) {
+    throw Error("SCENE", "is missing after '" + to.certificate + "'",
+                "name the scene that the certificate is of, or give a list of pairs with --pairs "
+                "FILE");
+  }
+  if (mesh || to.scene.empty())
+    to.scene.insert(to.scene.begin(), std::exchange(to.certificate, ""));
+  check_scene(to.scene);
+  if (clearance_) to.clearance = parse_clearance(*clearance_);
+  if (frames_) to.frames = parse_frames(*frames_);
+  require_number(to.certificate, to.frames.has_value());
+  std::vector<NamedFile> inputs = scene_files(to.scene, to.frames);
+  if (!to.certificate.empty()) {
+    for (const std::string& file : numbered_files(to.certificate, to.frames))
+      inputs.push_back({"CERTIFICATE", file});
+  }
   if (pairs_) inputs.push_back({"--pairs", *pairs_});
-  arguments_.json = checked({.json = json_}, inputs).json.value_or("");
-  return check_certificate_file(arguments_);
+  to.json = checked({.json = json_}, inputs).json.value_or("");
+  return run_check(to);
 }
 
 }  // namespace farcull

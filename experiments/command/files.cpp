@@ -7,7 +7,8 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <utility>
+#include <map>
+#include <tuple>
 
 #include "core/base/error.h"
 #include "experiments/scenes/builtin/packaged.h"
@@ -30,9 +31,8 @@ struct Identity {
   std::string name;      // empty where the file exists
   bool regular = false;  // or still to be made
 
-  bool is(const Identity& other) const {
-    return regular && device == other.device && inode == other.inode && name == other.name;
-  }
+  using Key = std::tuple<dev_t, ino_t, std::string>;
+  Key key() const { return {device, inode, name}; }
 };
 
 // Where the path leads: a link to a file that is not there leads on to that file.
@@ -69,13 +69,21 @@ std::string shown(const NamedFile& file) { return file.path == "-" ? kStandardOu
 
 }  // namespace
 
+std::vector<std::string> numbered_files(const std::string& path,
+                                        const std::optional<FrameRange>& range) {
+  if (!range || !is_numbered(path)) return {path};
+  std::vector<std::string> out;
+  for (long frame = range->first; frame <= range->last; ++frame)
+    out.push_back(numbered(path, frame));
+  return out;
+}
+
 std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
                                    const std::optional<FrameRange>& range) {
   std::vector<NamedFile> out;
   const auto add = [&](const std::string& path) { out.push_back({"SCENE", path}); };
   const auto add_mesh = [&](const std::string& path) {
-    if (!range || !is_numbered(path)) return add(path);
-    for (long frame = range->first; frame <= range->last; ++frame) add(numbered(path, frame));
+    for (const std::string& file : numbered_files(path, range)) add(file);
   };
   const auto add_packaged = [&] {
     std::error_code error;
@@ -98,21 +106,23 @@ std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
 }
 
 void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs) {
-  std::vector<std::pair<const NamedFile*, Identity>> written;
+  std::map<Identity::Key, const NamedFile*> written;  // the first output of each file
   for (const NamedFile& output : outputs) {
     const std::optional<Identity> identity = identity_of(output.path);
-    if (identity && identity->name.empty()) written.emplace_back(&output, *identity);
+    if (identity && identity->regular && identity->name.empty())
+      written.try_emplace(identity->key(), &output);
   }
   if (written.empty()) return;
   for (const NamedFile& input : inputs) {
     const std::optional<Identity> read = identity_of(input.path);
-    for (const auto& [output, identity] : written) {
-      if (!read || !identity.is(*read)) continue;
-      throw Error(output->by,
-                  shown(*output) + " is " + input.path + ", which " + input.by +
-                      " reads, and would be overwritten",
-                  "choose another place for " + output->by);
-    }
+    if (!read) continue;
+    const auto found = written.find(read->key());
+    if (found == written.end()) continue;
+    const NamedFile& output = *found->second;
+    throw Error(output.by,
+                shown(output) + " is " + input.path + ", which " + input.by +
+                    " reads, and would be overwritten",
+                "choose another place for " + output.by);
   }
 }
 
@@ -120,17 +130,23 @@ void require_apart(const std::vector<NamedFile>& inputs, std::vector<NamedFile> 
   const bool named = std::any_of(outputs.begin(), outputs.end(),
                                  [](const NamedFile& file) { return file.path == "-"; });
   if (!named) outputs.insert(outputs.begin(), {kStandardOutput, "-"});
-  for (std::size_t i = 1; i < outputs.size(); ++i) {
-    const std::optional<Identity> identity = identity_of(outputs[i].path);
-    for (std::size_t j = 0; j < i; ++j) {
-      const std::optional<Identity> other = identity_of(outputs[j].path);
-      const bool one = outputs[i].path == "-" && outputs[j].path == "-";
-      if (!one && !(identity && other && identity->is(*other))) continue;
-      throw Error(outputs[i].by,
-                  shown(outputs[i]) + " is " + shown(outputs[j]) + ", where " + outputs[j].by +
-                      " goes as well",
-                  "give each output a place of its own");
+  std::map<Identity::Key, const NamedFile*> files;
+  const NamedFile* standard_output = nullptr;
+  for (const NamedFile& output : outputs) {
+    const std::optional<Identity> identity = identity_of(output.path);
+    const NamedFile* other = nullptr;
+    if (identity && identity->regular) {
+      const auto [place, is_new] = files.try_emplace(identity->key(), &output);
+      if (!is_new) other = place->second;
     }
+    if (output.path == "-") {
+      if (standard_output != nullptr) other = standard_output;
+      standard_output = &output;
+    }
+    if (other == nullptr) continue;
+    throw Error(output.by,
+                shown(output) + " is " + shown(*other) + ", where " + other->by + " goes as well",
+                "give each output a place of its own");
   }
   require_not_read(inputs, outputs);
 }

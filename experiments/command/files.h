@@ -15,6 +15,10 @@ struct NamedFile {
   std::string path;  // "-": standard output
 };
 
+/// The files of a path: with a range one for each frame where the path has a number, else itself.
+std::vector<std::string> numbered_files(const std::string& path,
+                                        const std::optional<FrameRange>& range);
+
 /// The files that load_scene() and, with a range, FrameSource read for these arguments: the scene
 /// file and the meshes that it names, or the mesh files, numbered ones for each frame; for a
 /// built-in scene of packaged meshes, and for no arguments (all built-in scenes), the meshes of

@@ -17,6 +17,7 @@
 #include "core/base/terminal.h"
 #include "core/base/text.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/mesh/cache.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/system/colour.h"
@@ -80,8 +81,26 @@ bool Outputs::to_stdout() const {
   return json == "-" || pairs == "-" || certificate == "-" || csv == "-" || picture == "-";
 }
 
-Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs) {
+namespace {
+
+// Certificates are of one scene each.
+void require_number(const std::string& certificate, bool frames) {
+  if (is_numbered(certificate) == frames) return;
+  if (frames) {
+    throw Error("--certificate", "'" + certificate + "' has no place for the number of the frame",
+                "put %d or %04d there, as in certificate_%04d.json: each frame has a file of its "
+                "own");
+  }
+  throw Error("--certificate", "'" + certificate + "' has a place for the number of a frame",
+              "say which frames with --frames N or --frames FIRST:LAST, or name one file");
+}
+
+}  // namespace
+
+Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
+                const std::optional<FrameRange>& frames) {
   std::vector<NamedFile> files;
+  std::vector<std::string> to_try;  // of many files in one folder the first
   for (const auto& [option, path, example] :
        {std::tuple("--json", &outputs.json, "result.json"),
         std::tuple("--pairs", &outputs.pairs, "result.csv"),
@@ -103,10 +122,15 @@ Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs) {
       throw Error(option, **path + " is named like a mesh and would be overwritten",
                   std::string("name the file to write first, as in ") + option + " " + example);
     }
-    files.push_back({option, **path});
+    const bool certificate = path == &outputs.certificate;
+    if (certificate) require_number(**path, frames.has_value());
+    const std::vector<std::string> each =
+        certificate ? numbered_files(**path, frames) : std::vector{**path};
+    for (const std::string& file : each) files.push_back({option, file});
+    to_try.push_back(each.front());
   }
   require_apart(inputs, files);
-  for (const NamedFile& file : files) check_output(file.path);
+  for (const std::string& file : to_try) check_output(file);
   if (!outputs.to_stdout()) check_output("-");
   return outputs;
 }

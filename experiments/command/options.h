@@ -62,8 +62,10 @@ struct Outputs {
 
 /// The outputs of a command that reads these files, or an Error for what can be known to go wrong
 /// with them before anything is run: paths that are none, outputs that are inputs or one another
-/// (require_apart()), what check_output() refuses.
-Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs);
+/// (require_apart()), what check_output() refuses. With frames a certificate is a file for each: it
+/// has to have a number in its name, and without frames none.
+Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
+                const std::optional<FrameRange>& frames = {});
 
 /// Throws Error where a name of the scene is empty.
 void check_scene(const std::vector<std::string>& scene);

@@ -12,6 +12,7 @@
 #include "experiments/record/output.h"
 #include "experiments/record/plan.h"
 #include "experiments/record/tables.h"
+#include "experiments/scenes/mesh/cache.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/colour.h"
 #include "experiments/system/output_file.h"
@@ -34,9 +35,16 @@ constexpr const char* kRunExamples =
     "Examples:\n"
     "  farcull run two-spheres\n"
     "  farcull run bunny.off dragon.off --method cullide --resolution 256\n"
+<<<<<<< HEAD
     "  farcull run cloth.obj --self --pairs pairs.csv\n"
     "  farcull run a.obj b.obj --clearance 0.001\n"
     "  farcull run 'cloth_%04d.obj' body.obj --frames 1:100 --no-verify\n"
+=======
+    "  farcull run cloth.obj --method far-pairs --self --pairs pairs.csv\n"
+    "  farcull run a.obj b.obj --method far-pairs --clearance 0.001\n"
+    "  farcull run 'cloth_%04d.obj' body.obj --method far-pairs --frames 1:100 --no-verify\n"
+    "  farcull run two-spheres --method far-pairs --frames 10 --certificate c_%04d.json\n"
+>>>>>>> h-cert
     "  farcull run scene.json --json - | jq .verification\n"
     "  farcull run two-spheres --method far --radius published --depth fixed --depth-format 24\n\n"
     "farcull help methods: which method does what; farcull help terms: the words of the\n"
@@ -147,7 +155,9 @@ void RunCommand::add_outputs(CLI::App& command) {
   add_flag(command, "--faces", faces_, kFacesHelp);
   add("--json", outputs_.json, "FILE", kJsonHelp);
   add("--certificate", outputs_.certificate, "FILE",
-      "write evidence for every pair to this file, for\n`farcull check`");
+      "write evidence for every pair to this file, for\n"
+      "`farcull check`; with --frames one for each, with %d\n"
+      "or %04d in the name");
 }
 
 RunOptions RunCommand::parse() const {
@@ -241,6 +251,7 @@ int RunCommand::run() const {
   const RunOptions options = parse();
   check_scene(scene_);
   if (kind_ == Kind::plan) return plan(options);
+<<<<<<< HEAD
   if (outputs_.certificate && options.clearance > 0) {
     throw Error("--certificate", "is about triangles that meet, not about a clearance",
                 "leave --certificate or --clearance out");
@@ -253,9 +264,11 @@ int RunCommand::run() const {
     throw Error("--faces", "adds columns to the file of --pairs, which is not asked for",
                 "give --pairs FILE.csv as well");
   }
+=======
+>>>>>>> h-cert
   std::optional<FrameRange> range;
   if (frames_) range = parse_frames(*frames_);
-  const Outputs outputs = checked(outputs_, scene_files(scene_, range));
+  const Outputs outputs = checked(outputs_, scene_files(scene_, range), range);
   return range ? run_frames(options, outputs, *range) : run_once(options, outputs);
 }
 
@@ -306,7 +319,11 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
                           .self = self_,
                           .strict = kind_ == Kind::verify,
                           .pairs = outputs.pairs.has_value(),
+<<<<<<< HEAD
                           .faces = faces_};
+=======
+                          .certificates = outputs.certificate.has_value()};
+>>>>>>> h-cert
   if (progress) progress("reading the scene");
   FrameSource source(scene_, range, self_);
   if (const std::optional<Error> missing = source.missing()) {
@@ -320,6 +337,9 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
   const FramesResult result =
       farcull::run_frames(source, question, progress, [&](const FrameReport& report) {
         terminal.clear();
+        // First: a frame that the record has has its certificate.
+        if (outputs.certificate)
+          write_output(numbered(*outputs.certificate, report.number), report.certificate);
         if (json) json->add(report);
         if (pairs) pairs->add(report.pairs_csv, "");
         if (!outputs.to_stdout()) write_output("-", report.rows);

@@ -12,6 +12,7 @@
 #include "core/base/stopwatch.h"
 #include "core/scene/members.h"
 #include "experiments/method/run.h"
+#include "experiments/record/certificate.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/interrupt.h"
@@ -322,7 +323,10 @@ FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
     }
     Json one = frame_json(scene, record, frame, read_ms, source);
     if (sink) {
-      sink({out.json, one, totals.json(question), std::move(rows), std::move(csv)});
+      std::string certificate;
+      if (question.certificates) certificate = to_text(certificate_of(scene, record));
+      sink({out.json, one, totals.json(question), std::move(rows), std::move(csv), frame,
+            std::move(certificate)});
     } else {
       frames.push_back(std::move(one));
       out.table += rows;

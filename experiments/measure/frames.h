@@ -20,7 +20,11 @@ struct FramesQuestion {
   bool self = false;
   bool strict = false;  // farcull verify: ask the guarantee of every method
   bool pairs = false;   // the CSV is wanted
+<<<<<<< HEAD
   bool faces = false;   // with its columns of faces
+=======
+  bool certificates = false;
+>>>>>>> h-cert
 };
 
 /// Milliseconds of frames: candidates and exact tests, without reading and accounting.
@@ -37,7 +41,9 @@ struct FrameReport {
   const nlohmann::ordered_json& frame;    // an element of `frames`
   const nlohmann::ordered_json& summary;  // of the frames up to this one
   std::string rows;                       // for people; before the first frame's what was run
-  std::string pairs_csv;  // as pairs_rows(), a column `frame` before; the header before the first
+  std::string pairs_csv;    // as pairs_rows(), a column `frame` before; the header before the first
+  long number = 0;          // of the frame
+  std::string certificate;  // its text, where certificates are wanted
 };
 using FrameSink = std::function<void(const FrameReport&)>;
 

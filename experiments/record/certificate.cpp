@@ -54,7 +54,7 @@ Certificate certificate_of(const Scene& scene, const Record& record) {
     run.device = {device.vendor, device.renderer, device.version, device.glsl};
     run.assumptions = assumptions();
   }
-  return make_certificate(scene, kept, record.collisions.all(), std::move(run));
+  return make_certificate(scene, kept, record.collisions.all(), std::move(run), options.clearance);
 }
 
 }  // namespace farcull

@@ -58,6 +58,7 @@ Scene make_scene() {
   return scene;
 }
 
+/// For a clearance: as verify/exact and boxes in doubles have it.
 struct Truth {
   Scene scene = make_scene();
   std::vector<TrianglePair> pairs;    // with overlapping boxes, sorted
@@ -66,15 +67,20 @@ struct Truth {
   std::string list_sha256;
   std::uint64_t not_asked = 0;  // pairs of triangles of one object
 
-  Truth() {
+  explicit Truth(double clearance) {
+    const auto near = [&](const Box& x, const Box& y) {
+      if (clearance == 0) return overlap(x, y);
+      return ((x.lo - y.hi).array() <= clearance).all() &&
+             ((y.lo - x.hi).array() <= clearance).all();
+    };
     const std::vector<Box> boxes = triangle_boxes(scene);
     const std::vector<std::uint32_t> owner = owners(scene);
     for (std::uint32_t a = 0; a < boxes.size(); ++a) {
       for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
         not_asked += owner[a] == owner[b];
-        if (owner[a] == owner[b] || !overlap(boxes[a], boxes[b])) continue;
+        if (owner[a] == owner[b] || !near(boxes[a], boxes[b])) continue;
         pairs.push_back({a, b});
-        meets.push_back(intersects(scene.corners(a), scene.corners(b)));
+        meets.push_back(within(scene.corners(a), scene.corners(b), clearance));
         if (meets.back()) meeting.push_back({a, b});
       }
     }
@@ -83,7 +89,7 @@ struct Truth {
 };
 
 const Truth& truth() {
-  static const Truth truth;
+  static const Truth truth(0);
   return truth;
 }
 
@@ -97,18 +103,17 @@ bool contradicts(std::uint8_t byte, bool meets) {
   return claim == kMeets ? !meets : claim < kMeets && meets;
 }
 
-Certificate::Claims count(const Certificate& certificate) {
+Certificate::Claims count(const Truth& t, const Certificate& certificate) {
   Certificate::Claims claims;
-  claims.box_pairs = truth().pairs.size();
-  for (std::size_t i = 0; i < truth().pairs.size(); ++i) {
+  claims.box_pairs = t.pairs.size();
+  for (std::size_t i = 0; i < t.pairs.size(); ++i) {
     ++(is_kept(certificate.evidence[i]) ? claims.kept : claims.culled);
-    ++(truth().meets[i] ? claims.meeting : claims.separated);
+    ++(t.meets[i] ? claims.meeting : claims.separated);
   }
   return claims;
 }
 
-Answer judge(const Certificate& certificate, const CheckResult& result) {
-  const Truth& t = truth();
+Answer judge(const Truth& t, const Certificate& certificate, const CheckResult& result) {
   require(!result.unattested.empty(), "nothing is unattested");
   require(result.reason.empty() == (result.verdict == Verdict::proved), "a reason at odds");
   const bool same_scene = certificate.scene.objects == t.scene.objects.size() &&
@@ -118,7 +123,7 @@ Answer judge(const Certificate& certificate, const CheckResult& result) {
     require(result.verdict == Verdict::not_proved && !result.pair, "another scene or length");
     return Answer::not_proved;
   }
-  const Certificate::Claims found = count(certificate);
+  const Certificate::Claims found = count(t, certificate);
   require(result.found == found, "wrong counts found");
   require(result.meeting == t.meeting && result.list_sha256 == t.list_sha256, "another list");
   std::size_t culled_meeting = 0;
@@ -154,21 +159,22 @@ Answer check(std::string_view text) {
   const auto result = answer_of(kLimits, text.size(),
                                 [&] { return check_certificate(*certificate, truth().scene); });
   require(result.has_value(), "an Error from the check");
-  return judge(*certificate, *result);
+  if (certificate->clearance == 0) return judge(truth(), *certificate, *result);
+  return judge(Truth(certificate->clearance), *certificate, *result);
 }
 
 /// A certificate of the scene with this evidence. The counts are right but for one that the first
 /// byte may name (1 .. 5), then raised by 1.
-std::string text_around(std::span<const std::uint8_t> bytes) {
-  const Truth& t = truth();
+std::string text_around(const Truth& t, double clearance, std::span<const std::uint8_t> bytes) {
   Certificate certificate;
+  certificate.clearance = clearance;
   certificate.scene = {t.scene.name, t.scene.objects.size(), t.scene.triangles.size(),
                        scene_hash(t.scene)};
   certificate.not_asked = {t.scene.objects.size(), t.not_asked};
   certificate.list_sha256 = t.list_sha256;
   if (!bytes.empty()) certificate.evidence.assign(bytes.begin() + 1, bytes.end());
   if (certificate.evidence.size() != t.pairs.size()) return to_text(certificate);
-  Certificate::Claims& claims = certificate.claims = count(certificate);
+  Certificate::Claims& claims = certificate.claims = count(t, certificate);
   const std::array<std::uint64_t*, 6> counts = {nullptr,        &claims.box_pairs, &claims.kept,
                                                 &claims.culled, &claims.separated, &claims.meeting};
   if (bytes[0] > 0 && bytes[0] < counts.size()) ++*counts[bytes[0]];
@@ -178,7 +184,11 @@ std::string text_around(std::span<const std::uint8_t> bytes) {
 }  // namespace
 
 Answer fuzz_check(const std::uint8_t* data, std::size_t size) {
-  if (size > 0 && data[0] == 1) return check(text_around({data + 1, size - 1}));
+  if (size > 0 && data[0] == 1) return check(text_around(truth(), 0, {data + 1, size - 1}));
+  if (size > 0 && data[0] == 2) {
+    static const Truth half(0.5);
+    return check(text_around(half, 0.5, {data + 1, size - 1}));
+  }
   return check({reinterpret_cast<const char*>(data), size});
 }
 

@@ -8,8 +8,11 @@
 // Neighbours (verify/exact.h) meet iff they share more than their shared part. Pairs whose boxes
 // are disjoint need no evidence. Nothing is proved about the run: neither how it came to its answer
 // (Run) nor which pairs it kept. A certificate that calls a pair culled which meets is refuted; one
-// that calls it kept instead says something true of the scene, whatever the run did. There are no
-// certificates for a clearance above 0: the evidence is about triangles that meet.
+// that calls it kept instead says something true of the scene, whatever the run did.
+//
+// With a clearance D > 0 read "meets" as "is at distance D or less", "overlap" as "are no farther
+// apart than D", and "disjoint" as "farther apart than D". Neighbours, whose distance is 0, are
+// decided as without one.
 #pragma once
 
 #include <cstdint>
@@ -77,6 +80,7 @@ struct Certificate {
   };
 
   SceneKey scene;
+  double clearance = 0;  // world units, finite, >= 0
   Unasked not_asked;
   Claims claims;
   std::string list_sha256;  // pair_list_hash() of the pairs that the run found to meet
@@ -98,12 +102,21 @@ constexpr std::uint8_t kKept = 0x40;
 /// written as the run had it, so that the check refutes it: a kept pair meets iff it is in
 /// `colliding`, and a pair for which no direction is found though the run calls it disjoint carries
 /// direction 0 (neighbours: kNeighbours) where it was kept, kMeets where it was culled. The list's
-/// hash is that of `colliding`.
+/// hash is that of `colliding`. With a clearance > 0, kept pairs whose boxes are farther apart than
+/// that are passed over: they need no evidence, and a method may bound its boxes less closely.
 Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> kept,
-                             std::span<const TrianglePair> colliding, Certificate::Run run);
+                             std::span<const TrianglePair> colliding, Certificate::Run run,
+                             double clearance = 0);
 
-/// JSON, the keys always in the same order, with a final newline. Bytes of strings that are not
-/// UTF-8 become U+FFFD. Throws std::logic_error where a radius is not finite.
+/// Evidence for a list that did not come with any, as of a run that kept just these pairs and found
+/// them to meet. Pairs of the list that do not count, or whose boxes are disjoint, are left out:
+/// find_differences() (pair_list.h) names them. Any order, repetitions allowed; a < b.
+Certificate certificate_of_list(const Scene& scene, std::vector<TrianglePair> listed,
+                                double clearance = 0);
+
+/// JSON, the keys always in the same order, with a final newline: version 3, or 4 with a clearance.
+/// Bytes of strings that are not UTF-8 become U+FFFD. Throws std::logic_error where a radius is not
+/// finite.
 std::string to_text(const Certificate& certificate);
 
 /// The inverse of to_text(). Throws Error naming `name` and what is wrong where the text is not
@@ -138,7 +151,8 @@ struct CheckResult {
 /// - proved: neither. So the pairs of the list meet, and no others that count. What the certificate
 ///   calls kept and the whole of its Run stay what they were, unattested.
 /// For another scene or a wrong length nothing is decided: bytes and pairs do not belong together.
-/// Precondition: validate() accepts the scene.
+/// Throws std::logic_error where the clearance is negative or not finite. Precondition: validate()
+/// accepts the scene.
 CheckResult check_certificate(const Certificate& certificate, const Scene& scene);
 
 }  // namespace farcull

@@ -1,5 +1,6 @@
 // The checker: box_pairs, integer_pair, pair_list and this file are all that has to be right.
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -39,13 +40,15 @@ struct Decision {
 
 [[noreturn]] void contradiction() {
   throw std::logic_error(
-      "check_certificate: neither a separating direction nor a common point of a pair");
+      "check_certificate: neither a separating direction nor a common point of a pair, nor two "
+      "points within the clearance");
 }
 
-/// Decides the pair whatever the byte says: by a direction that separates or by a point in both;
-/// neighbours by themselves.
-Decision decide(const Scene& scene, const TrianglePair& pair, bool one_object, std::uint8_t byte) {
-  IntegerPair integers(scene.corners(pair.a), scene.corners(pair.b));
+/// Decides the pair whatever the byte says: by a direction that separates, or by a point in both or
+/// two points within the clearance; neighbours by themselves.
+Decision decide(const Scene& scene, const TrianglePair& pair, double clearance, bool one_object,
+                std::uint8_t byte) {
+  IntegerPair integers(scene.corners(pair.a), scene.corners(pair.b), clearance);
   const bool kept = (byte & kKept) != 0;
   const int claim = byte & ~kKept;
   const auto meeting = [&](Finding if_kept) {
@@ -62,7 +65,7 @@ Decision decide(const Scene& scene, const TrianglePair& pair, bool one_object, s
                                                    : Finding::not_neighbours};
   }
   if (claim == kMeets) {
-    if (integers.has_common_point()) return meeting(Finding::as_claimed);
+    if (integers.is_within()) return meeting(Finding::as_claimed);
     if (!integers.separating_direction()) contradiction();
     return {Kind::separated, Finding::separated};
   }
@@ -70,21 +73,26 @@ Decision decide(const Scene& scene, const TrianglePair& pair, bool one_object, s
   if (direction && integers.separated_by(claim)) return {Kind::separated, Finding::as_claimed};
   if (integers.separating_direction())
     return {Kind::separated, direction ? Finding::wrong_direction : Finding::no_evidence};
-  if (!integers.has_common_point()) contradiction();
+  if (!integers.is_within()) contradiction();
   return meeting(direction ? Finding::meets : Finding::no_evidence);
 }
 
-std::string sentence(Finding finding, int byte) {
+std::string sentence(Finding finding, int byte, bool clearance) {
   switch (finding) {
     case Finding::culled_meets:
-      return "the pair is called culled, and it meets";
+      return clearance ? "the pair is called culled, and it is within the clearance"
+                       : "the pair is called culled, and it meets";
     case Finding::meets:
-      return "the pair is called disjoint, and it meets";
+      return clearance ? "the pair is called farther apart than the clearance, and it is not"
+                       : "the pair is called disjoint, and it meets";
     case Finding::separated:
-      return "the pair is said to meet, and it is disjoint";
+      return clearance ? "the pair is said to be within the clearance, and it is farther apart"
+                       : "the pair is said to meet, and it is disjoint";
     case Finding::wrong_direction:
       return "direction " + std::to_string(byte & ~kKept) +
-             " does not separate the pair, which is disjoint";
+             (clearance
+                  ? " does not show that the pair is farther apart than the clearance, as it is"
+                  : " does not separate the pair, which is disjoint");
     case Finding::neighbours:
       return "the pair is said to meet, and these neighbours share only vertices or an edge";
     case Finding::not_neighbours:
@@ -158,6 +166,8 @@ std::string wrong_list(const std::string& claimed, const std::string& found) {
 /// The counts of the pairs so far.
 class Tally {
  public:
+  explicit Tally(bool clearance) : clearance_(clearance) {}
+
   void add(const TrianglePair& pair, std::uint8_t byte, const Decision& decision) {
     ++result_.found.box_pairs;
     const bool kept = (byte & kKept) != 0;
@@ -174,7 +184,7 @@ class Tally {
     if (result_.pair && (result_.verdict == Verdict::refuted || !refuted)) return;
     result_.verdict = refuted ? Verdict::refuted : Verdict::not_proved;
     result_.pair = pair;
-    result_.reason = sentence(decision.finding, byte);
+    result_.reason = sentence(decision.finding, byte, clearance_);
   }
 
   /// The verdict, once every pair is in.
@@ -192,6 +202,7 @@ class Tally {
 
  private:
   CheckResult result_;
+  bool clearance_;
 };
 
 CheckResult not_proved(std::string reason) {
@@ -203,9 +214,9 @@ CheckResult not_proved(std::string reason) {
 CheckResult decide_all(const Certificate& certificate, const Scene& scene) {
   constexpr std::size_t kBlock = 1 << 16;  // pairs at a time: their number may be many millions
   constexpr std::size_t kPerThread = 1024;
-  BoxPairs enumeration(scene);
+  BoxPairs enumeration(scene, certificate.clearance);
   const std::vector<std::uint32_t> owner = owners(scene);
-  Tally tally;
+  Tally tally(certificate.clearance > 0);
   std::vector<TrianglePair> pairs;
   std::vector<Decision> decisions;
   std::size_t done = 0;
@@ -221,7 +232,8 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene) {
     for_chunks(pairs.size(), chunks_for(pairs.size(), kPerThread),
                [&](std::size_t, std::size_t begin, std::size_t end) {
                  for (std::size_t i = begin; i < end; ++i)
-                   decisions[i] = decide(scene, pairs[i], owner[pairs[i].a] == owner[pairs[i].b],
+                   decisions[i] = decide(scene, pairs[i], certificate.clearance,
+                                         owner[pairs[i].a] == owner[pairs[i].b],
                                          certificate.evidence[done + i]);
                });
     decide_ms += start.ms();
@@ -253,6 +265,8 @@ std::string to_string(Verdict verdict) {
 CheckResult check_certificate(const Certificate& certificate, const Scene& scene) {
   const FloatingPointGuard guard;
   const Stopwatch start;
+  if (!(certificate.clearance >= 0 && std::isfinite(certificate.clearance)))
+    throw std::logic_error("check_certificate: a clearance must be finite and not negative");
   std::string other = other_scene(certificate.scene, scene);
   CheckResult result =
       other.empty() ? decide_all(certificate, scene) : not_proved(std::move(other));

@@ -73,6 +73,26 @@ bool has_gap(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integ
   return all_less(s.on_a, s.on_b) || all_less(s.on_b, s.on_a);
 }
 
+/// True iff the gap that has_gap() has found is longer than the clearance, which is > 0: then so is
+/// the distance, since along no direction is the gap longer. Squares are compared: gap / |d| >
+/// clearance.
+template <class Integer>
+bool gap_exceeds(Scratch<Integer>& s, const Integer& clearance) {
+  const auto [a_lo, a_hi] = std::minmax_element(s.on_a.begin(), s.on_a.end());
+  const auto [b_lo, b_hi] = std::minmax_element(s.on_b.begin(), s.on_b.end());
+  Integer& gap = s.we;
+  if (*a_hi < *b_lo) {
+    gap = *b_lo - *a_hi;
+  } else {
+    gap = *a_lo - *b_hi;
+  }
+  multiply(s.w[0], gap, gap);
+  dot(s.ee, s.d, s.d);
+  multiply(s.w[1], clearance, clearance);
+  multiply(s.w[2], s.w[1], s.ee);
+  return s.w[0] > s.w[2];
+}
+
 /// True iff the direction s.d proves that a and b share no more than their shared part; shared_a
 /// and shared_b are the corners that stand in both. Where all of a lies on one side of a plane
 /// across d and all of b on the other, they meet only in what both have in the plane: in the hulls

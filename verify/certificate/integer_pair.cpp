@@ -1,5 +1,5 @@
 // A pair is scaled to integers once. Where the coordinates are short enough, 128-bit integers
-// decide it, else GMP's.
+// decide it, else, and with a clearance, GMP's.
 #include "verify/certificate/integer_pair.h"
 
 #include <algorithm>
@@ -53,7 +53,7 @@ struct IntegerPair::Big {
   Corners<mpz_class> a, b;
   mpz_class clearance;
 
-  Big(const std::array<Vec3, 3>& from_a, const std::array<Vec3, 3>& from_b, double distance = 0) {
+  Big(const std::array<Vec3, 3>& from_a, const std::array<Vec3, 3>& from_b, double distance) {
     int least = std::numeric_limits<int>::max();
     if (distance != 0) least = parts(distance).exponent;
     for (const auto* t : {&from_a, &from_b}) {
@@ -84,8 +84,9 @@ struct IntegerPair::Big {
   }
 };
 
-IntegerPair::IntegerPair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b)
-    : corners_{a, b}, bits_(std::numeric_limits<int>::max()) {
+IntegerPair::IntegerPair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                         double clearance)
+    : corners_{a, b}, clearance_(clearance), bits_(std::numeric_limits<int>::max()) {
   std::array<std::array<Parts, 3>, 6> all;
   int least = std::numeric_limits<int>::max();
   int top = std::numeric_limits<int>::min();
@@ -133,12 +134,13 @@ IntegerPair::IntegerPair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
 IntegerPair::~IntegerPair() = default;
 
 IntegerPair::Big& IntegerPair::big() {
-  if (!big_) big_ = std::make_unique<Big>(corners_[0], corners_[1]);
+  if (!big_) big_ = std::make_unique<Big>(corners_[0], corners_[1], clearance_);
   return *big_;
 }
 
 bool IntegerPair::separated_by(int direction) {
-  if (bits_ <= most_bits(direction)) {
+  // A clearance is mostly a decimal fraction, which is long beside the coordinates.
+  if (clearance_ == 0 && bits_ <= most_bits(direction)) {
     const Corners<Wide> a = wide(small_, 0), b = wide(small_, 3);
     Scratch<Wide> s;
     make_direction(s, a, b, direction);
@@ -147,7 +149,7 @@ bool IntegerPair::separated_by(int direction) {
   thread_local Scratch<mpz_class> s;
   const Big& pair = big();
   make_direction(s, pair.a, pair.b, direction);
-  return has_gap(s, pair.a, pair.b);
+  return has_gap(s, pair.a, pair.b) && (clearance_ == 0 || gap_exceeds(s, pair.clearance));
 }
 
 std::optional<int> IntegerPair::separating_direction() {
@@ -177,19 +179,7 @@ bool integer_intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>&
 }
 
 bool integer_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
-  const IntegerPair::Big pair(a, b, clearance);
-  Scratch<mpz_class> s;
-  for (int direction = 0; direction < kDirections; ++direction) {
-    make_direction(s, pair.a, pair.b, direction);
-    if (!has_gap(s, pair.a, pair.b)) continue;  // and leaves the projections in s
-    const auto [a_lo, a_hi] = std::minmax_element(s.on_a.begin(), s.on_a.end());
-    const auto [b_lo, b_hi] = std::minmax_element(s.on_b.begin(), s.on_b.end());
-    const mpz_class gap = *a_hi < *b_lo ? mpz_class(*b_lo - *a_hi) : mpz_class(*a_lo - *b_hi);
-    mpz_class square;  // of the direction's length
-    dot(square, s.d, s.d);
-    if (gap * gap > pair.clearance * pair.clearance * square) return false;
-  }
-  return true;
+  return !IntegerPair(a, b, clearance).separating_direction().has_value();
 }
 
 bool IntegerPair::has_common_point() {
@@ -198,6 +188,19 @@ bool IntegerPair::has_common_point() {
   // Whatever was constructed, only membership in both triangles counts.
   return any_point(search, pair.a, pair.b,
                    [&] { return search.lies_in(pair.a) && search.lies_in(pair.b); });
+}
+
+bool IntegerPair::is_within() {
+  if (clearance_ > 0) {
+    thread_local PointSearch in_a, in_b;
+    const Big& pair = big();
+    if (any_two_points(in_a, in_b, pair.a, pair.b, [&] {
+          return in_a.is_near(in_b, pair.clearance) && in_a.lies_in(pair.a) && in_b.lies_in(pair.b);
+        })) {
+      return true;
+    }
+  }
+  return has_common_point();
 }
 
 bool IntegerPair::meets_beyond_shared() {

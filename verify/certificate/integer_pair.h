@@ -1,4 +1,5 @@
-// Two triangles decided in integers: which of 38 directions separates them, or a point they share.
+// Two triangles decided in integers: which of 38 directions separates them, or a point they share;
+// with a clearance, which one shows that they are farther apart, or two points that are not.
 //
 // The certificate checker rests on this file alone, so it knows neither CGAL nor verify/exact.
 // Every finite double is an integer times a power of two: the pair is scaled by one common power,
@@ -7,7 +8,9 @@
 //
 // Semantics as in verify/exact.h: closed convex hulls of the three corners, touching counts, a
 // degenerate triangle is the segment or the point that it is. docs/certificate.md proves that the
-// 38 directions find every disjoint pair and the 21 points every other one.
+// 38 directions find every disjoint pair and the 21 points every other one, and that with a
+// clearance the same directions find every pair that is farther apart, and 42 pairs of points or
+// the 21 points every other one.
 #pragma once
 
 #include <array>
@@ -32,20 +35,26 @@ constexpr int kDirections = 38;
 /// A pair in integers. Preconditions: finite coordinates; subnormals are not flushed to zero.
 class IntegerPair {
  public:
-  IntegerPair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
+  /// clearance: world units, finite, >= 0; a distance of exactly that much is within it.
+  IntegerPair(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance = 0);
   ~IntegerPair();
   IntegerPair(const IntegerPair&) = delete;
   IntegerPair& operator=(const IntegerPair&) = delete;
 
-  /// True iff the projections of a and b onto the direction have a gap, whichever comes first. A
-  /// direction that is zero separates nothing. Precondition: 0 <= direction < kDirections.
+  /// True iff the projections of a and b onto the direction have a gap, whichever comes first, that
+  /// is longer than the clearance times the direction's length. A direction that is zero separates
+  /// nothing. Precondition: 0 <= direction < kDirections.
   bool separated_by(int direction);
-  /// A direction that separates; none iff the triangles share a point.
+  /// A direction that separates; none iff the distance is at most the clearance.
   std::optional<int> separating_direction();
   /// True iff one of 21 constructed points (corners, edge with plane, edge with edge) lies in both
   /// closed triangles; each is a vector of integers over one integer. True iff the triangles share
   /// a point, found without any of the directions.
   bool has_common_point();
+  /// True iff two constructed points, one verified to lie in each triangle, are no farther apart
+  /// than the clearance, or has_common_point(). True iff the distance is at most the clearance,
+  /// found without any of the directions.
+  bool is_within();
 
   /// True iff a corner of a and a corner of b are equal.
   bool shares_position() const { return shared_[0] != 0; }
@@ -59,11 +68,10 @@ class IntegerPair {
   struct Big;
   Big& big();
 
-  friend bool integer_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
-                             double clearance);
   bool only_shared_by(int direction);
 
   std::array<std::array<Vec3, 3>, 2> corners_;
+  double clearance_;
   std::array<unsigned, 2> shared_{};  // bit i: corner i equals one of the other triangle
   // Relative to the first corner of a, where bits_ allows; the corners of a, then of b.
   std::array<std::array<std::int64_t, 3>, 6> small_;
@@ -75,8 +83,7 @@ class IntegerPair {
 bool integer_intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 /// True iff the distance of the closed convex hulls is at most `clearance` (finite, >= 0): iff
-/// along none of the 38 directions the gap is longer. The direction between two closest points is a
-/// multiple of one of them, and along no direction is the gap longer than the distance.
+/// along none of the 38 directions the gap is longer.
 bool integer_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
 }  // namespace farcull

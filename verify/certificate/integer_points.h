@@ -1,5 +1,6 @@
-// The 21 points of a pair of triangles: corners, edges with planes, edges with edges. Each is a
-// vector of integers over one integer. For integer_pair.cpp alone.
+// The 21 points of a pair of triangles: corners, edges with planes, edges with edges; and, for a
+// clearance, 42 pairs of points, one on each triangle. Each point is a vector of integers over one
+// integer. For integer_pair.cpp alone.
 #pragma once
 
 #include "verify/certificate/integer_vector.h"
@@ -40,6 +41,41 @@ class PointSearch {
     dot(numerator_, side_, normal_);
     dot(scale_, normal_, normal_);
     return along(s[i]);
+  }
+
+  /// The foot of the perpendicular from a point to the line of edge i of t, if it is on the edge.
+  bool foot_on_edge(const BigCorners& t, int i, const BigVector& from) {
+    edge(u_, t, i);
+    minus(w_, from, t[i]);
+    dot(numerator_, w_, u_);
+    dot(scale_, u_, u_);
+    return along(t[i]);
+  }
+  /// The foot of the perpendicular from a point to the plane of t, if t has one.
+  bool foot_on_plane(const BigCorners& t, const BigVector& from) {
+    make_normal(t);
+    minus(w_, from, t[0]);
+    dot(numerator_, normal_, w_);
+    dot(scale_, normal_, normal_);
+    for (int k = 0; k < 3; ++k) {
+      multiply(point_[k], from[k], scale_);
+      subtract_product(point_[k], normal_[k], numerator_);
+    }
+    return scale_ != 0;
+  }
+
+  /// True iff the point constructed last is no farther than `distance` from that of another search:
+  /// |p / m - q / n| <= distance, as squares of integers.
+  bool is_near(const PointSearch& other, const mpz_class& distance) {
+    for (int k = 0; k < 3; ++k) {
+      multiply(w_[k], point_[k], other.scale_);
+      subtract_product(w_[k], other.point_[k], scale_);
+    }
+    dot(value_, w_, w_);
+    multiply(numerator_, scale_, other.scale_);
+    multiply(side_[0], numerator_, distance);
+    multiply(side_[1], side_[0], side_[0]);
+    return value_ <= side_[1];
   }
 
   /// True iff the normal of t is not zero.
@@ -126,6 +162,35 @@ bool any_point(PointSearch& search, const BigCorners& a, const BigCorners& b, co
     for (int j = 0; j < 3; ++j) {
       if (search.edge_and_edge(a, i, b, j) && test()) return true;
     }
+  }
+  return false;
+}
+
+/// True iff one of the 42 pairs of points passes, one on a and one on b.
+template <class Test>
+bool any_two_points(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const BigCorners& b,
+                    const Test& test) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      on_a.corner(a, i);
+      on_b.corner(b, j);
+      if (test()) return true;
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      on_b.corner(b, j);
+      if (on_a.foot_on_edge(a, i, b[j]) && test()) return true;
+      on_a.corner(a, i);
+      if (on_b.foot_on_edge(b, j, a[i]) && test()) return true;
+      if (on_a.edge_and_edge(a, i, b, j) && on_b.edge_and_edge(b, j, a, i) && test()) return true;
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    on_b.corner(b, i);
+    if (on_a.foot_on_plane(a, b[i]) && test()) return true;
+    on_a.corner(a, i);
+    if (on_b.foot_on_plane(b, a[i]) && test()) return true;
   }
   return false;
 }

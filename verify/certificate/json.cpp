@@ -18,7 +18,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "farcull-certificate";
-constexpr std::uint64_t kVersion = 3;
+// The second has a clearance; all else is the same.
+constexpr std::uint64_t kVersion = 3, kVersionWithClearance = 4;
 constexpr const char* kRemedy =
     "give a file that `farcull run ... --certificate` wrote; docs/certificate.md is the format";
 
@@ -197,9 +198,9 @@ Certificate::Run read_run(const Reader& reader, const Json& value) {
   return run;
 }
 
-double finite(double radius) {
-  if (!std::isfinite(radius)) throw std::logic_error("to_text: a radius that is not finite");
-  return radius;
+double finite(double length) {
+  if (!std::isfinite(length)) throw std::logic_error("to_text: a length that is not finite");
+  return length;
 }
 
 }  // namespace
@@ -220,33 +221,30 @@ std::string to_text(const Certificate& certificate) {
               {"version", run.device->version},
               {"glsl", run.device->glsl}};
   }
-  const Json json = {
-      {"format", kFormat},
-      {"version", kVersion},
-      {"scene",
-       {{"name", certificate.scene.name},
-        {"objects", certificate.scene.objects},
-        {"triangles", certificate.scene.triangles},
-        {"hash", certificate.scene.hash}}},
-      {"not_asked",
-       {{"objects", certificate.not_asked.objects}, {"pairs", certificate.not_asked.pairs}}},
-      {"claims",
-       {{"box_pairs", certificate.claims.box_pairs},
-        {"kept", certificate.claims.kept},
-        {"culled", certificate.claims.culled},
-        {"separated", certificate.claims.separated},
-        {"neighbours", certificate.claims.neighbours},
-        {"meeting", certificate.claims.meeting}}},
-      {"list_sha256", certificate.list_sha256},
-      {"unattested",
-       {{"method", run.method},
-        {"resolution", run.resolution},
-        {"radius_px", finite(run.radius_px)},
-        {"offset", run.offset},
-        {"views", std::move(views)},
-        {"device", std::move(device)},
-        {"assumptions", Json(run.assumptions)}}},
-      {"evidence", to_base64(certificate.evidence)}};
+  const bool clearance = certificate.clearance > 0;
+  Json json = {{"format", kFormat},
+               {"version", clearance ? kVersionWithClearance : kVersion},
+               {"scene",
+                {{"name", certificate.scene.name},
+                 {"objects", certificate.scene.objects},
+                 {"triangles", certificate.scene.triangles},
+                 {"hash", certificate.scene.hash}}}};
+  if (clearance) json["clearance"] = finite(certificate.clearance);
+  json["not_asked"] = {{"objects", certificate.not_asked.objects},
+                       {"pairs", certificate.not_asked.pairs}};
+  json["claims"] = {
+      {"box_pairs", certificate.claims.box_pairs},   {"kept", certificate.claims.kept},
+      {"culled", certificate.claims.culled},         {"separated", certificate.claims.separated},
+      {"neighbours", certificate.claims.neighbours}, {"meeting", certificate.claims.meeting}};
+  json["list_sha256"] = certificate.list_sha256;
+  json["unattested"] = {{"method", run.method},
+                        {"resolution", run.resolution},
+                        {"radius_px", finite(run.radius_px)},
+                        {"offset", run.offset},
+                        {"views", std::move(views)},
+                        {"device", std::move(device)},
+                        {"assumptions", Json(run.assumptions)}};
+  json["evidence"] = to_base64(certificate.evidence);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -259,12 +257,23 @@ Certificate parse_certificate(std::string_view text, const std::string& name) {
   if (!root.is_object()) reader.fail("the certificate is no object");
   if (root.value("format", Json()) != kFormat) reader.fail(std::string("format is not ") + kFormat);
   const Json version = root.value("version", Json());
-  if (!version.is_number_unsigned() || version != kVersion)
-    reader.fail("version is not " + std::to_string(kVersion));
-  reader.object(root, "",
-                {"format", "version", "scene", "not_asked", "claims", "list_sha256", "unattested",
-                 "evidence"});
+  const bool clearance = version == kVersionWithClearance;
+  if (!version.is_number_unsigned() || (version != kVersion && !clearance)) {
+    reader.fail("version is not " + std::to_string(kVersion) + " or " +
+                std::to_string(kVersionWithClearance));
+  }
   Certificate certificate;
+  if (clearance) {
+    reader.object(root, "",
+                  {"format", "version", "scene", "clearance", "not_asked", "claims", "list_sha256",
+                   "unattested", "evidence"});
+    certificate.clearance = reader.length(root["clearance"], "clearance");
+    if (certificate.clearance == 0) reader.fail("clearance is 0, which version 3 is for");
+  } else {
+    reader.object(root, "",
+                  {"format", "version", "scene", "not_asked", "claims", "list_sha256", "unattested",
+                   "evidence"});
+  }
   certificate.scene = read_scene(reader, root["scene"]);
   certificate.not_asked = read_not_asked(reader, root["not_asked"]);
   certificate.claims = read_claims(reader, root["claims"]);

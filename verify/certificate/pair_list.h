@@ -1,11 +1,14 @@
-// The list of the colliding pairs as text, byte for byte as `farcull run --pairs FILE.csv` writes
-// it. A certificate names the list by the SHA-256 of these bytes, and the check compares with them.
+// The list of the colliding pairs as text. A certificate names the list by the SHA-256 of these
+// bytes. And the reader of such lists, whoever wrote them: columns are found by their names, rows
+// may be in any order.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/scene/scene.h"
@@ -37,5 +40,51 @@ std::string pair_list(const Scene& scene, std::span<const TrianglePair> pairs);
 /// SHA-256 of pair_list(): 64 lower-case hexadecimal digits. Memory O(triangles), whatever the
 /// number of pairs.
 std::string pair_list_hash(const Scene& scene, std::span<const TrianglePair> pairs);
+
+/// A row of a list, as it stands there.
+struct ListedPair {
+  std::uint64_t line = 0;  // 1-based
+  std::uint32_t frame = 0;
+  std::array<std::uint32_t, 2> object{}, triangle{};
+  std::optional<bool> neighbours;
+};
+
+struct GivenList {
+  std::string name;                        // of the file
+  bool has_frames = false;                 // a column `frame`
+  std::vector<ListedPair> rows;            // in the order of the file
+  std::vector<std::string> not_looked_at;  // other columns
+};
+
+/// Reads CSV: a first line that names the columns object_a, triangle_a, object_b and triangle_b in
+/// any order, perhaps `frame`, `neighbours` and any others; then a line a pair. Cells are divided
+/// by commas and may stand in double quotes; lines end with LF or CR LF; lines without a character
+/// are passed over. Throws Error naming `name`, the line and a remedy where a column is missing or
+/// named twice, a line has more or fewer cells, or a cell is no whole number.
+GivenList read_pair_list(std::string_view text, const std::string& name);
+
+/// How a list differs from that of the pairs that meet.
+struct ListDifferences {
+  std::uint64_t listed = 0;      // rows
+  std::uint64_t wrong = 0;       // rows that name no pair that meets, or one again, or that say of
+                                 // `neighbours` what is not so
+  std::uint64_t missing = 0;     // pairs that meet, in no row
+  std::uint64_t wrong_line = 0;  // the first in the order of the file
+  std::string wrong_reason;      // why, as in "the pair is disjoint"
+  std::optional<TrianglePair> wrong_pair;    // none where the row is about one triangle
+  std::optional<TrianglePair> missing_pair;  // the first in the order of the scene
+
+  bool none() const { return wrong == 0 && missing == 0; }
+};
+
+/// The pair of a row, a < b (a == b where it names one triangle twice). Throws Error naming the
+/// list and the line where the scene has no such object or triangle.
+TrianglePair pair_of(const Scene& scene, const std::string& name, const ListedPair& row);
+
+/// Compares rows with the pairs that meet (sorted, each once; with a clearance those within it).
+/// The order of rows and of the triangles in a row does not matter. Throws Error as pair_of().
+ListDifferences find_differences(const Scene& scene, const std::string& name,
+                                 std::span<const ListedPair> rows,
+                                 std::span<const TrianglePair> meeting, double clearance = 0);
 
 }  // namespace farcull

@@ -2,12 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
+#include "experiments/measure/frames.h"
 #include "experiments/record/certificate.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/mesh/cache.h"
 #include "experiments/scenes/mesh/text.h"
+#include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 #include "tests/experiments/system/error_of.h"
 #include "verify/certificate/pair_list.h"
@@ -26,7 +32,7 @@ Answer check(const CheckArguments& arguments) {
   testing::internal::CaptureStdout();
   Answer answer;
   try {
-    answer.status = check_certificate_file(arguments);
+    answer.status = run_check(arguments);
   } catch (...) {
     testing::internal::GetCapturedStdout();
     throw;
@@ -85,37 +91,220 @@ TEST_F(Check, RefutedIsStatus1AndNamesThePair) {
 
 // The list that a run wrote is proved with the certificate, or shown not to be the one.
 TEST_F(Check, ComparesTheListThatIsGiven) {
-  const auto check_list = [&](const std::string& list) {
-    return check({.certificate = written(),
-                  .scene = {"random-soup"},
-                  .json = "-",
-                  .pairs = folder.write("pairs.csv", list)});
+  const auto check_list = [&](const std::string& list, bool with_certificate) {
+    CheckArguments arguments{.certificate = "",
+                             .scene = {"random-soup"},
+                             .json = "-",
+                             .pairs = folder.write("pairs.csv", list)};
+    if (with_certificate) arguments.certificate = written();
+    return check(arguments);
   };
-  const std::string list = pairs_csv(scene, record);
-  ASSERT_EQ(list, pair_list(scene, record.collisions.pairs));
-  const Answer same = check_list(list);
-  EXPECT_EQ(same.status, 0);
-  nlohmann::json json = nlohmann::json::parse(same.text);
-  EXPECT_EQ(json["verdict"], "proved");
-  EXPECT_EQ(json["list"]["given_is_found"], true);
-  EXPECT_EQ(json["list"]["found_sha256"], certificate.list_sha256);
-
+  const std::string list = pair_list(scene, record.collisions.pairs);
   const std::size_t second = list.find('\n') + 1;
   const std::size_t third = list.find('\n', second) + 1;
-  for (const auto& [other, reason] :
-       {std::pair(list.substr(0, second), "line 2 is nothing"),               // lacks every pair
-        std::pair(list.substr(0, second) + list.substr(third), "line 2 is"),  // lacks one
-        std::pair(list + "0,0,1,0\n", "it is nothing"),                       // one too many
-        std::pair(list.substr(0, list.size() - 1), "other bytes"),
-        std::pair(std::string(), "line 1 is nothing")}) {
-    const Answer answer = check_list(other);
-    EXPECT_EQ(answer.status, 1);
-    json = nlohmann::json::parse(answer.text);
-    EXPECT_EQ(json["verdict"], "not proved");
-    EXPECT_EQ(json["list"]["given_is_found"], false);
-    EXPECT_TRUE(json["proves"].is_null());
-    EXPECT_NE(json["reason"].get<std::string>().find(reason), std::string::npos) << json["reason"];
+  for (const bool with : {true, false}) {
+    SCOPED_TRACE(with);
+    for (const std::string& same :
+         {pairs_csv(scene, record), list, list.substr(0, list.size() - 1)}) {
+      const Answer answer = check_list(same, with);
+      EXPECT_EQ(answer.status, 0);
+      const nlohmann::json json = nlohmann::json::parse(answer.text);
+      EXPECT_EQ(json["verdict"], "proved");
+      EXPECT_EQ(json["certificate"].is_null(), !with);
+      EXPECT_EQ(json["list"]["given_is_found"], true);
+      EXPECT_EQ(json["list"]["lines"], record.collisions.pairs.size());
+      EXPECT_EQ(json["list"]["found_sha256"], certificate.list_sha256);
+      EXPECT_EQ(json["unattested"].empty(), !with);
+    }
+    const std::string last = "line " + std::to_string(record.collisions.pairs.size() + 2);
+    for (const auto& [other, reason, wrong, missing] :
+         {std::tuple(list.substr(0, second), std::string("a pair is missing"), 0u,
+                     record.collisions.pairs.size()),
+          std::tuple(list.substr(0, second) + list.substr(third), std::string("a pair is missing"),
+                     0u, std::size_t{1}),
+          std::tuple(list + "0,0,0,0\n", last + ": ", 1u, std::size_t{0}),
+          std::tuple(list + list.substr(second, third - second),
+                     last + ": the pair is that of line 2", 1u, std::size_t{0})}) {
+      const Answer answer = check_list(other, with);
+      EXPECT_EQ(answer.status, 1);
+      const nlohmann::json json = nlohmann::json::parse(answer.text);
+      EXPECT_EQ(json["verdict"], with ? "not proved" : "refuted");
+      EXPECT_EQ(json["list"]["given_is_found"], false);
+      EXPECT_EQ(json["list"]["wrong"]["lines"], wrong);
+      EXPECT_EQ(json["list"]["missing"]["pairs"], missing);
+      EXPECT_TRUE(json["proves"].is_null());
+      EXPECT_NE(json["reason"].get<std::string>().find(reason), std::string::npos)
+          << json["reason"];
+      if (missing == 0) continue;
+      const TrianglePair first = record.collisions.pairs.front();
+      for (const auto& pair : {json["pair"], json["list"]["missing"]["first"]}) {
+        EXPECT_EQ(scene.objects[pair["a"]["object"]].first_triangle +
+                      pair["a"]["triangle"].get<std::uint32_t>(),
+                  first.a);
+        EXPECT_EQ(scene.objects[pair["b"]["object"]].first_triangle +
+                      pair["b"]["triangle"].get<std::uint32_t>(),
+                  first.b);
+      }
+    }
+    EXPECT_EQ(error_of([&] { check_list("", with); }).where, folder.path("pairs.csv"));
+    EXPECT_EQ(error_of([&] { check_list(list + "9,9,9,9\n", with); }).line,
+              static_cast<long>(record.collisions.pairs.size() + 2));
+    EXPECT_EQ(error_of([&] { check_list("frame," + list, with); }).where, folder.path("pairs.csv"));
   }
+}
+
+// Every pair that is dropped is named, whichever it is.
+TEST_F(Check, NamesEachPairThatIsDropped) {
+  for (std::size_t i = 0; i < record.collisions.pairs.size(); i += 61) {
+    std::vector<TrianglePair> fewer = record.collisions.pairs;
+    const TrianglePair dropped = fewer[i];
+    fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+    const Answer answer = check({.certificate = "",
+                                 .scene = {"random-soup"},
+                                 .pairs = folder.write("pairs.csv", pair_list(scene, fewer))});
+    EXPECT_EQ(answer.status, 1);
+    const std::vector<std::uint32_t> owner = owners(scene);
+    const auto place = [&](std::uint32_t t) {
+      const Object& object = scene.objects[owner[t]];
+      return object.name + " triangle " + std::to_string(t - object.first_triangle);
+    };
+    EXPECT_NE(answer.text.find("\n  pair: " + place(dropped.a) + " and " + place(dropped.b) + "\n"),
+              std::string::npos)
+        << answer.text;
+  }
+}
+
+TEST_F(Check, ListsAndCertificatesOfAClearance) {
+  const double clearance = 0.01;
+  record.options.clearance = clearance;
+  record.collisions.pairs = all_colliding_pairs(scene, {.clearance = clearance}).pairs;
+  ASSERT_GT(record.collisions.pairs.size(), certificate.claims.meeting);
+  const std::string plain = written();
+  certificate = certificate_of(scene, record);
+  EXPECT_EQ(certificate.clearance, clearance);
+  const std::string list = folder.write("pairs.csv", pairs_csv(scene, record));
+  const std::string near = folder.write("near.json", to_text(certificate));
+  const std::vector<std::string> soup = {"random-soup"};
+  const Answer proved = check({.certificate = near, .scene = soup, .pairs = list});
+  EXPECT_EQ(proved.status, 0);
+  EXPECT_EQ(proved.text.substr(0, proved.text.find('\n')),
+            "proved: these " + grouped(record.collisions.pairs.size()) +
+                " pairs of the scene are at distance 0.01 or less, and no others");
+  EXPECT_EQ(
+      check({.certificate = near, .scene = soup, .pairs = list, .clearance = clearance}).status, 0);
+  EXPECT_EQ(check({.certificate = "", .scene = soup, .pairs = list, .clearance = clearance}).status,
+            0);
+  // The twins: another clearance of the question, by one unit in the last place.
+  const Answer other =
+      check({.certificate = near, .scene = soup, .clearance = std::nextafter(clearance, 1)});
+  EXPECT_EQ(other.status, 1);
+  EXPECT_NE(other.text.find("another clearance: 0.01, given 0.01000"), std::string::npos)
+      << other.text;
+  EXPECT_EQ(check({.certificate = plain, .scene = soup, .clearance = clearance}).status, 1);
+  const Answer none = check({.certificate = "", .scene = soup, .pairs = list});
+  EXPECT_EQ(none.status, 1);
+  EXPECT_EQ(none.text.substr(0, 8), "refuted:");
+  EXPECT_EQ(check({.certificate = plain, .scene = soup, .pairs = list}).status, 1);
+}
+
+// ---- frames ----
+
+class CheckFrames : public testing::Test {
+ protected:
+  void SetUp() override {
+    FramesQuestion question;
+    question.options.method = Method::far_pairs;
+    question.options.device = "cpu";
+    question.range = range;
+    question.pairs = question.certificates = true;
+    std::string list;
+    run_frames(scene, question, {}, [&](const FrameReport& report) {
+      write_output(numbered(pattern, report.number), report.certificate);
+      list += report.pairs_csv;
+    });
+    pairs = folder.write("pairs.csv", list);
+  }
+  CheckArguments arguments() const {
+    return {.certificate = pattern, .scene = scene, .frames = range};
+  }
+
+  ScratchFolder folder;
+  const std::vector<std::string> scene = {"two-spheres"};
+  const FrameRange range = {3, 6};
+  const std::string pattern = folder.path("c_%03d.json");
+  std::string pairs;
+};
+
+TEST_F(CheckFrames, EachIsProved) {
+  const Answer answer = check(arguments());
+  EXPECT_EQ(answer.status, 0);
+  EXPECT_NE(answer.text.find("\nproved: in each of 4 frames these pairs of the scene meet, and no "
+                             "others: "),
+            std::string::npos)
+      << answer.text;
+  for (const char* row : {"\n      3  proved ", "\n      6  proved "})
+    EXPECT_NE(answer.text.find(row), std::string::npos) << answer.text;
+
+  CheckArguments with_list = arguments();
+  with_list.pairs = pairs;
+  with_list.json = "-";
+  const nlohmann::json json = nlohmann::json::parse(check(with_list).text);
+  ASSERT_EQ(json["frames"].size(), 4u);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(json["frames"][i]["frame"], 3 + i);
+    EXPECT_EQ(json["frames"][i]["verdict"], "proved");
+    EXPECT_EQ(json["frames"][i]["list"]["given_is_found"], true);
+  }
+  EXPECT_EQ(json["summary"]["verdict"], "proved");
+  EXPECT_EQ(json["summary"]["proved"], 4);
+  with_list.certificate = "";
+  EXPECT_EQ(check(with_list).status, 0);
+  with_list.frames = FrameRange{3, 5};
+  EXPECT_EQ(error_of([&] { check(with_list); }).where, pairs);  // of a frame that is not checked
+  with_list.frames.reset();
+  EXPECT_EQ(error_of([&] { check(with_list); }).where, pairs);
+}
+
+// The certificate of one frame proves nothing of another one.
+TEST_F(CheckFrames, OfAnotherFrameIsNotProved) {
+  const std::string of_4 = read_file(numbered(pattern, 4), 1 << 24);
+  folder.write("c_005.json", of_4);
+  const Answer answer = check(arguments());
+  EXPECT_EQ(answer.status, 1);
+  EXPECT_NE(answer.text.find("\n      5  not proved "), std::string::npos) << answer.text;
+  EXPECT_NE(answer.text.find("of another scene"), std::string::npos);
+  EXPECT_NE(answer.text.find("\nnot proved: 1 of 4 frames, the first is frame 5\n"),
+            std::string::npos)
+      << answer.text;
+}
+
+TEST_F(CheckFrames, APairThatIsDroppedIsNamedWithItsFrame) {
+  std::string list = read_file(pairs, 1 << 24);
+  const std::size_t at = list.find("\n4,") + 1;
+  ASSERT_NE(at, 0u);
+  list.erase(at, list.find('\n', at) + 1 - at);
+  folder.write("pairs.csv", list);
+  CheckArguments fewer = arguments();
+  fewer.certificate = "";
+  fewer.pairs = pairs;
+  fewer.json = "-";
+  const Answer answer = check(fewer);
+  EXPECT_EQ(answer.status, 1);
+  const nlohmann::json json = nlohmann::json::parse(answer.text);
+  EXPECT_EQ(json["frames"][0]["verdict"], "proved");
+  EXPECT_EQ(json["frames"][1]["verdict"], "refuted");
+  EXPECT_EQ(json["frames"][1]["list"]["missing"]["pairs"], 1);
+  EXPECT_EQ(json["frames"][2]["verdict"], "proved");
+  EXPECT_EQ(json["summary"]["verdict"], "refuted");
+  EXPECT_EQ(json["summary"]["first"], 4);
+}
+
+TEST_F(CheckFrames, OneThatIsNotThereIsAnErrorAfterTheFramesBefore) {
+  std::filesystem::remove(numbered(pattern, 5));
+  CheckArguments json = arguments();
+  json.json = folder.path("checked.json");
+  EXPECT_EQ(error_of([&] { check(json); }).where, numbered(pattern, 5));
+  EXPECT_EQ(nlohmann::json::parse(read_file(json.json, 1 << 20))["frames"].size(), 2u);
 }
 
 // A run that missed every pair: what it wrote is refuted; forged to call them kept, the certificate

@@ -44,7 +44,7 @@ answers 'a certificate of exact' 0 '^proved: these [0-9,]+ pairs of the scene me
 expect 'a certificate of exact' "$out" "^list .*$sha$"
 expect 'a certificate of exact' "$out" 'pairs\.csv is this list$'
 expect 'a certificate of exact' "$out" '^  which pairs the run kept'
-answers 'another list' 1 '^not proved: missed\.csv is another list: line [0-9]+ is ' \
+answers 'another list' 1 '^not proved: missed\.csv is another list: a pair is missing$' \
   check exact.json two-spheres --pairs missed.csv
 answers 'a certificate of a run that misses' 1 '^refuted: the pair is called culled, and it meets$' \
   check c.json two-spheres

@@ -59,9 +59,20 @@ bad 'a value for --self' '--self: ' run "${pairs[@]}" --self=7
 bad 'frames of what stands still' '--frames: nothing .*%d' run two-tori --method far-pairs --frames 3
 bad 'frames of files without a number' '--frames: nothing .*%d' run good.obj --method far-pairs \
   --frames 3
-bad 'certificate of frames' '--certificate: ' run "${pairs[@]}" --frames 3 --certificate c.json
-bad 'certificate of a clearance' '--certificate: ' run "${pairs[@]}" --clearance 1 \
-  --certificate c.json
+for file in c.json - c_%4d.json; do
+  bad "certificate of frames in $file" '--certificate: .*%04d' run "${pairs[@]}" --frames 3 \
+    --certificate "$file"
+done
+bad 'certificate with a number and no frames' '--certificate: .*--frames' run "${pairs[@]}" \
+  --certificate c_%04d.json
+bad 'certificates in no folder' 'nowhere/c_0\.json: ' run "${pairs[@]}" --frames 3 \
+  --certificate nowhere/c_%d.json
+printf '{"objects": [{"mesh": "cloth_%%d.obj"}]}' >c_2.json
+bad 'a certificate over the scene' '--certificate: c_2\.json is c_2\.json, which SCENE reads' run \
+  c_2.json --method far-pairs --frames 3 --certificate c_%d.json
+rm c_2.json
+bad 'a certificate over the list' '--certificate: c_1\.json is c_1\.json, where --pairs goes' run \
+  "${pairs[@]}" --frames 3 --certificate c_%d.json --pairs c_1.json
 for i in 3 4 5; do obj 'f 1 2 3' 'f 1 2 4' >"cloth_0$i.obj"; done
 ((cases += 1))
 launch run cloth_%02d.obj --method far-pairs --frames 3:6 --json missing.json --pairs missing.csv
@@ -180,6 +191,106 @@ expect 'frames of a scene file' "$out" '^per frame  median '
 good 'frames of a built-in scene' 0 verify two-spheres@far@ground --method far-pairs --frames 3
 expect 'frames of a built-in scene' "$out" '^ +2 .* 0 +[0-9.]+ +[0-9.]+ +[0-9.]+ +[0-9,]+ +[0-9,]+$'
 good 'frames of one number' 0 run crowd --method far-pairs --frames 1
+
+# --- certificates of frames and of clearances, and lists without a certificate ---------------------
+
+says() { # CASE STATUS PATTERN ARGUMENTS...: this status, a line that matches, nothing on stderr
+  ((cases += 1))
+  launch "${@:4}"
+  if ((status != $2)); then
+    fail "$1" "status $status instead of $2: $(head -n 1 "$out")"
+  elif [[ -s $err ]]; then
+    fail "$1" 'something on stderr'
+  fi
+  expect "$1" "$out" "$3"
+}
+mkdir certificates
+good 'certificates of frames' 0 run fall.json --method exact --frames 1:3 --no-verify \
+  --certificate certificates/c_%02d.json --pairs falls.csv
+((cases += 1))
+[[ $(cd certificates && echo *) == 'c_01.json c_02.json c_03.json' ]] ||
+  fail 'certificates of frames' "left $(ls certificates)"
+says 'check of frames' 0 '^proved: in each of 3 frames these pairs of the scene meet, and no others: 1 in all$' \
+  check certificates/c_%02d.json fall.json --frames 1:3 --pairs falls.csv
+expect 'check of frames' "$out" '^ +2  proved +[0-9]+ +1 +[0-9.]+$'
+says 'a list of frames alone' 0 '^proved: in each of 3 frames ' check fall.json --frames 1:3 \
+  --pairs falls.csv
+expect 'a list of frames alone' "$out" '^ +3  proved '
+sed '2d' falls.csv >fewer.csv
+says 'a list that lacks a pair of a frame' 1 '^refuted: 1 of 3 frames, the first is frame 2$' check \
+  fall.json --frames 1:3 --pairs fewer.csv
+expect 'a list that lacks a pair of a frame' "$out" \
+  '^ +refuted: fewer\.csv is not the list of the pairs: a pair is missing$'
+expect 'a list that lacks a pair of a frame' "$out" '^  pair: fall_%d triangle 0 and good triangle 3$'
+cp certificates/c_01.json certificates/c_02.json
+says 'the certificate of another frame' 1 '^not proved: 1 of 3 frames, the first is frame 2$' check \
+  certificates/c_%02d.json fall.json --frames 1:3
+expect 'the certificate of another frame' "$out" 'not proved: the certificate is of another scene: hash'
+bad 'certificates of frames without frames' 'CERTIFICATE: .*--frames' check certificates/c_%02d.json \
+  fall.json
+bad 'frames of one certificate' 'CERTIFICATE: .*%04d' check certificates/c_01.json fall.json \
+  --frames 1:3
+bad 'a list of frames without frames' 'falls\.csv: has a column .*--frames' check fall.json \
+  --pairs falls.csv
+bad 'a list of other frames' 'falls\.csv:2: frame 2 ' check fall.json --frames 1:1 --pairs falls.csv
+rm certificates/c_03.json
+((cases += 1))
+launch check certificates/c_%02d.json fall.json --frames 1:3
+((status == 2)) || fail 'a certificate that is missing' "status $status"
+expect 'a certificate that is missing' "$err" '^farcull: certificates/c_03\.json: the file does not .*; give '
+expect 'a certificate that is missing' "$out" '^ +1  proved '
+rm -r certificates falls.csv fewer.csv
+
+# At 0.1, as at every decimal fraction, the clearance is the double nearest to it.
+near=(two-spheres --method far-pairs --clearance 0.1)
+good 'a clearance' 0 run "${near[@]}" --certificate near.json --pairs near.csv
+expect 'a certificate of a clearance' near.json '^  "version": 4,$'
+expect 'a certificate of a clearance' near.json '^  "clearance": 0\.1,$'
+says 'check of a clearance' 0 '^proved: these [0-9,]+ pairs of the scene are at distance 0\.1 or less, and no others$' \
+  check near.json two-spheres --pairs near.csv
+says 'with the clearance' 0 '^proved: ' check near.json two-spheres --clearance 0.1
+says 'with another clearance' 1 '^not proved: the certificate is of another clearance: 0\.1, given 0\.2$' \
+  check near.json two-spheres --clearance 0.2
+says 'the list of a clearance alone' 0 '^proved: these [0-9,]+ pairs of the scene are at distance ' \
+  check two-spheres --pairs near.csv --clearance 0.1
+says 'without the clearance' 1 '^refuted: near\.csv is not the list of the pairs: line [0-9]+: the pair is disjoint$' \
+  check two-spheres --pairs near.csv
+sed 's/"clearance": 0\.1/"clearance": 0.2/' near.json >farther.json
+((cases += 1))
+launch check farther.json two-spheres
+((status == 1)) || fail 'a larger clearance in the file' "status $status"
+
+# Lists that others wrote.
+says 'a list alone' 0 '^proved: these 298 pairs of the scene meet, and no others$' check two-spheres \
+  --pairs plain.csv
+{
+  echo 'triangle_b,name,object_b,triangle_a,object_a'
+  tail -n +2 plain.csv | tac | awk -F, '{ print $2 ",\"x, y\"," $1 "," $4 "," $3 "\r" }'
+} >other.csv
+says 'a list in another form' 0 '^ +other\.csv is this list: 298 rows$' check two-spheres --pairs other.csv
+expect 'a list in another form' "$out" 'not looked at: columns name$'
+sed '100d' plain.csv >fewer.csv
+says 'a list that lacks a pair' 1 '^refuted: fewer\.csv is not the list of the pairs: a pair is missing$' \
+  check two-spheres --pairs fewer.csv
+row=$(sed -n 100p plain.csv)
+says 'and the pair' 1 "^  pair: .* triangle $(cut -d, -f2 <<<"$row") and .* triangle $(cut -d, -f4 <<<"$row")\$" \
+  check two-spheres --pairs fewer.csv
+good 'self-collision' 0 run folded.obj --method far-pairs --self --pairs folded.csv
+says 'a list of self-collision' 0 '^proved: this pair of the scene meets, and no other$' check folded.obj \
+  --pairs folded.csv --self
+says 'and without --self' 1 '^refuted: .*line 2: .*\(--self asks\)$' check folded.obj --pairs folded.csv
+good 'two meshes' 0 run good.obj folded.obj --method exact --pairs two.csv
+says 'a list of two meshes' 0 '^proved: these [0-9]+ pairs ' check good.obj folded.obj --pairs two.csv
+sed '3s/,[0-9]*$/,x/' plain.csv >broken.csv
+bad 'a list that is no list' "broken\.csv:3: triangle_b is 'x', .*; give a list as " check two-spheres \
+  --pairs broken.csv
+bad 'a list of another scene' 'plain\.csv:[0-9]+: object 0 has no triangle .*; give ' check good.obj good.obj \
+  --pairs plain.csv
+bad 'neither certificate nor list' 'SCENE: is missing ' check two-spheres
+bad 'a mesh for the certificate' 'CERTIFICATE: .*--pairs' check good.obj folded.obj
+bad 'a bad clearance' '--clearance: ' check two-spheres --pairs plain.csv --clearance -1
+bad 'bad frames' '--frames: ' check two-spheres --pairs plain.csv --frames 0
+rm near.json near.csv farther.json other.csv fewer.csv folded.csv broken.csv two.csv
 
 # Triangles that lie on each other: memory for the pairs that there are, not for each pixel of each.
 for name in first second; do

@@ -13,8 +13,8 @@
 
 namespace farcull {
 
-inline std::vector<TrianglePair> box_pairs(const Scene& scene) {
-  BoxPairs enumeration(scene);
+inline std::vector<TrianglePair> box_pairs(const Scene& scene, double clearance = 0) {
+  BoxPairs enumeration(scene, clearance);
   std::vector<TrianglePair> pairs;
   enumeration.next(pairs, std::numeric_limits<std::size_t>::max());
   return pairs;
@@ -30,7 +30,7 @@ inline Certificate::Run some_run() {
           .assumptions = {"A1: something", "A2: \\ another"}};
 }
 
-/// A run that kept what meets and every third pair that does not.
+/// A run that kept what meets, or is within the clearance, and every third pair that does not.
 struct Case {
   Scene scene;
   std::vector<TrianglePair> pairs;  // with overlapping boxes
@@ -39,8 +39,9 @@ struct Case {
   std::uint64_t neighbours = 0;  // that do not meet
   Certificate certificate;
 
-  explicit Case(Scene from) : scene(std::move(from)), pairs(box_pairs(scene)) {
-    const Collisions found = decide(scene, pairs);
+  explicit Case(Scene from, double clearance = 0)
+      : scene(std::move(from)), pairs(box_pairs(scene, clearance)) {
+    const Collisions found = decide(scene, pairs, {.clearance = clearance});
     meeting = found.pairs;
     meeting.insert(meeting.end(), found.neighbour_pairs.begin(), found.neighbour_pairs.end());
     std::sort(meeting.begin(), meeting.end());
@@ -48,14 +49,14 @@ struct Case {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (i % 3 == 0 || meets(i)) kept.push_back(pairs[i]);
     }
-    certificate = make_certificate(scene, kept, meeting, some_run());
+    certificate = make_certificate(scene, kept, meeting, some_run(), clearance);
   }
   bool meets(std::size_t i) const {
     return std::binary_search(meeting.begin(), meeting.end(), pairs[i]);
   }
   bool is_kept(std::size_t i) const { return (certificate.evidence[i] & kKept) != 0; }
   IntegerPair integers(std::size_t i) const {
-    return IntegerPair(scene.corners(pairs[i].a), scene.corners(pairs[i].b));
+    return IntegerPair(scene.corners(pairs[i].a), scene.corners(pairs[i].b), certificate.clearance);
   }
   /// The check of a changed certificate, by way of its text.
   CheckResult check(const Certificate& changed) const {

@@ -436,11 +436,21 @@ TEST(CertificateText, RefusesAnotherForm) {
   for (const char* text : {"null", "7", "\"text\"", "[]"}) expect_refused(text, "no object");
   expect_refused("{}", "format is not");
   expect_refused(changed_text("farcull-certificate", "farcull-record"), "format is not");
-  for (const char* version : {"1", "2", "4", "0", "-1", "3.0", "\"3\"", "null", "[3]"})
+  for (const char* version : {"1", "2", "5", "0", "-1", "3.0", "4.0", "\"3\"", "null", "[3]"})
     expect_refused(changed_text("\"version\": 3", std::string("\"version\": ") + version),
                    "version is not");
   expect_refused(changed_text("\"version\": 3", "\"version\": 3, \"more\": 2"),
                  "'more' is unknown");
+  expect_refused(changed_text("\"version\": 3", "\"version\": 4"), "clearance is missing");
+  expect_refused(changed_text("\"version\": 3", "\"version\": 3, \"clearance\": 1"),
+                 "'clearance' is unknown");
+  for (const char* clearance : {"0", "0.0", "-0.0", "-1", "\"1\"", "null", "[1]"}) {
+    expect_refused(
+        changed_text("\"version\": 3", std::string("\"version\": 4, \"clearance\": ") + clearance),
+        "clearance is ");
+  }
+  expect_refused(changed_text("\"version\": 3", "\"version\": 4, \"clearance\": 1e999"),
+                 "not JSON");
   expect_refused(changed_text("\"list_sha256\"", "\"list_sha1\""), "list_sha256 is missing");
   expect_refused(changed_text("\"not_asked\"", "\"not\""), "not_asked is missing");
   expect_refused(changed_text("\"pairs\": 0", "\"pairs\": -1"), "not_asked.pairs");

@@ -5,11 +5,15 @@
 
 #include <algorithm>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
+#include "core/base/error.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "tests/experiments/system/error_of.h"
 #include "tests/verify/reference.h"
 #include "verify/certificate/not_asked.h"
 #include "verify/certificate/sha256.h"
@@ -79,6 +83,148 @@ TEST(PairList, TellsNeighboursWhereAnObjectIsSelf) {
   EXPECT_EQ(pair_list(folded(false), {}), "object_a,triangle_a,object_b,triangle_b\n");
   EXPECT_EQ(pair_list(folded(false), std::vector{pairs[2]}),
             "object_a,triangle_a,object_b,triangle_b\n0,0,1,0\n");
+}
+
+// ---- lists that are given ----
+
+constexpr const char* kHeader = "object_a,triangle_a,object_b,triangle_b\n";
+
+TEST(GivenList, IsReadBackAsItIsWritten) {
+  const Scene scene = folded(true);
+  const std::vector<TrianglePair> pairs = {{0, 1}, {0, 2}, {0, 3}};
+  const GivenList list = read_pair_list(pair_list(scene, pairs), "pairs.csv");
+  EXPECT_FALSE(list.has_frames);
+  EXPECT_TRUE(list.not_looked_at.empty());
+  ASSERT_EQ(list.rows.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(pair_of(scene, list.name, list.rows[i]), pairs[i]);
+    EXPECT_EQ(list.rows[i].line, i + 2);
+    EXPECT_EQ(list.rows[i].neighbours, i == 0);
+  }
+  EXPECT_TRUE(read_pair_list(kHeader, "pairs.csv").rows.empty());
+}
+
+// Columns by their names, in any order, with others between; quotes, CR LF, a byte order mark,
+// lines without a character, and no line feed at the end.
+TEST(GivenList, FindsColumnsByTheirNames) {
+  const GivenList list = read_pair_list(
+      "\xef\xbb\xbftriangle_b,frame,\"object_b\",name,triangle_a,face_a,object_a\r\n"
+      "4,1,3,\"a, \"\"b\"\"\",2,,1\r\n\r\n8,2,7,,6,9,5",
+      "pairs.csv");
+  EXPECT_TRUE(list.has_frames);
+  EXPECT_EQ(list.not_looked_at, (std::vector<std::string>{"name", "face_a"}));
+  ASSERT_EQ(list.rows.size(), 2u);
+  EXPECT_EQ(list.rows[0].object, (std::array<std::uint32_t, 2>{1, 3}));
+  EXPECT_EQ(list.rows[0].triangle, (std::array<std::uint32_t, 2>{2, 4}));
+  EXPECT_EQ(list.rows[0].frame, 1u);
+  EXPECT_FALSE(list.rows[0].neighbours.has_value());
+  EXPECT_EQ(list.rows[1].object, (std::array<std::uint32_t, 2>{5, 7}));
+  EXPECT_EQ(list.rows[1].triangle, (std::array<std::uint32_t, 2>{6, 8}));
+  EXPECT_EQ(list.rows[1].line, 4u);
+}
+
+TEST(GivenList, MalformedOnesNameTheLine) {
+  const std::string header = kHeader;
+  const std::string self = "object_a,triangle_a,object_b,triangle_b,neighbours\n";
+  for (const auto& [text, line, reason] :
+       {std::tuple(std::string(), 0, "the file is empty"),
+        std::tuple(std::string("\n\r\n"), 2, "the file is empty"),
+        std::tuple(std::string("0,1,1,4\n"), 1, "no column object_a"),
+        std::tuple(std::string("object_a;triangle_a;object_b;triangle_b\n"), 1,
+                   "no column object_a"),
+        std::tuple(std::string("object_a,triangle_a,object_b\n"), 1, "no column triangle_b"),
+        std::tuple(std::string("object_a,triangle_a,object_b,triangle_b,object_b\n"), 1,
+                   "object_b is named twice"),
+        std::tuple(header + "0,1,1,4\n0,1,1\n", 3, "3 cells, and the first has 4"),
+        std::tuple(header + "0,1,1,4,0\n", 2, "5 cells"),
+        std::tuple(header + "0,1,1,\n", 2, "triangle_b is ''"),
+        std::tuple(header + "0,1,-1,4\n", 2, "object_b is '-1', no whole number"),
+        std::tuple(header + "0,1.5,1,4\n", 2, "triangle_a is '1.5'"),
+        std::tuple(header + "0, 1,1,4\n", 2, "triangle_a is ' 1'"),
+        std::tuple(header + "0,1,1,4294967296\n", 2, "triangle_b is '4294967296'"),
+        std::tuple(header + "0,1,1,\x1b[1m\n", 2, "'?[1m'"),
+        std::tuple(header + "0,1,1,\"4\n\"\n", 2, "not closed"),
+        std::tuple(header + "0,1,1,\"4\"5\n", 2, "after the quotes"),
+        std::tuple(self + "0,1,1,4,2\n", 2, "neither 0 nor 1")}) {
+    SCOPED_TRACE(text);
+    const Error error = error_of([&] { read_pair_list(text, "some/pairs.csv"); });
+    EXPECT_EQ(error.where, "some/pairs.csv");
+    EXPECT_EQ(error.line, line);
+    EXPECT_NE(error.reason.find(reason), std::string::npos) << error.reason;
+    EXPECT_NE(error.remedy.find("object_a,triangle_a,object_b,triangle_b"), std::string::npos);
+  }
+}
+
+TEST(GivenList, NamesObjectsAndTrianglesThatTheSceneLacks) {
+  const Scene scene = folded(true);
+  for (const auto& [row, reason] :
+       {std::pair("0,0,2,0\n", "no object 2: the scene has 2"),
+        std::pair("0,3,1,0\n", "object 0 has no triangle 3: it has 3"),
+        std::pair("0,0,1,1\n", "object 1 has no triangle 1: it has 1")}) {
+    const GivenList list = read_pair_list(std::string(kHeader) + "0,0,0,2\n" + row, "pairs.csv");
+    const Error error = error_of([&] { find_differences(scene, list.name, list.rows, {}); });
+    EXPECT_EQ(error.where, "pairs.csv");
+    EXPECT_EQ(error.line, 3);
+    EXPECT_NE(error.reason.find(reason), std::string::npos) << error.reason;
+  }
+}
+
+ListDifferences differences(const Scene& scene, const std::string& rows,
+                            const std::vector<TrianglePair>& meeting, double clearance = 0) {
+  const GivenList list =
+      read_pair_list("object_a,triangle_a,object_b,triangle_b,neighbours\n" + rows, "pairs.csv");
+  return find_differences(scene, list.name, list.rows, meeting, clearance);
+}
+
+TEST(GivenList, TellsWhatIsWrongAndWhatIsMissing) {
+  const Scene scene = folded(true);
+  const std::vector<TrianglePair> meeting = {{0, 2}, {0, 3}, {2, 3}};
+  const std::string right = "0,0,0,2,0\n0,0,1,0,0\n0,2,1,0,0\n";
+  EXPECT_TRUE(differences(scene, right, meeting).none());
+  // Any order, and either triangle first.
+  EXPECT_TRUE(differences(scene, "1,0,0,2,0\n0,2,0,0,0\n0,0,1,0,0\n", meeting).none());
+
+  const ListDifferences lacks = differences(scene, "0,0,0,2,0\n0,2,1,0,0\n", meeting);
+  EXPECT_EQ(lacks.wrong, 0u);
+  EXPECT_EQ(lacks.missing, 1u);
+  EXPECT_EQ(lacks.missing_pair, (TrianglePair{0, 3}));
+  EXPECT_EQ(differences(scene, "", meeting).missing, 3u);
+
+  for (const auto& [row, reason] :
+       {std::pair("0,1,1,0,0\n", "the pair is disjoint"),
+        std::pair("0,0,0,1,1\n", "neighbours that share only vertices or an edge"),
+        std::pair("0,1,0,1,0\n", "names one triangle twice"),
+        std::pair("0,0,0,2,0\n", "that of line 2 again"),
+        std::pair("0,2,0,0,0\n", "that of line 2 again")}) {
+    const ListDifferences wrong = differences(scene, right + row, meeting);
+    EXPECT_EQ(wrong.listed, 4u);
+    EXPECT_EQ(wrong.wrong, 1u) << row;
+    EXPECT_EQ(wrong.missing, 0u) << row;
+    EXPECT_EQ(wrong.wrong_line, 5u) << row;
+    EXPECT_NE(wrong.wrong_reason.find(reason), std::string::npos) << wrong.wrong_reason;
+  }
+  EXPECT_NE(differences(scene, "0,1,1,0,0\n", {}, 0.5).wrong_reason.find("farther apart"),
+            std::string::npos);
+  // What it says of neighbours.
+  const ListDifferences said = differences(scene, "0,0,0,2,1\n0,0,1,0,0\n0,2,1,0,0\n", meeting);
+  EXPECT_EQ(said.wrong, 1u);
+  EXPECT_EQ(said.missing, 0u);
+  EXPECT_NE(said.wrong_reason.find("no neighbours, and the line says 1"), std::string::npos);
+  const std::vector<TrianglePair> with_neighbours = {{0, 1}};
+  EXPECT_TRUE(differences(scene, "0,0,0,1,1\n", with_neighbours).none());
+  EXPECT_NE(differences(scene, "0,0,0,1,0\n", with_neighbours).wrong_reason.find("line says 0"),
+            std::string::npos);
+  // Both, and the first of several in the order of the file.
+  const ListDifferences both =
+      differences(scene, "0,1,1,0,0\n0,0,0,2,0\n0,0,0,1,1\n0,0,0,2,0\n", meeting);
+  EXPECT_EQ(both.wrong, 3u);
+  EXPECT_EQ(both.wrong_line, 2u);
+  EXPECT_EQ(both.wrong_pair, (TrianglePair{1, 3}));
+  EXPECT_EQ(both.missing, 2u);
+  EXPECT_EQ(both.missing_pair, (TrianglePair{0, 3}));
+  // Of an object that is not self.
+  EXPECT_NE(differences(folded(false), "0,0,0,2,0\n", {}).wrong_reason.find("--self asks"),
+            std::string::npos);
 }
 
 TEST(NotAsked, IsWhatLiesInsideObjectsThatAreNotSelf) {

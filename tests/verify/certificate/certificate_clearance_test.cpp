@@ -1,0 +1,448 @@
+// Certificates for a clearance: distances decided in integers, a distance of exactly the clearance
+// counts, and one unit in the last place more or less does not go unseen.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "core/base/error.h"
+#include "experiments/lemma/pair_generators.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/experiments/system/error_of.h"
+#include "tests/verify/certificate/certificate_case.h"
+#include "tests/verify/reference.h"
+#include "verify/certificate/pair_list.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+using reference::Triangle;
+
+std::string text(const Triangle& a, const Triangle& b, double clearance) {
+  std::ostringstream out;
+  out << std::hexfloat;
+  for (const Triangle& t : {a, b}) {
+    for (const Vec3& p : t) out << p.x() << ' ' << p.y() << ' ' << p.z() << "; ";
+  }
+  out << clearance;
+  return out.str();
+}
+
+double below(double x) { return std::nextafter(x, 0); }
+double above(double x) { return std::nextafter(x, HUGE_VAL); }
+
+// ---- pairs ----
+
+// Completeness: a direction for every pair that is farther apart, two points for every other one,
+// never both, never neither. verify/exact has the distance by rationals.
+TEST(IntegerClearance, ADirectionOrTwoPointsForEveryPair) {
+  for (const PairGenerator& generator : pair_generators()) {
+    PairRandom random(7);
+    int inside = 0, apart = 0;
+    for (int n = 0; n < 600; ++n) {
+      const auto [a, b] = generator.make(random);
+      // The distance of two corners is an upper bound of that of the triangles, often reached.
+      double clearance = (a[random.below(3)] - b[random.below(3)]).norm();
+      if (random.chance(2)) clearance *= random.unit();
+      if (!std::isfinite(clearance)) clearance = 1;
+      for (const double d : {clearance, below(clearance), above(clearance)}) {
+        IntegerPair pair(a, b, d);
+        const bool expected = within(a, b, d);
+        ++(expected ? inside : apart);
+        ASSERT_EQ(pair.separating_direction().has_value(), !expected)
+            << generator.name << ": " << text(a, b, d);
+        ASSERT_EQ(pair.is_within(), expected) << generator.name << ": " << text(a, b, d);
+        ASSERT_EQ(integer_within(a, b, d), expected);
+      }
+    }
+    EXPECT_GT(inside, 20) << generator.name;
+    EXPECT_GT(apart, 20) << generator.name;
+  }
+}
+
+TEST(IntegerClearance, ADirectionOrTwoPointsOnSmallGrids) {
+  std::mt19937 random(29);
+  const std::array clearances = {1.0, 2.0, std::sqrt(2.0), above(std::sqrt(2.0)), std::sqrt(3.0),
+                                 0.5};
+  int exactly = 0;
+  for (int n = 0; n < 30'000; ++n) {
+    std::array<Triangle, 2> t;
+    const int flat = n % 3 == 0 ? 1 : 3;
+    for (Triangle& corners : t) {
+      for (Vec3& p : corners)
+        p = Vec3(random() % 5, random() % 3, static_cast<double>(random() % flat));
+    }
+    const double clearance = clearances[random() % clearances.size()];
+    IntegerPair pair(t[0], t[1], clearance);
+    const bool expected = reference::within(t[0], t[1], clearance);
+    ASSERT_EQ(pair.separating_direction().has_value(), !expected) << text(t[0], t[1], clearance);
+    ASSERT_EQ(pair.is_within(), expected) << text(t[0], t[1], clearance);
+    exactly += expected && !reference::within(t[0], t[1], below(clearance));
+  }
+  EXPECT_GT(exactly, 500);  // pairs at exactly the clearance
+}
+
+/// Two triangles at a distance that is a double, closest in one feature of each alone.
+struct Feature {
+  const char* name;
+  Triangle a, b;
+  double distance;
+};
+
+const std::vector<Feature>& features() {
+  static const std::vector<Feature> list = {
+      {"corner and corner",
+       {Vec3(0, 0, 0), Vec3(-4, -1, 0), Vec3(-4, 1, 0)},
+       {Vec3(3, 4, 0), Vec3(9, 5, 1), Vec3(9, 7, -1)},
+       5},
+      {"corner and edge",
+       {Vec3(0, 0, 0), Vec3(-4, -1, 0), Vec3(-4, 1, 1)},
+       {Vec3(3, -2, 0), Vec3(3, 5, 0), Vec3(9, 0, 0)},
+       3},
+      {"edge and corner",
+       {Vec3(3, -2, 0), Vec3(3, 5, 0), Vec3(9, 0, 0)},
+       {Vec3(0, 0, 0), Vec3(-4, -1, 0), Vec3(-4, 1, 1)},
+       3},
+      {"corner and face",
+       {Vec3(1, 1, 7), Vec3(0, 1, 9), Vec3(1, 2, 9)},
+       {Vec3(-3, -3, 0), Vec3(9, -3, 0), Vec3(-3, 9, 0)},
+       7},
+      {"face and corner",
+       {Vec3(-3, -3, 0), Vec3(9, -3, 0), Vec3(-3, 9, 0)},
+       {Vec3(1, 1, 7), Vec3(0, 1, 9), Vec3(1, 2, 9)},
+       7},
+      {"edge and edge",
+       {Vec3(-3, 0, 0), Vec3(5, 0, 0), Vec3(0, 0, -4)},
+       {Vec3(0, -3, 2), Vec3(0, 4, 2), Vec3(0, 0, 6)},
+       2},
+      {"parallel edges",
+       {Vec3(-3, 0, 0), Vec3(5, 0, 0), Vec3(0, 0, -4)},
+       {Vec3(1, 0, 2), Vec3(9, 0, 2), Vec3(2, 0, 6)},
+       2},
+      {"parallel faces",
+       {Vec3(0, 0, 0), Vec3(5, 0, 0), Vec3(0, 5, 0)},
+       {Vec3(1, 1, 2), Vec3(6, 1, 2), Vec3(1, 6, 2)},
+       2},
+      {"points",
+       {Vec3(1, 2, 2), Vec3(1, 2, 2), Vec3(1, 2, 2)},
+       {Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0)},
+       3},
+      {"segments",
+       {Vec3(-3, 0, 0), Vec3(5, 0, 0), Vec3(1, 0, 0)},
+       {Vec3(0, -3, 2), Vec3(0, 4, 2), Vec3(0, 1, 2)},
+       2},
+  };
+  return list;
+}
+
+TEST(IntegerClearance, ADistanceOfExactlyTheClearanceIsWithin) {
+  for (const Feature& f : features()) {
+    SCOPED_TRACE(f.name);
+    // A turn by multiples of 3-4-5 and a shift, both exact, so that no coordinate is special.
+    const auto turned = [](const Triangle& t) {
+      Triangle out;
+      for (int i = 0; i < 3; ++i) {
+        const Vec3& p = t[i];
+        out[i] = Vec3(3 * p.x() - 4 * p.y(), 4 * p.x() + 3 * p.y(), 5 * p.z()) + Vec3(17, -3, 0.25);
+      }
+      return out;
+    };
+    for (const auto& [a, b, distance] :
+         {std::tuple(f.a, f.b, f.distance), std::tuple(turned(f.a), turned(f.b), 5 * f.distance)}) {
+      EXPECT_TRUE(IntegerPair(a, b, distance).is_within());
+      EXPECT_FALSE(IntegerPair(a, b, distance).separating_direction());
+      EXPECT_TRUE(IntegerPair(a, b, above(distance)).is_within());
+      EXPECT_FALSE(IntegerPair(a, b, below(distance)).is_within());
+      EXPECT_TRUE(IntegerPair(a, b, below(distance)).separating_direction());
+      EXPECT_FALSE(IntegerPair(a, b).is_within());
+    }
+  }
+}
+
+TEST(IntegerClearance, TheWholeRangeOfDoubles) {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+  const auto point = [](const Vec3& p) { return Triangle{p, p, p}; };
+  const Triangle o = point(Vec3(0, 0, 0));
+  EXPECT_TRUE(IntegerPair(o, point(Vec3(0, kLeast, 0)), kLeast).is_within());
+  EXPECT_FALSE(IntegerPair(o, point(Vec3(kLeast, kLeast, 0)), kLeast).is_within());
+  EXPECT_TRUE(IntegerPair(o, point(Vec3(kLeast, kLeast, 0)), kLeast).separating_direction());
+  EXPECT_TRUE(IntegerPair(o, point(Vec3(0, 0, kMost)), kMost).is_within());
+  EXPECT_FALSE(
+      IntegerPair(point(Vec3(0, 0, -kLeast)), point(Vec3(0, 0, kMost)), kMost).is_within());
+  EXPECT_TRUE(IntegerPair(point(Vec3(0, 0, -kMost)), point(Vec3(0, 0, kMost)), kMost)
+                  .separating_direction());
+}
+
+// ---- certificates ----
+
+TEST(CertificateClearance, IsProvedOnBuiltinScenes) {
+  for (const auto& [name, clearance] :
+       {std::pair("two-spheres", 0.05), std::pair("two-tori", 1e-9), std::pair("random-soup", 0.02),
+        std::pair("needles", 0.3), std::pair("degenerate", 0.5), std::pair("ground", 0.01),
+        std::pair("two-spheres@far", 0.01)}) {
+    SCOPED_TRACE(name);
+    const Case plain(make_builtin_scene(name));
+    const Case c(make_builtin_scene(name), clearance);
+    EXPECT_GE(c.meeting.size(), plain.meeting.size());
+    const CheckResult result = c.check(c.certificate);
+    EXPECT_EQ(result.verdict, Verdict::proved) << result.reason;
+    EXPECT_EQ(result.meeting, c.meeting);
+    EXPECT_EQ(result.found, c.certificate.claims);
+    EXPECT_EQ(result.found.box_pairs, c.pairs.size());
+    EXPECT_EQ(result.list_sha256, pair_list_hash(c.scene, c.meeting));
+  }
+}
+
+/// Objects on a lattice, each against itself as well: neighbours, and distances of exactly 1 and 2.
+const Scene& lattice() {
+  static const Scene scene = [] {
+    std::mt19937 random(5);
+    std::vector<std::vector<Triangle>> objects(3);
+    for (auto& triangles : objects) {
+      triangles.resize(40);
+      for (Triangle& t : triangles) {
+        const Vec3 corner(random() % 9, random() % 9, random() % 9);
+        for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
+      }
+    }
+    Scene out = reference::welded(reference::scene_of(objects), true);
+    for (Object& object : out.objects) object.self = true;
+    return out;
+  }();
+  return scene;
+}
+
+const Case& lattice_case() {
+  static const Case c(lattice(), 1);
+  return c;
+}
+
+// Every pair of the scene against distances by integers that share no code with the checker.
+TEST(CertificateClearance, ProvesWhatTheReferenceFinds) {
+  for (const double clearance : {0.0, 0.5, below(1), 1.0, above(1), std::sqrt(2.0), 2.0}) {
+    std::vector<TrianglePair> expected;
+    int exactly = 0;
+    reference::for_each_pair(lattice(), [&](const TrianglePair& pair, bool) {
+      if (!reference::collides(lattice(), pair, clearance)) return;
+      expected.push_back(pair);
+      exactly += clearance > 0 && !reference::collides(lattice(), pair, below(clearance));
+    });
+    if (clearance == 1) {
+      EXPECT_GT(exactly, 20);
+    }
+    const Certificate certificate =
+        make_certificate(lattice(), expected, expected, some_run(), clearance);
+    const CheckResult result =
+        check_certificate(parse_certificate(to_text(certificate), "text"), lattice());
+    EXPECT_EQ(result.verdict, Verdict::proved) << clearance << ": " << result.reason;
+    EXPECT_EQ(result.meeting, expected) << clearance;
+    EXPECT_EQ(result.found.box_pairs, box_pairs(lattice(), clearance).size());
+  }
+}
+
+// The twin: the certificate for another clearance, one unit in the last place away, at which the
+// answer about some pair is another.
+TEST(CertificateClearance, OneUnitInTheLastPlaceIsRefuted) {
+  for (const Feature& f : features()) {
+    SCOPED_TRACE(f.name);
+    const Scene scene = reference::scene_of({{f.a}, {f.b}});
+    const auto of = [&](double clearance) { return Case(scene, clearance); };
+    const auto check_as = [&](const Case& c, double clearance) {
+      Certificate changed = c.certificate;
+      changed.clearance = clearance;
+      return c.check(changed);
+    };
+    ASSERT_EQ(of(f.distance).meeting.size(), 1u);
+    ASSERT_EQ(of(below(f.distance)).meeting.size(), 0u);
+    EXPECT_EQ(check_as(of(f.distance), f.distance).verdict, Verdict::proved);
+    EXPECT_EQ(check_as(of(f.distance), above(f.distance)).verdict, Verdict::proved);  // is true
+    const CheckResult less = check_as(of(f.distance), below(f.distance));
+    EXPECT_NE(less.verdict, Verdict::proved);
+    if (!less.found.box_pairs) {  // the boxes are farther apart: the evidence is too long
+      EXPECT_EQ(less.verdict, Verdict::not_proved) << less.reason;
+    } else {
+      EXPECT_EQ(less.verdict, Verdict::refuted) << less.reason;
+      EXPECT_EQ(less.pair, (TrianglePair{0, 1}));
+    }
+    const CheckResult more = check_as(of(below(f.distance)), f.distance);
+    EXPECT_NE(more.verdict, Verdict::proved);
+    if (box_pairs(scene, below(f.distance)).size() == 1) {
+      EXPECT_EQ(more.verdict, Verdict::refuted) << more.reason;
+      EXPECT_EQ(more.pair, (TrianglePair{0, 1}));
+      EXPECT_EQ(more.culled_meeting + (of(below(f.distance)).is_kept(0) ? 1 : 0), 1u);
+    }
+  }
+}
+
+// Without the squared comparison a direction that separates would do. Here it must not.
+TEST(CertificateClearance, ADirectionThatOnlySeparatesIsNoEvidence) {
+  const Case& c = lattice_case();
+  int changed = 0;
+  for (std::size_t i = 0; i < c.pairs.size() && changed < 40; ++i) {
+    IntegerPair plain(c.scene.corners(c.pairs[i].a), c.scene.corners(c.pairs[i].b));
+    const std::optional<int> direction = plain.separating_direction();
+    if (!direction || c.integers(i).separated_by(*direction)) continue;
+    ++changed;
+    Certificate forged = c.certificate;
+    forged.evidence[i] = static_cast<std::uint8_t>(kKept | *direction);
+    recount(forged);
+    const CheckResult result = c.check(forged);
+    EXPECT_EQ(result.verdict, c.meets(i) ? Verdict::refuted : Verdict::not_proved);
+    EXPECT_EQ(result.pair, c.pairs[i]);
+  }
+  EXPECT_EQ(changed, 40);
+}
+
+TEST(CertificateClearance, EveryKindOfFieldChangedIsCaught) {
+  const Case& c = lattice_case();
+  ASSERT_EQ(c.check(c.certificate).verdict, Verdict::proved);
+  std::size_t meets = 0, apart = 0, neighbours = 0;
+  while (c.certificate.evidence[meets] != (kKept | kMeets)) ++meets;
+  while ((c.certificate.evidence[apart] & ~kKept) >= kMeets) ++apart;
+  while ((c.certificate.evidence[neighbours] & ~kKept) != kNeighbours) ++neighbours;
+  using Change = std::function<void(Certificate&)>;
+  const std::vector<std::pair<Verdict, Change>> changes = {
+      {Verdict::not_proved, [](Certificate& x) { ++x.scene.objects; }},
+      {Verdict::not_proved, [](Certificate& x) { ++x.scene.triangles; }},
+      {Verdict::not_proved,
+       [](Certificate& x) { x.scene.hash[3] = x.scene.hash[3] == 'a' ? 'b' : 'a'; }},
+      {Verdict::not_proved, [](Certificate& x) { x.clearance = 0; }},  // evidence too long
+      {Verdict::refuted,
+       [](Certificate& x) {
+         x.clearance = 1.0 - 0x1p-53;
+         x.evidence.resize(0);
+       }},
+      {Verdict::not_proved, [](Certificate& x) { x.clearance = 3; }},  // and too short
+      {Verdict::not_proved, [](Certificate& x) { ++x.not_asked.objects; }},
+      {Verdict::not_proved, [](Certificate& x) { ++x.not_asked.pairs; }},
+      {Verdict::not_proved, [](Certificate& x) { ++x.claims.box_pairs; }},
+      {Verdict::not_proved, [](Certificate& x) { ++x.claims.kept; }},
+      {Verdict::not_proved, [](Certificate& x) { ++x.claims.culled; }},
+      {Verdict::not_proved, [](Certificate& x) { ++x.claims.separated; }},
+      {Verdict::not_proved, [](Certificate& x) { ++x.claims.neighbours; }},
+      {Verdict::not_proved, [](Certificate& x) { ++x.claims.meeting; }},
+      {Verdict::not_proved,
+       [](Certificate& x) { x.list_sha256[9] = x.list_sha256[9] == 'a' ? 'b' : 'a'; }},
+      {Verdict::refuted, [&](Certificate& x) { x.evidence[meets] = kMeets; }},
+      {Verdict::refuted, [&](Certificate& x) { x.evidence[meets] = kKept | 29; }},
+      {Verdict::refuted, [&](Certificate& x) { x.evidence[apart] = kKept | kMeets; }},
+      {Verdict::refuted, [&](Certificate& x) { x.evidence[neighbours] = kKept | kMeets; }},
+      {Verdict::not_proved, [&](Certificate& x) { x.evidence[neighbours] = kKept | 3; }},
+      {Verdict::not_proved, [&](Certificate& x) { x.evidence[apart] = kKept | 63; }},
+      {Verdict::not_proved, [&](Certificate& x) { x.evidence.pop_back(); }},
+      {Verdict::not_proved, [&](Certificate& x) { x.evidence.push_back(kKept | kMeets); }},
+  };
+  int refuted = 0;
+  for (std::size_t n = 0; n < changes.size(); ++n) {
+    Certificate changed = c.certificate;
+    changes[n].second(changed);
+    if (changed.evidence.empty()) {
+      // Evidence made for this clearance by somebody who claims the pairs of the other one.
+      const Certificate other =
+          make_certificate(c.scene, c.meeting, {}, some_run(), changed.clearance);
+      changed.evidence = other.evidence;
+      std::size_t at = 0;
+      for (const TrianglePair& pair : box_pairs(c.scene, changed.clearance)) {
+        if (std::binary_search(c.meeting.begin(), c.meeting.end(), pair))
+          changed.evidence[at] = kKept | kMeets;
+        ++at;
+      }
+      recount(changed);
+    }
+    const CheckResult result = c.check(changed);
+    EXPECT_EQ(result.verdict, changes[n].first) << "change " << n << ": " << result.reason;
+    EXPECT_NE(result.reason, "");
+    refuted += result.verdict == Verdict::refuted;
+  }
+  EXPECT_EQ(refuted, 5);
+}
+
+// What a run found that tested too small a clearance.
+TEST(CertificateClearance, OfARunThatMissedAPairIsRefuted) {
+  const Case& c = lattice_case();
+  const std::vector<TrianglePair> fewer = Case(lattice(), below(1)).meeting;
+  ASSERT_LT(fewer.size(), c.meeting.size());
+  const CheckResult result =
+      c.check(make_certificate(c.scene, fewer, fewer, some_run(), c.certificate.clearance));
+  EXPECT_EQ(result.verdict, Verdict::refuted);
+  EXPECT_EQ(result.culled_meeting, c.meeting.size() - fewer.size());
+  ASSERT_TRUE(result.pair);
+  EXPECT_FALSE(std::binary_search(fewer.begin(), fewer.end(), *result.pair));
+  EXPECT_TRUE(std::binary_search(c.meeting.begin(), c.meeting.end(), *result.pair));
+}
+
+TEST(CertificateClearance, KeptPairsWhoseBoxesAreFartherApartNeedNoEvidence) {
+  const Case& c = lattice_case();
+  std::vector<TrianglePair> all;
+  reference::for_each_pair(c.scene, [&](const TrianglePair& pair, bool) { all.push_back(pair); });
+  ASSERT_GT(all.size(), c.pairs.size());
+  const Certificate certificate =
+      make_certificate(c.scene, all, c.meeting, some_run(), c.certificate.clearance);
+  EXPECT_EQ(c.check(certificate).verdict, Verdict::proved);
+  EXPECT_EQ(certificate.claims.kept, c.pairs.size());
+  // Without a clearance they are no pairs of a run, and of the pairs found none may be so.
+  EXPECT_THROW(make_certificate(c.scene, all, {}, some_run()), std::logic_error);
+  EXPECT_THROW(make_certificate(c.scene, all, all, some_run(), 1), std::logic_error);
+  for (const double wrong : {-1.0, std::nan(""), HUGE_VAL})
+    EXPECT_THROW(make_certificate(c.scene, {}, {}, some_run(), wrong), std::logic_error);
+}
+
+TEST(CertificateClearance, TextKeepsEveryBit) {
+  Certificate certificate = lattice_case().certificate;
+  for (const double clearance :
+       {1.0, 0.1, above(0.1), 1e-9, 5e-324, 0x1.fffffffffffffp+1023, 0x1.23456789abcdep-7}) {
+    certificate.clearance = clearance;
+    const std::string text = to_text(certificate);
+    EXPECT_EQ(parse_certificate(text, "text"), certificate) << clearance;
+    EXPECT_NE(text.find("\"version\": 4,"), std::string::npos);
+  }
+  certificate.clearance = 0;
+  EXPECT_NE(to_text(certificate).find("\"version\": 3,"), std::string::npos);
+  EXPECT_EQ(to_text(certificate).find("clearance"), std::string::npos);
+}
+
+// ---- lists without a certificate ----
+
+TEST(CertificateOfAList, ProvesTheRightListAlone) {
+  for (const double clearance : {0.0, 1.0}) {
+    const Case c(lattice(), clearance);
+    std::vector<TrianglePair> any(c.meeting.rbegin(), c.meeting.rend());  // any order
+    any.push_back(any.front());                                           // twice
+    const CheckResult right =
+        check_certificate(certificate_of_list(c.scene, any, clearance), c.scene);
+    EXPECT_EQ(right.verdict, Verdict::proved) << right.reason;
+    EXPECT_EQ(right.meeting, c.meeting);
+
+    std::vector<TrianglePair> fewer = c.meeting;
+    const TrianglePair dropped = fewer[fewer.size() / 2];
+    std::erase(fewer, dropped);
+    const CheckResult less =
+        check_certificate(certificate_of_list(c.scene, fewer, clearance), c.scene);
+    EXPECT_EQ(less.verdict, Verdict::refuted);
+    EXPECT_EQ(less.pair, dropped);
+
+    std::vector<TrianglePair> more = c.meeting;
+    const std::size_t i = [&] {
+      for (std::size_t k = 0;; ++k)
+        if (!c.meets(k)) return k;
+    }();
+    more.push_back(c.pairs[i]);
+    const CheckResult wrong =
+        check_certificate(certificate_of_list(c.scene, more, clearance), c.scene);
+    EXPECT_EQ(wrong.verdict, Verdict::refuted);
+    EXPECT_EQ(wrong.pair, c.pairs[i]);
+    EXPECT_EQ(wrong.meeting, c.meeting);  // decided by the checker, whatever the list says
+  }
+}
+
+}  // namespace
+}  // namespace farcull
