@@ -35,16 +35,10 @@ constexpr const char* kRunExamples =
     "Examples:\n"
     "  farcull run two-spheres\n"
     "  farcull run bunny.off dragon.off --method cullide --resolution 256\n"
-<<<<<<< HEAD
     "  farcull run cloth.obj --self --pairs pairs.csv\n"
     "  farcull run a.obj b.obj --clearance 0.001\n"
     "  farcull run 'cloth_%04d.obj' body.obj --frames 1:100 --no-verify\n"
-=======
-    "  farcull run cloth.obj --method far-pairs --self --pairs pairs.csv\n"
-    "  farcull run a.obj b.obj --method far-pairs --clearance 0.001\n"
-    "  farcull run 'cloth_%04d.obj' body.obj --method far-pairs --frames 1:100 --no-verify\n"
-    "  farcull run two-spheres --method far-pairs --frames 10 --certificate c_%04d.json\n"
->>>>>>> h-cert
+    "  farcull run two-spheres --frames 10 --certificate c_%04d.json\n"
     "  farcull run scene.json --json - | jq .verification\n"
     "  farcull run two-spheres --method far --radius published --depth fixed --depth-format 24\n\n"
     "farcull help methods: which method does what; farcull help terms: the words of the\n"
@@ -251,21 +245,10 @@ int RunCommand::run() const {
   const RunOptions options = parse();
   check_scene(scene_);
   if (kind_ == Kind::plan) return plan(options);
-<<<<<<< HEAD
-  if (outputs_.certificate && options.clearance > 0) {
-    throw Error("--certificate", "is about triangles that meet, not about a clearance",
-                "leave --certificate or --clearance out");
-  }
-  if (outputs_.certificate && frames_) {
-    throw Error("--certificate", "is about one scene, not about frames",
-                "leave --certificate or --frames out");
-  }
   if (faces_ && !outputs_.pairs) {
     throw Error("--faces", "adds columns to the file of --pairs, which is not asked for",
                 "give --pairs FILE.csv as well");
   }
-=======
->>>>>>> h-cert
   std::optional<FrameRange> range;
   if (frames_) range = parse_frames(*frames_);
   const Outputs outputs = checked(outputs_, scene_files(scene_, range), range);
@@ -319,11 +302,8 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
                           .self = self_,
                           .strict = kind_ == Kind::verify,
                           .pairs = outputs.pairs.has_value(),
-<<<<<<< HEAD
-                          .faces = faces_};
-=======
+                          .faces = faces_,
                           .certificates = outputs.certificate.has_value()};
->>>>>>> h-cert
   if (progress) progress("reading the scene");
   FrameSource source(scene_, range, self_);
   if (const std::optional<Error> missing = source.missing()) {

@@ -20,11 +20,8 @@ struct FramesQuestion {
   bool self = false;
   bool strict = false;  // farcull verify: ask the guarantee of every method
   bool pairs = false;   // the CSV is wanted
-<<<<<<< HEAD
   bool faces = false;   // with its columns of faces
-=======
   bool certificates = false;
->>>>>>> h-cert
 };
 
 /// Milliseconds of frames: candidates and exact tests, without reading and accounting.
