@@ -33,6 +33,8 @@ std::string verb_of(StageKind kind) {
       return "fatten";
     case StageKind::cull:
       return "cull";
+    case StageKind::agreement:
+      return "agree";
     case StageKind::further_views:
       return "further views";
     case StageKind::further_rounds:
@@ -49,6 +51,10 @@ std::string verb_of(StageKind kind) {
       return "verify";
   }
   return "";
+}
+
+std::string at_most_rounds(const Stage& stage) {
+  return stage.m > 0 ? "; at most " + number(stage.m) + " rounds" : "";
 }
 
 }  // namespace
@@ -134,6 +140,10 @@ std::string reason_of(const Stage& stage) {
              " triangles: each is joined with itself by boxes alone";
     case Reason::few_objects:
       return n + " objects, fewer than " + m + ": one seldom hides all of another";
+    case Reason::rounds_given:
+      return "--rounds " + n;
+    case Reason::all_views:
+      return "culled is what every view clears";
     case Reason::little_culled:
       return "round " + std::to_string(stage.round) + " culled " + n + " of " + m +
              " triangles: testing the rest is cheaper than another round";
@@ -183,9 +193,9 @@ std::string reason_of(const Stage& stage) {
     case Reason::if_more_candidates:
       return "if more than " + n + " candidates are left for each triangle that takes part";
     case Reason::if_changed:
-      return "if the round before changed something";
+      return "if the round before changed something" + at_most_rounds(stage);
     case Reason::if_culled:
-      return "if the round before culled at least one triangle in " + n;
+      return "if the round before culled at least one triangle in " + n + at_most_rounds(stage);
     case Reason::if_candidates:
       return "if there are candidates";
   }
