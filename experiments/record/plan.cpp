@@ -44,6 +44,7 @@ nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan) {
           {"objects", scene.objects.size()},
           {"triangles", scene.triangles.size()},
           {"method", to_string(plan.options.method)},
+          {"form", form_text(plan.options)},
           {"full", plan.options.full},
           {"steps", list}};
 }

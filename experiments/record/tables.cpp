@@ -330,8 +330,10 @@ std::string comparison_table(const Scene& scene, const std::vector<Record>& reco
   for (const Record& r : records) {
     const double ratio =
         reference ? (r.ms.cull + r.ms.exact) / (reference->ms.cull + reference->ms.exact) : 0;
-    table.add({to_string(r.options.method), fattens(r.options.method) ? r.options.offset : "-",
-               resolution_text(r), grouped(r.found.object_count), grouped(r.found.triangle_count),
+    const std::string form = form_text(r.options);
+    table.add({to_string(r.options.method) + (form.empty() ? "" : " " + form),
+               fattens(r.options.method) ? r.options.offset : "-", resolution_text(r),
+               grouped(r.found.object_count), grouped(r.found.triangle_count),
                grouped(r.found.count), grouped(r.collisions.pairs.size()),
                self ? grouped(r.collisions.neighbour_pairs.size()) : "", missed_text(r),
                fmt::format("{:.1f}", r.ms.cull), fmt::format("{:.1f}", r.ms.exact),
