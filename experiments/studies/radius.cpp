@@ -1,8 +1,10 @@
-// The study "radius": the lemmas and the misses against the radius.
+// The study "radius": the lemmas and the misses against the radius, and how often the published one
+// misses a pair of patches that are placed at random.
 #include <fmt/format.h>
 
 #include "experiments/lemma/lemma.h"
 #include "experiments/studies/lemma_point.h"
+#include "experiments/studies/placements.h"
 #include "experiments/studies/points.h"
 #include "experiments/studies/run_point.h"
 #include "experiments/studies/study.h"
@@ -31,6 +33,47 @@ std::vector<RadiusRule> radii(bool quick) {
   for (const double factor : factors(quick))
     out.push_back(parse_radius(fmt::format("{:.4g}", factor)));
   out.push_back(kPublishedRadius);
+  return out;
+}
+
+struct Size {
+  double side;  // px
+  std::uint64_t placements;
+};
+
+// Placements at the published radius by the size of triangles, 10^6 in all on corners snapped to 8
+// bits; then by subpixel bits and by resolution, with triangles of about a pixel; and at the budget
+// radius, which has to miss none.
+std::vector<PlacementPoint> placements(const GridChoice& choice) {
+  constexpr int kUsualBits = 8, kUsualResolution = 1024;
+  const std::vector<Size> sizes =
+      choice.quick ? std::vector<Size>{{0.25, 4000}, {1, 2000}}
+                   : std::vector<Size>{{0.25, 100'000}, {1, 100'000}, {4, 45'000}, {16, 5'000}};
+  const std::uint64_t few = choice.quick ? 1000 : 25'000;
+  const int resolution = choice.quick ? kUsualResolution / 2 : kUsualResolution;
+  std::vector<PlacementPoint> out;
+  for (const char* from : {"dragon-bunny", "random-soup"}) {
+    for (const bool grazing : {false, true}) {
+      const auto add = [&](double side, std::uint64_t count, int bits, const RadiusRule& radius,
+                           int px) {
+        out.push_back({.from = from,
+                       .grazing = grazing,
+                       .side = side,
+                       .placements = count,
+                       .subpixel_bits = bits,
+                       .radius = radius,
+                       .resolution = px,
+                       .seed = choice.seed});
+      };
+      for (const Size& size : sizes)
+        add(size.side, size.placements, kUsualBits, kPublishedRadius, resolution);
+      for (const int bits : {0, 4, 6, 10}) add(1, few, bits, kPublishedRadius, resolution);
+      for (const int px : {resolution / 4, resolution * 4}) {
+        if (px <= kUsualResolution || !choice.quick) add(1, few, kUsualBits, kPublishedRadius, px);
+      }
+      for (const int bits : {0, 4, kUsualBits}) add(1, few, bits, kBudgetRadius, resolution);
+    }
+  }
   return out;
 }
 
@@ -81,11 +124,14 @@ std::vector<Point> grid(const GridChoice& choice) {
       }
     }
   }
+  for (PlacementPoint& point : placements(choice)) out.push_back(std::move(point));
   return out;
 }
 
 PointResult measure(const Point& point, Lab& lab) {
   if (const auto* lemma = std::get_if<LemmaPoint>(&point)) return measure_lemma(*lemma, lab);
+  if (const auto* placed = std::get_if<PlacementPoint>(&point))
+    return measure_placements(*placed, lab);
   return measure_run(std::get<RunPoint>(point), lab);
 }
 
@@ -96,7 +142,8 @@ Study radius_study() {
           .title = "Violations and misses against the radius",
           .question =
               "How large must the ball be that fattens a primitive, so that no pixel lacks "
-              "a sample or a bound, and what happens below that?",
+              "a sample or a bound, what happens below that, and how often does the published "
+              "radius miss a pair?",
           .grid = grid,
           .measure = measure};
 }
