@@ -315,9 +315,9 @@ void add_forms(const Rows& rows, Chapter& chapter) {
     const FormSums& best = forms.front();
     chapter.find(
         fmt::format("Of {} forms of {} that cull triangles, \"{}\" misses the fewest "
-                    "pairs: in {} runs it {}.",
-                    forms.size(), forms.back().name.substr(0, forms.back().name.find(',')),
-                    best.name, grouped(best.rows.size()), in_words(best)));
+                    "pairs: in {} it {}.",
+                    forms.size(), family == std::string("cullide") ? "CULLIDE" : "S-CULLIDE",
+                    best.name, counted(best.rows.size(), "run", "runs"), in_words(best)));
     for (const FormSums& form : forms) {
       if (form.name.ends_with("CULLIDE, one round"))
         chapter.find(fmt::format("As published (\"{}\"), it {}.", form.name, in_words(form)));
@@ -374,9 +374,9 @@ void add_sums(Rows rows, Chapter& chapter) {
   });
   const auto sums = rows_by(rows, [](const Row& row) { return contestant(row.point); });
   for (const auto& [method, runs] : sums) {
-    chapter.find(fmt::format("{} promises nothing, and missed {} colliding pairs in {} runs here.",
+    chapter.find(fmt::format("{} promises nothing, and missed {} colliding pairs in {} here.",
                              method, rate_text(total(runs, "missed"), total(runs, "colliding")),
-                             grouped(runs.size())));
+                             counted(runs.size(), "run", "runs")));
   }
 }
 
