@@ -110,6 +110,7 @@ struct Row {
 // The row that a stage is folded into: that of its view, or of all later rounds; empty: its own.
 std::string key_of(const Stage& stage) {
   if (stage.round == 0) return "";
+  if (stage.round == 1 && stage.kind == StageKind::agreement) return "";
   return stage.round == 1 ? "view " + stage.subject : "later rounds";
 }
 
@@ -129,6 +130,7 @@ void add_left_out(const Stage& stage, std::vector<Row>& rows) {
 void fold(const Stage& stage, Row& row) {
   if (stage.round > 1) {
     row.name = stage.round == 2 ? "round 2" : fmt::format("rounds 2-{}", stage.round);
+    if (stage.kind == StageKind::agreement) return;
     if (std::find(row.views.begin(), row.views.end(), stage.subject) != row.views.end()) return;
     row.note += (row.note.empty() ? "" : ", ") + stage.subject;
     row.views.push_back(stage.subject);

@@ -2,6 +2,8 @@
 // misses a pair of patches that are placed at random.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "experiments/lemma/lemma.h"
 #include "experiments/studies/lemma_point.h"
 #include "experiments/studies/placements.h"
@@ -41,37 +43,46 @@ struct Size {
   std::uint64_t placements;
 };
 
-// Placements at the published radius by the size of triangles, 10^6 in all on corners snapped to 8
-// bits; then by subpixel bits and by resolution, with triangles of about a pixel; and at the budget
-// radius, which has to miss none.
+constexpr double kSmallest = 0x1p-5;  // px; of these pairs hardly another one keeps any
+
+// Placements on corners snapped to 8 bits at the published radius by the size of triangles, 10^6 in
+// all, and at smaller radii; then of the smallest triangles by subpixel bits and by resolution; and
+// at the budget radius, which has to miss none.
 std::vector<PlacementPoint> placements(const GridChoice& choice) {
-  constexpr int kUsualBits = 8, kUsualResolution = 1024;
+  constexpr int kUsualBits = 8;
+  const int usual_resolution = choice.quick ? 512 : 1024;
   const std::vector<Size> sizes =
-      choice.quick ? std::vector<Size>{{0.25, 4000}, {1, 2000}}
-                   : std::vector<Size>{{0.25, 100'000}, {1, 100'000}, {4, 45'000}, {16, 5'000}};
-  const std::uint64_t few = choice.quick ? 1000 : 25'000;
-  const int resolution = choice.quick ? kUsualResolution / 2 : kUsualResolution;
+      choice.quick
+          ? std::vector<Size>{{kSmallest, 4000}, {1, 2000}}
+          : std::vector<Size>{
+                {kSmallest, 100'000}, {0.25, 75'000}, {1, 50'000}, {4, 22'000}, {16, 3000}};
+  const std::uint64_t few = choice.quick ? 2000 : 25'000;
   std::vector<PlacementPoint> out;
   for (const char* from : {"dragon-bunny", "random-soup"}) {
     for (const bool grazing : {false, true}) {
-      const auto add = [&](double side, std::uint64_t count, int bits, const RadiusRule& radius,
-                           int px) {
+      const auto add = [&](const Size& size, int bits, const RadiusRule& radius, int resolution) {
         out.push_back({.from = from,
                        .grazing = grazing,
-                       .side = side,
-                       .placements = count,
+                       .side = size.side,
+                       .placements = size.placements,
                        .subpixel_bits = bits,
                        .radius = radius,
-                       .resolution = px,
+                       .resolution = resolution,
                        .seed = choice.seed});
       };
-      for (const Size& size : sizes)
-        add(size.side, size.placements, kUsualBits, kPublishedRadius, resolution);
-      for (const int bits : {0, 4, 6, 10}) add(1, few, bits, kPublishedRadius, resolution);
-      for (const int px : {resolution / 4, resolution * 4}) {
-        if (px <= kUsualResolution || !choice.quick) add(1, few, kUsualBits, kPublishedRadius, px);
+      for (const Size& size : sizes) add(size, kUsualBits, kPublishedRadius, usual_resolution);
+      for (const Size& size : sizes) {
+        if (size.side > 4) continue;  // few of them fit a window
+        const Size fewer = {size.side, std::min<std::uint64_t>(size.placements / 4, 5000)};
+        for (const char* factor : {"0.5", "0.7", "0.8", "0.9", "0.95"})
+          add(fewer, kUsualBits, parse_radius(factor), usual_resolution);
       }
-      for (const int bits : {0, 4, kUsualBits}) add(1, few, bits, kBudgetRadius, resolution);
+      const Size smallest = {kSmallest, few};
+      for (const int bits : {0, 4, 6, 10}) add(smallest, bits, kPublishedRadius, usual_resolution);
+      for (const int resolution : {usual_resolution / 4, usual_resolution * 4})
+        add(smallest, kUsualBits, kPublishedRadius, resolution);
+      for (const int bits : {0, 4, kUsualBits})
+        add(smallest, bits, kBudgetRadius, usual_resolution);
     }
   }
   return out;

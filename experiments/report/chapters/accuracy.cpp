@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "experiments/report/chapters/numbers.h"
 #include "experiments/report/chapters/rows.h"
@@ -54,34 +55,57 @@ struct FormSums {
   std::string name;
   Rows rows;
   std::uint64_t missed = 0, candidates = 0;
+  bool culls = true;  // leaves no more candidates than the rival
 };
 
-// The forms of the family `method` that cull triangles, at the scenes and resolutions that all of
-// them have; the one that misses the fewest pairs first, of equals the one with fewer candidates.
-std::vector<FormSums> forms_of(const Rows& rows, const std::string& family) {
-  std::map<std::string, std::map<std::pair<std::string, int>, const Row*>> forms;
+// The forms of a family that cull triangles, at the scenes and resolutions that all of them have.
+struct Family {
+  std::string name;   // "CULLIDE" or "S-CULLIDE"
+  std::string rival;  // what promises, at the same scenes and resolutions; empty: nothing there
+  std::uint64_t rival_candidates = 0;
+  std::vector<FormSums> forms;  // those that cull as well as the rival first; of these the fewest
+                                // missed pairs first, then the fewest candidates
+};
+
+// S-CULLIDE tests objects against themselves, where FAR was not measured.
+Family family_of(const Rows& rows, bool self) {
+  using Place = std::pair<std::string, int>;
+  Family out{.name = self ? "S-CULLIDE" : "CULLIDE", .rival = {}, .forms = {}};
+  const std::string rival = self ? "FAR pairs" : "FAR (OBB)";
+  std::map<std::string, std::map<Place, const Row*>> forms;
+  std::map<Place, const Row*> rivals;
   for (const Row* row : rows) {
-    const bool self = row->point.method.starts_with("s-cullide");
-    if (!is_of_family(*row) || self != (family == "s-cullide") || is_sized(*row) ||
+    if (is_sized(*row)) continue;
+    const Place place(row->point.scene, row->point.resolution);
+    if (contestant(row->point) == rival) rivals.emplace(place, row);
+    if (!is_of_family(*row) || row->point.method.starts_with("s-cullide") != self ||
         is_object_level(*row))
       continue;
-    forms[contestant(row->point)].emplace(std::pair(row->point.scene, row->point.resolution), row);
+    forms[contestant(row->point)].emplace(place, row);
   }
-  std::vector<FormSums> out;
+  if (forms.empty()) return out;
+  std::vector<Place> common;
+  for (const auto& [place, row] : forms.begin()->second) {
+    if (std::all_of(forms.begin(), forms.end(),
+                    [&, &at = place](const auto& form) { return form.second.contains(at); }))
+      common.push_back(place);
+  }
+  if (!common.empty() && std::all_of(common.begin(), common.end(),
+                                     [&](const Place& at) { return rivals.contains(at); })) {
+    out.rival = rival;
+    for (const Place& at : common) out.rival_candidates += number_of(*rivals.at(at), "candidates");
+  }
   for (const auto& [name, of] : forms) {
     FormSums sums{.name = name, .rows = {}};
-    for (const auto& [place, row] : of) {
-      if (!std::all_of(forms.begin(), forms.end(),
-                       [&, &at = place](const auto& form) { return form.second.contains(at); }))
-        continue;
-      sums.rows.push_back(row);
-    }
+    for (const Place& at : common) sums.rows.push_back(of.at(at));
     sums.missed = total(sums.rows, "missed");
     sums.candidates = total(sums.rows, "candidates");
-    out.push_back(std::move(sums));
+    sums.culls = out.rival.empty() || sums.candidates <= out.rival_candidates;
+    out.forms.push_back(std::move(sums));
   }
-  std::stable_sort(out.begin(), out.end(), [](const FormSums& a, const FormSums& b) {
-    return std::pair(a.missed, a.candidates) < std::pair(b.missed, b.candidates);
+  std::stable_sort(out.forms.begin(), out.forms.end(), [](const FormSums& a, const FormSums& b) {
+    return std::tuple(!a.culls, a.missed, a.candidates) <
+           std::tuple(!b.culls, b.missed, b.candidates);
   });
   return out;
 }
@@ -89,13 +113,12 @@ std::vector<FormSums> forms_of(const Rows& rows, const std::string& family) {
 // The names of the family's lines in the headline: the strongest form, and the published one.
 std::set<std::string> headline_forms(const Rows& rows) {
   std::set<std::string> out;
-  for (const char* family : {"cullide", "s-cullide"}) {
-    const std::vector<FormSums> forms = forms_of(rows, family);
-    if (forms.empty()) continue;
-    out.insert(forms.front().name);
-    for (const FormSums& form : forms) {
-      if (form.name == "CULLIDE, one round" || form.name == "S-CULLIDE, one round")
-        out.insert(form.name);
+  for (const bool self : {false, true}) {
+    const Family family = family_of(rows, self);
+    if (family.forms.empty()) continue;
+    out.insert(family.forms.front().name);
+    for (const FormSums& form : family.forms) {
+      if (form.name == family.name + ", one round") out.insert(form.name);
     }
   }
   return out;
@@ -276,12 +299,17 @@ DataTable forms_table(const Rows& rows) {
           "resolutions that all of a family have: missed pairs with the 95 % "
           "interval of Clopper and Pearson, and candidates that are left",
       .columns = columns({"form"}, {"runs", "missed pairs", "penetrating", "candidates"})};
-  for (const char* family : {"cullide", "s-cullide"}) {
-    for (const FormSums& form : forms_of(rows, family)) {
+  for (const bool self : {false, true}) {
+    const Family family = family_of(rows, self);
+    for (const FormSums& form : family.forms) {
       out.rows.push_back({form.name, grouped(form.rows.size()),
                           rate_text(form.missed, total(form.rows, "colliding")),
                           grouped(total(form.rows, "missed_penetrating")),
                           grouped(form.candidates)});
+    }
+    if (!family.rival.empty() && !family.forms.empty()) {
+      out.rows.push_back({family.rival + ", there", grouped(family.forms.front().rows.size()), "-",
+                          "-", grouped(family.rival_candidates)});
     }
   }
   return out;
@@ -304,24 +332,36 @@ DataTable long_table(const Rows& rows) {
 
 // Adds the strongest form of each family and, beside it, the published one.
 void add_forms(const Rows& rows, Chapter& chapter) {
-  for (const char* family : {"cullide", "s-cullide"}) {
-    const std::vector<FormSums> forms = forms_of(rows, family);
-    if (forms.size() < 2) continue;
+  for (const bool self : {false, true}) {
+    const Family family = family_of(rows, self);
+    if (family.forms.size() < 2) continue;
     const auto in_words = [](const FormSums& form) {
       return fmt::format("misses {} colliding pairs and leaves {} candidates",
                          rate_text(form.missed, total(form.rows, "colliding")),
                          grouped(form.candidates));
     };
-    const FormSums& best = forms.front();
-    chapter.find(
-        fmt::format("Of {} forms of {} that cull triangles, \"{}\" misses the fewest "
-                    "pairs: in {} it {}.",
-                    forms.size(), family == std::string("cullide") ? "CULLIDE" : "S-CULLIDE",
-                    best.name, counted(best.rows.size(), "run", "runs"), in_words(best)));
-    for (const FormSums& form : forms) {
-      if (form.name.ends_with("CULLIDE, one round"))
+    const FormSums& best = family.forms.front();
+    chapter.find(fmt::format(
+        "Of {} forms of {} that cull triangles, \"{}\" misses the fewest pairs{}: in {} it {}.",
+        family.forms.size(), family.name, best.name,
+        family.rival.empty()
+            ? ""
+            : fmt::format(" (among those that leave no more candidates than {}, which leaves {})",
+                          family.rival, grouped(family.rival_candidates)),
+        counted(best.rows.size(), "run", "runs"), in_words(best)));
+    for (const FormSums& form : family.forms) {
+      if (form.name == family.name + ", one round")
         chapter.find(fmt::format("As published (\"{}\"), it {}.", form.name, in_words(form)));
     }
+    std::vector<std::string> weak;
+    for (const FormSums& form : family.forms) {
+      if (!form.culls)
+        weak.push_back(fmt::format("\"{}\" ({} missed, {} candidates)", form.name,
+                                   grouped(form.missed), grouped(form.candidates)));
+    }
+    if (weak.empty()) continue;
+    chapter.find(
+        fmt::format("Forms that leave more candidates than {}: {}.", family.rival, listed(weak)));
   }
 }
 
@@ -338,7 +378,7 @@ void add_sizes(const Rows& rows, Chapter& chapter) {
     std::vector<std::string> words;
     for (const auto& [name, of] : forms) {
       if (name == "CULLIDE, one round" || name == "FAR (OBB)" ||
-          name.find("all views, conserv") != name.npos)
+          name == "CULLIDE, one round, conservative")
         words.push_back(name + " misses " + of_all(of, "missed", "colliding"));
     }
     if (words.empty()) continue;

@@ -383,15 +383,60 @@ void add_headline(const Rows& runs, const Rows& placements, Chapter& chapter) {
                           rounded(largest(rows, "largest_miss_px", kNone)))
             : ""));
   }
+  // So that a rate of 0 says something: what a smaller radius misses in the same placements.
+  std::map<double, Rows> smaller;
+  for (const Row* row : placements) {
+    if (!is_published(*row) && factor_of(*row) < 1) smaller[factor_of(*row)].push_back(row);
+  }
+  std::vector<std::string> words;
+  for (const auto& [factor, rows] : smaller)
+    words.push_back(fmt::format("at {:.4g} of the budget in {}", factor,
+                                of_all(rows, "missed_placements", "colliding_placements")));
+  if (!words.empty()) {
+    chapter.find(
+        fmt::format("Smaller radii miss something in such placements: {}.", listed(words)));
+  }
 }
 
-// The rate of placements in which something is missed, and its interval, by subpixel bits, by the
-// size of triangles and by resolution, at the published radius.
+// The rate of placements in which something is missed against the radius over the budget, by the
+// size of triangles, where corners are snapped to as many bits as in most placements.
+Panel placements_by_radius(const Rows& all) {
+  std::map<int, std::uint64_t> times;
+  for (const Row* row : all) times[bits_of(*row)] += number_of(*row, "placements");
+  Panel panel = panel_of("by the size of triangles", "placements with a miss (%)");
+  if (times.empty()) return panel;
+  const int bits = std::max_element(times.begin(), times.end(), [](const auto& a, const auto& b) {
+                     return a.second < b.second;
+                   })->first;
+  panel.title = fmt::format("{}, by the size of triangles", bits_text(bits));
+  std::map<double, std::map<double, Rows>> sides;
+  for (const Row* row : all) {
+    const double factor = factor_of(*row);
+    if (bits_of(*row) == bits && std::isfinite(factor))
+      sides[placement_of(*row).side][factor].push_back(row);
+  }
+  for (const auto& [side, factors] : sides) {
+    if (factors.size() < 2) continue;
+    Series series{.name = fmt::format("sides of {} px", rounded(side))};
+    for (const auto& [factor, rows] : factors) {
+      series.x.push_back(factor);
+      series.y.push_back(
+          share(total(rows, "missed_placements"), total(rows, "colliding_placements")));
+    }
+    panel.series.push_back(std::move(series));
+  }
+  return panel;
+}
+
+// The rate of placements in which something is missed, and its interval, by the radius; and at the
+// published radius by subpixel bits, by the size of triangles and by resolution.
 Figure placement_figure(const Rows& all) {
   Figure out{.name = "radius-placements",
              .title = "How often the published radius misses something in random placements"};
   Rows rows = all;
   std::erase_if(rows, [](const Row* row) { return !is_published(*row); });
+  if (Panel panel = placements_by_radius(all); !panel.series.empty())
+    out.panels.push_back(std::move(panel));
   // What most rows have is what the others vary.
   const auto usual = [&](const auto& value) {
     std::map<double, std::uint64_t> times;
