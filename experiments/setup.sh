@@ -25,7 +25,7 @@ farcull_packages=(
   # libGL.so.1 by name). The last two are named here because the program is not linked to them.
   libegl-dev libepoxy-dev libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri
   # exact predicates, linear algebra, tests, command line, records
-  libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev libhwy-dev libgtest-dev librapidcheck-dev libcli11-dev
+  libcgal-dev libboost-dev libgmp-dev libmpfr-dev libeigen3-dev libhwy-dev libgtest-dev librapidcheck-dev libcli11-dev
   nlohmann-json3-dev libfmt-dev
   # compressed meshes
   zlib1g-dev

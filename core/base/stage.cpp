@@ -41,6 +41,8 @@ std::string verb_of(StageKind kind) {
       return "fatten";
     case StageKind::cull:
       return "cull";
+    case StageKind::agreement:
+      return "agree";
     case StageKind::further_views:
       return "further views";
     case StageKind::further_rounds:
@@ -57,6 +59,10 @@ std::string verb_of(StageKind kind) {
       return "verify";
   }
   return "";
+}
+
+std::string at_most_rounds(const Stage& stage) {
+  return stage.m > 0 ? "; at most " + number(stage.m) + " rounds" : "";
 }
 
 }  // namespace
@@ -141,6 +147,10 @@ std::string reason_of(const Stage& stage) {
              ": each is joined with itself by boxes alone";
     case Reason::few_objects:
       return objects(stage.n) + ", fewer than " + m + ": one seldom hides all of another";
+    case Reason::rounds_given:
+      return "--rounds " + n;
+    case Reason::all_views:
+      return "culled is what every view clears";
     case Reason::little_culled:
       return "round " + std::to_string(stage.round) + " culled " + n + " of " + triangles(stage.m) +
              ": testing the rest is cheaper than another round";
@@ -194,9 +204,9 @@ std::string reason_of(const Stage& stage) {
       return "if more than " + counted(stage.n, "candidate is", "candidates are") +
              " left for each triangle that takes part";
     case Reason::if_changed:
-      return "if the round before changed something";
+      return "if the round before changed something" + at_most_rounds(stage);
     case Reason::if_culled:
-      return "if the round before culled at least one triangle in " + n;
+      return "if the round before culled at least one triangle in " + n + at_most_rounds(stage);
     case Reason::if_candidates:
       return "if there are candidates";
   }

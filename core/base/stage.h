@@ -21,6 +21,7 @@ enum class StageKind : std::uint8_t {
   views,           // all views; a stage of its own only where none is looked at
   fatten,          // the primitives of one view
   cull,            // the passes of one level in one view
+  agreement,       // what every view of a round has cleared
   further_views,   // those that are left out because few triangles are left
   further_rounds,  // rounds after the first
   offset,          // a further fattener
@@ -59,6 +60,8 @@ enum class Reason : std::uint8_t {
   patches_cut,         // n patches of at most m triangles
   patches_whole,       // n objects, none of more than m triangles: each is one patch
   few_objects,         // n objects take part, fewer than m: one seldom hides all of another
+  rounds_given,        // n rounds were asked for
+  all_views,           // a triangle is culled where every view clears it
   little_culled,       // the round culled n of m triangles, a smaller part than a round is worth
   owners,              // every triangle is an owner by itself
   clusters_given,      // sizes of clusters are given

@@ -62,7 +62,8 @@ bool owned_by_objects(const Scene& scene, const CullSettings& settings) {
 // Objects that take part, where they are too few to be asked as a whole; else 0.
 std::uint32_t too_few_objects(const Scene& scene, const Regions& regions,
                               const CullSettings& settings) {
-  if (settings.least_objects == 0 || !owned_by_objects(scene, settings)) return 0;
+  if (settings.least_objects == 0 || settings.objects_alone || !owned_by_objects(scene, settings))
+    return 0;
   const std::uint64_t objects = count_objects(scene, regions.triangles);
   return objects < settings.least_objects ? static_cast<std::uint32_t>(objects) : 0;
 }
@@ -142,6 +143,8 @@ class Culling {
       throw std::logic_error("cull: bits of another scene");
     if (!settings.owners.empty() && settings.owners.size() != triangles)
       throw std::logic_error("cull: owners of another scene");
+    if (settings.objects_alone && !owned_by_objects(scene, settings))
+      throw std::logic_error("cull: objects are no owners");
     state_.owner = owners(scene, settings);
     state_.bits.assign(triangles, kCulled);
     for (const std::uint32_t t : regions.triangles)
@@ -172,12 +175,43 @@ class Culling {
     ++round_;
     before_round_ = changes();
     live_before_round_ = state_.live.size();
+    if (settings_.clear == ClearRule::any) return;
+    if (rule_.clears) state_.clear_bits();
+    start_ = state_;
+    agreed_.assign(state_.bits.size(), kCulled);
+  }
+
+  // Sets what all visits of the round agree on.
+  void end_round() {
+    if (settings_.clear == ClearRule::any || state_.live.empty()) return;
+    Stage stage = begin({.kind = StageKind::agreement,
+                         .round = round_,
+                         .depends = round_ > 1,
+                         .reason = Reason::all_views});
+    for (const std::uint32_t t : start_.live) {
+      for (const Bit bit : {kF, kL}) {
+        if (agreed_[t] & bit) state_.set(t, bit);
+      }
+    }
+    state_.remove_culled();
+    stage.out = state_.live.size();
+    finish(stage);
+    end_at_few();
   }
 
   // Whether the round that ends changed something, so that another one may. What follows an empty
   // set is left out.
   bool round_changed() {
-    if (done_ || changes() == before_round_) return false;
+    const bool ended = done_ || changes() == before_round_;
+    const bool last = round_ == settings_.rounds;
+    // That one round is the last no pixel decides.
+    if (last && (!ended || round_ == 1)) {
+      leave_out({.kind = StageKind::further_rounds,
+                 .reason = Reason::rounds_given,
+                 .n = static_cast<std::uint64_t>(round_)})
+          .depends = round_ > 1;
+    }
+    if (ended || last) return false;
     if (settings_.full) return true;
     const std::uint64_t culled = live_before_round_ - state_.live.size();
     if (state_.live.empty()) {
@@ -199,6 +233,7 @@ class Culling {
   bool leaves_out(std::size_t view) {
     Place& place = places_[view];
     view_ = settings_.views[view].name;
+    if (!place.window && settings_.clear == ClearRule::all) agreed_ = start_.bits;
     if (!place.window || done_) return true;
     if (settings_.full) return false;
     if (state_.live.empty()) {
@@ -232,7 +267,12 @@ class Culling {
     finish(stage);
   }
 
-  bool has_object_level() const { return farcull::has_object_level(scene_, regions_, settings_); }
+  bool asks_objects() const {
+    return (round_ == 1 || settings_.objects_alone) &&
+           farcull::has_object_level(scene_, regions_, settings_);
+  }
+  bool asks_clusters() const { return round_ == 1 && !settings_.objects_alone; }
+  bool asks_triangles() const { return !settings_.objects_alone; }
 
   // Both passes over the open triangles at one level.
   void run_level(const Level& level) {
@@ -260,12 +300,16 @@ class Culling {
       place_->plain += plain_cost(state_, items_, drawables_, kF, triangles_);
       place_->plain += plain_cost(state_, items_, drawables_, kL, triangles_);
     }
-    if (settings_.full || settings_.enough == 0 || state_.live.size() > settings_.enough) return;
-    done_ = true;
-    leave_out({.kind = StageKind::further_views,
-               .reason = Reason::few_left,
-               .n = state_.live.size(),
-               .m = settings_.enough});
+    if (settings_.clear == ClearRule::any) {
+      end_at_few();
+      return;
+    }
+    // Plain CULLIDE clears a triangle in both passes of a view or not at all.
+    for (const std::uint32_t t : start_.live) {
+      const std::uint8_t bits = state_.bits[t];
+      agreed_[t] &= rule_.clears && bits != kCulled ? 0 : bits;
+    }
+    state_ = start_;
   }
 
   CullResult result() {
@@ -309,8 +353,19 @@ class Culling {
 
   // Version of the set that the pass for `bit` stores: the other bit decides what is in it.
   std::uint64_t stored_version(Bit bit) const { return state_.changes[bit == kF]; }
+  // Versions count where bits join from view to view and triangles are asked one by one.
   bool due(const Place& place, Bit bit) const {
-    return settings_.full || rule_.clears || stored_version(bit) != place.stored[bit == kL];
+    return settings_.full || rule_.clears || settings_.clear == ClearRule::all ||
+           settings_.objects_alone || stored_version(bit) != place.stored[bit == kL];
+  }
+
+  void end_at_few() {
+    if (settings_.full || settings_.enough == 0 || state_.live.size() > settings_.enough) return;
+    done_ = true;
+    leave_out({.kind = StageKind::further_views,
+               .reason = Reason::few_left,
+               .n = state_.live.size(),
+               .m = settings_.enough});
   }
 
   bool run_one(const Level& level, Bit bit, Stage& stage) {
@@ -384,9 +439,11 @@ class Culling {
 
   int round_ = 0;
   std::uint64_t before_round_ = 0, live_before_round_ = 0;
-  bool done_ = false;        // few enough triangles are left
-  bool visited_ = false;     // a view was visited
-  bool first_level_ = true;  // no level has run yet
+  CullState start_;                   // where all views have to clear: as the round began,
+  std::vector<std::uint8_t> agreed_;  // and the bits that every visit since has set
+  bool done_ = false;                 // few enough triangles are left
+  bool visited_ = false;              // a view was visited
+  bool first_level_ = true;           // no level has run yet
   PassCost used_, saved_;
 
   // Of the visit that goes on.
@@ -409,7 +466,7 @@ std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
   if (!has_own_owners(scene, settings)) {
     for (const std::uint32_t size : settings.clusters.sizes) levels.push_back(clusters_name(size));
   }
-  levels.push_back("triangles");
+  if (!settings.objects_alone) levels.push_back("triangles");
 
   bool first_view = true, first_level = true;
   const Stage rule{.depends = true, .reason = Reason::if_more_left, .n = settings.enough};
@@ -442,11 +499,20 @@ std::vector<Stage> planned_stages(const Scene& scene, const Regions& regions,
     first_view = false;
   }
   if (first_view) return stages;  // nothing is drawn
+  if (settings.clear == ClearRule::all) {
+    stages.push_back(
+        {.kind = StageKind::agreement, .round = 1, .ran = true, .reason = Reason::all_views});
+  }
+  if (settings.rounds == 1) {
+    stages.push_back({.kind = StageKind::further_rounds, .reason = Reason::rounds_given, .n = 1});
+    return stages;
+  }
   stages.push_back({.kind = StageKind::further_rounds,
                     .ran = true,
                     .depends = true,
                     .reason = settings.worth_a_round > 0 ? Reason::if_culled : Reason::if_changed,
-                    .n = settings.worth_a_round});
+                    .n = settings.worth_a_round,
+                    .m = static_cast<std::uint64_t>(settings.rounds)});
   return stages;
 }
 
@@ -471,13 +537,14 @@ CullResult cull_by(const PassRule& rule, const Scene& scene, const Regions& regi
     for (std::size_t view = 0; view < run.views(); ++view) {
       if (run.leaves_out(view)) continue;
       run.begin_visit(view);
-      if (run.round() == 1) {
-        if (run.has_object_level()) run.run_level(run.objects());
+      if (run.asks_objects()) run.run_level(run.objects());
+      if (run.asks_clusters()) {
         for (const Level& clusters : run.clusters()) run.run_level(clusters);
       }
-      run.run_level(run.triangles());
+      if (run.asks_triangles()) run.run_level(run.triangles());
       run.end_visit();
     }
+    run.end_round();
   } while (run.round_changed());
   return run.result();
 }

@@ -64,6 +64,11 @@ struct CullStep {
   std::uint64_t draws_saved = 0, queries_saved = 0;
 };
 
+/// How many views have to find a triangle fully visible before it is culled. any: one (CULLIDE).
+/// all: every one of them, each from the triangles with which the round began; a view that cannot
+/// be drawn clears nothing, so nothing is culled then.
+enum class ClearRule { any, all };
+
 struct CullSettings {
   std::vector<View> views;
   int resolution = 0;  // px along the larger side of each view's window
@@ -79,6 +84,11 @@ struct CullSettings {
   std::vector<std::uint32_t> owners = {};
   bool touching = true;  // false: what only touches is not seen, see Pass::touching
   Clusters clusters = {};
+  ClearRule clear = ClearRule::any;
+  int rounds = 0;  // at most so many; 0: until one changes nothing
+  /// Objects are asked as a whole, in every round, and their triangles never. Objects have to be
+  /// the owners then.
+  bool objects_alone = false;
   bool full = false;         // nothing is left out
   std::uint32_t enough = 0;  // live triangles at which no further view is drawn; 0: never enough
   /// Objects that have to take part before they are asked as a whole; 0: they always are.
@@ -114,14 +124,17 @@ struct CullResult {
 
 /// Culls the triangles of regions.triangles. A round visits every view; a visit runs, at object
 /// level (in round 1, where objects are the owners), at the level of clusters (in round 1) and at
-/// triangle level, the first pass, then the second. Rounds follow until one changes nothing: sets
-/// no bit (quick), or culls nothing (plain). Left out, unless `full`, each as a stage with its
+/// triangle level, the first pass, then the second; with `objects_alone` at object level only.
+/// Rounds follow until one changes nothing: sets no bit (quick), or culls nothing (plain); or until
+/// `rounds` of them have run. Where all views have to clear a triangle, a bit is set where each
+/// visit of the round set it. Left out, unless `full`, each as a stage with its
 /// reason: passes and visits that are not due (quick), levels and visits where no triangle is left,
 /// everything after a view that leaves at most `enough` triangles, the object level of few objects
 /// (`least_objects`), and rounds after one that culled little (`worth_a_round`). The last two
 /// change which bits are set, never that a bit is true.
 /// Throws Error where the resolution is beyond the canvas's limit or the canvas cannot vouch for a
-/// pass; std::logic_error where settings.bits or settings.owners has another length than the scene.
+/// pass; std::logic_error where settings.bits or settings.owners has another length than the scene,
+/// and for objects_alone where objects are not the owners.
 CullResult cull(const Scene& scene, const Regions& regions, const CullSettings& settings,
                 Canvas& canvas, const Progress& progress = {});
 

@@ -34,6 +34,8 @@ GlCanvas::GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram&
                 "equal depths",
                 "use --query occlusion or --depth-format 32f");
   }
+  if (options.conservative && mode == DepthMode::fragment)
+    throw std::logic_error("GlCanvas: proxies are not drawn conservatively");
   const GlCurrent current(context);
   const GlInfo& info = context.info();
   limits_.subpixel_bits = info.subpixel_bits;

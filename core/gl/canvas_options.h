@@ -13,6 +13,9 @@ enum class QueryMode { flags, occlusion };
 struct GlCanvasOptions {
   DepthFormat depth_format = DepthFormat::float32;
   QueryMode query = QueryMode::flags;
+  /// Triangles have a fragment in each pixel that they touch, by GL_NV_conservative_raster or
+  /// GL_INTEL_conservative_rasterization.
+  bool conservative = false;
   /// Bytes; as if a storage block held no more than this. 0: the device's own limit.
   long storage_limit = 0;
 };

@@ -28,6 +28,17 @@ void bind_texture(GLuint name) {
   require(asked(GL_TEXTURE_BINDING_2D) == static_cast<GLint>(name), "the texture");
 }
 
+// What turns conservative rasterization on. Throws Error where the device has none.
+GLenum conservative_switch() {
+  if (epoxy_has_gl_extension("GL_NV_conservative_raster")) return GL_CONSERVATIVE_RASTERIZATION_NV;
+  if (epoxy_has_gl_extension("GL_INTEL_conservative_rasterization"))
+    return GL_CONSERVATIVE_RASTERIZATION_INTEL;
+  throw Error("--conservative",
+              "the device has neither GL_NV_conservative_raster nor "
+              "GL_INTEL_conservative_rasterization",
+              "use --device native, which draws conservatively on the cores of the CPU");
+}
+
 // Places of core/gl/shaders/canvas.vert in the echo.
 constexpr std::uint32_t kSerialPlace = 1, kUniformPlace = 2, kElementsPlace = 11, kReportPlace = 12,
                         kFlagsPlace = 13, kFlagSerialPlace = 14, kTouchingPlace = 15;
@@ -62,6 +73,7 @@ GlTexture CanvasState::texture(GLenum format) const {
 CanvasState::CanvasState(const GlContext& c, DepthMode m, const std::string& s,
                          const GlCanvasOptions& o)
     : context(c), mode(m), options(o), solid(s) {
+  if (options.conservative) conservative = conservative_switch();
   const bool with_flags = options.query == QueryMode::flags;
   const GLint blocks = asked(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS), needed = with_flags ? 4 : 3;
   if (blocks < needed) {
@@ -217,6 +229,17 @@ void CanvasState::set_verb(Verb verb, bool touching) const {
   set_depth_func(ask ? (touching ? GL_GEQUAL : GL_GREATER) : GL_LESS);
 }
 
+// The canvas's own elements fill single pixels, so they are never drawn conservatively.
+void CanvasState::set_conservative(bool on) const {
+  if (conservative == 0) return;
+  if (on) {
+    glEnable(conservative);
+  } else {
+    glDisable(conservative);
+  }
+  require(glIsEnabled(conservative) == (on ? GL_TRUE : GL_FALSE), "conservative rasterization");
+}
+
 // Sends the lists of a pass; the device sums them.
 void CanvasState::upload(const CanvasPass& laid, bool with_flags) {
   const auto list = laid.list_bytes();
@@ -256,6 +279,8 @@ void CanvasState::upload(const CanvasPass& laid, bool with_flags) {
 void CanvasState::bind(const CanvasRun& run, const CanvasRun* before) const {
   if (before == nullptr || before->chunk != run.chunk)
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kElements, elements_of(run).name());
+  if (before == nullptr || (before->chunk == kExtras) != (run.chunk == kExtras))
+    set_conservative(run.chunk != kExtras);
   glBindBufferRange(GL_SHADER_STORAGE_BUFFER, kDraws, draws.name(),
                     static_cast<GLintptr>(run.offset * sizeof(GpuDraw)),
                     static_cast<GLsizeiptr>((run.count + 1) * sizeof(GpuDraw)));

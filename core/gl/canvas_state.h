@@ -47,6 +47,7 @@ struct CanvasState {
   std::size_t elements = 0;
   std::size_t block = 0;        // bytes of data in a storage block
   std::size_t alignment = 256;  // of a storage buffer range, in bytes
+  GLenum conservative = 0;      // what turns conservative rasterization on; 0: not wanted
   GlStore extras, draws, flags;
   std::optional<CanvasReport> report;
   std::vector<GlQuery> queries;
@@ -78,6 +79,7 @@ struct CanvasState {
   void clear_depth(float value) const;
   void start(float clear) const;
   void set_verb(Verb verb, bool touching) const;
+  void set_conservative(bool on) const;
   void upload(const CanvasPass& laid, bool with_flags);
   void bind(const CanvasRun& run, const CanvasRun* before) const;
   std::uint32_t echo(const CanvasPass& laid, const CanvasRun& run, const CanvasProgram& program,

@@ -60,6 +60,8 @@ NativeCanvas::NativeCanvas(DepthMode mode, const SolidProgram& solid,
       limits_(native_limits(options.depth_bits)) {
   if (draw_rows_ == nullptr)
     throw std::logic_error("NativeCanvas: the solid has no function for lanes");
+  if (options.conservative && mode == DepthMode::fragment)
+    throw std::logic_error("NativeCanvas: proxies are not drawn conservatively");
   if (options.depth_bits != 24 && options.depth_bits != 32) {
     throw Error("--depth-format", std::to_string(options.depth_bits) + " bits are not offered",
                 "choose 24 or 32");
@@ -76,12 +78,14 @@ void NativeCanvas::begin(const Window& window, const Drawables& drawables) {
   drawables_ = &drawables;
   const std::size_t count = drawables.elements();
   ranges_.resize(count);
+  // Snapping moves a corner by half a subpixel, and a pixel reaches half its side from its centre.
+  const double reach = options_.conservative ? 0x1p-8 + 0.5 : 0x1p-8;
   for_chunks(count, chunks_for(count, 4 * kLeast, options_.threads),
              [&](std::size_t, std::size_t from, std::size_t to) {
                for (std::size_t i = from; i < to; ++i) {
                  ranges_[i] = mode_ == DepthMode::fragment
                                   ? range_of(drawables.proxies[i].corners, 0, window)
-                                  : range_of(drawables.triangles[i], 0x1p-8, window);
+                                  : range_of(drawables.triangles[i], reach, window);
                }
              });
   work_.assign(static_cast<std::size_t>(window.height) + 1, 0);
@@ -102,6 +106,7 @@ NativeJob NativeCanvas::job(NativeOutput output, float empty) {
           .y1 = window_.height,
           .scale = depth_scale(window_),
           .fixed24 = options_.depth_bits == 24,
+          .conservative = options_.conservative,
           .proxies = drawables_->proxies.data(),
           .triangles = drawables_->triangles.data(),
           .ranges = ranges_.data(),

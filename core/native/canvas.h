@@ -16,7 +16,9 @@
 namespace farcull {
 
 struct NativeCanvasOptions {
-  int depth_bits = 32;   // 32: float; 24: rounded to the nearest multiple of 1 / (2^24 - 1)
+  int depth_bits = 32;  // 32: float; 24: rounded to the nearest multiple of 1 / (2^24 - 1)
+  /// Of raw triangles: every pixel that one touches has a fragment (core/native/triangles.h).
+  bool conservative = false;
   unsigned threads = 0;  // 0: as many as there are cores
 };
 

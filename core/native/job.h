@@ -13,8 +13,8 @@ namespace farcull {
 /// out of the next row, which may be another's.
 inline constexpr int kNativeOverhang = 8;
 
-/// The pixels of the window whose centres may be covered by an element: [x0, x1) x [y0, y1) from
-/// the window's lower left corner; empty where x0 >= x1 or y0 >= y1.
+/// The pixels of the window where an element may have a fragment: [x0, x1) x [y0, y1) from the
+/// window's lower left corner; empty where x0 >= x1 or y0 >= y1.
 struct PixelRange {
   std::uint16_t x0, x1, y0, y1;
 };
@@ -29,8 +29,9 @@ struct NativeJob {
   int width, height;  // px
   int stride;         // floats from row to row of the buffer; width + kNativeOverhang or more
   int y0, y1;
-  float scale;   // of the depth map (depth_scale())
-  bool fixed24;  // depths are rounded to multiples of 1 / (2^24 - 1) and held as multiples
+  float scale;        // of the depth map (depth_scale())
+  bool fixed24;       // depths are rounded to multiples of 1 / (2^24 - 1) and held as multiples
+  bool conservative;  // triangles have a fragment in each pixel that they touch
   // The elements.
   const Proxy* proxies;
   const std::array<float, 12>* triangles;

@@ -1,5 +1,7 @@
 // Snapped corners are whole numbers, and so are the edge functions, which doubles hold exactly: a
-// pixel centre is inside, outside or on an edge without doubt.
+// pixel centre is inside, outside or on an edge without doubt, and so is whether a pixel's square
+// meets a triangle (by the axes of the pixel and the normals of the edges, which separate them if
+// anything does).
 #include "core/native/triangles.h"
 
 #include <algorithm>
@@ -99,9 +101,53 @@ HWY_INLINE bool draw_triangle(const NativeJob& job, std::uint32_t element, Verb 
   return false;
 }
 
+/// The same with a fragment in every pixel that the triangle touches.
+HWY_INLINE bool draw_touched(const NativeJob& job, std::uint32_t element, Verb verb) {
+  const PixelRange& range = job.ranges[element];
+  const int y0 = std::max<int>(range.y0, job.y0), y1 = std::min<int>(range.y1, job.y1);
+  if (y0 >= y1) return false;
+  const SnappedTriangle t(job, job.triangles[element]);
+  constexpr double kHalf = kSubpixels / 2;  // of a pixel's side
+  const auto [left, right] = std::minmax({t.x[0], t.x[1], t.x[2]});
+  const auto [bottom, top] = std::minmax({t.y[0], t.y[1], t.y[2]});
+  const auto [nearest, farthest] = std::minmax({t.place[0], t.place[1], t.place[2]});
+  const WideTag wide;
+  const Wide middle = hn::Set(wide, 0.5 * (nearest + farthest));
+  const Wide over = hn::Set(wide, t.area > 0 ? 1 / t.area : 0);
+  for (int y = y0; y < y1; ++y) {
+    const double py = (y + 0.5) * kSubpixels;
+    if (py + kHalf < bottom || py - kHalf > top) continue;
+    for (int x = range.x0; x < range.x1; x += kWide) {
+      const Wide px = hn::Add(hn::Set(wide, (x + 0.5) * kSubpixels), columns());
+      auto covered = hn::Lt(px, hn::Set(wide, range.x1 * kSubpixels));
+      covered = hn::And(covered, hn::Ge(px, hn::Set(wide, left - kHalf)));
+      covered = hn::And(covered, hn::Le(px, hn::Set(wide, right + kHalf)));
+      Wide place = hn::Zero(wide);
+      for (int i = 0; i < 3; ++i) {
+        const int a = (i + 1) % 3, b = (i + 2) % 3;
+        const double dx = t.x[b] - t.x[a], dy = t.y[b] - t.y[a];
+        const Wide side = hn::Sub(hn::Set(wide, dx * (py - t.y[a])),
+                                  hn::Mul(hn::Set(wide, dy), hn::Sub(px, hn::Set(wide, t.x[a]))));
+        // Of the pixel's corners the one that is farthest inside.
+        const double reach = (std::abs(dx) + std::abs(dy)) * kHalf;
+        covered = hn::And(covered, hn::Ge(side, hn::Set(wide, -reach)));
+        place = hn::Add(place, hn::Mul(hn::Mul(side, over), hn::Set(wide, t.place[i])));
+      }
+      if (hn::AllFalse(wide, covered)) continue;
+      place = t.area > 0 ? hn::Min(hn::Max(place, hn::Set(wide, nearest)), hn::Set(wide, farthest))
+                         : middle;
+      if (take_row(job, verb, place, covered,
+                   job.depth + static_cast<std::ptrdiff_t>(y) * job.stride + x))
+        return true;
+    }
+  }
+  return false;
+}
+
 void draw_triangles(const NativeJob& job) {
-  for_draws(job,
-            [&job](std::uint32_t element, Verb verb) { return draw_triangle(job, element, verb); });
+  for_draws(job, [&job](std::uint32_t element, Verb verb) {
+    return job.conservative ? draw_touched(job, element, verb) : draw_triangle(job, element, verb);
+  });
 }
 
 }  // namespace farcull::HWY_NAMESPACE

@@ -22,6 +22,10 @@ CLI::App* CompareCommand::add_to(CLI::App& app) {
   add_option(*command, "--repeat", arguments_.repeat, "N",
              "runs of each, the one with the median time is shown;\ndefault 1");
   add_option(*command, "--views", views_, "VIEWS", kViewsHelp);
+  add_option(*command, "--rounds", rounds_, "N", kRoundsHelp);
+  add_option(*command, "--clear", clear_, "any|all", kClearHelp);
+  add_option(*command, "--level", level_, "objects|triangles", kLevelHelp);
+  add_flag(*command, "--conservative", conservative_, kConservativeHelp);
   add_option(*command, "--device", device_, "DEVICE", device_help_of_methods());
   add_flag(*command, "--self", arguments_.self, kSelfHelp);
   add_option(*command, "--clearance", clearance_, "D", kClearanceHelp);
@@ -30,6 +34,7 @@ CLI::App* CompareCommand::add_to(CLI::App& app) {
              "Examples:\n"
              "  farcull compare two-tori\n"
              "  farcull compare two-bunnies --methods far,exact --resolutions 256,512 --repeat 5\n"
+             "  farcull compare two-tori --methods cullide,far --rounds 1 --clear all\n"
              "  farcull compare mannequin-devil --methods far-pairs,exact --self\n\n"
              "farcull help terms explains the columns, farcull help methods the methods.\n\n"
              "Exit status 1: a method that promises missed a pair.");
@@ -45,6 +50,10 @@ int CompareCommand::run() const {
         !arguments.methods || arguments.methods->find("far-pairs") != std::string::npos;
     arguments.options.views = parse_views_option(*views_, pairs);
   }
+  if (rounds_) arguments.options.rounds = parse_rounds(*rounds_);
+  if (clear_) arguments.options.clear = parse_clear(*clear_);
+  if (level_) arguments.options.objects_alone = parse_level(*level_);
+  arguments.options.conservative = conservative_;
   if (clearance_) arguments.options.clearance = parse_clearance(*clearance_);
   validate(arguments);
   check_scene(arguments.scene);

@@ -15,7 +15,8 @@ class CompareCommand {
 
  private:
   CompareArguments arguments_;
-  Text device_, views_, clearance_;
+  Text device_, views_, clearance_, rounds_, clear_, level_;
+  bool conservative_ = false;
   Outputs outputs_;
 };
 

@@ -91,6 +91,20 @@ inline constexpr const char* kViewsHelp =
     "axes or directions to look along, by commas, as in\n"
     "x,-y,1:1:0.5; default x,y,z; for far-pairs auto: the\n"
     "scene decides whether views are needed, and which";
+inline constexpr const char* kRoundsHelp =
+    "at most N rounds over all views, for methods that draw;\n"
+    "1 is CULLIDE as published; default: until a round\n"
+    "changes nothing, for far until it culls little";
+inline constexpr const char* kClearHelp =
+    "how many views have to clear a triangle before it is\n"
+    "culled, for methods that draw; default any";
+inline constexpr const char* kLevelHelp =
+    "objects: objects are culled as a whole, their triangles\n"
+    "are not; for far, cullide and quick-cullide;\n"
+    "default triangles, which comes after objects";
+inline constexpr const char* kConservativeHelp =
+    "draw every pixel that a triangle touches, for the\n"
+    "CULLIDE family; OpenGL: where the device can";
 inline constexpr const char* kDeviceHelp =
     "native (alias cpu: the cores of the CPU, no GPU), gl,\n"
     "software, hardware or a number that `farcull doctor`\n"

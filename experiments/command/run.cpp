@@ -40,7 +40,8 @@ constexpr const char* kRunExamples =
     "  farcull run 'cloth_%04d.obj' body.obj --frames 1:100 --no-verify\n"
     "  farcull run two-spheres --frames 10 --certificate c_%04d.json\n"
     "  farcull run scene.json --json - | jq .verification\n"
-    "  farcull run two-spheres --method far --radius published --depth fixed --depth-format 24\n\n"
+    "  farcull run two-spheres --method far --radius published --depth fixed --depth-format 24\n"
+    "  farcull run two-tori --method cullide --rounds 1 --views x,-x,y,-y,z,-z\n\n"
     "farcull help methods: which method does what; farcull help terms: the words of the\n"
     "table; farcull help pairs: the columns of --pairs.\n\n"
     "Exit status 1: a method that promises missed a pair. i-collide and far-pairs promise,\n"
@@ -126,6 +127,10 @@ void RunCommand::add_method_options(CLI::App& command) {
       "single ones, for far, cullide and quick-cullide; default\n"
       "32 with occlusion queries and more than 32768 triangles");
   add("--views", views_, "VIEWS", kViewsHelp);
+  add("--rounds", rounds_, "N", kRoundsHelp);
+  add("--clear", clear_, "any|all", kClearHelp);
+  add("--level", level_, "objects|triangles", kLevelHelp);
+  add_flag(command, "--conservative", conservative_, kConservativeHelp);
   add_option(command, "--device", device_, "DEVICE", device_help_of_methods());
   add_flag(command, "--self", self_, kSelfHelp);
   add("--clearance", clearance_, "D", kClearanceHelp);
@@ -180,6 +185,10 @@ RunOptions RunCommand::parse() const {
   }
   if (query_) out.query = parse_query(*query_);
   if (clusters_) out.clusters = parse_clusters(*clusters_);
+  if (rounds_) out.rounds = parse_rounds(*rounds_);
+  if (clear_) out.clear = parse_clear(*clear_);
+  if (level_) out.objects_alone = parse_level(*level_);
+  out.conservative = conservative_;
   if (views_) out.views = parse_views_option(*views_, pairs);
   if (clearance_) out.clearance = parse_clearance(*clearance_);
   out.device = device_of(device_);
@@ -212,6 +221,9 @@ void RunCommand::refuse_idle(Method chosen) const {
     const std::string drawing = method_names([](const Traits& t) { return t.draws; });
     refuse("--depth-format", depth_format_.has_value(), drawing);
     refuse("--query", query_.has_value(), drawing);
+    refuse("--rounds", rounds_.has_value(), drawing);
+    refuse("--clear", clear_.has_value(), drawing);
+    refuse("--level", level_.has_value(), drawing);
   }
   if (clusters_ && (!draws(chosen) || tests_self_alone(chosen)))
     refuse("--clusters", true, "far, cullide or quick-cullide");

@@ -36,9 +36,10 @@ class RunCommand {
   std::vector<std::string> scene_;
   Text method_, resolution_, radius_, offset_, depth_, depth_format_, query_, clusters_, views_,
       device_;
+  Text rounds_, clear_, level_;
   Text clearance_, frames_;
   Outputs outputs_;
-  bool self_ = false, no_verify_ = false, full_ = false, faces_ = false;
+  bool self_ = false, no_verify_ = false, full_ = false, faces_ = false, conservative_ = false;
 };
 
 }  // namespace farcull

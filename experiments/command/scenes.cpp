@@ -72,6 +72,7 @@ std::string motions_text() {
 std::string suffixes_text() {
   Table table("ll");
   for (const SceneSuffix& suffix : scene_suffixes()) table.add({suffix.suffix, suffix.description});
+  table.add({"@seedN", "drawn with the seed N; of scenes with a seed"});
   return "Every name takes suffixes, as in two-spheres@far:\n" + table.text();
 }
 

@@ -52,6 +52,7 @@ std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
   for (const std::string& method : split_list(arguments.methods.value_or(usual))) {
     RunOptions options = arguments.options;
     options.method = parse_method(method, "--methods");
+    options = with_fitting_form(options);
     if (self && !tests_self(options.method)) {
       throw Error("--methods",
                   method + " tests no object against itself, as one of the scene has to be",
@@ -68,6 +69,26 @@ std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
     }
   }
   return cells;
+}
+
+// Refuses a choice that none of the methods has.
+void require_used(const RunOptions& asked, const std::vector<RunOptions>& cells) {
+  const auto require = [&](const char* option, bool given, const auto& has, const char* method) {
+    if (!given || std::any_of(cells.begin(), cells.end(), has)) return;
+    throw Error(option, "has no meaning for any of the methods",
+                std::string("leave it out, or add ") + method + " to --methods");
+  };
+  require(
+      "--rounds", asked.rounds > 0, [](const RunOptions& o) { return o.rounds > 0; }, "cullide");
+  require(
+      "--clear", asked.clear == ClearRule::all,
+      [](const RunOptions& o) { return o.clear == ClearRule::all; }, "cullide");
+  require(
+      "--level", asked.objects_alone, [](const RunOptions& o) { return o.objects_alone; },
+      "cullide");
+  require(
+      "--conservative", asked.conservative, [](const RunOptions& o) { return o.conservative; },
+      "cullide");
 }
 
 // A resolution beyond the device is refused before the first run, not after an hour of smaller
@@ -100,7 +121,7 @@ std::vector<Record> Comparison::median_records() const {
 
 void validate(const CompareArguments& arguments) {
   parse_repeat(arguments.repeat);
-  cells_of(arguments, arguments.self);
+  require_used(arguments.options, cells_of(arguments, arguments.self));
 }
 
 Comparison compare(const Scene& scene, const CompareArguments& arguments,

@@ -20,7 +20,9 @@ struct CompareArguments {
   std::string offsets = "obb";  // for far
   bool self = false;            // every object was made to be tested against itself
   std::string repeat = "1";
-  RunOptions options;  // views, device, clearance and seed for all
+  /// Views, device, clearance and seed for all; rounds, clear, level and conservative for those
+  /// that take them.
+  RunOptions options;
 };
 
 struct Comparison {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/native/lanes.h"
 #include "core/scene/box_join.h"
@@ -29,6 +30,7 @@ std::vector<Fattener> fatteners_of(const RunOptions& options) {
 
 Clusters clusters_of(const RunOptions& options, std::size_t triangles) {
   if (tests_self_alone(options.method)) return {.sizes = {}, .reason = Reason::owners};
+  if (options.objects_alone) return {};
   if (options.clusters) return {.sizes = *options.clusters, .reason = Reason::clusters_given};
   return usual_clusters(query_of(options) == QueryMode::occlusion, triangles);
 }
@@ -45,6 +47,9 @@ CullSettings settings_of(const RunOptions& options, std::size_t triangles) {
           .self = self,
           .touching = !self,
           .clusters = clusters_of(options, triangles),
+          .clear = options.clear,
+          .rounds = options.rounds,
+          .objects_alone = options.objects_alone,
           .full = options.full,
           .enough = thrifty ? kFewTriangles : 0,
           .least_objects = thrifty ? kFewObjects : 0,
@@ -100,8 +105,9 @@ void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions&
     }
     if (progress) progress("opening the device");
     const Stopwatch setup;
-    Canvas& canvas = session.canvas(
-        fattener, {.depth_format = options.depth_format, .query = query_of(options)});
+    Canvas& canvas = session.canvas(fattener, {.depth_format = options.depth_format,
+                                               .query = query_of(options),
+                                               .conservative = options.conservative});
     out.device.depth_bits = canvas.limits().depth_bits;
     out.device.note = session.canvas_device().reason;
     out.device.cpu = session.canvas_device().native;
@@ -165,6 +171,10 @@ void plan_drawing(const Scene& scene, unsigned, const Progress&, Plan& plan) {
   work.self = self;
   if (!self && has_self(scene)) plan.trace.push_back(cut(scene, work.patches));
   const Stopwatch watch;
+  if (options.objects_alone && work.patches.cut) {
+    throw Error("--level", "an object that is tested against itself is asked in patches",
+                "leave --level objects or the self-collision out");
+  }
   work.regions = find_regions(scene, {.self = self || work.patches.cut, .full = options.full});
   const Regions& regions = work.regions;
   plan.trace.push_back(boxes_stage(scene, regions, self || work.patches.cut, options.full));

@@ -30,6 +30,37 @@ std::string number(double value) {
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
+// Refuses a form that the method does not have.
+void validate_form(const RunOptions& options) {
+  if (options.rounds < 0) {
+    throw Error("--rounds", std::to_string(options.rounds) + " is no number of rounds",
+                "give 1 or more");
+  }
+  const std::string method = to_string(options.method);
+  const RunOptions fitting = with_fitting_form(options);
+  const std::string drawing = method_names([](const Traits& t) { return t.draws; });
+  const auto refuse = [&](const char* option, bool given, const std::string& why,
+                          const std::string& methods) {
+    if (!given) return;
+    throw Error(option, method + " " + why,
+                std::string("leave ") + option + " out, or use --method " + methods);
+  };
+  refuse("--rounds", options.rounds != fitting.rounds, "has no rounds", drawing);
+  refuse("--clear", options.clear != fitting.clear, "clears nothing view by view", drawing);
+  refuse("--level", options.objects_alone != fitting.objects_alone,
+         tests_self_alone(options.method) ? "has triangles of one object alone"
+                                          : "has no levels that are drawn",
+         method_names([](const Traits& t) { return t.draws && !t.tests_self_alone; }));
+  refuse("--conservative", options.conservative != fitting.conservative,
+         fattens(options.method) ? "draws solids that contain their pixels' centres already"
+                                 : "draws no triangles",
+         method_names([](const Traits& t) { return t.draws && !t.fattens; }));
+  if (options.objects_alone && options.clusters && !options.clusters->empty()) {
+    throw Error("--clusters", "are of triangles, which --level objects never asks",
+                "leave one of the two out");
+  }
+}
+
 }  // namespace
 
 int parse_resolution(const std::string& text, const std::string& option) {
@@ -68,6 +99,24 @@ std::vector<std::uint32_t> parse_clusters(const std::string& text) {
   }
   if (sizes.empty()) throw bad;
   return sizes;
+}
+
+int parse_rounds(const std::string& text) {
+  const std::optional<int> value = parse_number<int>(text);
+  if (value && *value >= 1) return *value;
+  throw Error("--rounds", "'" + text + "' is no number of rounds", "give 1 or more");
+}
+
+ClearRule parse_clear(const std::string& text) {
+  if (text == "any") return ClearRule::any;
+  if (text == "all") return ClearRule::all;
+  throw Error("--clear", "'" + text + "' is no choice", "give any or all");
+}
+
+bool parse_level(const std::string& text) {
+  if (text == "objects") return true;
+  if (text == "triangles") return false;
+  throw Error("--level", "'" + text + "' is no choice", "give objects or triangles");
 }
 
 int parse_repeat(const std::string& text) {
@@ -118,10 +167,32 @@ bool promises(const RunOptions& options) {
   return false;
 }
 
+std::string form_text(const RunOptions& options) {
+  std::string out;
+  const auto add = [&out](const std::string& text) { out += (out.empty() ? "" : " ") + text; };
+  if (options.rounds > 0) add("--rounds " + std::to_string(options.rounds));
+  if (options.clear == ClearRule::all) add("--clear all");
+  if (options.objects_alone) add("--level objects");
+  if (options.conservative) add("--conservative");
+  return out;
+}
+
+RunOptions with_fitting_form(RunOptions options) {
+  if (!draws(options.method)) {
+    options.rounds = 0;
+    options.clear = ClearRule::any;
+  }
+  if (!draws(options.method) || tests_self_alone(options.method)) options.objects_alone = false;
+  if (!draws(options.method) || fattens(options.method)) options.conservative = false;
+  return options;
+}
+
 std::string describe(const RunOptions& options) {
   const int resolution = resolution_of(options);
   if (!looks(options.method) || resolution == 0) return to_string(options.method);
-  return to_string(options.method) + " at " + std::to_string(resolution) + " px";
+  const std::string form = form_text(options);
+  return to_string(options.method) + " at " + std::to_string(resolution) + " px" +
+         (form.empty() ? "" : ", " + form);
 }
 
 std::string method_reason(const RunOptions& options) {
@@ -162,6 +233,7 @@ void validate(const RunOptions& options) {
                 to_string(options.method) + " draws the triangles themselves, by fixed function",
                 "leave --depth out, or use --method far");
   }
+  validate_form(options);
   if (options.query == QueryMode::flags && options.depth_format == DepthFormat::fixed24) {
     throw Error("--query",
                 "flags cannot be used with a 24-bit depth buffer: a comparison in the shader loses "

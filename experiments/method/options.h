@@ -23,6 +23,12 @@ QueryMode parse_query(const std::string& text);
 /// Sizes of clusters by commas, each 2 or more and below the one before; "none" for no clusters.
 /// Throws Error naming --clusters.
 std::vector<std::uint32_t> parse_clusters(const std::string& text);
+/// A number of rounds, 1 or more. Throws Error naming --rounds.
+int parse_rounds(const std::string& text);
+/// "any" or "all". Throws Error naming --clear.
+ClearRule parse_clear(const std::string& text);
+/// Whether the text is "objects", not "triangles". Throws Error naming --level.
+bool parse_level(const std::string& text);
 /// A number of runs, 1 or more. Throws Error naming --repeat.
 int parse_repeat(const std::string& text);
 
@@ -41,7 +47,12 @@ struct RunOptions {
   DepthFormat depth_format = DepthFormat::float32;
   std::optional<QueryMode> query = {};  // default: flags; occlusion with fixed24 and for s-cullide
   std::optional<std::vector<std::uint32_t>> clusters = {};  // default: usual_clusters()
-  std::string views = {};   // "": x,y,z, but chosen by the scene for far-pairs
+  // Forms of the methods that draw (docs/methods.md, "Forms of CULLIDE").
+  int rounds = 0;                    // at most; 0: until one changes nothing, or far's rule
+  ClearRule clear = ClearRule::any;  // how many views have to clear a triangle
+  bool objects_alone = false;        // objects are culled, their triangles are not; not s-cullide
+  bool conservative = false;         // a fragment in each pixel touched; not far
+  std::string views = {};            // "": x,y,z, but chosen by the scene for far-pairs
   std::string device = {};  // native or cpu: the cores of the CPU; gl: GL, even where a software
                             // renderer answers; hardware, software or a number: that GL device;
                             // "": GL where hardware answers, else the cores of the CPU
@@ -70,7 +81,12 @@ QueryMode query_of(const RunOptions& options);
 /// Whether the method promises to miss nothing: far-pairs and i-collide, and far at the budget
 /// radius or more with fragment depth. A run promises if the device keeps its assumptions as well.
 bool promises(const RunOptions& options);
-/// The method in words for messages, such as "cullide at 512 px".
+/// The options of a form that are not as usual, as on the command line: "--rounds 1 --clear all";
+/// empty where all are.
+std::string form_text(const RunOptions& options);
+/// The same without what the method cannot take, so that one choice serves several methods.
+RunOptions with_fitting_form(RunOptions options);
+/// The method in words for messages, such as "cullide at 512 px, --rounds 1".
 std::string describe(const RunOptions& options);
 
 /// Why the method was run, as "--method" or "no --method: far-pairs misses nothing, ...".

@@ -53,12 +53,14 @@ CanvasDevice Session::choose_canvas_device() {
 }
 
 Canvas& Session::canvas(const Fattener& fattener, const GlCanvasOptions& options) {
-  std::unique_ptr<Canvas>& canvas = canvases_[{fattener.name, options.depth_format, options.query}];
+  std::unique_ptr<Canvas>& canvas =
+      canvases_[{fattener.name, options.depth_format, options.query, options.conservative}];
   if (canvas) return *canvas;
   if (canvas_device().native) {
     canvas = std::make_unique<NativeCanvas>(
         fattener.mode, fattener.solid,
         NativeCanvasOptions{.depth_bits = options.depth_format == DepthFormat::fixed24 ? 24 : 32,
+                            .conservative = options.conservative,
                             .threads = threads_});
   } else {
     canvas = gl_canvas(context(), fattener.mode, fattener.solid, options);

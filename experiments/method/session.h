@@ -73,7 +73,8 @@ class Session {
   std::unique_ptr<GlContext> context_;
   std::map<Reliance, DeviceVerdict> verdicts_;
   std::optional<CanvasDevice> canvas_device_;
-  std::map<std::tuple<std::string, DepthFormat, QueryMode>, std::unique_ptr<Canvas>> canvases_;
+  std::map<std::tuple<std::string, DepthFormat, QueryMode, bool>, std::unique_ptr<Canvas>>
+      canvases_;
   std::optional<PairDevice> pairs_;  // these two go before the context
   PairWorkspace pair_workspace_;
   std::unique_ptr<FrameDecider> frames_;

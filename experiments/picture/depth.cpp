@@ -53,8 +53,9 @@ ViewRun look(RunOptions options, const std::string& view, const Scene& scene, Se
   }
   out.window = *fit_window(parse_view(view), work.regions.places, work.settings.resolution);
   const Fattener& fattener = work.fatteners.front();
-  Canvas& canvas =
-      session.canvas(fattener, {.depth_format = options.depth_format, .query = query_of(options)});
+  Canvas& canvas = session.canvas(fattener, {.depth_format = options.depth_format,
+                                             .query = query_of(options),
+                                             .conservative = options.conservative});
   FattenCounts counts;
   const Drawables drawables =
       fatten(scene, out.triangles, out.window, fattener, report.radius_px, counts);

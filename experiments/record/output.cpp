@@ -189,6 +189,12 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
       {"query", drawn && !record.found.device.cpu
                     ? Json(query_of(o) == QueryMode::flags ? "flags" : "occlusion")
                     : Json(nullptr)},
+      {"rounds", drawn && o.rounds > 0 ? Json(o.rounds) : Json(nullptr)},
+      {"clear", drawn ? Json(o.clear == ClearRule::all ? "all" : "any") : Json(nullptr)},
+      {"level", drawn && !tests_self_alone(o.method)
+                    ? Json(o.objects_alone ? "objects" : "triangles")
+                    : Json(nullptr)},
+      {"conservative", drawn && !fattens(o.method) ? Json(o.conservative) : Json(nullptr)},
       {"clearance", takes_clearance(o.method) ? Json(o.clearance) : Json(nullptr)},
       {"full", o.full},
       {"promises", record.promise.holds},

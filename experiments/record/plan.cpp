@@ -49,6 +49,7 @@ nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan) {
            nothing.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(nothing)},
           {"method", to_string(plan.options.method)},
           {"method_reason", method_reason(plan.options)},
+          {"form", form_text(plan.options)},
           {"full", plan.options.full},
           {"steps", list}};
 }

@@ -110,6 +110,7 @@ struct Row {
 // The row that a stage is folded into: that of its view, or of all later rounds; empty: its own.
 std::string key_of(const Stage& stage) {
   if (stage.round == 0) return "";
+  if (stage.round == 1 && stage.kind == StageKind::agreement) return "";
   return stage.round == 1 ? "view " + stage.subject : "later rounds";
 }
 
@@ -129,6 +130,7 @@ void add_left_out(const Stage& stage, std::vector<Row>& rows) {
 void fold(const Stage& stage, Row& row) {
   if (stage.round > 1) {
     row.name = stage.round == 2 ? "round 2" : fmt::format("rounds 2-{}", stage.round);
+    if (stage.kind == StageKind::agreement) return;
     if (std::find(row.views.begin(), row.views.end(), stage.subject) != row.views.end()) return;
     row.note += (row.note.empty() ? "" : ", ") + stage.subject;
     row.views.push_back(stage.subject);
@@ -373,8 +375,10 @@ std::string comparison_table(const Scene& scene, const std::vector<Record>& reco
   for (const Record& r : records) {
     const double ratio =
         reference ? (r.ms.cull + r.ms.exact) / (reference->ms.cull + reference->ms.exact) : 0;
-    table.add({to_string(r.options.method), fattens(r.options.method) ? r.options.offset : "-",
-               resolution_text(r), grouped(r.found.object_count), grouped(r.found.triangle_count),
+    const std::string form = form_text(r.options);
+    table.add({to_string(r.options.method) + (form.empty() ? "" : " " + form),
+               fattens(r.options.method) ? r.options.offset : "-", resolution_text(r),
+               grouped(r.found.object_count), grouped(r.found.triangle_count),
                grouped(r.found.count), grouped(r.collisions.pairs.size()),
                self ? "+ " + grouped(r.collisions.neighbour_pairs.size()) : "", missed_text(r),
                fmt::format("{:.1f}", r.ms.cull), fmt::format("{:.1f}", r.ms.exact),

@@ -1,4 +1,5 @@
-// The study "accuracy": what every method misses, by the number of pixels.
+// The study "accuracy": what every method misses, by the number of pixels, and what the forms of
+// CULLIDE change.
 #include "experiments/studies/points.h"
 #include "experiments/studies/run_point.h"
 #include "experiments/studies/study.h"
@@ -9,14 +10,30 @@ namespace {
 using enum Method;
 
 struct AccuracyScene {
-  const char* name;
-  bool self = false;  // one object against itself, by S-CULLIDE and FAR pairs
+  std::string name;
+  bool self = false;   // one object against itself, by S-CULLIDE and FAR pairs
+  bool again = false;  // a scene that was measured already, drawn with another seed
 };
 
-// Scenes of small triangles, or few: at 4096 px large ones take a software device minutes.
+// Scenes of three kinds: smooth surfaces, scans, and scenes that are drawn at random, each of these
+// with several seeds. Their triangles are small or few: at 4096 px large ones take a software
+// device minutes.
 std::vector<AccuracyScene> scenes_of(bool quick) {
-  if (quick) return {{"two-tori"}, {"needles:60"}, {"mannequin-devil", true}};
-  return {{"two-tori"}, {"needles:60"}, {"field"}, {"two-bunnies"}, {"mannequin-devil", true}};
+  std::vector<AccuracyScene> out = {{"two-tori"}};
+  if (!quick) {
+    out.push_back({"two-spheres"});
+    out.push_back({"two-bunnies"});
+    out.push_back({"dragon-bunny"});
+  }
+  out.push_back({"mannequin-devil", true});
+  const std::vector<std::string> drawn =
+      quick ? std::vector<std::string>{"needles:60"}
+            : std::vector<std::string>{"needles:60", "random-soup", "slivers:200:1e6", "field"};
+  for (const std::string& base : drawn) {
+    for (const std::string& name : drawn_scenes(base, quick ? 2 : 5))
+      out.push_back({name, false, name != base});
+  }
+  return out;
 }
 
 // Where nothing is promised no view is left out, so that the published radius takes up to five
@@ -25,19 +42,57 @@ int most_published(const std::string& offset, bool quick) {
   return quick || offset == "exact" ? 1024 : 4096;
 }
 
+constexpr int kMostOfForms = 1024;  // px
+
+// CULLIDE as published, and what can be changed in it one by one and together. Of a scene that is
+// drawn again, those that miss little.
+std::vector<CullideForm> forms_of(const AccuracyScene& scene) {
+  const CullideForm conservative = {.rounds = 1, .conservative = true};
+  const CullideForm strict = {.rounds = 1, .clear = ClearRule::all, .conservative = true};
+  if (scene.again) return {kPublishedForm, conservative, strict};
+  std::vector<CullideForm> out = {
+      kPublishedForm,
+      {.rounds = 1, .views = kBothDirections},
+      {.rounds = 1, .clear = ClearRule::all},
+      {.rounds = 1, .clear = ClearRule::all, .views = kBothDirections},
+      conservative,
+      strict,
+  };
+  if (!scene.self) out.push_back({.objects_alone = true});
+  return out;
+}
+
+void add_forms(const AccuracyScene& scene, std::vector<Point>& out) {
+  const NamedScene named{scene.name};
+  const Method method = scene.self ? s_cullide : cullide;
+  const std::vector<CullideForm> forms = forms_of(scene);
+  for (int resolution = 64; resolution <= kMostOfForms; resolution *= 2) {
+    for (const CullideForm& form : forms)
+      out.push_back(in_form(cullide_point(named, method, resolution), form));
+  }
+  if (scene.self || scene.again) return;
+  for (const double pixels : {1, 4, 16}) {
+    for (const CullideForm& form : forms)
+      out.push_back(at_mean_pixels(in_form(cullide_point(named, method, 0), form), pixels));
+    out.push_back(at_mean_pixels(cullide_point(named, method, 0), pixels));
+    out.push_back(at_mean_pixels(far_point(named, "obb", kBudgetRadius, 0), pixels));
+  }
+}
+
 std::vector<Point> grid(const GridChoice& choice) {
   std::vector<Point> out;
   for (const AccuracyScene& scene : scenes_of(choice.quick)) {
-    const int most =
-        scene.self && choice.quick ? 1024 : 4096;  // S-CULLIDE takes a step per triangle
+    // S-CULLIDE takes a step per triangle.
+    const int most = scene.again || (scene.self && choice.quick) ? 1024 : 4096;
     const NamedScene named{scene.name};
     for (int resolution = 64; resolution <= most; resolution *= 2) {
       if (scene.self) {
         out.push_back(cullide_point(named, s_cullide, resolution));
       } else {
         out.push_back(cullide_point(named, cullide, resolution));
-        out.push_back(cullide_point(named, quick_cullide, resolution));
+        if (!scene.again) out.push_back(cullide_point(named, quick_cullide, resolution));
         for (const std::string offset : {"obb", "exact"}) {
+          if (scene.again && offset == "exact") continue;
           out.push_back(far_point(named, offset, kBudgetRadius, resolution));
           if (resolution <= most_published(offset, choice.quick)) {
             out.push_back(far_point(named, offset, kPublishedRadius, resolution));
@@ -47,6 +102,8 @@ std::vector<Point> grid(const GridChoice& choice) {
       out.push_back(plain_point(named, far_pairs, resolution));
     }
     out.push_back(plain_point(named, far_pairs));
+    if (!scene.self && !scene.again) out.push_back(plain_point(named, exact));
+    add_forms(scene, out);
   }
   return out;
 }
@@ -62,7 +119,7 @@ Study accuracy_study() {
           .title = "Missed collisions against resolution",
           .question =
               "How many colliding pairs and colliding triangles does each method miss against the "
-              "exact answer, and do more pixels help?",
+              "exact answer, do more pixels help, and does another form of CULLIDE?",
           .grid = grid,
           .measure = measure};
 }

@@ -45,6 +45,10 @@ NamedCounts named(const RunCounts& c) {
     add(out, "tests", c.fragments->tests);
     add(out, "views", c.fragments->views);
   }
+  if (c.size) {
+    out.insert(out.end(),
+               {{"resolution", c.size->resolution}, {"mean_pixels", c.size->mean_pixels}});
+  }
   return out;
 }
 
@@ -75,6 +79,18 @@ NamedCounts named(const LemmaCounts& c) {
                      {"promises", c.promises}};
   if (c.revoked) out.push_back({"revoked", true});
   return out;
+}
+
+NamedCounts named(const PlacementCounts& c) {
+  return {{"placements", c.placements},
+          {"colliding_placements", c.colliding_placements},
+          {"missed_placements", c.missed_placements},
+          {"colliding", c.colliding},
+          {"missed", c.missed},
+          {"largest_miss_px", c.largest_miss_px},
+          {"radius_px", c.radius_px},
+          {"budget_px", c.budget_px},
+          {"promises", c.promises}};
 }
 
 }  // namespace

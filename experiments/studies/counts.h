@@ -36,6 +36,12 @@ struct FragmentCounts {
   std::optional<std::uint64_t> tests = {}, views = {};
 };
 
+/// The resolution that was chosen for a RunPoint by the size of triangles.
+struct SizeCounts {
+  std::uint64_t resolution = 0;  // px
+  double mean_pixels = 0;        // that a triangle covers there
+};
+
 /// Counts of a RunPoint.
 struct RunCounts : AnswerCounts {
   std::uint64_t missed_penetrating = 0;   // of `missed` (verify/contact.h); the rest touches
@@ -48,6 +54,7 @@ struct RunCounts : AnswerCounts {
   std::optional<DrawnCounts> drawn = {};
   std::optional<RadiusCounts> radius = {};
   std::optional<FragmentCounts> fragments = {};
+  std::optional<SizeCounts> size = {};
 };
 
 /// Counts of a PeerPoint.
@@ -68,8 +75,19 @@ struct LemmaCounts {
   bool revoked = false;   // as in RunCounts
 };
 
+/// Counts of a PlacementPoint (placements.h).
+struct PlacementCounts {
+  std::uint64_t placements = 0;
+  std::uint64_t colliding_placements = 0;   // with at least one colliding pair
+  std::uint64_t missed_placements = 0;      // of these, with at least one missed pair
+  std::uint64_t colliding = 0, missed = 0;  // pairs
+  double largest_miss_px = 0;               // the longest intersection of a missed pair
+  double radius_px = 0, budget_px = 0;
+  bool promises = false;
+};
+
 /// std::monostate: nothing was measured.
-using Counts = std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts>;
+using Counts = std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts, PlacementCounts>;
 
 /// The names and values of counts, in the order in which a store holds them.
 using CountValue = std::variant<bool, std::uint64_t, double, std::string>;

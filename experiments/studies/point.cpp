@@ -43,7 +43,13 @@ void add_scene(const PointScene& scene, PointKey& key) {
 PointKey key_of(const RunPoint& point) {
   PointKey key;
   add_scene(point.scene, key);
-  key.method = to_string(point.method);
+  const std::string form = form_text({.method = point.method,
+                                      .rounds = point.rounds,
+                                      .clear = point.clear,
+                                      .objects_alone = point.objects_alone,
+                                      .conservative = point.conservative});
+  key.method = to_string(point.method) + (form.empty() ? "" : " " + form);
+  if (point.mean_pixels > 0) key.method += fmt::format(" @{}px", point.mean_pixels);
   key.offset = point.offset;
   key.radius = point.radius ? radius_text(*point.radius) : "";
   key.depth_format = text_of(point.depth_format);
@@ -69,6 +75,20 @@ PointKey key_of(const LemmaPoint& point) {
   key.depth_format = text_of(point.depth_format);
   key.depth_mode = text_of(point.depth_mode);
   key.resolution = point.side;
+  key.seed = point.seed;
+  return key;
+}
+
+PointKey key_of(const PlacementPoint& point) {
+  PointKey key;
+  key.scene = fmt::format("{}@{}:{}:{}", point.from, point.grazing ? "grazing" : "crossing",
+                          point.side, point.placements);
+  key.method = point.subpixel_bits > 0 ? fmt::format("far-snapped-{}", point.subpixel_bits) : "far";
+  key.offset = "obb";
+  key.radius = radius_text(point.radius);
+  key.depth_mode = "fragment";
+  key.depth_format = "float32";
+  key.resolution = point.resolution;
   key.seed = point.seed;
   return key;
 }

@@ -48,7 +48,15 @@ struct RunPoint {
   std::optional<DepthMode> depth_mode = {};      // how the depth of a fragment is made
   std::optional<DepthFormat> depth_format = {};  // how the depth buffer holds it
   int resolution = 0;                            // px; 0: none, or chosen by the scene
+  /// Where the resolution is 0: the least at which the triangles that can take part cover so many
+  /// pixels each, on average over them and the axes; 0: see above.
+  double mean_pixels = 0;
   std::string views = {};
+  /// Forms of the methods that draw, as in RunOptions.
+  int rounds = 0;
+  ClearRule clear = ClearRule::any;
+  bool objects_alone = false;
+  bool conservative = false;
   int repeat = 1;  // runs, the one with the median time counts; 1 for a MotionFrame
 };
 
@@ -75,13 +83,28 @@ struct LemmaPoint {
   std::uint64_t seed = 1;
 };
 
-using Point = std::variant<RunPoint, PeerPoint, LemmaPoint>;
+/// FAR on many small patches of triangles that are placed into each other at random
+/// (placements.h).
+struct PlacementPoint {
+  std::string from;      // the built-in scene whose first two objects the patches are cut from
+  bool grazing = false;  // a corner of one patch pokes through the other; else they cross
+  double side = 1;       // px, mean longest side of a triangle
+  std::uint64_t placements = 0;
+  int subpixel_bits = 0;  // what corners of proxies are snapped to; 0: they are not
+  RadiusRule radius = {};
+  int resolution = 0;  // px
+  std::uint64_t seed = 1;
+};
+
+using Point = std::variant<RunPoint, PeerPoint, LemmaPoint, PlacementPoint>;
 
 /// The columns by which a store knows a point. What does not apply is empty, 0 or -1; no two points
 /// of a grid have the same key.
 struct PointKey {
   std::string scene = {};         // as on the command line, or as key_of() writes it
-  std::string method = {};        // as --method, a peer, "lemma" or "lemma-worst"
+  std::string method = {};        // as --method with the options of its form ("cullide --rounds
+                                  // 1"), perhaps with the mean size of triangles ("@4px"); a peer;
+                                  // "lemma", "lemma-worst"; of placements "far", "far-snapped-8"
   std::string offset = {};        // obb or exact
   std::string radius = {};        // as --radius
   std::string depth_format = {};  // float32 or fixed24

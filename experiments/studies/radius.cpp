@@ -1,8 +1,12 @@
-// The study "radius": the lemmas and the misses against the radius.
+// The study "radius": the lemmas and the misses against the radius, and how often the published one
+// misses a pair of patches that are placed at random.
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "experiments/lemma/lemma.h"
 #include "experiments/studies/lemma_point.h"
+#include "experiments/studies/placements.h"
 #include "experiments/studies/points.h"
 #include "experiments/studies/run_point.h"
 #include "experiments/studies/study.h"
@@ -31,6 +35,56 @@ std::vector<RadiusRule> radii(bool quick) {
   for (const double factor : factors(quick))
     out.push_back(parse_radius(fmt::format("{:.4g}", factor)));
   out.push_back(kPublishedRadius);
+  return out;
+}
+
+struct Size {
+  double side;  // px
+  std::uint64_t placements;
+};
+
+constexpr double kSmallest = 0x1p-5;  // px; of these pairs hardly another one keeps any
+
+// Placements on corners snapped to 8 bits at the published radius by the size of triangles, 10^6 in
+// all, and at smaller radii; then of the smallest triangles by subpixel bits and by resolution; and
+// at the budget radius, which has to miss none.
+std::vector<PlacementPoint> placements(const GridChoice& choice) {
+  constexpr int kUsualBits = 8;
+  const int usual_resolution = choice.quick ? 512 : 1024;
+  const std::vector<Size> sizes =
+      choice.quick
+          ? std::vector<Size>{{kSmallest, 4000}, {1, 2000}}
+          : std::vector<Size>{
+                {kSmallest, 100'000}, {0.25, 75'000}, {1, 50'000}, {4, 22'000}, {16, 3000}};
+  const std::uint64_t few = choice.quick ? 2000 : 25'000;
+  std::vector<PlacementPoint> out;
+  for (const char* from : {"dragon-bunny", "random-soup"}) {
+    for (const bool grazing : {false, true}) {
+      const auto add = [&](const Size& size, int bits, const RadiusRule& radius, int resolution) {
+        out.push_back({.from = from,
+                       .grazing = grazing,
+                       .side = size.side,
+                       .placements = size.placements,
+                       .subpixel_bits = bits,
+                       .radius = radius,
+                       .resolution = resolution,
+                       .seed = choice.seed});
+      };
+      for (const Size& size : sizes) add(size, kUsualBits, kPublishedRadius, usual_resolution);
+      for (const Size& size : sizes) {
+        if (size.side > 4) continue;  // few of them fit a window
+        const Size fewer = {size.side, std::min<std::uint64_t>(size.placements / 4, 5000)};
+        for (const char* factor : {"0.5", "0.7", "0.8", "0.9", "0.95"})
+          add(fewer, kUsualBits, parse_radius(factor), usual_resolution);
+      }
+      const Size smallest = {kSmallest, few};
+      for (const int bits : {0, 4, 6, 10}) add(smallest, bits, kPublishedRadius, usual_resolution);
+      for (const int resolution : {usual_resolution / 4, usual_resolution * 4})
+        add(smallest, kUsualBits, kPublishedRadius, resolution);
+      for (const int bits : {0, 4, kUsualBits})
+        add(smallest, bits, kBudgetRadius, usual_resolution);
+    }
+  }
   return out;
 }
 
@@ -81,11 +135,14 @@ std::vector<Point> grid(const GridChoice& choice) {
       }
     }
   }
+  for (PlacementPoint& point : placements(choice)) out.push_back(std::move(point));
   return out;
 }
 
 PointResult measure(const Point& point, Lab& lab) {
   if (const auto* lemma = std::get_if<LemmaPoint>(&point)) return measure_lemma(*lemma, lab);
+  if (const auto* placed = std::get_if<PlacementPoint>(&point))
+    return measure_placements(*placed, lab);
   return measure_run(std::get<RunPoint>(point), lab);
 }
 
@@ -96,7 +153,8 @@ Study radius_study() {
           .title = "Violations and misses against the radius",
           .question =
               "How large must the ball be that fattens a primitive, so that no pixel lacks "
-              "a sample or a bound, and what happens below that?",
+              "a sample or a bound, what happens below that, and how often does the published "
+              "radius miss a pair?",
           .grid = grid,
           .measure = measure};
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <stdexcept>
@@ -11,6 +12,8 @@
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
+#include "core/scene/members.h"
+#include "core/view/regions.h"
 #include "experiments/measure/harness.h"
 #include "experiments/record/tables.h"
 #include "verify/contact.h"
@@ -132,6 +135,30 @@ void require_same(const PointKey& point, const Outcome& first, const Outcome& ot
               "run farcull doctor; the device is not deterministic");
 }
 
+SizeCounts size_for(const Scene& scene, double pixels) {
+  constexpr int kSample = 256;  // px; areas grow with the square of the resolution
+  const Regions regions = find_regions(scene, {.self = has_self(scene)});
+  double area = 0;
+  std::uint64_t count = 0;
+  for (const View& view : parse_views("x,y,z")) {
+    const std::optional<Window> window =
+        regions.places.empty() ? std::nullopt : fit_window(view, regions.places, kSample);
+    if (!window) continue;
+    for (const std::uint32_t t : regions.triangles) {
+      const auto corners = scene.corners(t);
+      const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+      area += 0.5 * std::abs(normal.dot(view.rows.row(2).transpose())) / window->pixel_size /
+              window->pixel_size;
+      ++count;
+    }
+  }
+  const double mean = count == 0 ? 0 : area / static_cast<double>(count);
+  if (!(mean > 0)) return {};
+  const double side = std::ceil(kSample * std::sqrt(pixels / mean));
+  return {.resolution = side < 1e9 ? static_cast<std::uint64_t>(side) : 0,
+          .mean_pixels = mean * side * side / kSample / kSample};
+}
+
 RunOptions options_of(const RunPoint& point, const Lab& lab) {
   RunOptions options;
   options.method = point.method;
@@ -141,6 +168,10 @@ RunOptions options_of(const RunPoint& point, const Lab& lab) {
   options.depth = point.depth_mode;
   options.depth_format = point.depth_format.value_or(DepthFormat::float32);
   options.views = point.views;
+  options.rounds = point.rounds;
+  options.clear = point.clear;
+  options.objects_alone = point.objects_alone;
+  options.conservative = point.conservative;
   options.device = lab.device();
   options.verify = false;
   return options;
@@ -151,7 +182,17 @@ PointResult measure_run(const RunPoint& point, Lab& lab, Record* kept) {
   if (point.repeat < 1 || (moving && point.repeat > 1))
     throw std::logic_error("measure_run: runs of " + describe(Point(point)));
   const Scene& scene = open_scene(point.scene, lab);
-  const RunOptions options = options_of(point, lab);
+  RunOptions options = options_of(point, lab);
+  std::optional<SizeCounts> size;
+  if (point.mean_pixels > 0) {
+    size = size_for(scene, point.mean_pixels);
+    if (size->resolution < 1 || size->resolution > kMostSizedResolution) {
+      return {.device = "none",
+              .left_out = fmt::format("{} px a triangle take more than {} px", point.mean_pixels,
+                                      kMostSizedResolution)};
+    }
+    options.resolution = static_cast<int>(size->resolution);
+  }
   const Truth& truth = lab.truth();
   double setup = 0;
   std::vector<Record> records;
@@ -162,6 +203,7 @@ PointResult measure_run(const RunPoint& point, Lab& lab, Record* kept) {
     return std::pair(outcome_of(scene, truth, records.back()), compared_ms(records.back()));
   });
   Record& record = records[median_run(ms)];
+  std::get<RunCounts>(outcome.counts).size = size;
   PointResult out{.counts = std::move(outcome.counts),
                   .times = {.cull = record.ms.cull,
                             .exact = record.ms.exact,

@@ -15,6 +15,14 @@ namespace farcull {
 /// do.
 const Scene& open_scene(const PointScene& scene, Lab& lab);
 
+/// The least resolution at which the triangles of the scene that can take part cover `pixels` on
+/// average, over them and the views x, y, z: the area of their image in pixels. 0 where they have
+/// no area.
+SizeCounts size_for(const Scene& scene, double pixels);
+
+/// Beyond this a resolution that the size of triangles asks for is left out.
+constexpr int kMostSizedResolution = 8192;
+
 /// The options of a run at the point, without the accounting: errors_of() compares with the truth.
 RunOptions options_of(const RunPoint& point, const Lab& lab);
 

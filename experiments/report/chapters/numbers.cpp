@@ -1,11 +1,14 @@
-// Least squares in logarithms, medians, and numbers as text.
+// Least squares in logarithms, medians, binomial intervals, and numbers as text.
 #include "experiments/report/chapters/numbers.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {
@@ -14,6 +17,34 @@ std::optional<double> number_in(const nlohmann::ordered_json& values, const std:
   const auto it = values.find(name);
   if (it == values.end() || !it->is_number()) return {};
   return it->get<double>();
+}
+
+std::string base_label(const std::string& method, const PointKey& point) {
+  if (method == "far") return point.offset == "exact" ? "FAR (exact)" : "FAR (OBB)";
+  if (method == "far-pairs") return "FAR pairs";
+  if (method == "cullide") return "CULLIDE";
+  if (method == "quick-cullide") return "Quick-CULLIDE";
+  if (method == "s-cullide") return "S-CULLIDE";
+  if (method == "i-collide") return "I-COLLIDE";
+  if (method.starts_with("far-snapped-"))
+    return "FAR (OBB), " + method.substr(std::string("far-snapped-").size()) + " subpixel bits";
+  return method;
+}
+
+// "CULLIDE, one round" of "cullide --rounds 1".
+std::string form_label(const std::string& form) {
+  const auto has = [&](const char* option) { return form.find(option) != std::string::npos; };
+  std::string out;
+  if (const std::size_t at = form.find("--rounds "); at != std::string::npos) {
+    const std::string rounds = form.substr(at + 9, form.find(' ', at + 9) - at - 9);
+    out += rounds == "1" ? ", one round" : ", " + rounds + " rounds";
+  }
+  if (has("--clear all")) out += ", all views";
+  if (has("--level objects")) out += ", objects alone";
+  if (has("--conservative")) out += ", conservative";
+  if (const std::size_t at = form.find('@'); at != std::string::npos)
+    out += ", " + form.substr(at + 1, form.find("px", at) - at - 1) + " px a triangle";
+  return out;
 }
 
 std::string grouped_digits(std::string digits) {
@@ -38,14 +69,35 @@ bool flag_of(const Row& row, const std::string& name) {
 }
 
 std::string method_label(const PointKey& point) {
-  if (point.method == "far") return point.offset == "exact" ? "FAR (exact)" : "FAR (OBB)";
-  if (point.method == "far-pairs") return "FAR pairs";
-  if (point.method == "cullide") return "CULLIDE";
-  if (point.method == "quick-cullide") return "Quick-CULLIDE";
-  if (point.method == "s-cullide") return "S-CULLIDE";
-  if (point.method == "i-collide") return "I-COLLIDE";
-  return point.method;
+  const std::size_t end = std::min(point.method.find(' '), point.method.size());
+  return base_label(point.method.substr(0, end), point) + form_label(point.method.substr(end));
 }
+
+Rate rate_of(std::uint64_t hits, std::uint64_t of) {
+  using Binomial = boost::math::binomial_distribution<double>;
+  const auto n = static_cast<double>(of), k = static_cast<double>(hits);
+  constexpr double kOutside = 0.05;
+  Rate out{.value = k / n};
+  if (hits == 0) {
+    out.high = Binomial::find_upper_bound_on_p(n, 0, kOutside);
+    return out;
+  }
+  out.low = Binomial::find_lower_bound_on_p(n, k, kOutside / 2);
+  out.high = hits == of ? 1 : Binomial::find_upper_bound_on_p(n, k, kOutside / 2);
+  return out;
+}
+
+std::string rate_text(std::uint64_t hits, std::uint64_t of) {
+  const std::string counts = grouped(hits) + " of " + grouped(of);
+  if (of == 0) return counts;
+  const Rate rate = rate_of(hits, of);
+  const auto text = [](double p) { return rounded(p, 2); };
+  if (hits == 0) return fmt::format("{} (95 % bound: at most {})", counts, text(rate.high));
+  return fmt::format("{} ({}, 95 % interval {} to {})", counts, text(rate.value), text(rate.low),
+                     text(rate.high));
+}
+
+std::string scene_base(const std::string& scene) { return scene.substr(0, scene.find("@seed")); }
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());

@@ -1,6 +1,7 @@
 // Numbers of rows: medians and exponents of them, and how a report writes them.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -25,14 +26,29 @@ inline double time_or_none(const Row& row, const std::string& name) {
 /// Whether a row has a count of that name that is true.
 bool flag_of(const Row& row, const std::string& name);
 
-/// As figures and tables name what a point was measured with: "FAR (OBB)", "CULLIDE", "FAR pairs".
+/// As figures and tables name what a point was measured with: "FAR (OBB)", "FAR pairs", "CULLIDE",
+/// in another form "CULLIDE, one round, all views".
 std::string method_label(const PointKey& point);
+
+/// The name of a scene without the seed that it was drawn with: "field" of "field@seed101".
+std::string scene_base(const std::string& scene);
 
 /// The middle value, of an even number the mean of the two. Precondition: there is one.
 double median(std::vector<double> values);
 
 /// "2 (1 to 3)": the median with the least and the largest; "-" of no values.
 std::string spread(const std::vector<double>& values, const std::string& unit = "");
+
+/// A share of `hits` in `of` draws, with its 95 % interval: that of Clopper and Pearson, exact for
+/// draws that do not depend on each other; of no hit from 0 to the upper bound at 95 %, which is
+/// about 3 / of. Precondition: hits <= of, of >= 1.
+struct Rate {
+  double value = 0, low = 0, high = 0;
+};
+Rate rate_of(std::uint64_t hits, std::uint64_t of);
+/// "0 of 114,014 (95 % bound: at most 2.6e-5)", or "5 of 1,000 (5.0e-3, 95 % interval 1.6e-3 to
+/// 0.012)"; "0 of 0" alone.
+std::string rate_text(std::uint64_t hits, std::uint64_t of);
 
 /// The exponent b of y = a x^b by least squares in logarithms, with its standard error (from the
 /// residuals; none of the model itself).

@@ -1,10 +1,13 @@
-// The chapter of the study "radius": violated points of the lemmas and missed pairs of FAR against
+// The chapter of the study "radius": how often the published radius misses something where nothing
+// was constructed against it; then violated points of the lemmas and missed pairs of FAR against
 // the radius, with the published radius beside the budget.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
+#include <string_view>
 
 #include "experiments/report/chapters/numbers.h"
 #include "experiments/report/chapters/rows.h"
@@ -87,22 +90,62 @@ Panel panel_of(const std::string& title, const std::string& share) {
 // The second row of panels shows kClose to 2 - kClose.
 constexpr double kClose = 0.96;
 constexpr const char* kAll = "all generators";
+constexpr std::size_t kNamed = 3;  // generators with a line of their own
 
-Figure lemma_figure(const Lines& generators, const Lines& together, std::uint64_t points) {
+// The generators whose points are violated at the largest factors, on any surface; of equals those
+// with the larger share there.
+std::vector<std::string> hardest_generators(const Lines& generators) {
+  std::map<std::string, std::pair<double, double>> at;  // the largest factor, the share there
+  for (const auto& [surface, lines] : generators) {
+    for (const auto& [generator, line] : lines) {
+      auto& hardest = at.try_emplace(generator, -1, 0).first->second;
+      for (const auto& [factor, rows] : line.at) {
+        if (total(rows, "violations") > 0)
+          hardest = std::max(hardest, std::pair(factor, violated(rows)));
+      }
+    }
+  }
+  std::vector<std::string> out;
+  for (const auto& [generator, hardest] : at) out.push_back(generator);
+  std::stable_sort(out.begin(), out.end(),
+                   [&](const std::string& a, const std::string& b) { return at.at(a) > at.at(b); });
+  out.resize(std::min(out.size(), kNamed));
+  return out;
+}
+
+// At each factor the largest share of a generator.
+Series envelope_of(const std::map<std::string, Line>& lines) {
+  std::map<double, double> most;
+  for (const auto& [generator, line] : lines) {
+    for (const auto& [factor, rows] : line.at)
+      most[factor] = std::max(most[factor], violated(rows));
+  }
+  Series out{.name = "largest of all generators", .style = Series::Style::lines};
+  out.emphasis = true;
+  for (const auto& [factor, share] : most) {
+    out.x.push_back(factor);
+    out.y.push_back(share);
+  }
+  return out;
+}
+
+Figure lemma_figure(const Lines& generators, std::uint64_t points) {
   Figure out{.name = "radius",
              .title = "Points whose pixel lacks a sample or a bound, against the radius"};
+  const std::vector<std::string> named = hardest_generators(generators);
+  std::size_t count = 0;
   for (const auto& [surface, lines] : generators) {
+    count = std::max(count, lines.size());
     Panel panel = panel_of(surface, "violated points (%)");
     Series published{.name = "published radius, each generator", .style = Series::Style::points};
     for (const auto& [generator, line] : lines) {
-      panel.series.push_back(line_series(generator, line, violated, Series::Style::lines));
+      if (std::find(named.begin(), named.end(), generator) != named.end())
+        panel.series.push_back(line_series(generator, line, violated, Series::Style::lines));
       if (line.published.empty()) continue;
       published.x.push_back(factor_of(*line.published.back()));
       published.y.push_back(violated(line.published));
     }
-    panel.series.push_back(
-        line_series(kAll, together.at(surface).at(kAll), violated, Series::Style::lines));
-    panel.series.back().emphasis = true;
+    panel.series.push_back(envelope_of(lines));
     if (!published.x.empty()) panel.series.push_back(std::move(published));
     out.panels.push_back(std::move(panel));
   }
@@ -116,10 +159,11 @@ Figure lemma_figure(const Lines& generators, const Lines& together, std::uint64_
     out.panels.push_back(std::move(close));
   }
   out.caption = fmt::format(
-      "Lemmas 1 and 2 at {} points of triangles that aim at trouble. The line below the powers is "
-      "0. On the worst canvas a pixel has a fragment only where every device that keeps the "
-      "assumptions gives it one.",
-      grouped(points));
+      "Lemmas 1 and 2 at {} points of triangles that aim at trouble, drawn by {} generators. The "
+      "thick line is the largest share of any generator; those that fail at the largest factors "
+      "are named. On the worst canvas a pixel has a fragment only where every device that keeps "
+      "the assumptions gives it one.",
+      grouped(points), count);
   return out;
 }
 
@@ -144,8 +188,7 @@ Figure miss_figure(const Lines& depths) {
     out.panels.push_back(std::move(panel));
   }
   out.caption = fmt::format(
-      "FAR with oriented boxes: colliding pairs that culling loses, of {}. The line below the "
-      "powers is 0.",
+      "FAR with oriented boxes: colliding pairs that culling loses, of {}. One run at each point.",
       listed(scenes));
   return out;
 }
@@ -271,6 +314,213 @@ void add_published(const Lines& generators, Chapter& chapter) {
   }
 }
 
+// ---- placements ----
+
+bool is_placement(const Row& row) {
+  return row.point.scene.find("@crossing:") != std::string::npos ||
+         row.point.scene.find("@grazing:") != std::string::npos;
+}
+
+// "dragon-bunny, crossing, 0.25 px".
+struct PlacementScene {
+  std::string from, contact;
+  double side = 0;
+};
+PlacementScene placement_of(const Row& row) {
+  const std::string& scene = row.point.scene;
+  const std::size_t at = scene.find('@'), colon = scene.find(':', at);
+  return {scene.substr(0, at), scene.substr(at + 1, colon - at - 1),
+          std::strtod(scene.c_str() + colon + 1, nullptr)};
+}
+
+// 0: corners are not snapped.
+int bits_of(const Row& row) {
+  constexpr std::string_view kSnapped = "far-snapped-";
+  return row.point.method.starts_with(kSnapped)
+             ? std::atoi(row.point.method.c_str() + kSnapped.size())
+             : 0;
+}
+
+std::string bits_text(int bits) {
+  return bits > 0 ? fmt::format("{} subpixel bits", bits) : "corners not snapped";
+}
+
+std::string rate_of_rows(const Rows& rows) {
+  return rate_text(total(rows, "missed_placements"), total(rows, "colliding_placements"));
+}
+
+// Adds how often the published radius misses something in scenes that nobody constructed for it,
+// and that its failure end to end rests on those that were. First, since the rest of the chapter is
+// about constructed points.
+void add_headline(const Rows& runs, const Rows& placements, Chapter& chapter) {
+  Rows natural, constructed, placed;
+  for (const Row* row : runs) {
+    if (!is_published(*row) || row->point.depth_mode != "fragment") continue;
+    (row->point.scene == "pixel-corners" ? constructed : natural).push_back(row);
+  }
+  for (const Row* row : placements) {
+    if (is_published(*row)) placed.push_back(row);
+  }
+  if (!natural.empty()) {
+    const std::uint64_t missed = total(natural, "missed");
+    chapter.find(fmt::format(
+        "On scenes that were not constructed against it, the published radius missed {} colliding "
+        "pairs in {} with fragment depth{}.",
+        rate_text(missed, total(natural, "colliding")), counted(natural.size(), "run", "runs"),
+        missed == 0 && !constructed.empty()
+            ? fmt::format("; its failure end to end rests on the constructed pixel-corners, where "
+                          "it missed {}",
+                          of_all(constructed, "missed", "colliding"))
+            : ""));
+  }
+  for (const auto& [bits, rows] : rows_by(placed, bits_of)) {
+    chapter.find(fmt::format(
+        "Of patches placed into each other at random, {}, the published radius missed something in "
+        "{} placements{}.",
+        bits_text(bits), rate_of_rows(rows),
+        total(rows, "missed") > 0
+            ? fmt::format("; the longest intersection that it missed is {} px long",
+                          rounded(largest(rows, "largest_miss_px", kNone)))
+            : ""));
+  }
+  // So that a rate of 0 says something: what a smaller radius misses in the same placements.
+  std::map<double, Rows> smaller;
+  for (const Row* row : placements) {
+    if (!is_published(*row) && factor_of(*row) < 1) smaller[factor_of(*row)].push_back(row);
+  }
+  std::vector<std::string> words;
+  for (const auto& [factor, rows] : smaller)
+    words.push_back(fmt::format("at {:.4g} of the budget in {}", factor,
+                                of_all(rows, "missed_placements", "colliding_placements")));
+  if (!words.empty()) {
+    chapter.find(
+        fmt::format("Smaller radii miss something in such placements: {}.", listed(words)));
+  }
+}
+
+// The rate of placements in which something is missed against the radius over the budget, by the
+// size of triangles, where corners are snapped to as many bits as in most placements.
+Panel placements_by_radius(const Rows& all) {
+  std::map<int, std::uint64_t> times;
+  for (const Row* row : all) times[bits_of(*row)] += number_of(*row, "placements");
+  Panel panel = panel_of("by the size of triangles", "placements with a miss (%)");
+  if (times.empty()) return panel;
+  const int bits = std::max_element(times.begin(), times.end(), [](const auto& a, const auto& b) {
+                     return a.second < b.second;
+                   })->first;
+  panel.title = fmt::format("{}, by the size of triangles", bits_text(bits));
+  std::map<double, std::map<double, Rows>> sides;
+  for (const Row* row : all) {
+    const double factor = factor_of(*row);
+    if (bits_of(*row) == bits && std::isfinite(factor))
+      sides[placement_of(*row).side][factor].push_back(row);
+  }
+  for (const auto& [side, factors] : sides) {
+    if (factors.size() < 2) continue;
+    Series series{.name = fmt::format("sides of {} px", rounded(side))};
+    for (const auto& [factor, rows] : factors) {
+      series.x.push_back(factor);
+      series.y.push_back(
+          share(total(rows, "missed_placements"), total(rows, "colliding_placements")));
+    }
+    panel.series.push_back(std::move(series));
+  }
+  return panel;
+}
+
+// The rate of placements in which something is missed, and its interval, by the radius; and at the
+// published radius by subpixel bits, by the size of triangles and by resolution.
+Figure placement_figure(const Rows& all) {
+  Figure out{.name = "radius-placements",
+             .title = "How often the published radius misses something in random placements"};
+  Rows rows = all;
+  std::erase_if(rows, [](const Row* row) { return !is_published(*row); });
+  if (Panel panel = placements_by_radius(all); !panel.series.empty())
+    out.panels.push_back(std::move(panel));
+  // What most rows have is what the others vary.
+  const auto usual = [&](const auto& value) {
+    std::map<double, std::uint64_t> times;
+    for (const Row* row : rows) times[value(*row)] += number_of(*row, "placements");
+    return std::max_element(times.begin(), times.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; })
+        ->first;
+  };
+  const auto side = [](const Row& row) { return placement_of(row).side; };
+  const auto bits = [](const Row& row) { return static_cast<double>(bits_of(row)); };
+  const auto pixels = [](const Row& row) { return static_cast<double>(row.point.resolution); };
+  if (rows.empty()) return out;
+  const double usual_bits = usual(bits), usual_pixels = usual(pixels);
+  std::map<double, int> sides_at_other_bits;
+  for (const Row* row : rows) {
+    if (bits(*row) != usual_bits) ++sides_at_other_bits[side(*row)];
+  }
+  const double usual_side =
+      sides_at_other_bits.empty() ? side(*rows.front()) : sides_at_other_bits.begin()->first;
+  const auto add = [&](const std::string& title, const Axis& x, const auto& value,
+                       const auto& belongs) {
+    Panel panel{.title = title, .x = x, .y = logarithmic("placements with a miss (%)", true)};
+    std::map<std::string, Rows> kinds;
+    for (const Row* row : rows) {
+      const PlacementScene scene = placement_of(*row);
+      if (belongs(*row)) kinds[scene.from + ", " + scene.contact].push_back(row);
+    }
+    Series bounds{.name = "95 % interval", .style = Series::Style::points};
+    for (auto& [kind, of] : kinds) {
+      Series series{.name = kind};
+      for (const auto& [at, here] : rows_by(of, value)) {
+        const std::uint64_t n = total(here, "colliding_placements");
+        if (n == 0) continue;
+        const Rate rate = rate_of(total(here, "missed_placements"), n);
+        series.x.push_back(at);
+        series.y.push_back(100 * rate.value);
+        for (const double bound : {rate.low, rate.high}) {
+          bounds.x.push_back(at);
+          bounds.y.push_back(100 * bound);
+        }
+      }
+      panel.series.push_back(std::move(series));
+    }
+    panel.series.push_back(std::move(bounds));
+    out.panels.push_back(std::move(panel));
+  };
+  add(fmt::format("{} px sides, {:.0f} px windows", rounded(usual_side), usual_pixels),
+      Axis{.label = "subpixel bits (0: not snapped)"}, bits,
+      [&](const Row& row) { return side(row) == usual_side && pixels(row) == usual_pixels; });
+  add(fmt::format("{:.0f} bits, {:.0f} px windows", usual_bits, usual_pixels),
+      logarithmic("longest side of a triangle (px)"), side,
+      [&](const Row& row) { return bits(row) == usual_bits && pixels(row) == usual_pixels; });
+  add(fmt::format("{:.0f} bits, {} px sides", usual_bits, rounded(usual_side)),
+      logarithmic("resolution (px)"), pixels,
+      [&](const Row& row) { return bits(row) == usual_bits && side(row) == usual_side; });
+  out.caption = fmt::format(
+      "FAR with oriented boxes and fragment depth in three views, at the published radius: {} "
+      "placements of two patches of triangles, each decided by exact predicates. Of placements in "
+      "which a pair collides, those in which one is missed, with the 95 % interval of Clopper and "
+      "Pearson (where none is missed, its upper bound is 3 over their number).",
+      grouped(total(rows, "placements")));
+  return out;
+}
+
+DataTable placement_table(const Rows& rows) {
+  DataTable out{.name = "radius-placements",
+                .caption =
+                    "Random placements in which FAR misses a colliding pair, of those in "
+                    "which one collides",
+                .columns = columns({"radius", "patches", "contact"},
+                                   {"side (px)", "subpixel bits", "resolution", "placements",
+                                    "with a miss", "missed pairs", "largest miss (px)"})};
+  for (const Row* row : rows) {
+    const PlacementScene scene = placement_of(*row);
+    out.rows.push_back(
+        {row->point.radius, scene.from, scene.contact, rounded(scene.side),
+         bits_of(*row) > 0 ? std::to_string(bits_of(*row)) : "not snapped",
+         std::to_string(row->point.resolution), count_cell(*row, "placements"), rate_of_rows({row}),
+         of_all({row}, "missed", "colliding"),
+         number_of(*row, "missed") > 0 ? rounded(count_or_none(*row, "largest_miss_px")) : "-"});
+  }
+  return out;
+}
+
 void add_misses(const Lines& depths, Chapter& chapter) {
   for (const auto& [depth, lines] : depths) {
     for (const auto& [scene, line] : lines) {
@@ -293,11 +543,13 @@ void add_misses(const Lines& depths, Chapter& chapter) {
 
 Chapter radius_chapter(const StoredStudy& stored) {
   Chapter out = begin_chapter(stored);
-  Rows lemmas, runs;
-  for (const Row* row : measured(stored)) (is_lemma(*row) ? lemmas : runs).push_back(row);
+  Rows lemmas, runs, placements;
+  for (const Row* row : measured(stored))
+    (is_lemma(*row) ? lemmas : is_placement(*row) ? placements : runs).push_back(row);
   const Lines generators = lines_of(lemmas, generator_of);
   const Lines together = lines_of(lemmas, [](const Row&) { return kAll; });
   const Lines misses = lines_of(runs, [](const Row& row) { return row.point.scene; });
+  add_headline(runs, placements, out);
   add_promises(stored, out);
   add_lemma_findings(lemmas, out);
   put_broken_first(out);
@@ -306,6 +558,10 @@ Chapter radius_chapter(const StoredStudy& stored) {
   out.limits = {
       "The points are drawn to find violations, so a share of violated points is no probability in "
       "a scene.",
+      "Placements are of patches of eight triangles alone, which meet by construction. A rate over "
+      "them is no rate over the pairs of a scene, where other triangles keep many of them.",
+      "Devices that snap are stood in for: the native canvas draws proxies whose corners are "
+      "rounded to the nearest subpixel. A2 allows a device twice that error.",
       "Below the budget a radius that violates nothing here is not thereby safe: another device "
       "may use the slack that this one leaves.",
       "Fixed-function depth is read from the depth buffer, and what rounding of the depth map "
@@ -313,12 +569,17 @@ Chapter radius_chapter(const StoredStudy& stored) {
       "shader computes, and must bound exactly."};
   add_gaps(stored, out);
   if (!lemmas.empty()) {
-    out.figures.push_back(lemma_figure(generators, together, total(lemmas, "points")));
+    out.figures.push_back(lemma_figure(generators, total(lemmas, "points")));
     out.tables.push_back(lemma_table("radius", "", together));
     out.tables.push_back(lemma_table("radius-generators", ", of every generator", generators));
     out.tables.back().in_text = false;
   }
   if (!misses.empty()) out.figures.push_back(miss_figure(misses));
+  if (!placements.empty()) {
+    Figure placed = placement_figure(placements);
+    if (!placed.panels.empty()) out.figures.push_back(std::move(placed));
+    out.tables.push_back(placement_table(placements));
+  }
   if (!lemmas.empty()) out.tables.push_back(all_table(lemmas));
   if (!runs.empty()) out.tables.push_back(miss_table(runs));
   return out;

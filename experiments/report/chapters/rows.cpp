@@ -7,6 +7,7 @@
 #include <map>
 
 #include "experiments/report/chapters/numbers.h"
+#include "experiments/studies/points.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
@@ -80,6 +81,7 @@ std::string contestant(const PointKey& point) {
   if (!point.radius.empty() && point.radius != "budget") {
     out += point.radius == "published" ? ", published radius" : ", radius " + point.radius;
   }
+  if (point.views == kBothDirections) out += ", both directions";
   return out;
 }
 
@@ -218,14 +220,12 @@ void add_promises(const StoredStudy& stored, Chapter& chapter) {
   if (kept(pairs)) {
     std::vector<std::string> names;
     for (const NamedRows& one : rows_by_contestant(pairs)) names.push_back(one.name);
-    chapter.find(
-        fmt::format("What promises keeps its promise: {} miss 0 of {} colliding pairs in {} runs.",
-                    listed(names), grouped(total(pairs, "colliding")), grouped(pairs.size())));
+    chapter.find(fmt::format("{} missed {} colliding pairs in {} runs.", listed(names),
+                             rate_text(0, total(pairs, "colliding")), grouped(pairs.size())));
   }
   if (kept(points)) {
-    chapter.find(
-        fmt::format("What the lemmas promise holds: 0 of {} points are violated in {} runs.",
-                    grouped(total(points, "points")), grouped(points.size())));
+    chapter.find(fmt::format("The lemmas are violated at {} points in {} runs.",
+                             rate_text(0, total(points, "points")), grouped(points.size())));
   }
   if (silent > 0) {
     chapter.find(fmt::format("{} of methods that promise {} not say what they missed.",

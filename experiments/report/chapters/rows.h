@@ -45,7 +45,8 @@ const Row* find_row(const Rows& rows, const std::string& name, int resolution);
 /// Every resolution above 0, that is: declared in pixels.
 std::set<int> resolutions_in(const Rows& rows);
 
-/// method_label(), with the radius where it is not the budget: "FAR (OBB), published radius".
+/// method_label(), with the radius where it is not the budget ("FAR (OBB), published radius"), and
+/// with views in both directions of each axis ("CULLIDE, one round, both directions").
 std::string contestant(const PointKey& point);
 
 /// A count that the study must have; 0 where it has not. (Rows of later versions may lack it.)

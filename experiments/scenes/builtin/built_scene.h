@@ -17,6 +17,7 @@ namespace farcull {
 struct SceneParameters {
   std::uint64_t size = 0;
   double second = 0;
+  std::optional<std::uint64_t> seed = {};  // of @seedN; empty: the scene's own
 };
 
 /// The range of the first number, as in field:1000000.

@@ -33,13 +33,15 @@ BuiltinScene taking(BuiltinScene entry, BuiltScene (*build)(const SceneParameter
 
 BuiltinScene drawn(BuiltinScene entry, std::uint64_t seed,
                    BuiltScene (*make)(const SceneParameters&, std::uint64_t)) {
-  entry.build = [make, seed](const SceneParameters& p) { return make(p, seed); };
+  entry.build = [make, seed](const SceneParameters& p) { return make(p, p.seed.value_or(seed)); };
   entry.seed = seed;
   return entry;
 }
 
 BuiltinScene drawn(BuiltinScene entry, std::uint64_t seed, Scene (*make)(std::uint64_t)) {
-  entry.build = [make, seed](const SceneParameters&) { return BuiltScene{make(seed), {}}; };
+  entry.build = [make, seed](const SceneParameters& p) {
+    return BuiltScene{make(p.seed.value_or(seed)), {}};
+  };
   entry.seed = seed;
   return entry;
 }

@@ -63,7 +63,7 @@ BuiltScene halfway(BuiltScene built);
 BuiltinScene made(BuiltinScene entry, Scene (*make)(), Motion (*moved)(const Scene&) = nullptr);
 /// An entry that takes numbers, and of which nothing is random.
 BuiltinScene taking(BuiltinScene entry, BuiltScene (*build)(const SceneParameters&));
-/// An entry that is drawn with a seed.
+/// An entry that is drawn with a seed: this one, or that of its parameters.
 BuiltinScene drawn(BuiltinScene entry, std::uint64_t seed,
                    BuiltScene (*make)(const SceneParameters&, std::uint64_t));
 BuiltinScene drawn(BuiltinScene entry, std::uint64_t seed, Scene (*make)(std::uint64_t));

@@ -16,6 +16,8 @@
 namespace farcull {
 namespace {
 
+constexpr const char* kSeedSuffix = "@seed";
+
 // The first number of a name, or the usual one.
 std::uint64_t size_of(const BuiltinScene& entry, const std::string& name, const std::string& word) {
   const SceneSize& range = *entry.size;
@@ -62,7 +64,20 @@ std::string suffix_names() {
   std::string names;
   for (const SceneSuffix& suffix : scene_suffixes())
     names += (names.empty() ? "" : ", ") + suffix.suffix;
-  return names;
+  return names + " or, for scenes that are drawn, " + kSeedSuffix + "N";
+}
+
+// The number of @seedN. Throws Error naming the scene.
+std::uint64_t seed_of_suffix(const BuiltinScene& entry, const std::string& name,
+                             const std::string& word) {
+  if (!entry.seed) {
+    throw Error(name, "nothing in " + entry.name + " is random",
+                "leave " + quote_token(word) + " out");
+  }
+  const auto seed = parse_number<std::uint64_t>(word.substr(std::string_view(kSeedSuffix).size()));
+  if (!seed || *seed == 0)
+    throw Error(name, quote_token(word) + " has no seed", "give 1 or more, as in @seed7");
+  return *seed;
 }
 
 }  // namespace
@@ -96,7 +111,9 @@ bool is_builtin_scene(const std::string& name) { return find_builtin_scene(name)
 
 std::optional<std::uint64_t> builtin_seed(const std::string& name) {
   const BuiltinScene* const entry = find_builtin_scene(name);
-  return entry == nullptr ? std::nullopt : entry->seed;
+  if (entry == nullptr) return {};
+  const std::optional<std::uint64_t> given = parse_scene_name(name).parameters.seed;
+  return given ? given : entry->seed;
 }
 
 SceneRequest parse_scene_name(const std::string& name) {
@@ -107,6 +124,11 @@ SceneRequest parse_scene_name(const std::string& name) {
   for (std::size_t at = std::min(name.find('@'), name.size()); at < name.size();) {
     const std::size_t end = std::min(name.find('@', at + 1), name.size());
     const std::string word = name.substr(at, end - at);
+    at = end;
+    if (word.starts_with(kSeedSuffix)) {
+      out.parameters.seed = seed_of_suffix(*out.entry, name, word);
+      continue;
+    }
     const auto& known = scene_suffixes();
     const auto found = std::find_if(known.begin(), known.end(),
                                     [&](const SceneSuffix& s) { return s.suffix == word; });
@@ -114,7 +136,6 @@ SceneRequest parse_scene_name(const std::string& name) {
       throw Error(name, quote_token(word) + " is no suffix of scenes", "use " + suffix_names());
     }
     out.suffixes.push_back(&*found);
-    at = end;
   }
   return out;
 }

@@ -474,6 +474,103 @@ TEST(NativeTriangles, DepthIsInterpolatedAtPixelCentres) {
 
 // ---- misuse ----
 
+// Whether the closed square of a pixel and a triangle with corners on the subpixel grid have a
+// point in common: a corner of one inside the other, or sides that cross. In whole subpixels.
+bool touches(const std::array<std::array<std::int64_t, 2>, 3>& t, std::int64_t x, std::int64_t y) {
+  constexpr std::int64_t kSide = 256;
+  using Point = std::array<std::int64_t, 2>;
+  const Point square[4] = {{x, y}, {x + kSide, y}, {x + kSide, y + kSide}, {x, y + kSide}};
+  const auto turn = [](const Point& a, const Point& b, const Point& c) {
+    const std::int64_t area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    return (area > 0) - (area < 0);
+  };
+  const auto between = [](const Point& a, const Point& b, const Point& p) {
+    return std::min(a[0], b[0]) <= p[0] && p[0] <= std::max(a[0], b[0]) &&
+           std::min(a[1], b[1]) <= p[1] && p[1] <= std::max(a[1], b[1]);
+  };
+  const auto meet = [&](const Point& a, const Point& b, const Point& c, const Point& d) {
+    const int abc = turn(a, b, c), abd = turn(a, b, d), cda = turn(c, d, a), cdb = turn(c, d, b);
+    if (abc * abd < 0 && cda * cdb < 0) return true;
+    return (abc == 0 && between(a, b, c)) || (abd == 0 && between(a, b, d)) ||
+           (cda == 0 && between(c, d, a)) || (cdb == 0 && between(c, d, b));
+  };
+  const auto inside = [&](const Point* of, int count, const Point& p) {
+    bool left = false, right = false;
+    for (int i = 0; i < count; ++i) {
+      const int side = turn(of[i], of[(i + 1) % count], p);
+      left |= side > 0;
+      right |= side < 0;
+    }
+    return !(left && right) && (left || right);
+  };
+  for (const Point& p : square) {
+    if (inside(t.data(), 3, p)) return true;
+  }
+  for (const Point& p : t) {
+    if (inside(square, 4, p)) return true;
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 4; ++k) {
+      if (meet(t[i], t[(i + 1) % 3], square[k], square[(k + 1) % 4])) return true;
+    }
+  }
+  return false;
+}
+
+// Points, slivers and triangles below a pixel among them. Corners lie on the subpixel grid, so that
+// snapping does not move them.
+TEST(NativeTriangles, ConservativelyCoverWhateverTheyTouch) {
+  constexpr int kSide = 16;
+  const Window window = lab::window(kSide);
+  const Fattener raw = raw_triangles();
+  on_every_target([&] {
+    NativeCanvas canvas(DepthMode::fixed, raw.solid, {.conservative = true});
+    NativeCanvas plain(DepthMode::fixed, raw.solid);
+    Random random(11);
+    int plain_lacks = 0;
+    for (int round = 0; round < 300; ++round) {
+      std::array<std::array<std::int64_t, 2>, 3> corners;
+      const int reach = 1 << random.below(12);
+      const std::int64_t at[2] = {random.below(kSide * 256), random.below(kSide * 256)};
+      Drawables drawables;
+      drawables.mode = DepthMode::fixed;
+      std::array<float, 12> t{};
+      double low = 1e9, high = -1e9;
+      for (int i = 0; i < 3; ++i) {
+        const double z = random.below(20) - 10;
+        low = std::min(low, z);
+        high = std::max(high, z);
+        for (int k = 0; k < 2; ++k) {
+          corners[i][k] =
+              std::clamp<std::int64_t>(at[k] + random.below(2 * reach + 1) - reach, 0, kSide * 256);
+          if (i == 2 && round % 5 == 0) corners[i][k] = corners[1][k];
+          t[4 * i + k] = static_cast<float>(corners[i][k] - kSide * 128) / 256;
+        }
+        t[4 * i + 2] = static_cast<float>(z);
+      }
+      drawables.triangles.push_back(t);
+      drawables.first.push_back(1);
+      canvas.begin(window, drawables);
+      plain.begin(window, drawables);
+      const std::vector<float> depths = canvas.depths(Verb::store, {{0, 0}});
+      const std::vector<float> usual = plain.depths(Verb::store, {{0, 0}});
+      const double scale = depth_scale(window);
+      for (int y = 0; y < kSide; ++y) {
+        for (int x = 0; x < kSide; ++x) {
+          const float depth = depths[y * kSide + x];
+          const bool touched = touches(corners, x * 256, y * 256);
+          ASSERT_EQ(depth < 1, touched) << "round " << round << " pixel " << x << " " << y;
+          plain_lacks += touched && usual[y * kSide + x] == 1;
+          if (!touched) continue;
+          EXPECT_GE(depth, 0.5 + low * scale - 0x1p-22);
+          EXPECT_LE(depth, 0.5 + high * scale + 0x1p-22);
+        }
+      }
+    }
+    EXPECT_GT(plain_lacks, 0) << "the twin: samples at centres do not cover all of them";
+  });
+}
+
 TEST(NativeCanvas, RefusesWhatItCannotDraw) {
   EXPECT_THROW(NativeCanvas(DepthMode::fragment, {}), std::logic_error);
   EXPECT_THROW(NativeCanvas(DepthMode::fixed, {}, {.depth_bits = 16}), Error);

@@ -46,6 +46,26 @@ for method in i-collide exact; do
   bad "$method with views" '--views: ' run two-spheres --method "$method" --views x
   bad "$method with a device" '--device: ' run two-spheres --method "$method" --device software
 done
+for rounds in '' 0 -1 x 1.5; do
+  bad "rounds '$rounds'" '--rounds: ' run two-spheres --method cullide --rounds "$rounds"
+done
+bad 'a clear rule that is none' '--clear: ' run two-spheres --method cullide --clear some
+bad 'a level that is none' '--level: ' run two-spheres --method cullide --level faces
+for option in '--rounds 1' '--clear all' '--level objects' '--conservative'; do
+  # shellcheck disable=SC2086
+  bad "far-pairs with $option" "${option%% *}: .*cullide" run two-spheres --method far-pairs $option
+  # shellcheck disable=SC2086
+  bad "compare without a use for $option" "${option%% *}: " compare two-spheres \
+    --methods far-pairs,exact $option
+done
+bad 'far drawn conservatively' '--conservative: .*cullide' run two-spheres --method far --conservative
+bad 's-cullide of objects alone' '--level: ' run folded.obj --method s-cullide --self --level objects
+bad 'far of objects alone against themselves' '--level: .*self' run cloth:400 --method far --self \
+  --level objects
+bad 'clusters of objects alone' '--clusters: ' run two-spheres --method cullide --level objects \
+  --clusters 8
+bad 'conservative without the extension' '--conservative: .*--device native' run two-spheres \
+  --method cullide --conservative --device software
 bad 'an unknown method' '--method: .*quick-cullide' run two-spheres --method quick
 for command in plan; do
   bad "$command without a scene" 'SCENE: ' "$command"
@@ -118,6 +138,20 @@ expect 'i-collide' "$out" '^colliding  298 pairs$'
 good 'i-collide in motion' 0 verify two-spheres --method i-collide --frames 3
 good 'clusters' 0 run crowd --method cullide --clusters 64,8 --resolution 64 --device software
 expect 'clusters' "$out" 'clusters of 8'
+good 'a form of cullide' 0 run crowd --method cullide --rounds 1 --clear all --conservative \
+  --views x,-x,y,-y,z,-z --resolution 64 --device native --json form.json
+expect 'a form of cullide' "$out" '^method     cullide at 64 px, --rounds 1 --clear all --conservative'
+expect 'a form of cullide' "$out" '^agree, round 1'
+expect 'a form of cullide' form.json '"rounds": 1'
+expect 'a form of cullide' form.json '"clear": "all"'
+expect 'a form of cullide' form.json '"level": "triangles"'
+expect 'a form of cullide' form.json '"conservative": true'
+good 'plan of a form' 0 plan crowd --method quick-cullide --rounds 1 --level objects
+expect 'plan of a form' "$out" '^further rounds +left out +--rounds 1'
+good 'forms of far' 0 verify crowd --method far --rounds 1 --clear all --resolution 64
+good 'compare forms' 0 compare two-spheres --methods far,cullide,exact --resolutions 64 --rounds 1 \
+  --level objects --device native
+expect 'compare forms' "$out" '^cullide --rounds 1 --level objects '
 good 'exact offsets' 0 verify crowd --method far --offset exact --resolution 64 --device software
 good 'full' 0 verify far-apart --method far-pairs --device cpu --full
 expect 'full' "$out" '^colliding  0 pairs$'

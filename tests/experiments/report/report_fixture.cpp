@@ -7,6 +7,7 @@
 // What is made up says so: the commit is "made-up".
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -36,9 +37,14 @@ std::uint64_t between(const PointKey& point, const std::string& name, double fro
 }
 
 bool reliable(const PointKey& point) {
-  return point.method != "cullide" && point.method != "quick-cullide" &&
-         point.method != "s-cullide" && point.radius != "published" &&
+  return point.method.find("cullide") == std::string::npos && point.radius != "published" &&
          point.method.find("float") == std::string::npos && point.depth_mode != "fixed";
+}
+
+// As the method asks for it: "cullide @4px".
+double mean_pixels(const PointKey& point) {
+  const std::size_t at = point.method.find('@');
+  return at == std::string::npos ? 0 : std::strtod(point.method.c_str() + at + 1, nullptr);
 }
 
 Measurement made_up(const PointKey& point) {
@@ -88,6 +94,12 @@ Measurement made_up(const PointKey& point) {
                 {"rounded", static_cast<std::uint64_t>(violations / 3)},
                 {"largest_px", violations > 0 ? unit(point, "largest") : 0.0},
                 {"largest_steps", violations > 0 ? 2 * unit(point, "largest") : 0.0},
+                {"placements", 1000},
+                {"colliding_placements", 900},
+                {"missed_placements", reliable(point) ? 0 : missed % 5},
+                {"largest_miss_px", reliable(point) ? 0.0 : unit(point, "miss")},
+                {"resolution", 200},
+                {"mean_pixels", mean_pixels(point)},
                 {"step_px", 0.001},
                 {"budget_px", 0.75}};
   const double ms = 0.5 * std::pow(10, 3 * unit(point, "ms"));

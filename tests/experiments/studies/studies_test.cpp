@@ -57,7 +57,8 @@ TEST_P(EveryStudy, HasEveryMethodWhereQuickToo) {
   const auto methods = [&](bool quick) {
     std::set<std::tuple<std::string, std::string, std::string>> out;
     for (const PointKey& point : keys_of(study().grid({.quick = quick}))) {
-      if (point.method != "s-cullide") out.insert({point.method, point.offset, point.depth_mode});
+      if (!point.method.starts_with("s-cullide"))
+        out.insert({point.method, point.offset, point.depth_mode});
     }
     return out;
   };

@@ -130,6 +130,69 @@ TEST(RadiusChapter, SaysWhereThePublishedRadiusFailsAndThatTheBudgetDoesNot) {
   EXPECT_NEAR(published.x.at(0), 0.7071 / 0.71, 1e-12);
 }
 
+PointKey placed_point(const std::string& method, const std::string& radius, const char* scene) {
+  PointKey out = far_point(radius);
+  out.scene = scene;
+  out.method = method;
+  out.resolution = 1024;
+  return out;
+}
+
+Json placed_counts(std::uint64_t missed, bool promises = false) {
+  return {{"placements", 1000},
+          {"colliding_placements", 900},
+          {"missed_placements", missed},
+          {"colliding", 4000},
+          {"missed", missed},
+          {"largest_miss_px", missed > 0 ? 0.25 : 0.0},
+          {"promises", promises}};
+}
+
+// The first thing that is said: on scenes nothing, at random so often, on constructed ones for
+// sure.
+TEST(RadiusChapter, BeginsWithHowOftenThePublishedRadiusMisses) {
+  PointKey corners = far_point("published");
+  corners.scene = "pixel-corners";
+  const auto chapter_of = [&](std::uint64_t on_scenes, std::uint64_t placed) {
+    Rows rows("radius");
+    rows.add(far_point("published"), {{"colliding", 20}, {"missed", on_scenes}})
+        .add(corners, {{"colliding", 100}, {"missed", 90}})
+        .add(placed_point("far-snapped-8", "published", "dragon-bunny@crossing:1:1000"),
+             placed_counts(placed))
+        .add(placed_point("far", "published", "dragon-bunny@crossing:1:1000"), placed_counts(0))
+        .add(placed_point("far-snapped-8", "budget", "dragon-bunny@crossing:1:1000"),
+             placed_counts(0, true));
+    return radius_chapter(rows.stored);
+  };
+  const Chapter chapter = chapter_of(0, 2);
+  ASSERT_GE(chapter.findings.size(), 3u);
+  EXPECT_EQ(printed(chapter.findings[0]),
+            "On scenes that were not constructed against it, the published radius missed 0 of 20 "
+            "(95 % bound: at most 0.14) colliding pairs in 1 run with fragment depth; its failure "
+            "end to end rests on the constructed pixel-corners, where it missed 90 of 100.");
+  EXPECT_TRUE(says(chapter.findings,
+                   "corners not snapped, the published radius missed something in "
+                   "0 of 900 (95 % bound: at most 0.0033) placements."));
+  EXPECT_TRUE(says(chapter.findings,
+                   "8 subpixel bits, the published radius missed something in "
+                   "2 of 900 (0.0022, 95 % interval 0.00027 to 0.0080) placements; "
+                   "the longest intersection that it missed is 0.250 px long."));
+  const auto figure = std::find_if(chapter.figures.begin(), chapter.figures.end(),
+                                   [](const Figure& f) { return f.name == "radius-placements"; });
+  ASSERT_NE(figure, chapter.figures.end());
+  EXPECT_EQ(figure->panels.at(0).series.at(0).x, (std::vector<double>{0, 8}));
+  EXPECT_FALSE(says(chapter.findings, "BROKEN"));
+  // The twin: a miss on a scene takes the sentence about constructed ones away.
+  EXPECT_FALSE(says(chapter_of(3, 2).findings, "rests on the constructed"));
+}
+
+TEST(RadiusChapter, ShoutsAMissedPlacementAtTheBudget) {
+  Rows rows("radius");
+  rows.add(placed_point("far-snapped-8", "budget", "dragon-bunny@crossing:1:1000"),
+           placed_counts(1, true));
+  EXPECT_TRUE(says(radius_chapter(rows.stored).findings, "BROKEN: dragon-bunny@crossing"));
+}
+
 TEST(RadiusChapter, SaysWhereThePublishedRadiusHolds) {
   Rows rows("radius");
   rows.add(lemma_point("needles", "published"), lemma_counts(0, 0, 0.7071));

@@ -237,6 +237,19 @@ TEST(BuiltinScenes, NeedlesOfBenchScenesAreObliqueAndTheirBoxesOverlap) {
   expect_needles(make_builtin_scene("needles-crossed"), 2);
 }
 
+TEST(BuiltinScenes, TakesASeedWhereItIsDrawn) {
+  const auto hash = [](const char* name) { return scene_hash(make_builtin_scene(name)); };
+  EXPECT_EQ(builtin_seed("needles:60@seed101"), 101u);
+  EXPECT_EQ(builtin_seed("needles:60"), 2u);
+  EXPECT_EQ(hash("needles:60@seed2"), hash("needles:60")) << "the seed that it has anyway";
+  EXPECT_NE(hash("needles:60@seed101"), hash("needles:60"));
+  EXPECT_EQ(hash("needles:60@seed101@far"), hash("needles:60@far@seed101"));
+  EXPECT_THROW(make_builtin_scene("two-tori@seed3"), Error);
+  for (const char* word : {"@seed", "@seed0", "@seed-1", "@seedx", "@seed1.5"}) {
+    EXPECT_THROW(make_builtin_scene(std::string("needles:60") + word), Error) << word;
+  }
+}
+
 TEST(BuiltinScenes, FieldHasTheSizeOfItsNameAndKeepsItsDensity) {
   EXPECT_EQ(scene_hash(make_builtin_scene("field")), scene_hash(make_builtin_scene("field:10000")));
   for (const std::uint64_t size : {1000, 10'000, 100'000, 1'000'000}) {

@@ -1,0 +1,330 @@
+// Patches grow over shared vertices from a triangle that is drawn. Cell (i, j) of n x n stands at
+// (i, j, i + j modulo n): no two cells share a place in any of the three axis views.
+#include "experiments/studies/placements.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/native/canvas.h"
+#include "experiments/method/plan.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/mesh/shapes.h"
+
+namespace farcull {
+namespace {
+
+using shapes::Corners;
+using shapes::Random;
+
+/// The native canvas as a device that snaps: corners of proxies are rounded to the nearest multiple
+/// of 2^-bits px, which A2 allows (docs/reliability.md).
+class SnappingCanvas final : public Canvas {
+ public:
+  SnappingCanvas(const Fattener& fattener, int bits, unsigned threads)
+      : native_(fattener.mode, fattener.solid, {.threads = threads}),
+        limits_(native_.limits()),
+        bits_(bits) {
+    if (bits_ == 0) return;
+    limits_.subpixel_bits = bits_;
+    limits_.exact_samples = false;
+  }
+
+  const RasterLimits& limits() const override { return limits_; }
+  void begin(const Window& window, const Drawables& drawables) override {
+    snapped_ = drawables;
+    if (bits_ > 0) {
+      const float grid = std::ldexp(1.0f, bits_);
+      for (Proxy& proxy : snapped_.proxies) {
+        for (float& x : proxy.corners) x = std::rint(x * grid) / grid;
+      }
+    }
+    native_.begin(window, snapped_);
+  }
+  std::vector<std::uint8_t> run(const Pass& pass) override { return native_.run(pass); }
+
+ private:
+  NativeCanvas native_;
+  RasterLimits limits_;
+  int bits_;
+  Drawables snapped_;
+};
+
+/// Cuts patches from an object. around: its triangles by vertex.
+class Quarry {
+ public:
+  Quarry(const Scene& scene, const Object& object,
+         const std::vector<std::vector<std::uint32_t>>& around)
+      : scene_(scene), object_(object), around_(around) {}
+
+  /// kPatchTriangles triangles: one that is drawn and those nearest to it over shared vertices;
+  /// what they lack (soups have no neighbours), drawn and put beside them. Scaled to `side`, the
+  /// mean of their longest sides, about their mean point, and turned.
+  std::vector<Corners> cut(Random& random, double side) const {
+    std::vector<std::uint32_t> taken = {random.below(object_.triangle_count)};
+    for (std::size_t i = 0; i < taken.size() && taken.size() < kPatchTriangles; ++i) {
+      for (const std::uint32_t v : triangle(taken[i])) {
+        for (const std::uint32_t t : around_[v]) {
+          if (taken.size() < kPatchTriangles &&
+              std::find(taken.begin(), taken.end(), t) == taken.end())
+            taken.push_back(t);
+        }
+      }
+    }
+    std::vector<Corners> out;
+    for (const std::uint32_t t : taken) out.push_back(corners_of(t));
+    const Vec3 middle = mean(out[0]);
+    const double reach = longest(out[0]);
+    while (out.size() < kPatchTriangles) {
+      Corners more = corners_of(random.below(object_.triangle_count));
+      // Of the size of the first, whose place says nothing about the others.
+      const double size = longest(more);
+      if (!(size > 0)) continue;
+      const Vec3 from = mean(more), to = middle + reach * random.in_ball();
+      for (Vec3& c : more) c = to + (c - from) * (reach / size);
+      out.push_back(more);
+    }
+    fit(out, side);
+    turn(out, random);
+    return out;
+  }
+
+  static Vec3 mean(const Corners& c) { return (c[0] + c[1] + c[2]) / 3; }
+  static double longest(const Corners& c) {
+    return std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
+  }
+
+ private:
+  std::array<std::uint32_t, 3> triangle(std::uint32_t t) const {
+    return scene_.triangles[object_.first_triangle + t];
+  }
+  Corners corners_of(std::uint32_t t) const { return scene_.corners(object_.first_triangle + t); }
+
+  static void fit(std::vector<Corners>& patch, double side) {
+    Vec3 middle = Vec3::Zero();
+    double sum = 0;
+    for (const Corners& c : patch) {
+      middle += mean(c) / static_cast<double>(patch.size());
+      sum += longest(c) / static_cast<double>(patch.size());
+    }
+    const double scale = sum > 0 ? side / sum : 0;
+    for (Corners& c : patch) {
+      for (Vec3& p : c) p = (p - middle) * scale;
+    }
+  }
+
+  // By a unit quaternion of four draws: no sines, so the same everywhere.
+  static void turn(std::vector<Corners>& patch, Random& random) {
+    Eigen::Quaterniond q;
+    do {
+      q = Eigen::Quaterniond(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1),
+                             random.between(-1, 1));
+    } while (!(q.squaredNorm() <= 1 && q.squaredNorm() > 0.01));
+    q.normalize();
+    const Eigen::Matrix3d by = q.toRotationMatrix();
+    for (Corners& c : patch) {
+      for (Vec3& p : c) p = by * p;
+    }
+  }
+
+  const Scene& scene_;
+  const Object& object_;
+  const std::vector<std::vector<std::uint32_t>>& around_;
+};
+
+Vec3 inner(const Corners& c, Random& random) {
+  double a = random.unit(), b = random.unit();
+  if (a + b > 1) {
+    a = 1 - a;
+    b = 1 - b;
+  }
+  return c[0] + a * (c[1] - c[0]) + b * (c[2] - c[0]);
+}
+
+void shift(std::vector<Corners>& patch, const Vec3& by) {
+  for (Corners& c : patch) {
+    for (Vec3& p : c) p += by;
+  }
+}
+
+// Moves the second patch so that a point of each is at the same place.
+void cross(const std::vector<Corners>& one, std::vector<Corners>& other, Random& random) {
+  const Vec3 to = inner(one[random.below(one.size())], random);
+  shift(other, to - inner(other[random.below(other.size())], random));
+}
+
+// Reflects and moves the second patch so that its corner farthest from its middle is below a
+// triangle of the first, by a part of its side (at most of a pixel) of any order of magnitude.
+void graze(const std::vector<Corners>& one, std::vector<Corners>& other, Random& random) {
+  const Corners& face = one[random.below(one.size())];
+  Vec3 normal = (face[1] - face[0]).cross(face[2] - face[0]);
+  Vec3 tip = Vec3::Zero();
+  for (const Corners& c : other) {
+    for (const Vec3& p : c) {
+      if (p.squaredNorm() > tip.squaredNorm()) tip = p;
+    }
+  }
+  if (!(normal.norm() > 0) || !(tip.norm() > 0)) {
+    cross(one, other, random);
+    return;
+  }
+  normal /= normal.norm();
+  // The reflection that takes the direction of the tip to that into the triangle.
+  const Vec3 across = tip / tip.norm() + normal;
+  const double square = across.squaredNorm();
+  const auto reflected = [&](const Vec3& p) -> Vec3 {
+    return square > 0 ? Vec3(p - 2 * across.dot(p) / square * across) : p;
+  };
+  for (Corners& c : other) {
+    for (Vec3& p : c) p = reflected(p);
+  }
+  const double depth = std::min(1.0, Quarry::longest(face)) * random.over_octaves(20);
+  shift(other, inner(face, random) - reflected(tip) - depth * normal);
+}
+
+// The side of a cell in pixels: room for two patches that touch, a ball and pixels around them.
+double cell_of(double side) { return std::ceil(10 * side + 6); }
+
+double reach_of(const std::vector<Corners>& patch) {
+  double out = 0;
+  for (const Corners& c : patch) {
+    for (const Vec3& p : c) out = std::max(out, p.lpNorm<Eigen::Infinity>());
+  }
+  return out;
+}
+
+}  // namespace
+
+PatchSource::PatchSource(Scene from) : from_(std::move(from)) {
+  for (std::size_t o = 0; o < 2; ++o) {
+    const Object& object = from_.objects.at(o);
+    around_[o].resize(from_.vertices.size());
+    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+      for (const std::uint32_t v : from_.triangles[object.first_triangle + t])
+        around_[o][v].push_back(t);
+    }
+  }
+}
+
+PlacedPatches PatchSource::place(bool grazing, double side, int resolution, std::uint64_t most,
+                                 std::uint64_t seed) const {
+  Random random(seed);
+  const Quarry first(from_, from_.objects[0], around_[0]),
+      second(from_, from_.objects[1], around_[1]);
+  const double cell = cell_of(side), room = 0.5 * cell - 2;
+  const auto n = static_cast<std::uint64_t>(std::floor(resolution / cell));
+  if (n < 1) throw std::logic_error("place_patches: the window is smaller than a placement");
+  PlacedPatches out;
+  std::vector<Corners> one, other;
+  for (std::uint64_t k = 0; k < n * n && out.placements < most; ++k) {
+    const auto i = static_cast<double>(k / n), j = static_cast<double>(k % n),
+               diagonal = static_cast<double>((k / n + k % n) % n);
+    std::vector<Corners> a, b;
+    do {  // Those that reach out of their cell would meet their neighbours, and are drawn again.
+      a = first.cut(random, side);
+      b = second.cut(random, side);
+      (grazing ? graze : cross)(a, b, random);
+    } while (std::max(reach_of(a), reach_of(b)) > room);
+    const Vec3 at = cell * Vec3(i, j, diagonal) + random.in_cube(0.5);
+    shift(a, at);
+    shift(b, at);
+    one.insert(one.end(), a.begin(), a.end());
+    other.insert(other.end(), b.begin(), b.end());
+    ++out.placements;
+  }
+  SceneBuilder scene("placements", "placements");
+  scene.add(shapes::soup(one), "first", Split::kNone, {});
+  scene.add(shapes::soup(other), "second", Split::kNone, {});
+  out.scene = scene.finish();
+  return out;
+}
+
+double intersection_length(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  std::vector<Vec3> points;
+  const auto pierce = [&points](const std::array<Vec3, 3>& face, const Vec3& p, const Vec3& q) {
+    const Vec3 normal = (face[1] - face[0]).cross(face[2] - face[0]);
+    const double from = normal.dot(p - face[0]), to = normal.dot(q - face[0]);
+    if (from * to > 0 || from == to) return;
+    const Vec3 x = p + from / (from - to) * (q - p);
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 side = face[(i + 1) % 3] - face[i];
+      if (normal.dot(side.cross(x - face[i])) < 0) return;
+    }
+    points.push_back(x);
+  };
+  for (int i = 0; i < 3; ++i) {
+    pierce(a, b[i], b[(i + 1) % 3]);
+    pierce(b, a[i], a[(i + 1) % 3]);
+  }
+  double length = 0;
+  for (const Vec3& p : points) {
+    for (const Vec3& q : points) length = std::max(length, (p - q).norm());
+  }
+  return length;
+}
+
+PointResult measure_placements(const PlacementPoint& point, Lab& lab) {
+  const PatchSource source(make_builtin_scene(point.from));
+  RunOptions options;
+  options.method = Method::far;
+  options.radius = point.radius;
+  options.depth = DepthMode::fragment;
+  options.resolution = point.resolution;
+  options.verify = false;
+  PlacementCounts counts;
+  counts.promises = promises(options);
+  PointResult out{.device = "native"};
+  for (std::uint64_t window = 0; counts.placements < point.placements; ++window) {
+    if (lab.progress()) {
+      lab.progress()(fmt::format("{} of {} placements", counts.placements, point.placements));
+    }
+    // The same scenes for every radius and number of bits.
+    const PlacedPatches placed =
+        source.place(point.grazing, point.side, point.resolution,
+                     point.placements - counts.placements, point.seed * 1000003 + window);
+    const Scene& scene = lab.scene(fmt::format("{} {} px, seed {}, window {}", key_of(point).scene,
+                                               point.resolution, point.seed, window),
+                                   [&] { return placed.scene; });
+    const Plan planned = plan(scene, options, lab.session().threads());
+    const auto& work = std::get<DrawPlan>(planned.work);
+    CullSettings settings = work.settings;
+    std::vector<std::uint8_t> kept(scene.triangles.size(), 0);
+    double pixel = 1;  // in units
+    if (!work.fatteners.empty()) {
+      settings.fattener = work.fatteners.front();
+      SnappingCanvas canvas(settings.fattener, point.subpixel_bits, lab.session().threads());
+      const CullResult result = cull(scene, work.regions, settings, canvas);
+      for (const std::uint32_t t : result.live) kept[t] = 1;
+      for (const ViewReport& view : result.views) {
+        if (view.drawn) pixel = std::min(pixel, view.pixel_size);
+        counts.radius_px = std::max(counts.radius_px, view.radius_px);
+        counts.budget_px = std::max(counts.budget_px, view.budget.radius());
+      }
+    }
+    counts.placements += placed.placements;
+    std::vector<std::uint8_t> collides(placed.placements), misses(placed.placements);
+    for (const TrianglePair& pair : lab.truth().pairs) {
+      const std::uint64_t at = pair.a / kPatchTriangles;
+      collides[at] = 1;
+      ++counts.colliding;
+      if (kept[pair.a] && kept[pair.b]) continue;
+      misses[at] = 1;
+      ++counts.missed;
+      counts.largest_miss_px =
+          std::max(counts.largest_miss_px,
+                   intersection_length(scene.corners(pair.a), scene.corners(pair.b)) / pixel);
+    }
+    counts.colliding_placements +=
+        static_cast<std::uint64_t>(std::count(collides.begin(), collides.end(), 1));
+    counts.missed_placements +=
+        static_cast<std::uint64_t>(std::count(misses.begin(), misses.end(), 1));
+  }
+  out.counts = counts;
+  return out;
+}
+
+}  // namespace farcull
