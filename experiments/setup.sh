@@ -28,12 +28,13 @@ farcull_packages=(
   libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev libhwy-dev libgtest-dev librapidcheck-dev libcli11-dev
   nlohmann-json3-dev libfmt-dev
   # results, pictures, figures
-  libsqlitecpp-dev libsqlite3-dev libpng-dev gnuplot-nox
+  libsqlitecpp-dev libsqlite3-dev libpng-dev libfreetype-dev fonts-dejavu-core gnuplot-nox
   # libraries that farcull bench compares with, and benchmarks of kernels; the build works without
   libfcl-dev libembree-dev libbullet-dev libode-dev libtbb-dev libbenchmark-dev
 )
-# What only the test of the report needs: it opens the page in a browser, prints it and reads the PDF.
-farcull_test_packages=(chromium poppler-utils sqlite3)
+# What only the tests of the report need: they open the page in a browser, print it and read the PDF, and
+# compile its LaTeX (39 MB to fetch, 124 MB on the disk; the browser alone takes 290 MB).
+farcull_test_packages=(chromium poppler-utils sqlite3 texlive-latex-base)
 
 # Prints those of farcull_packages that are not completely installed, one per line.
 farcull_missing() {
