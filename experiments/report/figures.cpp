@@ -109,7 +109,6 @@ class Script {
     line("  set output '" + name + ".svg'");
     line("}");
     line("set multiplot");
-    line("set errorbars 0.5");
     line("set border 3 lc rgb '#444444' lw 1");
     line("set grid xtics ytics back lt 1 lc rgb '#e4e4e4' lw 0.8, lt 0 lw 0");
     line("set tics nomirror out scale 0.6,0.3 textcolor rgb '#222222'");
@@ -245,6 +244,7 @@ class Script {
   bool add_data(const Series& series, const PlacedPanel& placed,
                 const std::vector<double>& shifts) {
     bool any = false;
+    x_bars_ = y_bars_ = false;
     std::string block =
         fmt::format("# {}\n# x y x_low x_high y_low y_high shift\n", gnuplot_text(series.name));
     const auto number = [](double v) {
@@ -263,13 +263,16 @@ class Script {
         block += "NaN NaN NaN NaN NaN NaN NaN\n";
         continue;
       }
+      const double x_low = end(series.x_low, i, placed.x), x_high = end(series.x_high, i, placed.x),
+                   y_low = end(series.y_low, i, placed.y), y_high = end(series.y_high, i, placed.y);
+      // Where no bar has a place, drawing bars would be a warning.
+      x_bars_ = x_bars_ || !std::isnan(x_low + x_high);
+      y_bars_ = y_bars_ || !std::isnan(y_low + y_high);
       const double part = shifts[i] / px;
       const double shift = along.logarithmic ? std::pow(along.to / along.from, part)
                                              : part * (along.to - along.from);
-      block += fmt::format(
-          "{} {} {} {} {} {} {}\n", number(x), number(y), number(end(series.x_low, i, placed.x)),
-          number(end(series.x_high, i, placed.x)), number(end(series.y_low, i, placed.y)),
-          number(end(series.y_high, i, placed.y)), number(shift));
+      block += fmt::format("{} {} {} {} {} {} {}\n", number(x), number(y), number(x_low),
+                           number(x_high), number(y_low), number(y_high), number(shift));
     }
     if (!any) return false;
     if (blocks_++ > 0) data_ += "\n\n";
@@ -282,18 +285,23 @@ class Script {
         std::find(names_.begin(), names_.end(), series.name) - names_.begin());
     const SeriesStyle& look = styles_[style];
     const char* const move = y.logarithmic ? "*" : "+";
-    const std::string from =
-        fmt::format("'{}.dat' index {} using 1:($2{}$7)", figure_.name, blocks_ - 1, move);
+    const std::string data = fmt::format("'{}.dat' index {}", figure_.name, blocks_ - 1);
+    const std::string from = fmt::format("{} using 1:($2{}$7)", data, move);
     const std::string lines =
         fmt::format("dt {} lw {} lc rgb '{}'", dash(style), width_of(style), look.colour);
     const std::string dots =
         fmt::format("pt {} ps {} lw 1.2 lc rgb '{}'", look.point, size_of(style), look.colour);
-    const std::string bars = fmt::format("pt 0 ps 0 dt solid lw 1.1 lc rgb '{}'", look.colour);
+    // Not gnuplot's error bars, which leave a gap around their point.
+    const std::string bars =
+        fmt::format("with vectors heads size screen 0.004,90 nofilled dt solid lw 1.1 lc rgb '{}'",
+                    look.colour);
     std::vector<std::string> parts;
-    if (!series.x_low.empty()) parts.push_back(from + ":3:4 with xerrorbars " + bars);
-    if (!series.y_low.empty())
+    if (x_bars_)
+      parts.push_back(fmt::format("{} using 3:($2{}$7):($4-$3):(0) {}", data, move, bars));
+    if (y_bars_) {
       parts.push_back(
-          fmt::format("{}:($5{}$7):($6{}$7) with yerrorbars {}", from, move, move, bars));
+          fmt::format("{0} using 1:($5{1}$7):(0):(($6{1}$7)-($5{1}$7)) {2}", data, move, bars));
+    }
     if (series.style != Series::Style::points) parts.push_back(from + " with lines " + lines);
     if (series.style != Series::Style::lines) parts.push_back(from + " with points " + dots);
     return fmt::format("{}", fmt::join(parts, ", \\\n  "));
@@ -347,6 +355,7 @@ class Script {
   std::vector<SeriesStyle> styles_;
   std::string script_, data_;
   std::size_t blocks_ = 0;
+  bool x_bars_ = false, y_bars_ = false;  // of the block that was added last
 };
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {

@@ -152,6 +152,12 @@ TEST(ReportStyle, AMethodLooksTheSameInEveryFigure) {
   EXPECT_EQ(colours.size(), 4u);
 }
 
+TEST(ReportStyle, SeveralThatAgreeLookLikeTheFirst) {
+  EXPECT_EQ(styles_of({"CULLIDE = Quick-CULLIDE"})[0].colour, styles_of({"CULLIDE"})[0].colour);
+  EXPECT_NE(styles_of({"CULLIDE = Quick-CULLIDE"})[0].colour,
+            styles_of({"Quick-CULLIDE"})[0].colour);
+}
+
 TEST(ReportStyle, WordsThatHoldAMethodsNameAreNone) {
   EXPECT_NE(styles_of({"farther"})[0].colour, styles_of({"far"})[0].colour);
 }
@@ -399,9 +405,9 @@ TEST(ReportFigures, BarsReachAsFarAsTheIntervals) {
   Series& series = figure.panels[0].series[0];
   series.y_low = {4, 6};
   series.y_high = {50, kNone};
-  EXPECT_NE(figure_script(figure).script.find("with yerrorbars"), std::string::npos);
+  EXPECT_NE(figure_script(figure).script.find("with vectors"), std::string::npos);
   EXPECT_GE(layout_of(figure).panels[0].y.to, 50);
-  EXPECT_EQ(figure_script(two_panels()).script.find("with yerrorbars"), std::string::npos);
+  EXPECT_EQ(figure_script(two_panels()).script.find("with vectors"), std::string::npos);
   // An end is missing.
   series.y_high.pop_back();
   EXPECT_THROW(figure_script(figure), std::logic_error);
@@ -468,6 +474,14 @@ Figure trap() {
             .name = "s'" + std::to_string(static_cast<int>(style)), .x = {0, 1, 2}, .y = y};
         series.style = style;
         series.emphasis = style == Series::Style::lines;
+        // Bars of every kind, and those of which none has a place.
+        if (style == Series::Style::points) series.y_low = series.y_high = {kNone, kNone, kNone};
+        if (style == Series::Style::lines) {
+          series.x_low = {0, 0.5, kNone};
+          series.x_high = {0.5, 2, 3};
+          series.y_low = y;
+          series.y_high = {7, 1e9, kNone};
+        }
         panel.series.push_back(series);
       }
       panel.marks = {{true, 1, "it's"}, {false, 0, "%d"}};
