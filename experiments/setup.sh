@@ -30,13 +30,14 @@ farcull_packages=(
   # compressed meshes
   zlib1g-dev
   # results, pictures, figures
-  libsqlitecpp-dev libsqlite3-dev libpng-dev gnuplot-nox
+  libsqlitecpp-dev libsqlite3-dev libpng-dev libfreetype-dev fonts-dejavu-core gnuplot-nox
   # libraries that farcull bench compares with, and benchmarks of kernels; the build works without
   libfcl-dev libembree-dev libbullet-dev libode-dev libtbb-dev libbenchmark-dev
 )
 # What only tests need, which skip what is missing and name it: the test of the report opens the page
-# in a browser, prints it and reads the PDF; another one reads the manual and tries completion.
-farcull_test_packages=(chromium poppler-utils sqlite3 mandoc groff-base man-db zsh fish)
+# in a browser, prints it, reads the PDF, and compiles its LaTeX (39 MB to fetch, 124 MB on the disk;
+# the browser alone takes 290 MB); another one reads the manual and tries completion.
+farcull_test_packages=(chromium poppler-utils sqlite3 texlive-latex-base mandoc groff-base man-db zsh fish)
 
 # Prints those of farcull_packages that are not completely installed, one per line.
 farcull_missing() {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "experiments/measure/peers/parts.h"
+#include "experiments/measure/statistics.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -22,9 +23,9 @@ struct Parts {
     exact.push_back(answer.exact_ms);
   }
   void write_to(BenchRow& row) const {
-    row.build_ms = spread_of(build).median;
-    row.candidates_ms = spread_of(candidates).median;
-    row.exact_ms = spread_of(exact).median;
+    row.build_ms = middle(build);
+    row.candidates_ms = middle(candidates);
+    row.exact_ms = middle(exact);
   }
 };
 

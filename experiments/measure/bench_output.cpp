@@ -127,16 +127,16 @@ std::string bench_table(const Scene& scene, const BenchOptions& options,
   if (const std::string line = not_asked_line(scene); !line.empty())
     out.insert(out.size() - 1, line);
   const BenchRow* best = best_far_pairs(result);
-  Table table("llrrrrrrrrrrrrr");
-  table.add({"", "device", "ms", "min", "max", "cold", "setup", "build", "find", "exact",
+  Table table("llrrrrrrrrrrrrrr");
+  table.add({"", "device", "ms", "low", "high", "n", "cold", "setup", "build", "find", "exact",
              "candidates", "pairs", "MiB", result.fastest_peer ? "x fastest" : "",
              best ? "x far-pairs" : ""});
   for (const BenchRow& row : result.rows) {
     const std::optional<double> ratio = ratio_to_fastest(result, row);
     table.add({row.name + (row.repeats == 0 ? " (once)" : ""), row.device, ms(row.total_ms.median),
-               ms(row.total_ms.min), ms(row.total_ms.max), ms(row.cold_ms), ms(row.setup_ms),
-               ms(row.build_ms), ms(row.candidates_ms), ms(row.exact_ms),
-               grouped(row.candidate_pairs), grouped(row.pairs),
+               ms(row.total_ms.low), ms(row.total_ms.high), std::to_string(row.total_ms.n),
+               ms(row.cold_ms), ms(row.setup_ms), ms(row.build_ms), ms(row.candidates_ms),
+               ms(row.exact_ms), grouped(row.candidate_pairs), grouped(row.pairs),
                row.peak_mib ? fmt::format("{:.1f}", *row.peak_mib) : "-",
                ratio ? fmt::format("{:.3f}", *ratio) : "",
                best ? fmt::format("{:.2f}", row.total_ms.median / best->total_ms.median) : ""});
@@ -144,13 +144,13 @@ std::string bench_table(const Scene& scene, const BenchOptions& options,
   out += table.text();
   for (const Contestant& c : result.left_out)
     out += fmt::format("left out: {}: {}\n", c.name, c.left_out);
-  out += fmt::format(
-      "\nms: from the triangles to the sorted pairs, median of {}; cold: the first run; setup: "
+  out +=
+      "\nms: from the triangles to the sorted pairs, median of n runs; low, high: its 95 % "
+      "interval "
+      "by the\nbootstrap, which fewer than 6 runs make too narrow; cold: the first run; setup: "
       "once, "
-      "not\ncounted; build, find, exact: its parts; MiB: resident at the peak of the cold run, "
-      "beyond "
-      "before.\n",
-      options.repeat);
+      "not counted;\nbuild, find, exact: its parts; MiB: resident at the peak of the cold run, "
+      "beyond before.\n";
   if (has_self(scene)) {
     out +=
         "candidates, pairs: without neighbours (farcull help terms); farcull run --self counts "

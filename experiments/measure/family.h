@@ -53,7 +53,8 @@ struct FamilyCell {
   bool broken() const;  // in any of its frames
 };
 
-/// The frame rate (1/s) that a paper gives for the scene, and where; 0 where there is none.
+/// The frame rate (1/s) that a paper gives for a scene like this one, measured on hardware of 2004
+/// with other meshes, and where; 0 where there is none. It is no rate to compare ours with.
 struct PaperRate {
   double fps = 0;
   std::string source;

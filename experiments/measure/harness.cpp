@@ -5,20 +5,22 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "experiments/measure/statistics.h"
 #include "experiments/method/run.h"
 #include "experiments/system/machine.h"
 
 namespace farcull {
 
-Spread spread_of(std::vector<double> values) {
+Spread spread_of(const std::vector<double>& values) {
   if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return {(values[(n - 1) / 2] + values[n / 2]) / 2, values.front(), values.back()};
+  const auto [min, max] = std::minmax_element(values.begin(), values.end());
+  const Estimate median = median_estimate(values);
+  return {median.value, *min, *max, median.low, median.high, median.n};
 }
 
 nlohmann::ordered_json to_json(const Spread& spread) {
-  return {{"median", spread.median}, {"min", spread.min}, {"max", spread.max}};
+  return {{"median", spread.median}, {"min", spread.min},   {"max", spread.max},
+          {"low", spread.low},       {"high", spread.high}, {"n", spread.n}};
 }
 
 std::size_t median_run(const std::vector<double>& ms) {

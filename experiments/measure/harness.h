@@ -14,12 +14,14 @@ namespace farcull {
 struct Record;
 
 /// Statistics of several values. median: the middle value; of an even number of values the mean of
-/// the two in the middle.
+/// the two in the middle. low, high: its 95 % interval (median_estimate()). n: how many values.
 struct Spread {
   double median = 0, min = 0, max = 0;
+  double low = 0, high = 0;
+  std::size_t n = 0;
 };
 /// All 0 where there are no values.
-Spread spread_of(std::vector<double> values);
+Spread spread_of(const std::vector<double>& values);
 nlohmann::ordered_json to_json(const Spread& spread);
 
 /// The index of the run with the median time, of an even number the faster of the two in the

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/scene/members.h"
 #include "experiments/measure/harness.h"
+#include "experiments/measure/statistics.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/scene_file.h"
@@ -64,8 +65,8 @@ std::string broken(const std::vector<SavingsRow>& rows, RunOptions options) {
   return "";
 }
 
-double SavingsRow::planned() const { return spread_of(planned_ms).median; }
-double SavingsRow::full() const { return spread_of(full_ms).median; }
+double SavingsRow::planned() const { return middle(planned_ms); }
+double SavingsRow::full() const { return middle(full_ms); }
 bool SavingsRow::pays() const { return planned() <= 1.05 * full() + 2; }
 
 std::vector<SavingsRow> run_savings(const SavingsArguments& arguments, const Progress& progress) {
@@ -104,19 +105,20 @@ std::vector<SavingsRow> run_savings(const SavingsArguments& arguments, const Pro
 }
 
 std::string savings_table(const std::vector<SavingsRow>& rows) {
-  Table table("llrrrrl");
-  table.add({"scene", "method", "planned ms", "full ms", "planned/full", "spread", ""});
+  Table table("llrrrrrl");
+  table.add({"scene", "method", "planned ms", "full ms", "planned/full", "95 %", "n", ""});
   for (const SavingsRow& row : rows) {
-    const Spread spread = spread_of(row.planned_ms);
+    const Estimate ratio = ratio_estimate(row.planned_ms, row.full_ms);
     table.add({row.scene, to_string(row.method), fmt::format("{:.2f}", row.planned()),
-               fmt::format("{:.2f}", row.full()), fmt::format("{:.2f}", row.planned() / row.full()),
-               fmt::format("{:.2f}-{:.2f}", spread.min, spread.max),
+               fmt::format("{:.2f}", row.full()), fmt::format("{:.2f}", ratio.value),
+               fmt::format("{:.2f} to {:.2f}", ratio.low, ratio.high), std::to_string(ratio.n),
                std::string(row.same_pairs ? "" : "DIFFERENT PAIRS ") +
                    (row.pays() ? "" : "slower than --full")});
   }
   return table.text() +
-         "\ncull + exact ms of the run as planned and of --full, medians; spread: of the planned "
-         "runs.\n";
+         "\ncull + exact ms of the run as planned and of --full, medians of n runs; 95 %: the "
+         "interval "
+         "of their\nratio by the bootstrap, which fewer than 6 runs make too narrow.\n";
 }
 
 nlohmann::ordered_json savings_json(const std::vector<SavingsRow>& rows,

@@ -11,6 +11,7 @@
 #include "commit.h"
 #include "core/base/error.h"
 #include "experiments/picture/depth.h"
+#include "experiments/picture/lettering.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/scene_file.h"
@@ -172,7 +173,8 @@ PngTexts provenance(const PictureArguments& arguments, const PictureResult& resu
       {"Scene", result.scene},
       {"Scene hash", result.scene_hash},
       {"Command", command_of(arguments)},
-      {"Drawn by", drawn_by.vendor + ", " + drawn_by.renderer + ", " + drawn_by.version}};
+      {"Drawn by", drawn_by.vendor + ", " + drawn_by.renderer + ", " + drawn_by.version},
+      {"Lettering", lettering_version()}};
   for (std::size_t i = 0; i < result.panels.size(); ++i) {
     const RunOptions& options = arguments.panels[i];
     const PanelResult& panel = result.panels[i];

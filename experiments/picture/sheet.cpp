@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/picture/bitmap_font.h"
+#include "experiments/picture/lettering.h"
 
 namespace farcull {
 namespace {

@@ -140,12 +140,15 @@ Scale logarithmic_scale(const Axis& axis, const std::vector<double>& values, std
   }
   scale.from = std::min(scale.from, least);
   scale.to = std::max(scale.to, most);
-  const double lowest = scale.from;
+  double lowest = scale.from;
   if (axis.shows_zero && zeros) {
-    const double decades = std::log10(scale.to / scale.from);
+    // Counts: linear from 0 to 1. Of what is below 1: to the power of ten below it.
+    lowest = least >= 1 ? 1 : power(static_cast<int>(std::floor(std::log10(least) + 1e-9)));
+    const double decades = std::log10(scale.to / lowest);
     // Not below what a double can be.
     const double band = std::min(std::max(0.3, 0.13 * decades), (std::log10(lowest) + 305) / 1.5);
     scale.zero = lowest * std::pow(10, -band);
+    scale.linear_to = lowest;
     scale.from = lowest * std::pow(10, -1.5 * band);
     scale.ticks.push_back({scale.zero, "0"});
   }
@@ -205,8 +208,13 @@ Scale linear_scale(const Axis& axis, const std::vector<double>& values, std::siz
 
 double Scale::place(double value) const {
   if (!std::isfinite(value)) return kNone;
-  if (!logarithmic || value > 0) return value;
-  return zero > 0 ? zero : kNone;
+  if (!logarithmic || (value > 0 && value >= linear_to)) return value;
+  if (linear_to == 0) return kNone;
+  return zero * std::pow(linear_to / zero, std::max(value, 0.0) / linear_to);
+}
+
+double Scale::along(double place) const {
+  return logarithmic ? std::log(place / from) / std::log(to / from) : (place - from) / (to - from);
 }
 
 std::size_t Scale::label_width() const {

@@ -18,10 +18,13 @@ struct Scale {
   bool logarithmic = false;
   double from = 0, to = 1;  // from < to; of a logarithmic one 0 < from
   double zero = 0;          // where zeros are drawn on a logarithmic axis; 0: nowhere
+  double linear_to = 0;     // with zeros: the axis is linear from 0 to this value
   std::vector<Tick> ticks;  // ascending, inside the range
 
   /// Where a value is drawn; NaN where it has no place (0 on a logarithmic axis without zeros).
   double place(double value) const;
+  /// How far along the axis a place is: 0 at its beginning, 1 at its end.
+  double along(double place) const;
   /// How many characters the longest label has.
   std::size_t label_width() const;
 };

@@ -2,6 +2,7 @@
 #include "experiments/report/figure_layout.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "experiments/report/style.h"
@@ -17,6 +18,9 @@ std::vector<double> values_along(const Panel& panel, bool horizontal) {
     // A point that has no place on the other axis is still part of this one's range.
     const std::vector<double>& values = horizontal ? series.x : series.y;
     out.insert(out.end(), values.begin(), values.end());
+    for (const auto* ends : horizontal ? std::array{&series.x_low, &series.x_high}
+                                       : std::array{&series.y_low, &series.y_high})
+      out.insert(out.end(), ends->begin(), ends->end());
   }
   for (const Mark& mark : panel.marks) {
     if (mark.vertical == horizontal) out.push_back(mark.at);
@@ -60,7 +64,7 @@ std::vector<double> scale_panels(const Figure& figure, Layout& out) {
 
 // Lays the key below the panels, which end at `top`, and ends the figure below it.
 void place_key(const Figure& figure, double top, Layout& out) {
-  const std::vector<std::string> names = series_names(figure);
+  const std::vector<std::string> names = key_names(figure);
   std::size_t longest = 1;
   for (const std::string& name : names) longest = std::max(longest, characters(name));
   const double entry = 52 + kCharacter * static_cast<double>(longest);
@@ -73,10 +77,62 @@ void place_key(const Figure& figure, double top, Layout& out) {
     out.key_columns = (names.size() + lines - 1) / lines;
     top = out.key_top + kLine * static_cast<double>(lines) + 6;
   }
+  if (std::any_of(out.panels.begin(), out.panels.end(),
+                  [](const PlacedPanel& p) { return p.x.linear_to > 0 || p.y.linear_to > 0; })) {
+    out.note = "Shaded: the axis is linear from 0 to the next number. Beyond, it is logarithmic.";
+    out.note_top = top;
+    top += kLine + 4;
+  }
   out.height = std::ceil(top);
 }
 
+constexpr double kSamePlace = 1.5;  // px: points that are nearer hide each other
+constexpr double kApart = 3;        // px
+
 }  // namespace
+
+std::vector<std::string> key_names(const Figure& figure) {
+  std::vector<std::string> out = series_names(figure);
+  for (const Panel& panel : figure.panels) {
+    for (const Mark& mark : panel.marks) {
+      if (!mark.name.empty() && std::find(out.begin(), out.end(), mark.name) == out.end())
+        out.push_back(mark.name);
+    }
+  }
+  return out;
+}
+
+std::vector<std::vector<double>> shifts_of(const Panel& panel, const PlacedPanel& placed) {
+  struct Point {
+    std::size_t series, index;
+    double x, y;  // px
+  };
+  std::vector<std::vector<double>> out;
+  std::vector<Point> points;
+  const double wide = placed.box.right - placed.box.left, high = placed.box.bottom - placed.box.top;
+  for (std::size_t s = 0; s < panel.series.size(); ++s) {
+    const Series& series = panel.series[s];
+    out.emplace_back(series.x.size(), 0.0);
+    for (std::size_t i = 0; i < series.x.size(); ++i) {
+      const double x = wide * placed.x.along(placed.x.place(series.x[i]));
+      const double y = high * placed.y.along(placed.y.place(series.y[i]));
+      if (std::isfinite(x) && std::isfinite(y)) points.push_back({s, i, x, y});
+    }
+  }
+  for (const Point& point : points) {
+    // One of each series: those of a cloud may hide each other.
+    std::vector<std::size_t> here;
+    for (const Point& other : points) {
+      if (std::abs(other.x - point.x) < kSamePlace && std::abs(other.y - point.y) < kSamePlace &&
+          (here.empty() || here.back() != other.series))
+        here.push_back(other.series);
+    }
+    const auto rank = std::find(here.begin(), here.end(), point.series) - here.begin();
+    const double middle = 0.5 * static_cast<double>(here.size() - 1);
+    out[point.series][point.index] = kApart * (middle - static_cast<double>(rank));
+  }
+  return out;
+}
 
 std::size_t columns_for(const Figure& figure) {
   const std::size_t panels = figure.panels.size();

@@ -33,8 +33,17 @@ struct Layout {
   std::vector<PlacedPanel> panels;
   double key_top = 0;
   std::size_t key_columns = 1;
+  std::string note;  // below the key: how to read axes that show zeros; empty: there is none
+  double note_top = 0;
   double height = 0;
 };
+
+/// The names of the key: of the series, then of the marks, each once.
+std::vector<std::string> key_names(const Figure& figure);
+
+/// For each series of a panel and each of its points, by how many px upwards it is drawn, so that
+/// points of several series at the same place stand above each other, 3 px apart.
+std::vector<std::vector<double>> shifts_of(const Panel& panel, const PlacedPanel& placed);
 
 /// How many panels stand side by side.
 std::size_t columns_for(const Figure& figure);

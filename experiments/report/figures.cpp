@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -36,6 +37,11 @@ void check(const Figure& figure) {
   for (const Panel& panel : figure.panels) {
     for (const Series& series : panel.series) {
       require(series.x.size() == series.y.size(), "x and y differ in length");
+      for (const auto& [low, high] :
+           {std::pair{&series.x_low, &series.x_high}, std::pair{&series.y_low, &series.y_high}}) {
+        require(low->size() == high->size() && (low->empty() || low->size() == series.x.size()),
+                "intervals differ in length from their points");
+      }
     }
   }
 }
@@ -46,6 +52,7 @@ class Script {
       : figure_(figure),
         layout_(layout_of(figure)),
         names_(series_names(figure)),
+        keys_(key_names(figure)),
         styles_(styles_of(names_)) {}
 
   FigureScript made() {
@@ -114,17 +121,28 @@ class Script {
   void key() {
     const std::size_t columns = layout_.key_columns;
     std::vector<double> widths(columns, 0);
-    for (std::size_t i = 0; i < names_.size(); ++i) {
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
       widths[i % columns] = std::max(widths[i % columns],
-                                     52 + kCharacter * static_cast<double>(characters(names_[i])));
+                                     52 + kCharacter * static_cast<double>(characters(keys_[i])));
     }
     double total = 0;
     for (const double width : widths) total += width;
     const double start = std::max(10.0, (kFigureWidth - total) / 2);
-    for (std::size_t i = 0; i < names_.size(); ++i) {
+    if (!layout_.note.empty()) {
+      line(fmt::format("set label {} at screen 0.5,{} center front textcolor rgb '#555555'",
+                       gnuplot_text(layout_.note), screen_y(layout_.note_top + 0.5 * kLine)));
+    }
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
       double x = start;
       for (std::size_t c = 0; c < i % columns; ++c) x += widths[c];
       const double y = layout_.key_top + kLine * (static_cast<double>(i / columns) + 0.5);
+      line(fmt::format("set label {} at screen {},{} left front textcolor rgb '#222222'",
+                       gnuplot_text(keys_[i]), screen_x(x + 38), screen_y(y)));
+      if (i >= names_.size()) {
+        line(fmt::format("set arrow from screen {0},{2} to screen {1},{2} {3}", screen_x(x),
+                         screen_x(x + 30), screen_y(y), look_of_mark(keys_[i])));
+        continue;
+      }
       const Series* series = first_of(names_[i]);
       const bool lines = series->style != Series::Style::points;
       const bool dots = series->style != Series::Style::lines;
@@ -134,8 +152,6 @@ class Script {
             "lc rgb '{4}' lw {5}",
             screen_x(x), screen_x(x + 30), screen_y(y), dash(i), styles_[i].colour, width_of(i)));
       }
-      line(fmt::format("set label {} at screen {},{} left front textcolor rgb '#222222'",
-                       gnuplot_text(names_[i]), screen_x(x + 38), screen_y(y)));
       if (dots) {
         line(fmt::format("set label '' at screen {},{} front point pt {} ps {} lc rgb '{}'",
                          screen_x(x + 15), screen_y(y), styles_[i].point, size_of(i),
@@ -151,6 +167,15 @@ class Script {
       }
     }
     throw std::logic_error("no series of that name");
+  }
+
+  // Marks are grey lines that differ in their dashes.
+  std::string look_of_mark(const std::string& name) const {
+    static const std::vector<std::string> kDashes = {"(6,4)", "(2,3)", "(12,4)", "(8,3,2,3)"};
+    const auto at =
+        static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), name) - keys_.begin()) -
+        names_.size();
+    return "nohead front lc rgb '#444444' lw 1.2 dt " + kDashes[at % kDashes.size()];
   }
 
   std::string dash(std::size_t style) const {
@@ -187,57 +212,67 @@ class Script {
     }
   }
 
-  // Zeros have a line of their own, which a thin one tells from the powers above or beside it.
-  void zero_lines(const Scale& x, const Scale& y) {
-    if (y.zero > 0) {
-      line(
-          fmt::format("set arrow from graph 0,first {0:.17g} to graph 1,first {0:.17g} nohead back "
-                      "lc rgb '#999999' lw 0.8 dt (2,4)",
-                      y.zero));
+  // Where an axis that shows zeros is linear it is shaded, with a line at 0.
+  void linear_parts(const Scale& x, const Scale& y) {
+    constexpr const char* kShade = "behind fillcolor rgb '#f1f1ee' fillstyle solid 1 noborder";
+    constexpr const char* kZero = "nohead back lc rgb '#999999' lw 0.8 dt (2,4)";
+    if (y.linear_to > 0) {
+      line(fmt::format("set object rectangle from graph 0,graph 0 to graph 1,first {:.17g} {}",
+                       y.linear_to, kShade));
+      line(fmt::format("set arrow from graph 0,first {0:.17g} to graph 1,first {0:.17g} {1}",
+                       y.zero, kZero));
     }
-    if (x.zero > 0) {
-      line(
-          fmt::format("set arrow from first {0:.17g},graph 0 to first {0:.17g},graph 1 nohead back "
-                      "lc rgb '#999999' lw 0.8 dt (2,4)",
-                      x.zero));
+    if (x.linear_to > 0) {
+      line(fmt::format("set object rectangle from graph 0,graph 0 to first {:.17g},graph 1 {}",
+                       x.linear_to, kShade));
+      line(fmt::format("set arrow from first {0:.17g},graph 0 to first {0:.17g},graph 1 {1}",
+                       x.zero, kZero));
     }
   }
 
+  // The key names it: a label inside the panel would lie over data.
   void mark(const Mark& mark, const PlacedPanel& placed) {
     const double at = (mark.vertical ? placed.x : placed.y).place(mark.at);
     if (std::isnan(at)) return;
-    constexpr const char* kLook = "nohead front lc rgb '#444444' lw 1.2 dt (6,4)";
-    constexpr const char* kText = "front textcolor rgb '#444444'";
-    if (mark.vertical) {
-      const Scale& x = placed.x;
-      const double along = x.logarithmic ? std::log(at / x.from) / std::log(x.to / x.from)
-                                         : (at - x.from) / (x.to - x.from);
-      line(fmt::format("set arrow from first {0:.17g},graph 0 to first {0:.17g},graph 1 {1}", at,
-                       kLook));
-      // Beside the line, on the side where there is room.
-      line(
-          fmt::format("set label {} at first {:.17g},graph 0.97 right rotate by 90 offset "
-                      "character {},0 {}",
-                      gnuplot_text(mark.name), at, along < 0.06 ? 0.8 : -0.8, kText));
-    } else {
-      line(fmt::format("set arrow from graph 0,first {0:.17g} to graph 1,first {0:.17g} {1}", at,
-                       kLook));
-      line(fmt::format("set label {} at graph 0.99,first {:.17g} right offset 0,character 0.5 {}",
-                       gnuplot_text(mark.name), at, kText));
-    }
+    const std::string from = mark.vertical ? fmt::format("first {:.17g},graph ", at) : "graph ";
+    const std::string end = mark.vertical ? "" : fmt::format(",first {:.17g}", at);
+    line(fmt::format("set arrow from {0}0{1} to {0}1{1} {2}", from, end, look_of_mark(mark.name)));
   }
 
-  // Adds the block of a series to the data. False where no point of it has a place.
-  bool add_data(const Series& series, const PlacedPanel& placed) {
+  // Adds the block of a series to the data: x, y, the ends of both intervals, and how far upwards
+  // the point is drawn (a factor on a logarithmic axis). False where no point of it has a place.
+  bool add_data(const Series& series, const PlacedPanel& placed,
+                const std::vector<double>& shifts) {
     bool any = false;
-    std::string block = fmt::format("# {}\n", gnuplot_text(series.name));
+    x_bars_ = y_bars_ = false;
+    std::string block =
+        fmt::format("# {}\n# x y x_low x_high y_low y_high shift\n", gnuplot_text(series.name));
+    const auto number = [](double v) {
+      return std::isnan(v) ? std::string("NaN") : fmt::format("{:.17g}", v);
+    };
+    const auto end = [](const std::vector<double>& ends, std::size_t i, const Scale& scale) {
+      return ends.empty() ? std::numeric_limits<double>::quiet_NaN() : scale.place(ends[i]);
+    };
+    const Scale& along = placed.y;
+    const double px = (placed.box.bottom - placed.box.top);
     for (std::size_t i = 0; i < series.x.size(); ++i) {
       const double x = placed.x.place(series.x[i]), y = placed.y.place(series.y[i]);
       const bool there = !std::isnan(x) && !std::isnan(y);
       any = any || there;
-      const auto number = [there](double v) { return there ? fmt::format("{:.17g}", v) : "NaN"; };
-      block += number(x) + " " + number(y);
-      block += "\n";
+      if (!there) {
+        block += "NaN NaN NaN NaN NaN NaN NaN\n";
+        continue;
+      }
+      const double x_low = end(series.x_low, i, placed.x), x_high = end(series.x_high, i, placed.x),
+                   y_low = end(series.y_low, i, placed.y), y_high = end(series.y_high, i, placed.y);
+      // Where no bar has a place, drawing bars would be a warning.
+      x_bars_ = x_bars_ || !std::isnan(x_low + x_high);
+      y_bars_ = y_bars_ || !std::isnan(y_low + y_high);
+      const double part = shifts[i] / px;
+      const double shift = along.logarithmic ? std::pow(along.to / along.from, part)
+                                             : part * (along.to - along.from);
+      block += fmt::format("{} {} {} {} {} {} {}\n", number(x), number(y), number(x_low),
+                           number(x_high), number(y_low), number(y_high), number(shift));
     }
     if (!any) return false;
     if (blocks_++ > 0) data_ += "\n\n";
@@ -245,20 +280,30 @@ class Script {
     return true;
   }
 
-  std::string plot_of(const Series& series) const {
+  std::string plot_of(const Series& series, const Scale& y) const {
     const auto style = static_cast<std::size_t>(
         std::find(names_.begin(), names_.end(), series.name) - names_.begin());
     const SeriesStyle& look = styles_[style];
-    const std::string from = fmt::format("'{}.dat' index {}", figure_.name, blocks_ - 1);
+    const char* const move = y.logarithmic ? "*" : "+";
+    const std::string data = fmt::format("'{}.dat' index {}", figure_.name, blocks_ - 1);
+    const std::string from = fmt::format("{} using 1:($2{}$7)", data, move);
     const std::string lines =
         fmt::format("dt {} lw {} lc rgb '{}'", dash(style), width_of(style), look.colour);
     const std::string dots =
         fmt::format("pt {} ps {} lw 1.2 lc rgb '{}'", look.point, size_of(style), look.colour);
+    // Not gnuplot's error bars, which leave a gap around their point.
+    const std::string bars =
+        fmt::format("with vectors heads size screen 0.004,90 nofilled dt solid lw 1.1 lc rgb '{}'",
+                    look.colour);
     std::vector<std::string> parts;
-    if (series.style != Series::Style::points)
-      parts.push_back(from + " using 1:2 with lines " + lines);
-    if (series.style != Series::Style::lines)
-      parts.push_back(from + " using 1:2 with points " + dots);
+    if (x_bars_)
+      parts.push_back(fmt::format("{} using 3:($2{}$7):($4-$3):(0) {}", data, move, bars));
+    if (y_bars_) {
+      parts.push_back(
+          fmt::format("{0} using 1:($5{1}$7):(0):(($6{1}$7)-($5{1}$7)) {2}", data, move, bars));
+    }
+    if (series.style != Series::Style::points) parts.push_back(from + " with lines " + lines);
+    if (series.style != Series::Style::lines) parts.push_back(from + " with points " + dots);
     return fmt::format("{}", fmt::join(parts, ", \\\n  "));
   }
 
@@ -274,7 +319,7 @@ class Script {
     axis("x", placed.x);
     axis("y", placed.y);
     axis_labels(panel, placed);
-    zero_lines(placed.x, placed.y);
+    linear_parts(placed.x, placed.y);
     if (!panel.title.empty()) {
       line(fmt::format("set label {} at screen {},{} left front textcolor rgb '#000000'",
                        gnuplot_text(panel.title), screen_x(box.left), screen_y(box.top - 12)));
@@ -282,10 +327,12 @@ class Script {
     for (const Mark& m : panel.marks) mark(m, placed);
     // Emphasised ones last, above the others.
     std::vector<std::string> plots;
+    const std::vector<std::vector<double>> shifts = shifts_of(panel, placed);
     for (const bool emphasis : {false, true}) {
-      for (const Series& series : panel.series) {
-        if (series.emphasis == emphasis && add_data(series, placed))
-          plots.push_back(plot_of(series));
+      for (std::size_t i = 0; i < panel.series.size(); ++i) {
+        const Series& series = panel.series[i];
+        if (series.emphasis == emphasis && add_data(series, placed, shifts[i]))
+          plots.push_back(plot_of(series, placed.y));
       }
     }
     if (plots.empty()) {
@@ -299,14 +346,16 @@ class Script {
     line(fmt::format("plot {}", fmt::join(plots, ", \\\n  ")));
     line("unset label");
     line("unset arrow");
+    line("unset object");
   }
 
   const Figure& figure_;
   Layout layout_;
-  std::vector<std::string> names_;
+  std::vector<std::string> names_, keys_;  // of series, and those of the key
   std::vector<SeriesStyle> styles_;
   std::string script_, data_;
   std::size_t blocks_ = 0;
+  bool x_bars_ = false, y_bars_ = false;  // of the block that was added last
 };
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {

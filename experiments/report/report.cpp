@@ -27,6 +27,8 @@
 #include "experiments/report/chapters/rows.h"
 #include "experiments/report/figures.h"
 #include "experiments/report/gnuplot.h"
+#include "experiments/report/latex.h"
+#include "experiments/report/legible.h"
 #include "experiments/report/markdown.h"
 #include "experiments/report/pictures.h"
 #include "experiments/report/tables.h"
@@ -243,7 +245,8 @@ class Reporter {
       summary_.notes.push_back(fmt::format("{}: {} of {} points have a row", drawn.chapter.study,
                                            stored.rows.size(), stored.declaration.points.size()));
     }
-    for (const Figure& figure : drawn.chapter.figures) {
+    for (Figure& figure : drawn.chapter.figures) {
+      figure = legible(std::move(figure));
       say("drawing " + figure.name);
       name(figure.name, names_of_figures_);
       draw_figure(figure, figures_);
@@ -268,6 +271,7 @@ class Reporter {
   ReportSummary finish() {
     write_output(root_ + "/index.html", page_html(page));
     write_output(root_ + "/results.md", page_markdown(page, request_.folder));
+    write_output(root_ + "/report.tex", page_latex(page));
     return std::move(summary_);
   }
 

@@ -58,7 +58,8 @@ std::string words_of(std::string_view name) {
 }
 
 const Known* known_of(const std::string& name) {
-  const std::string words = words_of(name);
+  // Of several that agree, "A = B", the first.
+  const std::string words = words_of(std::string_view(name).substr(0, name.find(" = ")));
   for (const Known& k : known()) {
     if (words.find(" " + std::string(k.words) + " ") != std::string::npos) return &k;
   }

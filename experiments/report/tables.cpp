@@ -127,6 +127,9 @@ std::string latex_text(const std::string& text) {
       case '>':
         out += "$>$";
         break;
+      case '|':
+        out += "$|$";
+        break;
       case '`':
         break;
       default:

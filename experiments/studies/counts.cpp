@@ -110,6 +110,7 @@ Measurement stored(const PointResult& result) {
   for (const auto& [name, ms] : times) {
     if (ms) out.times[name] = *ms;
   }
+  if (!t.totals.empty()) out.times["totals"] = t.totals;
   return out;
 }
 

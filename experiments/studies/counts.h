@@ -101,6 +101,7 @@ struct PointTimes {
   std::optional<double> total = {};  // without setup
   std::optional<double> setup = {};
   std::optional<double> total_min = {}, total_max = {};  // of several runs
+  std::vector<double> totals = {};                       // of several runs, each, in their order
 };
 
 /// The result of a point.

@@ -87,9 +87,10 @@ std::pair<Outcome, std::vector<double>> repeat_point(const Point& point, int rep
 }
 
 void add_extremes(PointTimes& times, const std::vector<double>& ms) {
-  const Spread spread = spread_of(ms);
-  times.total_min = spread.min;
-  times.total_max = spread.max;
+  const auto [least, most] = std::minmax_element(ms.begin(), ms.end());
+  times.total_min = *least;
+  times.total_max = *most;
+  times.totals = ms;
 }
 
 Peer peer_named(const std::string& name, unsigned threads) {

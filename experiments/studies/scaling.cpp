@@ -28,8 +28,10 @@ std::vector<Case> cases(bool quick) {
   const auto add = [&out](std::string scene, int resolution, bool drawn) {
     out.push_back({std::move(scene), resolution, drawn});
   };
+  // At least six sizes of each, so that a fitted exponent has an interval.
   // Objects: of about the same size, in a box that grows with their number.
-  for (const int n : quick ? std::vector{10, 20, 40} : std::vector{25, 50, 100, 200, 400, 800}) {
+  for (const int n :
+       quick ? std::vector{5, 10, 20, 40, 80, 160} : std::vector{25, 50, 100, 200, 400, 800}) {
     add(fmt::format("crowd:{}", n), kUsual, true);
   }
   if (!quick) {
@@ -37,27 +39,28 @@ std::vector<Case> cases(bool quick) {
   }
   // Density: the same objects closer together. What collides grows with it.
   const int objects = quick ? 20 : 100;
-  for (const double density : {0.05, 0.1, 0.2, 0.4, 0.8}) {
-    if (quick && (density < 0.1 || density > 0.5)) continue;
+  for (const double density : {0.05, 0.1, 0.2, 0.4, 0.8, 1.6}) {
     add(fmt::format("crowd:{}:{}", objects, density), kUsual, true);
   }
   // Polygons: six tori, ever finer.
-  for (const int n : quick ? std::vector{72, 200, 500} : std::vector{72, 200, 400, 800, 1600}) {
+  for (const int n :
+       quick ? std::vector{72, 128, 200, 320, 500, 800} : std::vector{72, 200, 400, 800, 1600}) {
     add(fmt::format("torii:{}", n), kUsual, true);
   }
   if (!quick) {
     for (const int n : {5000, 20000, 80000}) add(fmt::format("torii:{}", n), kUsual, n <= 5000);
   }
   // Pixels.
-  for (const int pixels :
-       quick ? std::vector{64, 128, 256} : std::vector{64, 128, 256, 512, 1024, 2048}) {
+  for (const int pixels : quick ? std::vector{32, 64, 128, 256, 512, 1024}
+                                : std::vector{64, 128, 256, 512, 1024, 2048}) {
     add("two-spheres", pixels, true);
   }
   return out;
 }
 
-// Times vary by a third on a shared machine; the methods that take less are run more often.
-int repeats_of(Method method) { return method == far || method == cullide ? 3 : 5; }
+// Times vary by a third on a shared machine. Nine runs are the fewest odd number whose bootstrap
+// interval contains the median with 95 % (docs/experiments.md, "Statistics").
+constexpr int kRepeat = 9;
 
 std::vector<RunPoint> points_of(const Case& c) {
   const NamedScene scene{c.scene};
@@ -71,7 +74,7 @@ std::vector<RunPoint> points_of(const Case& c) {
     const bool pixels = method == far_pairs && c.scene == "two-spheres";
     out.push_back(plain_point(scene, method, pixels ? c.resolution : 0));
   }
-  for (RunPoint& point : out) point.repeat = repeats_of(point.method);
+  for (RunPoint& point : out) point.repeat = kRepeat;
   return out;
 }
 

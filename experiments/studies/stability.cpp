@@ -88,6 +88,7 @@ PointResult measure(const Point& point, Lab& lab) {
     times.total = *times.build + *times.cull + *times.exact;
     times.total_min.reset();
     times.total_max.reset();
+    times.totals.clear();
   }
   return out;
 }

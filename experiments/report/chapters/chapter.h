@@ -17,19 +17,22 @@ struct Series {
   std::vector<double> x = {}, y = {};
   enum class Style { lines_points, lines, points } style = Style::lines_points;
   bool emphasis = false;  // drawn thick: ours, or the one that the figure is about
+  /// Intervals along an axis, drawn as bars: both of the length of x, or both empty. NaN: no bar.
+  std::vector<double> x_low = {}, x_high = {}, y_low = {}, y_high = {};
 };
 
-/// A vertical or horizontal line with a name, such as the budget radius.
+/// A vertical or horizontal line, such as the budget radius. The key names it.
 struct Mark {
   bool vertical = true;
   double at = 0;
   std::string name;
 };
 
-/// log10 of what is 0 or less does not exist: on a logarithmic axis `zero` says where zeros are
-/// drawn, on a line of their own below the smallest power that the plot shows, labelled 0.
+/// log10 of what is 0 or less does not exist. A logarithmic axis that shows zeros is linear from 0
+/// to 1 (where values are below 1: to a power of ten below them all) and logarithmic beyond. The
+/// linear part is shaded, and the figure says so.
 struct Axis {
-  std::string label;  // with the unit
+  std::string label;  // with the unit in brackets, "time (ms)"
   bool logarithmic = false;
   bool shows_zero = false;  // of a logarithmic axis: see above
   std::optional<double> from = {}, to = {};

@@ -88,6 +88,16 @@ Series over_frames(const MovingRows& rows, const std::string& name, const std::s
   return out;
 }
 
+// "n = 12 frames of each scene, each run once".
+std::string frames_text(const std::vector<MovingRows>& scenes) {
+  std::set<std::size_t> counts;
+  for (const MovingRows& rows : scenes) counts.insert(rows.frames.size());
+  if (counts.empty()) return "n = 0";
+  return fmt::format("n = {}{} of each scene, each run once",
+                     counts.size() == 1 ? "" : fmt::format("{} to ", *counts.begin()),
+                     counted(*counts.rbegin(), "frame"));
+}
+
 Axis frames_axis(const std::vector<MovingRows>& scenes) {
   Axis out{.label = "frame", .from = 0, .to = 1};
   for (const MovingRows& rows : scenes)
@@ -114,7 +124,8 @@ Figure kept_figure(const std::vector<MovingRows>& scenes) {
   out.caption =
       "I-COLLIDE as published ends with the objects whose boxes meet (all their triangles), ours "
       "goes on to boxes of triangles. FAR is drawn with both offsets. No method can leave fewer "
-      "than the triangles that collide.";
+      "than the triangles that collide. " +
+      frames_text(scenes) + ".";
   return out;
 }
 
@@ -140,8 +151,13 @@ Figure quick_figure(const std::vector<MovingRows>& scenes) {
   }
   out.caption =
       "Each runs until a round changes nothing. Below 1 Quick-CULLIDE does less. Both miss pairs, "
-      "so they do not have the same answer.";
+      "so they do not have the same answer. " +
+      frames_text(scenes) + ".";
   return out;
+}
+
+std::string median_text(const std::vector<double>& values) {
+  return estimate_text(median_estimate(values));
 }
 
 DataTable factor_table(const std::vector<MovingRows>& scenes) {
@@ -149,17 +165,17 @@ DataTable factor_table(const std::vector<MovingRows>& scenes) {
       .name = "efficiency-factors",
       .caption =
           "How many times more I-COLLIDE leaves than FAR: triangles of the objects "
-          "whose boxes meet, triangles whose boxes meet, and pairs of them; median "
-          "(least to largest) of the frames in which FAR keeps something",
+          "whose boxes meet, triangles whose boxes meet, and pairs of them; median of the frames "
+          "in which FAR keeps something, with its 95 % interval over these frames",
       .columns = columns({"scene", "offset"}, {"frames", "objects", "triangles", "pairs"})};
   for (const MovingRows& rows : scenes) {
     for (const std::string method : {kObb, kExact}) {
       if (!rows.of.contains(method)) continue;
       const auto objects = factors(rows, method, "object_triangles", "kept_triangles");
       out.rows.push_back({rows.scene, method == kObb ? "OBB" : "exact", grouped(objects.size()),
-                          spread(objects),
-                          spread(factors(rows, method, "kept_triangles", "kept_triangles")),
-                          spread(factors(rows, method, "candidates", "candidates"))});
+                          median_text(objects),
+                          median_text(factors(rows, method, "kept_triangles", "kept_triangles")),
+                          median_text(factors(rows, method, "candidates", "candidates"))});
     }
   }
   return out;
@@ -204,8 +220,9 @@ DataTable time_table(const std::vector<MovingRows>& scenes) {
   const std::vector<std::string> methods = {kObb, kExact, kPlain, kQuick, "FAR pairs", kBoxes};
   DataTable out{.name = "efficiency-times",
                 .caption =
-                    "Milliseconds from moved vertices to exact pairs, median of the frames that "
-                    "all methods of the scene have",
+                    "Time in ms from moved vertices to exact pairs: median of the frames that all "
+                    "methods of the scene have, with its 95 % interval over these frames, each run "
+                    "once",
                 .columns = columns({"scene"}, {"triangles", "frames"})};
   for (const std::string& method : methods) out.columns.push_back({method});
   for (const MovingRows& rows : scenes) {
@@ -221,7 +238,7 @@ DataTable time_table(const std::vector<MovingRows>& scenes) {
           if (const auto ms = time_of(*row, "total")) times.push_back(*ms);
         }
       }
-      cells.push_back(times.empty() ? "-" : rounded(median(times)));
+      cells.push_back(median_text(times));
     }
     out.rows.push_back(std::move(cells));
   }
@@ -287,10 +304,13 @@ void add_missed_finding(const StoredStudy& stored, Chapter& chapter) {
   std::vector<std::string> parts;
   for (const char* method : {kObb, kExact, "FAR pairs", kBoxes, kPlain, kQuick}) {
     if (const auto at = of.find(method); at != of.end())
-      parts.push_back(fmt::format("{} {}", method, of_all(at->second, "missed", "colliding")));
+      parts.push_back(
+          fmt::format("{} {}", method,
+                      with_bound(total(at->second, "missed"), total(at->second, "colliding"))));
   }
   if (!parts.empty()) {
-    chapter.find("Colliding pairs missed in all frames: " + listed(parts) + ".");
+    chapter.find("Colliding pairs missed in all frames (bounds at 95 %, 3/N): " + listed(parts) +
+                 ".");
   }
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "experiments/measure/statistics.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
@@ -60,6 +61,13 @@ std::optional<double> count_of(const Row& row, const std::string& name) {
 
 std::optional<double> time_of(const Row& row, const std::string& name) {
   return number_in(*row.measurement.times, name);
+}
+
+std::vector<double> runs_of(const Row& row) {
+  const auto& times = *row.measurement.times;
+  const auto it = times.find("totals");
+  return it != times.end() && it->is_array() ? it->get<std::vector<double>>()
+                                             : std::vector<double>();
 }
 
 bool flag_of(const Row& row, const std::string& name) {
@@ -144,7 +152,16 @@ std::optional<Exponent> exponent_of(const std::vector<double>& x, const std::vec
   }
   out.error = std::sqrt(residuals / (n - 2) / uu);
   out.points = u.size();
+  const double reach = student_t95(u.size() - 2) * out.error;
+  out.low = out.value - reach;
+  out.high = out.value + reach;
   return out;
+}
+
+std::string exponent_text(const Exponent& e) {
+  return e.points < kFewestForInterval
+             ? fmt::format("{:.2f} (no interval of {} points)", e.value, e.points)
+             : fmt::format("{:.2f} ({:.2f} to {:.2f})", e.value, e.low, e.high);
 }
 
 std::string rounded(double value, int digits) {

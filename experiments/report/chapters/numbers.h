@@ -23,6 +23,8 @@ inline double count_or_none(const Row& row, const std::string& name) {
 inline double time_or_none(const Row& row, const std::string& name) {
   return time_of(row, name).value_or(kNone);
 }
+/// Each run of a row in ms, in their order; empty where the row does not hold them.
+std::vector<double> runs_of(const Row& row);
 /// Whether a row has a count of that name that is true.
 bool flag_of(const Row& row, const std::string& name);
 
@@ -51,15 +53,20 @@ Rate rate_of(std::uint64_t hits, std::uint64_t of);
 std::string rate_text(std::uint64_t hits, std::uint64_t of);
 
 /// The exponent b of y = a x^b by least squares in logarithms, with its standard error (from the
-/// residuals; none of the model itself).
+/// residuals; none of the model itself) and its 95 % interval by Student's t.
 struct Exponent {
   double value = 0, error = 0;
+  double low = 0, high = 0;
   double from = 0, to = 0;  // of x
   std::size_t points = 0;
 };
 /// Pairs that are not both positive are left out. Empty where fewer than three are left, or x does
 /// not differ.
 std::optional<Exponent> exponent_of(const std::vector<double>& x, const std::vector<double>& y);
+/// An interval of fewer points says little, since t is large: it is not given.
+constexpr std::size_t kFewestForInterval = 6;
+/// "0.77 (0.58 to 0.96)", or "0.77 (no interval of 4 points)".
+std::string exponent_text(const Exponent& exponent);
 
 /// Three significant digits, all of a whole number, thousands grouped: 0.0123, 1.50, 3, 12,346.
 std::string rounded(double value, int digits = 3);

@@ -23,6 +23,11 @@ struct Quantity {
   double (*value)(const Row&);
 };
 
+double ms_of(const Row& row) {
+  const std::optional<Estimate> ms = time_estimate(row);
+  return ms ? ms->value : kNone;
+}
+
 constexpr Quantity kQuantities[] = {
     {"offsets-kept", "Triangles that are left to exact tests", "kept triangles",
      [](const Row& row) { return count_or_none(row, "kept_triangles"); }},
@@ -30,8 +35,7 @@ constexpr Quantity kQuantities[] = {
      false_positives},
     {"offsets-fragments", "Fragments of one drawing of all triangles in every view", "fragments",
      [](const Row& row) { return count_or_none(row, "fragments"); }},
-    {"offsets-time", "Time from triangles to pairs", "time (ms)",
-     [](const Row& row) { return time_or_none(row, "total"); }},
+    {"offsets-time", "Time from triangles to pairs", "time (ms)", ms_of},
 };
 
 Figure figure_of(const std::vector<NamedRows>& scenes, const Quantity& quantity) {
@@ -43,16 +47,17 @@ Figure figure_of(const std::vector<NamedRows>& scenes, const Quantity& quantity)
     for (NamedRows method : rows_by_contestant(scene.rows)) {
       std::erase_if(method.rows, [](const Row* row) { return row->point.resolution <= 0; });
       if (method.rows.empty()) continue;
-      panel.series.push_back(series_of(
-          method.name, method.rows, [](const Row& row) { return row.point.resolution; },
-          quantity.value));
+      const Value x = [](const Row& row) { return row.point.resolution; };
+      panel.series.push_back(quantity.value == ms_of
+                                 ? times_of(method.name, method.rows, x)
+                                 : series_of(method.name, method.rows, x, quantity.value));
     }
     out.panels.push_back(std::move(panel));
   }
   return out;
 }
 
-std::vector<Figure> figures_of(const std::vector<NamedRows>& scenes) {
+std::vector<Figure> figures_of(const std::vector<NamedRows>& scenes, const Rows& rows) {
   std::vector<Figure> out;
   for (const Quantity& quantity : kQuantities) out.push_back(figure_of(scenes, quantity));
   out[0].caption =
@@ -64,26 +69,34 @@ std::vector<Figure> figures_of(const std::vector<NamedRows>& scenes) {
       "entries in the lists of pixels, one for each triangle and pixel that it may touch, in the "
       "views that it looked with.";
   out[3].caption =
-      "The median of several runs, without contexts and shaders. FAR with exact "
-      "offsets draws boxes first.";
+      "Medians of the runs with their 95 % intervals as bars, without contexts and shaders. FAR "
+      "with exact offsets draws boxes first.";
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i].caption += i == 3 ? fmt::format(" {}.", sample_text(rows))
+                             : fmt::format(" n = {}.", counted(rows.size(), "point"));
+  }
   return out;
 }
 
 DataTable table_of(const Rows& rows) {
-  const RowColumn pixels = {{"px"},
+  const RowColumn pixels = {{"resolution (px)"},
                             [](const Row& row) { return std::to_string(row.point.resolution); }};
   const RowColumn false_ones = {{"false positives"},
                                 [](const Row& row) { return rounded(false_positives(row)); }};
   DataTable out = table_of_rows(
-      "offsets", "Boxes, exact offsets and intervals", rows,
+      "offsets",
+      "Boxes, exact offsets and intervals; times are medians of the runs with their 95 % "
+      "intervals. " +
+          sample_text(rows),
+      rows,
       {scene_column(), pixels, contestant_column(),
        count_column("kept triangles", "kept_triangles"), count_column("candidates", "candidates"),
-       false_ones, count_column("fragments", "fragments"), time_column("ms", "total")});
+       false_ones, count_column("fragments", "fragments"), estimate_column("time (ms)")});
   out.in_text = true;
   return out;
 }
 
-// Least, middle and most of value(a) / value(b) over the points that have both.
+// The median of value(a) / value(b) over the points that have both, with its 95 % interval.
 std::optional<std::string> ratios(const std::vector<NamedRows>& scenes, const char* a,
                                   const char* b, const Value& value) {
   std::vector<double> all;
@@ -97,7 +110,9 @@ std::optional<std::string> ratios(const std::vector<NamedRows>& scenes, const ch
     }
   }
   if (all.empty()) return {};
-  return spread(all, " times");
+  const Estimate median = median_estimate(all);
+  return fmt::format("{} times ({} to {}, n = {})", rounded(median.value), rounded(median.low),
+                     rounded(median.high), median.n);
 }
 
 void add_comparison(const std::vector<NamedRows>& scenes, const char* a, const char* b,
@@ -108,10 +123,10 @@ void add_comparison(const std::vector<NamedRows>& scenes, const char* a, const c
   const auto fragments = ratios(scenes, a, b, kQuantities[2].value);
   const auto time = ratios(scenes, a, b, kQuantities[3].value);
   if (!kept || !candidates || !fragments || !time) return;
-  chapter.find(
-      fmt::format("{} against {}, median (least to most) over scenes and resolutions: {} the kept "
-                  "triangles, {} the candidates, {} the fragments, {} the time.",
-                  a, b, *kept, *candidates, *fragments, *time));
+  chapter.find(fmt::format(
+      "{} against {}, median over scenes and resolutions with its 95 % interval: {} the kept "
+      "triangles, {} the candidates, {} the fragments, {} the time.",
+      a, b, *kept, *candidates, *fragments, *time));
 }
 
 // A smaller solid inside the other one may never keep more.
@@ -159,7 +174,7 @@ Chapter offsets_chapter(const StoredStudy& stored) {
       "On a software device times say nothing about graphics hardware; counts carry over."};
   add_gaps(stored, out);
   if (scenes.empty()) return out;
-  out.figures = figures_of(scenes);
+  out.figures = figures_of(scenes, measured(stored));
   out.tables = {table_of(measured(stored))};
   return out;
 }

@@ -82,12 +82,15 @@ std::string not_drawn(const Cells& cells) {
 }
 
 Figure figure_of(const Cells& cells) {
-  Figure out{.name = "precision",
-             .title = "How far depth buffers are outside the bounds they should give",
-             .caption =
-                 "The largest violation over all generators. On the line below the powers "
-                 "no sample is outside; below the mark a monotone rounding explains it, which "
-                 "the theorem allows." +
+  std::uint64_t points = 0;
+  for (const auto& [key, rows] : cells) points += total(rows, "points");
+  Figure out{
+      .name = "precision",
+      .title = "How far depth buffers are outside the bounds they should give",
+      .caption = fmt::format("The largest violation over all generators, n = {} points of "
+                             "triangles. At 0 no sample is outside. Up to the mark a monotone "
+                             "rounding explains it, which the theorem allows.",
+                             grouped(points)) +
                  not_drawn(cells)};
   std::map<std::pair<std::string, int>, std::map<std::string, Series>> panels;
   for (const auto& [key, rows] : cells) {

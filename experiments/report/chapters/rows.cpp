@@ -170,6 +170,64 @@ Series series_of(const std::string& name, const Rows& rows, const Value& x, cons
   return out;
 }
 
+Series times_of(const std::string& name, const Rows& rows, const Value& x) {
+  Series out{.name = name};
+  for (const Row* row : rows) {
+    const Estimate ms = time_estimate(*row).value_or(Estimate{kNone, kNone, kNone, 0});
+    const bool bar = ms.n > 1;
+    out.x.push_back(x(*row));
+    out.y.push_back(ms.value);
+    out.y_low.push_back(bar ? ms.low : kNone);
+    out.y_high.push_back(bar ? ms.high : kNone);
+  }
+  return out;
+}
+
+std::optional<Estimate> time_estimate(const Row& row) {
+  if (const std::vector<double> runs = runs_of(row); !runs.empty()) return median_estimate(runs);
+  const std::optional<double> one = time_of(row, "total");
+  if (!one) return {};
+  return Estimate{*one, *one, *one, 1};
+}
+
+std::string estimate_text(const Estimate& estimate, int digits) {
+  if (estimate.n == 0) return "-";
+  const std::string value = rounded(estimate.value, digits);
+  if (estimate.n == 1) return value;
+  return fmt::format("{} ({} to {})", value, rounded(estimate.low, digits),
+                     rounded(estimate.high, digits));
+}
+
+RowColumn estimate_column(const std::string& name) {
+  return {{name},
+          [](const Row& row) { return estimate_text(time_estimate(row).value_or(Estimate{})); }};
+}
+
+std::string sample_text(const Rows& rows) {
+  std::set<std::size_t> runs;
+  for (const Row* row : rows) runs.insert(std::max<std::size_t>(runs_of(*row).size(), 1));
+  std::string out = fmt::format("n = {}", counted(rows.size(), "point"));
+  if (runs.empty()) return out;
+  if (*runs.rbegin() == 1) return out + ", each of 1 run";
+  return out + fmt::format(", each the median of {} runs",
+                           runs.size() == 1
+                               ? std::to_string(*runs.begin())
+                               : fmt::format("{} to {}", *runs.begin(), *runs.rbegin()));
+}
+
+std::string at_most(std::uint64_t n) {
+  return "at most " + rounded(std::min(1.0, 3 / static_cast<double>(n)), 2);
+}
+
+std::string with_bound(std::uint64_t part, std::uint64_t all) {
+  if (part > 0 || all == 0) return of_all(part, all);
+  return fmt::format("{} (a rate of {})", of_all(part, all), at_most(all));
+}
+
+std::string counted(std::uint64_t n, const std::string& one) {
+  return grouped(n) + " " + one + (n == 1 ? "" : "s");
+}
+
 double false_positives(const Row& row) {
   const auto candidates = count_of(row, "candidates"), colliding = count_of(row, "colliding");
   if (!candidates || !colliding || *colliding == 0) {
@@ -220,12 +278,14 @@ void add_promises(const StoredStudy& stored, Chapter& chapter) {
   if (kept(pairs)) {
     std::vector<std::string> names;
     for (const NamedRows& one : rows_by_contestant(pairs)) names.push_back(one.name);
-    chapter.find(fmt::format("{} missed {} colliding pairs in {} runs.", listed(names),
-                             rate_text(0, total(pairs, "colliding")), grouped(pairs.size())));
+    chapter.find(fmt::format("{} missed {} colliding pairs ({}).", listed(names),
+                             rate_text(0, total(pairs, "colliding")),
+                             counted(pairs.size(), "run")));
   }
   if (kept(points)) {
-    chapter.find(fmt::format("The lemmas are violated at {} points in {} runs.",
-                             rate_text(0, total(points, "points")), grouped(points.size())));
+    chapter.find(fmt::format("{} points violate the lemmas where these must hold ({}).",
+                             rate_text(0, total(points, "points")),
+                             counted(points.size(), "run")));
   }
   if (silent > 0) {
     chapter.find(fmt::format("{} of methods that promise {} not say what they missed.",

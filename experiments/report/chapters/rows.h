@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "experiments/measure/statistics.h"
 #include "experiments/report/chapters/chapter.h"
 #include "experiments/studies/store.h"
 
@@ -90,6 +91,25 @@ DataTable table_of_rows(const std::string& name, const std::string& caption, con
 /// The points x(row), y(row) of the rows in their order.
 using Value = std::function<double(const Row&)>;
 Series series_of(const std::string& name, const Rows& rows, const Value& x, const Value& y);
+/// The same over the time from triangles to pairs, in ms, with its intervals.
+Series times_of(const std::string& name, const Rows& rows, const Value& x);
+
+/// The median of the row's runs with its 95 % interval (measure/statistics.h); of a row with one
+/// run, that run without an interval. Empty where the row has no time.
+std::optional<Estimate> time_estimate(const Row& row);
+/// "3.88 (3.70 to 4.10)"; without an interval where n is below 2, "-" where it is 0.
+std::string estimate_text(const Estimate& estimate, int digits = 3);
+/// A column of time_estimate() as text.
+RowColumn estimate_column(const std::string& name);
+/// "n = 24 points, each the median of 9 runs": how much the rows rest on.
+std::string sample_text(const Rows& rows);
+/// The upper bound of a rate of which none of n independent cases showed one, at 95 %: 3/n (Hanley
+/// and Lippman-Hand, 1983). "at most 2.6e-05".
+std::string at_most(std::uint64_t n);
+/// "4 of 3,857", or "0 of 3,857 (a rate of at most 0.00078)".
+std::string with_bound(std::uint64_t part, std::uint64_t all);
+/// "1 run", "2 runs".
+std::string counted(std::uint64_t n, const std::string& one);
 
 /// Candidates that do not collide, over what collides; NaN where nothing does or the row has no
 /// candidates.

@@ -42,7 +42,7 @@ const std::vector<Arm>& arms() {
       {"triangles", "triangles: torii:N", "triangles",
        [](const PointKey& p) { return p.scene.starts_with("torii:"); },
        [](const Row& row) { return count_of(row, "triangles"); }},
-      {"resolution", "resolution: two-spheres", "px",
+      {"resolution", "resolution: two-spheres", "resolution (px)",
        [](const PointKey& p) { return p.scene == "two-spheres" && p.resolution > 0; },
        [](const Row& row) { return std::optional<double>(row.point.resolution); }},
       {"density", "density: crowd", "objects per unit of volume",
@@ -54,7 +54,9 @@ const std::vector<Arm>& arms() {
 }
 
 struct Line {
-  std::vector<double> x, ms;  // ascending in x
+  std::vector<double> x;
+  std::vector<Estimate> ms;
+  Rows rows;  // all ascending in x
 };
 
 const std::vector<std::string>& methods() {
@@ -64,42 +66,52 @@ const std::vector<std::string>& methods() {
 }
 
 std::map<std::string, Line> lines_of(const StoredStudy& stored, const Arm& arm) {
-  std::map<std::string, std::vector<std::pair<double, double>>> points;
+  std::map<std::string, std::vector<std::pair<double, const Row*>>> points;
   for (const Row& row : stored.rows) {
     if (!arm.holds(row.point)) continue;
-    const std::optional<double> x = arm.x(row), ms = time_of(row, "total");
-    if (x && ms) points[method_label(row.point)].emplace_back(*x, *ms);
+    const std::optional<double> x = arm.x(row);
+    if (x && time_of(row, "total")) points[method_label(row.point)].emplace_back(*x, &row);
   }
   std::map<std::string, Line> out;
   for (auto& [method, line] : points) {
-    std::sort(line.begin(), line.end());
-    for (const auto& [x, ms] : line) {
-      out[method].x.push_back(x);
-      out[method].ms.push_back(ms);
+    std::stable_sort(line.begin(), line.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    Line& to = out[method];
+    for (const auto& [x, row] : line) {
+      to.x.push_back(x);
+      to.ms.push_back(*time_estimate(*row));
+      to.rows.push_back(row);
     }
   }
   return out;
 }
 
-std::string exponent_text(const Exponent& e) {
-  return fmt::format("{:.2f} ± {:.2f}", e.value, e.error);
+std::vector<double> medians_of(const Line& line) {
+  std::vector<double> out;
+  for (const Estimate& ms : line.ms) out.push_back(ms.value);
+  return out;
 }
 
 // Missed of colliding pairs by method, over all rows of the study; a method that misses is a
 // finding.
 DataTable miss_table(const StoredStudy& stored, Chapter& chapter) {
   DataTable out{.name = "scaling-missed",
-                .caption = "Missed pairs of all that collide, over all sizes",
-                .columns = columns({"method"}, {"runs", "colliding", "missed"})};
+                .caption =
+                    "Missed pairs of all that collide, over all sizes; of what missed none, the "
+                    "upper bound of the rate at 95 %, 3/N, were the pairs independent",
+                .columns = columns({"method"}, {"points", "colliding", "missed", "rate"})};
   Rows verified = measured(stored);
   std::erase_if(verified, [](const Row* row) { return !count_of(*row, "missed"); });
   for (const auto& [method, runs] :
        rows_by(verified, [](const Row& row) { return contestant(row.point); })) {
-    const std::uint64_t missed = total(runs, "missed");
-    out.rows.push_back(
-        {method, grouped(runs.size()), grouped(total(runs, "colliding")), grouped(missed)});
+    const std::uint64_t missed = total(runs, "missed"), colliding = total(runs, "colliding");
+    const double rate = static_cast<double>(missed) / static_cast<double>(colliding);
+    out.rows.push_back({method, grouped(runs.size()), grouped(colliding), grouped(missed),
+                        colliding == 0 ? "-"
+                        : missed == 0  ? at_most(colliding)
+                                       : rounded(rate)});
     if (method != "CULLIDE" && missed == 0) continue;
-    chapter.find(fmt::format("{} misses {} colliding pairs over all sizes.", method,
+    chapter.find(fmt::format("{} missed {} colliding pairs over all sizes.", method,
                              of_all(runs, "missed", "colliding")));
   }
   return out;
@@ -120,9 +132,14 @@ std::string resolutions_of(const StoredStudy& stored) {
   return listed(words) + " px";
 }
 
-std::string caption_of(const StoredStudy& stored) {
+std::string caption_of(const StoredStudy& stored, Rows drawn) {
   const std::string resolutions = resolutions_of(stored);
-  return "Both axes are logarithmic, so that a power of x is a straight line. " +
+  // Rows of two plots count once.
+  std::sort(drawn.begin(), drawn.end());
+  drawn.erase(std::unique(drawn.begin(), drawn.end()), drawn.end());
+  return sample_text(drawn) +
+         ", with its 95 % interval as a bar. Both axes are logarithmic, so that a power of x is a "
+         "straight line. " +
          (resolutions == " px" ? std::string()
                                : "Methods that draw are measured at " + resolutions +
                                      " but for the plot of resolution, and not at the largest "
@@ -142,43 +159,54 @@ Chapter scaling_chapter(const StoredStudy& stored) {
       .name = "scaling",
       .title = "Time against objects, triangles, resolution, density and colliding pairs"};
   DataTable exponents{.name = "scaling-exponents",
-                      .caption =
-                          "Exponent b of time = a x^b, by least squares in logarithms over "
-                          "the whole range, with its standard error",
+                      .caption = fmt::format(
+                          "Exponent b of time = a x^b, by least squares in logarithms over the "
+                          "whole range, with its 95 % interval (Student's t of the residuals; not "
+                          "given for fewer than {} points)",
+                          kFewestForInterval),
                       .columns = columns({"x", "method"}, {"from", "to", "points", "exponent"})};
   DataTable times{.name = "scaling-times",
-                  .caption = "Milliseconds from triangles to exact pairs, median of the repeats",
-                  .columns = columns({"x", "method"}, {"value", "ms"}),
+                  .caption =
+                      "Time from triangles to exact pairs: median of the runs, with its 95 % "
+                      "interval",
+                  .columns = columns({"x", "method"}, {"value", "runs", "time (ms)"}),
                   .in_text = false};
+  Rows drawn;
   for (const Arm& arm : arms()) {
     const std::map<std::string, Line> lines = lines_of(stored, arm);
-    Panel panel{.title = arm.title, .x = logarithmic(arm.axis, true), .y = logarithmic("time, ms")};
+    Panel panel{
+        .title = arm.title, .x = logarithmic(arm.axis, true), .y = logarithmic("time (ms)")};
     std::vector<std::string> said;
     for (const std::string& method : methods()) {
       const auto at = lines.find(method);
       if (at == lines.end()) continue;
       const Line& line = at->second;
-      Series series{.name = method, .x = line.x, .y = line.ms};
+      std::size_t point = 0;
+      Series series = times_of(method, line.rows, [&](const Row&) { return line.x[point++]; });
       series.emphasis = method.starts_with("FAR");
       panel.series.push_back(std::move(series));
-      for (std::size_t i = 0; i < line.x.size(); ++i)
-        times.rows.push_back({arm.name, method, rounded(line.x[i], 6), rounded(line.ms[i], 4)});
-      if (const auto e = exponent_of(line.x, line.ms)) {
+      drawn.insert(drawn.end(), line.rows.begin(), line.rows.end());
+      for (std::size_t i = 0; i < line.x.size(); ++i) {
+        times.rows.push_back({arm.name, method, rounded(line.x[i], 6), grouped(line.ms[i].n),
+                              estimate_text(line.ms[i], 4)});
+      }
+      if (const auto e = exponent_of(line.x, medians_of(line))) {
         exponents.rows.push_back({arm.name, method, rounded(e->from), rounded(e->to),
                                   grouped(e->points), exponent_text(*e)});
         said.push_back(fmt::format("{} {}", method, exponent_text(*e)));
       }
     }
     if (!said.empty()) {
-      out.find("Exponent of time over " + arm.name + ": " + listed(said) + ".");
+      out.find("Exponent of time over " + arm.name + ", with its 95 % interval: " + listed(said) +
+               ".");
     }
     if (!panel.series.empty()) figure.panels.push_back(std::move(panel));
   }
-  figure.caption = caption_of(stored);
+  figure.caption = caption_of(stored, drawn);
   out.limits = {
       "A fitted exponent holds for its range alone: constant parts flatten small sizes, caches and "
-      "the growing number of rounds steepen large ones. The standard error is of the straight "
-      "line, not of the machine, whose times swing.",
+      "the growing number of rounds steepen large ones. The interval is of the straight line "
+      "through the medians, not of another machine.",
       "More objects in `crowd:N` stand at the same density, more triangles in `torii:N` are of the "
       "same six objects, so that what collides grows with both.",
       "I-COLLIDE sorts anew in each run here; from frame to frame it would mend what it has "

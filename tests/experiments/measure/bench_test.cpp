@@ -307,6 +307,10 @@ TEST(Bench, JsonHasTheFieldsThatReadersExpect) {
     EXPECT_LE(total["min"], total["median"]);
     EXPECT_LE(total["median"], total["max"]);
     EXPECT_GT(total["min"], 0);
+    // Of three runs the interval is their range.
+    EXPECT_EQ(total["n"], 3);
+    EXPECT_EQ(total["low"], total["min"]);
+    EXPECT_EQ(total["high"], total["max"]);
     const double parts = row["build_ms"].get<double>() + row["candidates_ms"].get<double>() +
                          row["exact_ms"].get<double>();
     EXPECT_LT(parts, 2 * total["max"].get<double>());

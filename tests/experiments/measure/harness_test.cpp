@@ -39,6 +39,7 @@ TEST(Harness, TakesTheMeanOfTwoMiddleValuesAndTheFasterOfTwoMiddleRuns) {
   EXPECT_EQ(spread_of({4, 1, 2, 9}).median, 3);
   EXPECT_EQ(spread_of({4, 1, 2, 9}).min, 1);
   EXPECT_EQ(spread_of({4, 1, 2, 9}).max, 9);
+  EXPECT_EQ(spread_of({4, 1, 2, 9}).n, 4u);
   EXPECT_EQ(spread_of({}).median, 0);
   EXPECT_EQ(median_run({4, 1, 2, 9}), 2u);
   EXPECT_EQ(median_run({7}), 0u);

@@ -13,9 +13,13 @@
 #include "core/base/base64.h"
 #include "experiments/report/axes.h"
 #include "experiments/report/chapters/numbers.h"
+#include "experiments/report/chapters/rows.h"
+#include "experiments/report/figure_layout.h"
 #include "experiments/report/figures.h"
 #include "experiments/report/gnuplot.h"
 #include "experiments/report/html.h"
+#include "experiments/report/latex.h"
+#include "experiments/report/legible.h"
 #include "experiments/report/markdown.h"
 #include "experiments/report/pictures.h"
 #include "experiments/report/style.h"
@@ -54,6 +58,21 @@ TEST(ReportAxis, ZerosHaveAPlaceOfTheirOwnBelowThePowers) {
   // A tick below the smallest power would be taken for a value.
   for (const Tick& tick : scale.ticks)
     EXPECT_TRUE(tick.at == scale.zero || tick.at >= 1) << tick.at;
+}
+
+TEST(ReportAxis, WithZerosIsLinearToOneAndLogarithmicBeyond) {
+  const Scale counts = scale_of(logarithmic(true), {0, 300, 5000}, 100);
+  EXPECT_EQ(counts.linear_to, 1);
+  EXPECT_NEAR(counts.place(1), 1, 1e-12);
+  // Halfway between 0 and 1.
+  EXPECT_NEAR(counts.along(counts.place(0.5)),
+              (counts.along(counts.place(0)) + counts.along(1)) / 2, 1e-12);
+  const std::vector<std::string> labels = labels_of(counts);
+  EXPECT_NE(std::find(labels.begin(), labels.end(), "1"), labels.end());
+  // Where values are below 1, linear to a power of ten below all of them.
+  EXPECT_NEAR(scale_of(logarithmic(true), {0, 0.03, 50}, 100).linear_to, 0.01, 1e-15);
+  // The twin: without zeros nothing is linear.
+  EXPECT_EQ(scale_of(logarithmic(true), {3, 300, 5000}, 100).linear_to, 0);
 }
 
 TEST(ReportAxis, ZerosAreNoValuesOfALogarithmicAxisThatDoesNotShowThem) {
@@ -133,6 +152,12 @@ TEST(ReportStyle, AMethodLooksTheSameInEveryFigure) {
   EXPECT_EQ(colours.size(), 4u);
 }
 
+TEST(ReportStyle, SeveralThatAgreeLookLikeTheFirst) {
+  EXPECT_EQ(styles_of({"CULLIDE = Quick-CULLIDE"})[0].colour, styles_of({"CULLIDE"})[0].colour);
+  EXPECT_NE(styles_of({"CULLIDE = Quick-CULLIDE"})[0].colour,
+            styles_of({"Quick-CULLIDE"})[0].colour);
+}
+
 TEST(ReportStyle, WordsThatHoldAMethodsNameAreNone) {
   EXPECT_NE(styles_of({"farther"})[0].colour, styles_of({"far"})[0].colour);
 }
@@ -168,6 +193,26 @@ TEST(ReportNumbers, StandardErrorIsThatOfTheTextbook) {
   ASSERT_TRUE(fit);
   EXPECT_NEAR(fit->value, 0, 1e-14);
   EXPECT_NEAR(fit->error, std::sqrt(1.0 / 3), 1e-14);
+}
+
+TEST(ReportNumbers, AnIntervalTakesSixPoints) {
+  Exponent e{.value = 0.8, .low = 0.6, .high = 1, .points = 6};
+  EXPECT_EQ(exponent_text(e), "0.80 (0.60 to 1.00)");
+  e.points = 5;
+  EXPECT_EQ(exponent_text(e), "0.80 (no interval of 5 points)");
+  // t of one degree of freedom is 12.706.
+  const double base = std::exp(1.0);
+  const auto fit = exponent_of({1, base, base * base}, {1, base, 1});
+  EXPECT_NEAR(fit->high, 12.706 * std::sqrt(1.0 / 3), 1e-3);
+  EXPECT_EQ(fit->low, -fit->high);
+}
+
+TEST(ReportNumbers, WhatWasNeverSeenHasABound) {
+  EXPECT_EQ(at_most(114014), "at most 2.6e-05");
+  EXPECT_EQ(at_most(2), "at most 1");
+  EXPECT_EQ(with_bound(0, 3000), "0 of 3,000 (a rate of at most 0.0010)");
+  // The twin: what was seen has none.
+  EXPECT_EQ(with_bound(4, 3000), "4 of 3,000");
 }
 
 TEST(ReportNumbers, TwoPointsAreNoFit) {
@@ -280,6 +325,107 @@ TEST(ReportPictures, SayWhatTheyShowThemselves) {
   EXPECT_THROW(add_counts(other, drawn), std::logic_error);
 }
 
+Figure two_panels() {
+  Figure out{.name = "f", .title = "t", .caption = "c", .panels = {}};
+  for (const char* title : {"first", "second"}) {
+    Panel panel{.title = title};
+    for (const char* name : {"CULLIDE", "Quick-CULLIDE", "FAR (OBB)"})
+      panel.series.push_back({.name = name, .x = {1, 2}, .y = {5, name[0] == 'F' ? 0.0 : 7.0}});
+    out.panels.push_back(panel);
+  }
+  return out;
+}
+
+std::vector<std::string> names_in(const Panel& panel) {
+  std::vector<std::string> out;
+  for (const Series& series : panel.series) out.push_back(series.name);
+  return out;
+}
+
+TEST(ReportFigures, SeriesThatAgreeEverywhereAreOne) {
+  const Figure merged = legible(two_panels());
+  for (const Panel& panel : merged.panels) {
+    EXPECT_EQ(names_in(panel), (std::vector<std::string>{"CULLIDE = Quick-CULLIDE", "FAR (OBB)"}));
+  }
+  // The twin: they differ at one point of one panel.
+  Figure other = two_panels();
+  other.panels[1].series[1].y[0] = 6;
+  EXPECT_EQ(names_in(legible(other).panels[0]).size(), 3u);
+}
+
+TEST(ReportFigures, NamesThatAreTooLongForTheKeyGoToTheCaption) {
+  Figure figure = two_panels();
+  for (Panel& panel : figure.panels) {
+    panel.series.resize(2);
+    panel.series.push_back(panel.series[1]);
+    panel.series[1].name = std::string(45, 'x');
+    panel.series[2].name = std::string(45, 'y');
+  }
+  const Figure merged = legible(figure);
+  EXPECT_EQ(names_in(merged.panels[0]), (std::vector<std::string>{"CULLIDE and 2 others"}));
+  EXPECT_NE(merged.caption.find(std::string(45, 'x')), std::string::npos);
+}
+
+TEST(ReportFigures, PanelsWithoutADifferenceBecomeASentence) {
+  Figure figure = two_panels();
+  for (Series& series : figure.panels[0].series) series.y = {3, 3};
+  figure.panels.push_back({.title = "third", .series = {{.name = "a", .x = {1}, .y = {kNone}}}});
+  const Figure shown = legible(figure);
+  ASSERT_EQ(shown.panels.size(), 1u);
+  EXPECT_EQ(shown.panels[0].title, "second");
+  EXPECT_EQ(shown.caption,
+            "c. Not drawn, since every value is 3: first. Not drawn, since there is no value: "
+            "third.");
+  // The twin: a figure of such panels alone stays as it is.
+  for (Series& series : figure.panels[1].series) series.y = {3, 3};
+  EXPECT_EQ(legible(figure).panels.size(), 3u);
+  EXPECT_EQ(legible(figure).caption, "c");
+}
+
+TEST(ReportFigures, PointsAtTheSamePlaceStandAboveEachOther) {
+  const Figure figure = two_panels();
+  const Layout layout = layout_of(figure);
+  const auto shifts = shifts_of(figure.panels[0], layout.panels[0]);
+  // All three at the first point, two at the second.
+  EXPECT_EQ(shifts, (std::vector<std::vector<double>>{{3, 1.5}, {0, -1.5}, {-3, 0}}));
+}
+
+TEST(ReportFigures, MarksAreInTheKeyAndNotOverTheData) {
+  Figure figure = two_panels();
+  figure.panels[0].marks = {{true, 1, "budget"}, {false, 2, "rounding"}};
+  EXPECT_EQ(key_names(figure), (std::vector<std::string>{"CULLIDE", "Quick-CULLIDE", "FAR (OBB)",
+                                                         "budget", "rounding"}));
+  const std::string script = figure_script(figure).script;
+  EXPECT_NE(script.find("set label 'budget' at screen"), std::string::npos);
+  EXPECT_EQ(script.find("set label 'budget' at first"), std::string::npos);
+}
+
+TEST(ReportFigures, BarsReachAsFarAsTheIntervals) {
+  Figure figure = two_panels();
+  Series& series = figure.panels[0].series[0];
+  series.y_low = {4, 6};
+  series.y_high = {50, kNone};
+  EXPECT_NE(figure_script(figure).script.find("with vectors"), std::string::npos);
+  EXPECT_GE(layout_of(figure).panels[0].y.to, 50);
+  EXPECT_EQ(figure_script(two_panels()).script.find("with vectors"), std::string::npos);
+  // An end is missing.
+  series.y_high.pop_back();
+  EXPECT_THROW(figure_script(figure), std::logic_error);
+}
+
+TEST(ReportLatex, HasEveryFindingFigureAndTable) {
+  Page page = page_with({{.text = "50 % of a_b & more"}});
+  page.chapters[0].chapter.figures = {two_panels()};
+  page.chapters[0].chapter.tables = {{.name = "t", .caption = "c", .columns = {}}};
+  const std::string text = page_latex(page);
+  for (const char* part :
+       {"\\item 50 \\% of a\\_b \\& more.", "{figures/f.pdf}", "\\input{tables/t.tex}"})
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  // The twin: a table that is linked alone is not in the text.
+  page.chapters[0].chapter.tables[0].in_text = false;
+  EXPECT_EQ(page_latex(page).find("\\input"), std::string::npos);
+}
+
 class Folder {
  public:
   Folder() {
@@ -328,6 +474,14 @@ Figure trap() {
             .name = "s'" + std::to_string(static_cast<int>(style)), .x = {0, 1, 2}, .y = y};
         series.style = style;
         series.emphasis = style == Series::Style::lines;
+        // Bars of every kind, and those of which none has a place.
+        if (style == Series::Style::points) series.y_low = series.y_high = {kNone, kNone, kNone};
+        if (style == Series::Style::lines) {
+          series.x_low = {0, 0.5, kNone};
+          series.x_high = {0.5, 2, 3};
+          series.y_low = y;
+          series.y_high = {7, 1e9, kNone};
+        }
         panel.series.push_back(series);
       }
       panel.marks = {{true, 1, "it's"}, {false, 0, "%d"}};
