@@ -87,7 +87,7 @@ void StudiesCommand::add_to(CLI::App& experiment) {
     commands_.push_back(command);
   };
   for (const Study& study : studies()) declare(study.name, study.title);
-  declare("all", "all of these studies, one after the other");
+  declare("all", "all of these studies but cloth, one after the other");
 }
 
 bool StudiesCommand::named() const {
@@ -107,7 +107,7 @@ int StudiesCommand::run() {
       request.studies = {studies()[i]};
     } else {
       name = "all";
-      request.studies = studies();
+      request.studies = studies_of_all();
     }
   }
   if (out_.empty()) throw Error("--out", "the folder is empty", "name one");
@@ -116,6 +116,8 @@ int StudiesCommand::run() {
                 fmt::format("give 1 to {}", kMostSeed));
   }
   request.folder = out_;
+  // A step of a fine cloth takes seconds, and turns go back and forth between several cloths.
+  if (request.studies.front().campaign) ::setenv("FARCULL_CLOTH", (out_ + "/cloth").c_str(), 0);
   request.choice = {.quick = quick_, .seed = seed_};
   request.resume = resume_;
   request.shard = shard_ ? parse_shard(*shard_)

@@ -77,6 +77,28 @@ NamedCounts named(const LemmaCounts& c) {
   return out;
 }
 
+NamedCounts named(const ClothCounts& c) {
+  NamedCounts out = {{"colliding", c.colliding},
+                     {"neighbours", c.neighbours},
+                     {"missed", c.missed},
+                     {"candidates", c.candidates},
+                     {"kept_triangles", c.kept_triangles},
+                     {"triangles", c.triangles},
+                     {"accounted", c.accounted},
+                     {"by_boxes", c.by_boxes},
+                     {"by_predicates", c.by_predicates},
+                     {"promises", c.promises},
+                     {"scene_hash", c.scene_hash},
+                     {"kinetic", c.kinetic},
+                     {"total", c.total},
+                     {"slack", c.slack},
+                     {"residual", c.residual},
+                     {"iterations", c.iterations},
+                     {"converged", c.converged}};
+  if (c.revoked) out.push_back({"revoked", true});
+  return out;
+}
+
 }  // namespace
 
 NamedCounts named(const Counts& counts) {

@@ -68,8 +68,23 @@ struct LemmaCounts {
   bool revoked = false;   // as in RunCounts
 };
 
+/// Counts of a frame of the cloth, with every pair of triangles accounted for
+/// (verify/accounting.h), and what the step to it left (scenes/cloth/cloth.h).
+struct ClothCounts {
+  std::uint64_t colliding = 0, neighbours = 0, missed = 0;  // pairs; neighbours of the colliding
+  std::uint64_t candidates = 0;                             // pairs given to exact tests
+  std::uint64_t kept_triangles = 0, triangles = 0;
+  std::uint64_t accounted = 0, by_boxes = 0, by_predicates = 0;  // pairs
+  bool promises = false, revoked = false;                        // as in RunCounts
+  std::string scene_hash;
+  double kinetic = 0, total = 0, slack = 0;  // J
+  double residual = 0;                       // N
+  std::uint64_t iterations = 0;
+  bool converged = false;
+};
+
 /// std::monostate: nothing was measured.
-using Counts = std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts>;
+using Counts = std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts, ClothCounts>;
 
 /// The names and values of counts, in the order in which a store holds them.
 using CountValue = std::variant<bool, std::uint64_t, double, std::string>;

@@ -40,10 +40,7 @@ std::uint64_t missed_penetrating(const Scene& scene, const Truth& truth,
 Outcome outcome_of(const Scene& scene, const Truth& truth, const Record& record) {
   Outcome out;
   out.pairs = record.collisions.all();
-  const UsedDevice& used = record.found.device;
-  out.device = used.gl                                    ? used.gl->renderer
-               : used.cpu && draws(record.options.method) ? "native"
-                                                          : "cpu";
+  out.device = answered(record);
   RunCounts counts;
   fill(counts, scene, truth, errors_of(truth, out.pairs), record.found.count);
   counts.missed_penetrating = missed_penetrating(scene, truth, out.pairs);
@@ -130,6 +127,11 @@ void require_same(const PointKey& point, const Outcome& first, const Outcome& ot
   if (different.empty()) return;
   throw Error(describe(point), "two runs of the same point differ: " + different,
               "run farcull doctor; the device is not deterministic");
+}
+
+std::string answered(const Record& record) {
+  const UsedDevice& used = record.found.device;
+  return used.gl ? used.gl->renderer : used.cpu && draws(record.options.method) ? "native" : "cpu";
 }
 
 RunOptions options_of(const RunPoint& point, const Lab& lab) {

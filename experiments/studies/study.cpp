@@ -6,10 +6,16 @@
 namespace farcull {
 
 const std::vector<Study>& studies() {
-  static const std::vector<Study> all = {accuracy_study(),   error_time_study(), radius_study(),
-                                         offsets_study(),    precision_study(),  stability_study(),
-                                         efficiency_study(), scaling_study()};
+  static const std::vector<Study> all = {accuracy_study(), error_time_study(), radius_study(),
+                                         offsets_study(),  precision_study(),  stability_study(),
+                                         cloth_study(),    efficiency_study(), scaling_study()};
   return all;
+}
+
+std::vector<Study> studies_of_all() {
+  std::vector<Study> out = studies();
+  std::erase_if(out, [](const Study& study) { return study.campaign; });
+  return out;
 }
 
 const Study& study_named(const std::string& name) {

@@ -24,15 +24,20 @@ struct Study {
   std::string name;
   std::string title;     // a line
   std::string question;  // what it asks, a sentence or two
-  /// The points, each once, in an order that keeps those of one scene together. The same choice
-  /// gives the same grid on every machine and in every build.
+  /// The points, each once, in an order that keeps those of one scene together, but for a campaign.
+  /// The same choice gives the same grid on every machine and in every build.
   std::function<std::vector<Point>(const GridChoice&)> grid;
   /// Throws Error for faults of the device or the machine: the run ends there, and can be resumed.
   std::function<PointResult(const Point&, Lab&)> measure;
+  /// It takes many hours, so it is not among `all`, and its scenes take turns: what is measured
+  /// after an hour is of all of them.
+  bool campaign = false;
 };
 
 /// All of them, in the order of docs/experiments.md.
 const std::vector<Study>& studies();
+/// Those of `farcull experiment all`: no campaigns.
+std::vector<Study> studies_of_all();
 /// Throws Error naming the studies where there is none of that name.
 const Study& study_named(const std::string& name);
 
@@ -45,5 +50,6 @@ Study precision_study();
 Study stability_study();
 Study efficiency_study();
 Study scaling_study();
+Study cloth_study();
 
 }  // namespace farcull

@@ -118,6 +118,7 @@ Chapter radius_chapter(const StoredStudy& stored);
 Chapter offsets_chapter(const StoredStudy& stored);
 Chapter precision_chapter(const StoredStudy& stored);
 Chapter stability_chapter(const StoredStudy& stored);
+Chapter cloth_chapter(const StoredStudy& stored);
 Chapter efficiency_chapter(const StoredStudy& stored);
 Chapter scaling_chapter(const StoredStudy& stored);
 
