@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
+#include <set>
 
 #include "experiments/report/chapters/numbers.h"
 #include "experiments/report/chapters/rows.h"
@@ -47,13 +47,22 @@ struct SceneRows {
   std::string scene;
   std::map<std::string, std::map<int, const Row*>> by_name;
 
-  // At that resolution, or at the largest that there is; null where nothing was measured.
-  const Row* find(const std::string& name, std::optional<int> resolution = {}) const {
+  // Null where nothing was measured.
+  const Row* find(const std::string& name, int resolution) const {
     const auto of = by_name.find(name);
     if (of == by_name.end()) return nullptr;
-    if (!resolution) return of->second.rbegin()->second;
-    const auto at = of->second.find(*resolution);
+    const auto at = of->second.find(resolution);
     return at == of->second.end() ? nullptr : at->second;
+  }
+  // At the resolution that leaves the fewest candidates, of equal ones the smallest.
+  const Row* find(const std::string& name) const {
+    const Row* out = nullptr;
+    const auto of = by_name.find(name);
+    if (of == by_name.end()) return out;
+    for (const auto& [resolution, row] : of->second) {
+      if (out == nullptr || candidates_of(*row) < candidates_of(*out)) out = row;
+    }
+    return out;
   }
 };
 
@@ -96,26 +105,28 @@ Figure figure_of(const std::vector<SceneRows>& scenes, const std::set<int>& reso
   return out;
 }
 
-DataTable table_of(const std::vector<SceneRows>& scenes, const std::set<int>& resolutions) {
-  const int most = resolutions.empty() ? 0 : *resolutions.rbegin();
+DataTable table_of(const std::vector<SceneRows>& scenes) {
   DataTable out{
       .name = "culling",
-      .caption = fmt::format(
+      .caption =
           "Pairs that collide, pairs whose boxes overlap, and candidates for each pair that "
-          "collides: of boxes, of FCL's oriented boxes, and of FAR pairs by its own choice, "
-          "in the view z and in the views x, y, z at {} px",
-          most),
+          "collides: of boxes, of FCL's oriented boxes, and of FAR pairs by its own choice, in "
+          "the view z and in the views x, y, z, each at the resolution that leaves the fewest",
       .columns = columns({"scene"}, {"colliding", "boxes overlap", "boxes", "oriented", "FAR pairs",
-                                     "1 view", "3 views"})};
+                                     "1 view", "at px", "3 views", "at px"})};
   for (const SceneRows& scene : scenes) {
     const Row *boxes = scene.find(kBoxes), *chosen = scene.find(kChosen);
     const Row* any = chosen != nullptr ? chosen : boxes;
     if (any == nullptr) continue;
-    const auto cell = [](const Row* row) { return row == nullptr ? "-" : rounded(per_pair(*row)); };
-    out.rows.push_back({scene.scene, grouped(colliding_of(*any)),
-                        boxes == nullptr ? "-" : grouped(candidates_of(*boxes)), cell(boxes),
-                        cell(scene.find(kOriented)), cell(chosen), cell(scene.find(kOneView, most)),
-                        cell(scene.find(kThreeViews, most))});
+    std::vector<std::string> cells = {scene.scene, grouped(colliding_of(*any)),
+                                      boxes == nullptr ? "-" : grouped(candidates_of(*boxes))};
+    for (const char* name : {kBoxes, kOriented, kChosen, kOneView, kThreeViews}) {
+      const Row* row = scene.find(name);
+      cells.push_back(row == nullptr ? "-" : rounded(per_pair(*row)));
+      if (name == kOneView || name == kThreeViews)
+        cells.push_back(row == nullptr ? "-" : std::to_string(row->point.resolution));
+    }
+    out.rows.push_back(std::move(cells));
   }
   return out;
 }
@@ -160,7 +171,7 @@ void add_choice(const std::vector<SceneRows>& scenes, Chapter& chapter) {
 
 // What views add where they are asked for.
 void add_views(const std::vector<SceneRows>& scenes, Chapter& chapter) {
-  std::size_t better = 0, both = 0;
+  std::size_t better = 0, both = 0, worse = 0;
   const SceneRows *most = nullptr, *least = nullptr;
   const auto gain = [](const SceneRows& scene) {
     const Row *boxes = scene.find(kBoxes), *views = scene.find(kThreeViews);
@@ -173,24 +184,33 @@ void add_views(const std::vector<SceneRows>& scenes, Chapter& chapter) {
       ++both;
       better += candidates_of(*views) < candidates_of(*oriented);
     }
+    if (views != nullptr) {
+      const Row& largest = *scene.by_name.at(kThreeViews).rbegin()->second;
+      worse += candidates_of(largest) > candidates_of(*views);
+    }
     if (std::isnan(gain(scene))) continue;
     if (most == nullptr || gain(scene) > gain(*most)) most = &scene;
     if (least == nullptr || gain(scene) < gain(*least)) least = &scene;
   }
   const auto told = [](const SceneRows& scene) {
     const Row &boxes = *scene.find(kBoxes), &views = *scene.find(kThreeViews);
-    return fmt::format("{} candidates for each pair that collides on {}, where boxes leave {}",
-                       rounded(per_pair(views)), scene.scene, rounded(per_pair(boxes)));
+    return fmt::format(
+        "{} candidates for each pair that collides on {} (at {} px), where boxes leave {}",
+        rounded(per_pair(views)), scene.scene, views.point.resolution, rounded(per_pair(boxes)));
   };
-  if (most != nullptr && most != least) {
-    chapter.find(fmt::format("Three views of {} px leave {}, and {}.",
-                             most->find(kThreeViews)->point.resolution, told(*most), told(*least)));
-  }
+  if (most != nullptr && most != least)
+    chapter.find(fmt::format("Three views leave {}, and {}.", told(*most), told(*least)));
   if (both > 0) {
     chapter.find(fmt::format(
-        "Three views at the largest resolution leave fewer candidates than FCL's oriented boxes on "
-        "{} of {} scenes.",
+        "Three views at the best resolution leave fewer candidates than FCL's oriented boxes on {} "
+        "of {} scenes.",
         better, both));
+  }
+  if (worse > 0) {
+    chapter.find(
+        fmt::format("More pixels do not always leave fewer: on {} of {} scenes three views "
+                    "leave more at the largest resolution than at a smaller one.",
+                    worse, scenes.size()));
   }
 }
 
@@ -206,16 +226,18 @@ Chapter culling_chapter(const StoredStudy& stored) {
   out.limits = {
       "Fewer candidates are not less time: where boxes leave few pairs for each that collides, "
       "exact predicates on all of them take less time than a view.",
-      "FCL refuses degenerate triangles, and libraries leave out only neighbours that share an "
-      "index, FAR pairs those that share a position; the meshes here have no doubled vertices but "
-      "where a row says so.",
+      "FCL refuses degenerate triangles. Libraries leave out neighbours that share an index, FAR "
+      "pairs "
+      "those that share a position: where a mesh has a vertex twice, the libraries' candidates "
+      "hold a "
+      "few more.",
       "Inside an object FAR pairs leaves neighbours to the predicates as well. They are not "
       "counted "
       "here."};
   add_gaps(stored, out);
   if (scenes.empty()) return out;
   out.figures = {figure_of(scenes, resolutions)};
-  out.tables = {table_of(scenes, resolutions), all_table(stored)};
+  out.tables = {table_of(scenes), all_table(stored)};
   return out;
 }
 

@@ -58,7 +58,8 @@ std::string pixels_text(const Row& row, const char* rank, int resolution) {
   const std::optional<double> pixels = count_of(row, rank);
   if (!pixels) return "-";
   const double factor = static_cast<double>(resolution) / kSceneResolution;
-  return fmt::format("{:.2g}", *pixels * factor * factor);
+  const double there = *pixels * factor * factor;
+  return there >= 1 ? rounded(there, 2) : fmt::format("{:.2g}", there);
 }
 
 std::string frame_text(const Row& row) {
@@ -147,9 +148,8 @@ Chapter scenes_chapter(const StoredStudy& stored) {
         });
     out.find(fmt::format(
         "The studies use {} scenes: {} of scanned or modelled meshes, {} of simulated cloth, {} "
-        "drawn at random and {} constructed. They have {} to {} triangles. In {} objects are "
-        "tested "
-        "against themselves.",
+        "drawn at random and {} constructed. They have {} to {} triangles. In {} of them objects "
+        "are tested against themselves.",
         rows.size(), of[Source::meshes], of[Source::simulated], of[Source::drawn],
         of[Source::constructed], count_cell(**range.first, "triangles"),
         count_cell(**range.second, "triangles"), self));
