@@ -4,14 +4,19 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/base/error.h"
+#include "core/view/view.h"
 #include "experiments/studies/merge.h"
+#include "experiments/studies/provenance.h"
 #include "experiments/studies/run_studies.h"
+#include "experiments/studies/store.h"
 #include "experiments/studies/study.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
@@ -77,6 +82,9 @@ void StudiesCommand::add_to(CLI::App& experiment) {
                "measure the Kth of N parts; default the variables of\nSlurm's array jobs and "
                "Open MPI, else everything");
     add_option(*command, "--device", device_, "DEVICE", kDeviceHelp);
+    add_option(*command, "--devices", devices_, "LIST|all",
+               "measure on each of these devices, as in\nnative,software, or on all that answer; "
+               "the first one\ninto DIR, what may differ on the others into DIR/on-DEVICE");
     add_footer(*command,
                fmt::format("Examples:\n"
                            "  farcull experiment {0} --quick\n"
@@ -88,7 +96,7 @@ void StudiesCommand::add_to(CLI::App& experiment) {
     commands_.push_back(command);
   };
   for (const Study& study : studies()) declare(study.name, study.title);
-  declare("all", "all of these studies, one after the other");
+  declare("all", "all of these studies but cloth, one after the other");
 }
 
 bool StudiesCommand::named() const {
@@ -96,6 +104,27 @@ bool StudiesCommand::named() const {
     if (given(*command)) return true;
   }
   return false;
+}
+
+std::vector<std::string> StudiesCommand::devices() const {
+  if (!devices_) return {device_of(device_)};
+  if (device_)
+    throw Error("--devices", "says what --device says as well", "leave one of the two out");
+  if (*devices_ != "all") {
+    std::vector<std::string> out = split_list(*devices_);
+    for (const std::string& device : out) (void)device_folder(out_, device);
+    return out;
+  }
+  std::vector<std::string> out;
+  for (const char* device : {"native", "hardware", "software"}) {
+    try {
+      (void)provenance_now(device, "");
+      out.emplace_back(device);
+    } catch (const Error& error) {
+      write_output("-", fmt::format("{} is left out: {}\n", device, error.what()));
+    }
+  }
+  return out;
 }
 
 int StudiesCommand::run() {
@@ -108,7 +137,7 @@ int StudiesCommand::run() {
       request.studies = {studies()[i]};
     } else {
       name = "all";
-      request.studies = studies();
+      request.studies = studies_of_all();
     }
   }
   if (out_.empty()) throw Error("--out", "the folder is empty", "name one");
@@ -117,11 +146,30 @@ int StudiesCommand::run() {
                 fmt::format("give 1 to {}", kMostSeed));
   }
   request.folder = out_;
+  // A step of a fine cloth takes seconds, and turns go back and forth between several cloths.
+  if (request.studies.front().campaign) ::setenv("FARCULL_CLOTH", (out_ + "/cloth").c_str(), 0);
   request.choice = {.quick = quick_, .seed = seed_};
   request.resume = resume_;
   request.shard = shard_ ? parse_shard(*shard_)
                          : shard_from_environment([](const char* v) { return std::getenv(v); });
-  request.device = device_of(device_);
+  int status = 0;
+  bool first = true;
+  for (const std::string& device : devices()) {
+    StudiesRequest of = request;
+    of.device = device;
+    if (!std::exchange(first, false)) {
+      of.folder = device_folder(out_, device);
+      for (Study& study : of.studies) study = on_devices(study);
+      std::erase_if(of.studies, [&](const Study& study) { return study.grid(of.choice).empty(); });
+    }
+    if (devices_) write_output("-", "on " + device + "\n");
+    const int one = run_on(std::move(of), name);
+    status = status == 1 || one == 1 ? 1 : std::max(status, one);
+  }
+  return status;
+}
+
+int StudiesCommand::run_on(StudiesRequest request, const std::string& name) const {
   const Shard& shard = request.shard;
   const std::string options = nlohmann::ordered_json{
       {"experiment", name},

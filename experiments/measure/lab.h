@@ -58,6 +58,8 @@ class Lab {
   /// The scene that was asked for last, and what collides in it. Precondition: one was.
   const Scene& current() const;
   const Truth& truth();
+  /// The notes of its motion on the frame; none of a scene without frames.
+  FrameNotes notes() const { return source_ ? source_->notes() : FrameNotes{}; }
 
  private:
   /// Notes the name of the next scene and drops what is known of the one before.

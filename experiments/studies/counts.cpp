@@ -49,6 +49,10 @@ NamedCounts named(const RunCounts& c) {
     out.insert(out.end(),
                {{"resolution", c.size->resolution}, {"mean_pixels", c.size->mean_pixels}});
   }
+  if (c.neighbours) {
+    out.insert(out.end(), {{"neighbour_candidates", c.neighbours->candidates},
+                           {"neighbours", c.neighbours->colliding}});
+  }
   return out;
 }
 
@@ -91,6 +95,40 @@ NamedCounts named(const PlacementCounts& c) {
           {"radius_px", c.radius_px},
           {"budget_px", c.budget_px},
           {"promises", c.promises}};
+}
+
+NamedCounts named(const ClothCounts& c) {
+  NamedCounts out = {{"colliding", c.colliding},
+                     {"neighbours", c.neighbours},
+                     {"missed", c.missed},
+                     {"candidates", c.candidates},
+                     {"kept_triangles", c.kept_triangles},
+                     {"triangles", c.triangles},
+                     {"accounted", c.accounted},
+                     {"by_boxes", c.by_boxes},
+                     {"by_predicates", c.by_predicates},
+                     {"promises", c.promises},
+                     {"scene_hash", c.scene_hash},
+                     {"kinetic", c.kinetic},
+                     {"total", c.total},
+                     {"slack", c.slack},
+                     {"residual", c.residual},
+                     {"iterations", c.iterations},
+                     {"converged", c.converged}};
+  if (c.revoked) out.push_back({"revoked", true});
+  return out;
+}
+
+NamedCounts named(const SceneCounts& c) {
+  NamedCounts out = {{"triangles", c.triangles},       {"objects", c.objects},
+                     {"self_objects", c.self_objects}, {"colliding", c.colliding},
+                     {"neighbours", c.neighbours},     {"scene_hash", c.scene_hash}};
+  if (c.pixels) {
+    out.insert(out.end(), {{"pixels_tenth", c.pixels->tenth},
+                           {"pixels_half", c.pixels->half},
+                           {"pixels_ninety", c.pixels->ninety}});
+  }
+  return out;
 }
 
 }  // namespace

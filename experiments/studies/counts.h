@@ -42,6 +42,11 @@ struct SizeCounts {
   double mean_pixels = 0;        // that a triangle covers there
 };
 
+/// Neighbours (verify/exact.h) among the candidates of a method, and those of them that collide.
+struct NeighbourCounts {
+  std::uint64_t candidates = 0, colliding = 0;
+};
+
 /// Counts of a RunPoint.
 struct RunCounts : AnswerCounts {
   std::uint64_t missed_penetrating = 0;   // of `missed` (verify/contact.h); the rest touches
@@ -55,6 +60,7 @@ struct RunCounts : AnswerCounts {
   std::optional<RadiusCounts> radius = {};
   std::optional<FragmentCounts> fragments = {};
   std::optional<SizeCounts> size = {};
+  std::optional<NeighbourCounts> neighbours = {};
 };
 
 /// Counts of a PeerPoint.
@@ -86,8 +92,42 @@ struct PlacementCounts {
   bool promises = false;
 };
 
+/// Counts of a frame of the cloth, with every pair of triangles accounted for
+/// (verify/accounting.h), and what the step to it left (scenes/cloth/cloth.h).
+struct ClothCounts {
+  std::uint64_t colliding = 0, neighbours = 0, missed = 0;  // pairs; neighbours of the colliding
+  std::uint64_t candidates = 0;                             // pairs given to exact tests
+  std::uint64_t kept_triangles = 0, triangles = 0;
+  std::uint64_t accounted = 0, by_boxes = 0, by_predicates = 0;  // pairs
+  bool promises = false, revoked = false;                        // as in RunCounts
+  std::string scene_hash;
+  double kinetic = 0, total = 0, slack = 0;  // J
+  double residual = 0;                       // N
+  std::uint64_t iterations = 0;
+  bool converged = false;
+};
+
+constexpr int kSceneResolution = 512;  // px, of PixelCounts
+
+/// Pixels that triangles cover at kSceneResolution in the views x, y and z: the area of a
+/// triangle's image. Of a tenth of them it is at most `tenth`, of half `half`, of nine tenths
+/// `ninety`. At another resolution they are as the squares of the resolutions.
+struct PixelCounts {
+  double tenth = 0, half = 0, ninety = 0;
+};
+
+/// Counts of a scene by itself.
+struct SceneCounts {
+  std::uint64_t triangles = 0, objects = 0;
+  std::uint64_t self_objects = 0;               // that are tested against themselves
+  std::uint64_t colliding = 0, neighbours = 0;  // pairs, apart from each other
+  std::string scene_hash;
+  std::optional<PixelCounts> pixels = {};  // empty: no two boxes of objects overlap
+};
+
 /// std::monostate: nothing was measured.
-using Counts = std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts, PlacementCounts>;
+using Counts = std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts, PlacementCounts,
+                            ClothCounts, SceneCounts>;
 
 /// The names and values of counts, in the order in which a store holds them.
 using CountValue = std::variant<bool, std::uint64_t, double, std::string>;

@@ -43,10 +43,7 @@ std::uint64_t missed_penetrating(const Scene& scene, const Truth& truth,
 Outcome outcome_of(const Scene& scene, const Truth& truth, const Record& record) {
   Outcome out;
   out.pairs = record.collisions.all();
-  const UsedDevice& used = record.found.device;
-  out.device = used.gl                                    ? used.gl->renderer
-               : used.cpu && draws(record.options.method) ? "native"
-                                                          : "cpu";
+  out.device = answered(record);
   RunCounts counts;
   fill(counts, scene, truth, errors_of(truth, out.pairs), record.found.count);
   counts.missed_penetrating = missed_penetrating(scene, truth, out.pairs);
@@ -158,6 +155,11 @@ SizeCounts size_for(const Scene& scene, double pixels) {
   const double side = std::ceil(kSample * std::sqrt(pixels / mean));
   return {.resolution = side < 1e9 ? static_cast<std::uint64_t>(side) : 0,
           .mean_pixels = mean * side * side / kSample / kSample};
+}
+
+std::string answered(const Record& record) {
+  const UsedDevice& used = record.found.device;
+  return used.gl ? used.gl->renderer : used.cpu && draws(record.options.method) ? "native" : "cpu";
 }
 
 RunOptions options_of(const RunPoint& point, const Lab& lab) {

@@ -26,6 +26,9 @@ constexpr int kMostSizedResolution = 8192;
 /// The options of a run at the point, without the accounting: errors_of() compares with the truth.
 RunOptions options_of(const RunPoint& point, const Lab& lab);
 
+/// What answered: PointResult::device.
+std::string answered(const Record& record);
+
 /// Opens the scene and runs the point's method on it `repeat` times; the run with the median time
 /// counts. A run does not depend on what the lab ran before: far-pairs has its device open, and
 /// i-collide starts without lists. Only on a MotionFrame it keeps the lists of the frame before,

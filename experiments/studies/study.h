@@ -24,19 +24,29 @@ struct Study {
   std::string name;
   std::string title;     // a line
   std::string question;  // what it asks, a sentence or two
-  /// The points, each once, in an order that keeps those of one scene together. The same choice
-  /// gives the same grid on every machine and in every build.
+  /// The points, each once, in an order that keeps those of one scene together, but for a campaign.
+  /// The same choice gives the same grid on every machine and in every build.
   std::function<std::vector<Point>(const GridChoice&)> grid;
   /// Throws Error for faults of the device or the machine: the run ends there, and can be resumed.
   std::function<PointResult(const Point&, Lab&)> measure;
+  /// It takes many hours, so it is not among `all`, and its scenes take turns: what is measured
+  /// after an hour is of all of them.
+  bool campaign = false;
 };
 
 /// All of them, in the order of docs/experiments.md.
 const std::vector<Study>& studies();
+/// Those of `farcull experiment all`: no campaigns.
+std::vector<Study> studies_of_all();
 /// Throws Error naming the studies where there is none of that name.
 const Study& study_named(const std::string& name);
 
+/// The study with those of its points alone whose answer may depend on the device: those of methods
+/// that draw or choose views, and of the lemma experiment on a device.
+Study on_devices(const Study& study);
+
 /// Each defined in a file of its own.
+Study scenes_study();
 Study accuracy_study();
 Study error_time_study();
 Study radius_study();
@@ -45,5 +55,7 @@ Study precision_study();
 Study stability_study();
 Study efficiency_study();
 Study scaling_study();
+Study cloth_study();
+Study culling_study();
 
 }  // namespace farcull

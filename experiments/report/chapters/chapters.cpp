@@ -10,10 +10,12 @@ namespace farcull {
 
 Chapter chapter_of(const StoredStudy& stored) {
   static const std::map<std::string, Chapter (*)(const StoredStudy&)> kChapters = {
-      {"accuracy", accuracy_chapter},     {"error-time", error_time_chapter},
-      {"offsets", offsets_chapter},       {"radius", radius_chapter},
-      {"precision", precision_chapter},   {"stability", stability_chapter},
-      {"efficiency", efficiency_chapter}, {"scaling", scaling_chapter},
+      {"scenes", scenes_chapter},       {"culling", culling_chapter},
+      {"accuracy", accuracy_chapter},   {"error-time", error_time_chapter},
+      {"offsets", offsets_chapter},     {"radius", radius_chapter},
+      {"precision", precision_chapter}, {"stability", stability_chapter},
+      {"cloth", cloth_chapter},         {"efficiency", efficiency_chapter},
+      {"scaling", scaling_chapter},
   };
   const auto at = kChapters.find(stored.declaration.study);
   if (at == kChapters.end()) {

@@ -55,6 +55,11 @@ struct Cloth::State {
         velocity(Eigen::VectorXd::Zero(model.rest.size())),
         scene(make_scene(model)) {}
 
+  void move_to(Eigen::VectorXd positions) {
+    x = std::move(positions);
+    for (Eigen::Index v = 0; v < x.size(); v += 3) scene.vertices[v / 3] = x.segment<3>(v);
+  }
+
   void measure() {
     const cloth::Energies now = cloth::energies(model, x, velocity);
     report.kinetic = now.kinetic;
@@ -91,6 +96,24 @@ void Cloth::set_velocity(const Eigen::VectorXd& velocity) {
   state_->measure();
 }
 
+ClothState Cloth::state() const {
+  return {.report = state_->report,
+          .positions = state_->x,
+          .velocities = state_->velocity,
+          .was_stiff = state_->solver.was_stiff()};
+}
+
+void Cloth::restore(const ClothState& state) {
+  State& s = *state_;
+  if (state.positions.size() != s.x.size() || state.velocities.size() != s.x.size()) {
+    throw std::logic_error("Cloth::restore: not three numbers for each vertex");
+  }
+  s.move_to(state.positions);
+  s.velocity = state.velocities;
+  s.report = state.report;
+  s.solver.set_was_stiff(state.was_stiff);
+}
+
 ClothReport Cloth::step() {
   State& s = *state_;
   const cloth::Step step = cloth::make_step(s.model, s.x, s.velocity);
@@ -103,8 +126,7 @@ ClothReport Cloth::step() {
     const Eigen::VectorXd moved = minimum.x - s.x;
     s.report.slack = minimum.gradient.dot(moved);
     s.velocity = moved / s.model.settings.time_step;
-    s.x = std::move(minimum.x);
-    for (Eigen::Index v = 0; v < s.x.size(); v += 3) s.scene.vertices[v / 3] = s.x.segment<3>(v);
+    s.move_to(std::move(minimum.x));
   } else {
     s.velocity.setZero();
     s.report.warning = "the solver did not converge: " + minimum.reason +

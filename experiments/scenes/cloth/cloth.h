@@ -38,6 +38,13 @@ struct ClothReport {
   double total() const { return kinetic + elastic + bending + gravitational + contact; }
 };
 
+/// All that the steps to come depend on, and the report of the last one.
+struct ClothState {
+  ClothReport report = {};
+  Eigen::VectorXd positions, velocities;  // m and m/s, three numbers for each vertex of the cloth
+  bool was_stiff = false;                 // the last step needed interior points
+};
+
 class Cloth {
  public:
   /// The cloth at rest above the sphere. Throws Error naming "cloth" if a setting is out of range.
@@ -63,6 +70,12 @@ class Cloth {
   /// Replaces the velocities. Numbers that are not finite make the next step fail as said above.
   /// Throws std::logic_error if there are not three for each vertex of the cloth.
   void set_velocity(const Eigen::VectorXd& velocity);
+
+  /// After restore(state()) of a cloth with the same settings, the steps to come give the same bits
+  /// as those of that cloth.
+  ClothState state() const;
+  /// Throws std::logic_error if there are not three positions and velocities for each vertex.
+  void restore(const ClothState& state);
 
  private:
   struct State;

@@ -32,6 +32,10 @@ class Solver {
   /// by interior points and Newton's method from where they end.
   Minimum minimize(const Step& step);
 
+  /// Whether the last step needed interior points: all that a step leaves to the next one.
+  bool was_stiff() const { return was_stiff_; }
+  void set_was_stiff(bool was_stiff) { was_stiff_ = was_stiff; }
+
   /// N: the setting, and what the rounding of the positions themselves leaves.
   double tolerance(const Eigen::VectorXd& x) const;
 
@@ -55,7 +59,7 @@ class Solver {
   std::vector<double> constant_;    // values of the matrix that no x changes
   std::vector<Slot> vertex_slots_;  // per vertex
   std::vector<Slot> spring_slots_;  // per spring: of its two ends
-  bool was_stiff_ = false;          // the last step needed interior points
+  bool was_stiff_ = false;
   Factor factor_;
 };
 
