@@ -19,10 +19,6 @@
 namespace farcull {
 namespace {
 
-std::string counted(std::size_t n, const std::string& one, const std::string& many) {
-  return n == 1 ? "one " + one : grouped(n) + " " + many;
-}
-
 std::string grid_text(const StoredStudy& stored) {
   const Declaration& d = stored.declaration;
   return fmt::format("{} grid, seed {}, {} of {}", d.choice.quick ? "quick" : "full", d.choice.seed,

@@ -95,7 +95,7 @@ std::string frames_text(const std::vector<MovingRows>& scenes) {
   if (counts.empty()) return "n = 0";
   return fmt::format("n = {}{} of each scene, each run once",
                      counts.size() == 1 ? "" : fmt::format("{} to ", *counts.begin()),
-                     counted(*counts.rbegin(), "frame"));
+                     counted(*counts.rbegin(), "frame", "frames"));
 }
 
 Axis frames_axis(const std::vector<MovingRows>& scenes) {

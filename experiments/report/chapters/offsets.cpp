@@ -73,7 +73,7 @@ std::vector<Figure> figures_of(const std::vector<NamedRows>& scenes, const Rows&
       "with exact offsets draws boxes first.";
   for (std::size_t i = 0; i < out.size(); ++i) {
     out[i].caption += i == 3 ? fmt::format(" {}.", sample_text(rows))
-                             : fmt::format(" n = {}.", counted(rows.size(), "point"));
+                             : fmt::format(" n = {}.", counted(rows.size(), "point", "points"));
   }
   return out;
 }

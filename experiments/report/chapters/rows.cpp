@@ -206,7 +206,7 @@ RowColumn estimate_column(const std::string& name) {
 std::string sample_text(const Rows& rows) {
   std::set<std::size_t> runs;
   for (const Row* row : rows) runs.insert(std::max<std::size_t>(runs_of(*row).size(), 1));
-  std::string out = fmt::format("n = {}", counted(rows.size(), "point"));
+  std::string out = fmt::format("n = {}", counted(rows.size(), "point", "points"));
   if (runs.empty()) return out;
   if (*runs.rbegin() == 1) return out + ", each of 1 run";
   return out + fmt::format(", each the median of {} runs",
@@ -222,10 +222,6 @@ std::string at_most(std::uint64_t n) {
 std::string with_bound(std::uint64_t part, std::uint64_t all) {
   if (part > 0 || all == 0) return of_all(part, all);
   return fmt::format("{} (a rate of {})", of_all(part, all), at_most(all));
-}
-
-std::string counted(std::uint64_t n, const std::string& one) {
-  return grouped(n) + " " + one + (n == 1 ? "" : "s");
 }
 
 double false_positives(const Row& row) {
@@ -280,12 +276,12 @@ void add_promises(const StoredStudy& stored, Chapter& chapter) {
     for (const NamedRows& one : rows_by_contestant(pairs)) names.push_back(one.name);
     chapter.find(fmt::format("{} missed {} colliding pairs ({}).", listed(names),
                              rate_text(0, total(pairs, "colliding")),
-                             counted(pairs.size(), "run")));
+                             counted(pairs.size(), "run", "runs")));
   }
   if (kept(points)) {
     chapter.find(fmt::format("{} points violate the lemmas where these must hold ({}).",
                              rate_text(0, total(points, "points")),
-                             counted(points.size(), "run")));
+                             counted(points.size(), "run", "runs")));
   }
   if (silent > 0) {
     chapter.find(fmt::format("{} of methods that promise {} not say what they missed.",

@@ -108,8 +108,6 @@ std::string sample_text(const Rows& rows);
 std::string at_most(std::uint64_t n);
 /// "4 of 3,857", or "0 of 3,857 (a rate of at most 0.00078)".
 std::string with_bound(std::uint64_t part, std::uint64_t all);
-/// "1 run", "2 runs".
-std::string counted(std::uint64_t n, const std::string& one);
 
 /// Candidates that do not collide, over what collides; NaN where nothing does or the row has no
 /// candidates.

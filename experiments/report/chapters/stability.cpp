@@ -121,7 +121,7 @@ Figure missed_figure(const std::vector<Family>& families) {
       .title = "Missed pairs in extreme scenes",
       .caption = fmt::format("Colliding pairs that are not found, of all there are. Scenes in "
                              "which nothing collides have no share. n = {}, each of 1 run.",
-                             counted(runs_in(families), "point"))};
+                             counted(runs_in(families), "point", "points"))};
   for (const Family& family : families) {
     Panel panel = panel_of(family, "missed pairs (%)");
     bool collides = false;
@@ -148,7 +148,7 @@ Figure kept_figure(const std::vector<Family>& families) {
       .caption = fmt::format("Triangles that are kept, of all; below, those that collide: a method "
                              "that misses nothing cannot be below that line. n = {}, each of 1 "
                              "run.",
-                             counted(runs_in(families), "point"))};
+                             counted(runs_in(families), "point", "points"))};
   for (const Family& family : families) {
     Panel panel = panel_of(family, "kept triangles (%)");
     Series floor{.name = "colliding", .style = Series::Style::lines};
