@@ -345,8 +345,9 @@ CLI::App* CheckCommand::add_to(CLI::App& app) {
       "  farcull run two-spheres --method far-pairs --frames 10 --certificate c_%04d.json\n"
       "  farcull check c_%04d.json two-spheres --frames 10\n\n"
       "Exit status 0: proved: these pairs of the scene meet (or are within the clearance), and\n"
-      "no others; 1: refuted, or not proved. Nothing is proved about the run: neither its method\n"
-      "nor which pairs it kept. The file of a certificate, and its proof: docs/certificate.md.");
+      "no others; 1: refuted, or not proved; 2: what cannot be read. Nothing is proved about the\n"
+      "run: neither its method nor which pairs it kept. The file of a certificate, and its proof:\n"
+      "docs/certificate.md.");
   return command;
 }
 

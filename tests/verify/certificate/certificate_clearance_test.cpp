@@ -63,8 +63,8 @@ TEST(IntegerClearance, ADirectionOrTwoPointsForEveryPair) {
         ASSERT_EQ(integer_within(a, b, d), expected);
       }
     }
-    EXPECT_GT(inside, 20) << generator.name;
-    EXPECT_GT(apart, 20) << generator.name;
+    EXPECT_GT(inside, 5) << generator.name;
+    EXPECT_GT(apart, 5) << generator.name;
   }
 }
 
@@ -73,7 +73,7 @@ TEST(IntegerClearance, ADirectionOrTwoPointsOnSmallGrids) {
   const std::array clearances = {1.0, 2.0, std::sqrt(2.0), above(std::sqrt(2.0)), std::sqrt(3.0),
                                  0.5};
   int exactly = 0;
-  for (int n = 0; n < 30'000; ++n) {
+  for (int n = 0; n < 10'000; ++n) {
     std::array<Triangle, 2> t;
     const int flat = n % 3 == 0 ? 1 : 3;
     for (Triangle& corners : t) {
@@ -87,7 +87,7 @@ TEST(IntegerClearance, ADirectionOrTwoPointsOnSmallGrids) {
     ASSERT_EQ(pair.is_within(), expected) << text(t[0], t[1], clearance);
     exactly += expected && !reference::within(t[0], t[1], below(clearance));
   }
-  EXPECT_GT(exactly, 500);  // pairs at exactly the clearance
+  EXPECT_GT(exactly, 50);  // pairs at exactly the clearance
 }
 
 /// Two triangles at a distance that is a double, closest in one feature of each alone.
