@@ -4,7 +4,7 @@
 # It can be ended at any time. Call it again to go on: every frame that was simulated is a file in build/cloth/states, and every
 # frame that was accounted for is a row in build/cloth/COMMIT/results.sqlite. A new commit accounts for all frames anew, from
 # the same states.
-#   bash experiments/cloth.sh [OPTIONS OF farcull experiment cloth]      --quick: 200 triangles, 20 frames, seconds
+#   bash experiments/cloth.sh [OPTIONS OF farcull experiment cloth]      --quick: 200 triangles, 12 frames, seconds
 # Exit status: 0; 1 if a method that promises missed a pair; 2 if the measurements did not complete.
 set -euo pipefail
 

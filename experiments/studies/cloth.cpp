@@ -20,7 +20,7 @@ constexpr long kOfFar = 10;       // far looks at every tenth frame
 
 std::vector<Point> grid(const GridChoice& choice) {
   const int triangles = choice.quick ? 200 : 20000;
-  const long frames = choice.quick ? 20 : 500;
+  const long frames = choice.quick ? 12 : 500;
   std::vector<Point> out;
   for (long begin = 0; begin < frames; begin += kTurn) {
     for (const int k : {2, 8, 4, 6}) {
