@@ -45,6 +45,10 @@ NamedCounts named(const RunCounts& c) {
     add(out, "tests", c.fragments->tests);
     add(out, "views", c.fragments->views);
   }
+  if (c.neighbours) {
+    out.insert(out.end(), {{"neighbour_candidates", c.neighbours->candidates},
+                           {"neighbours", c.neighbours->colliding}});
+  }
   return out;
 }
 
@@ -96,6 +100,18 @@ NamedCounts named(const ClothCounts& c) {
                      {"iterations", c.iterations},
                      {"converged", c.converged}};
   if (c.revoked) out.push_back({"revoked", true});
+  return out;
+}
+
+NamedCounts named(const SceneCounts& c) {
+  NamedCounts out = {{"triangles", c.triangles},       {"objects", c.objects},
+                     {"self_objects", c.self_objects}, {"colliding", c.colliding},
+                     {"neighbours", c.neighbours},     {"scene_hash", c.scene_hash}};
+  if (c.pixels) {
+    out.insert(out.end(), {{"pixels_tenth", c.pixels->tenth},
+                           {"pixels_half", c.pixels->half},
+                           {"pixels_ninety", c.pixels->ninety}});
+  }
   return out;
 }
 

@@ -36,6 +36,11 @@ struct FragmentCounts {
   std::optional<std::uint64_t> tests = {}, views = {};
 };
 
+/// Neighbours (verify/exact.h) among the candidates of a method, and those of them that collide.
+struct NeighbourCounts {
+  std::uint64_t candidates = 0, colliding = 0;
+};
+
 /// Counts of a RunPoint.
 struct RunCounts : AnswerCounts {
   std::uint64_t missed_penetrating = 0;   // of `missed` (verify/contact.h); the rest touches
@@ -48,6 +53,7 @@ struct RunCounts : AnswerCounts {
   std::optional<DrawnCounts> drawn = {};
   std::optional<RadiusCounts> radius = {};
   std::optional<FragmentCounts> fragments = {};
+  std::optional<NeighbourCounts> neighbours = {};
 };
 
 /// Counts of a PeerPoint.
@@ -83,8 +89,27 @@ struct ClothCounts {
   bool converged = false;
 };
 
+constexpr int kSceneResolution = 512;  // px, of PixelCounts
+
+/// Pixels that triangles cover at kSceneResolution in the views x, y and z: the area of a
+/// triangle's image. Of a tenth of them it is at most `tenth`, of half `half`, of nine tenths
+/// `ninety`. At another resolution they are as the squares of the resolutions.
+struct PixelCounts {
+  double tenth = 0, half = 0, ninety = 0;
+};
+
+/// Counts of a scene by itself.
+struct SceneCounts {
+  std::uint64_t triangles = 0, objects = 0;
+  std::uint64_t self_objects = 0;               // that are tested against themselves
+  std::uint64_t colliding = 0, neighbours = 0;  // pairs, apart from each other
+  std::string scene_hash;
+  std::optional<PixelCounts> pixels = {};  // empty: no two boxes of objects overlap
+};
+
 /// std::monostate: nothing was measured.
-using Counts = std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts, ClothCounts>;
+using Counts =
+    std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts, ClothCounts, SceneCounts>;
 
 /// The names and values of counts, in the order in which a store holds them.
 using CountValue = std::variant<bool, std::uint64_t, double, std::string>;

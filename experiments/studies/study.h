@@ -41,7 +41,12 @@ std::vector<Study> studies_of_all();
 /// Throws Error naming the studies where there is none of that name.
 const Study& study_named(const std::string& name);
 
+/// The study with those of its points alone whose answer may depend on the device: those of methods
+/// that draw or choose views, and of the lemma experiment on a device.
+Study on_devices(const Study& study);
+
 /// Each defined in a file of its own.
+Study scenes_study();
 Study accuracy_study();
 Study error_time_study();
 Study radius_study();
@@ -51,5 +56,6 @@ Study stability_study();
 Study efficiency_study();
 Study scaling_study();
 Study cloth_study();
+Study culling_study();
 
 }  // namespace farcull

@@ -112,12 +112,14 @@ struct Chapter {
 
 /// The chapter of one study, each in a file of its own, from its rows: all, or those that are
 /// there.
+Chapter scenes_chapter(const StoredStudy& stored);
 Chapter accuracy_chapter(const StoredStudy& stored);
 Chapter error_time_chapter(const StoredStudy& stored);
 Chapter radius_chapter(const StoredStudy& stored);
 Chapter offsets_chapter(const StoredStudy& stored);
 Chapter precision_chapter(const StoredStudy& stored);
 Chapter stability_chapter(const StoredStudy& stored);
+Chapter culling_chapter(const StoredStudy& stored);
 Chapter cloth_chapter(const StoredStudy& stored);
 Chapter efficiency_chapter(const StoredStudy& stored);
 Chapter scaling_chapter(const StoredStudy& stored);

@@ -10,6 +10,7 @@ namespace farcull {
 
 Chapter chapter_of(const StoredStudy& stored) {
   static const std::map<std::string, Chapter (*)(const StoredStudy&)> kChapters = {
+      {"scenes", scenes_chapter},       {"culling", culling_chapter},
       {"accuracy", accuracy_chapter},   {"error-time", error_time_chapter},
       {"offsets", offsets_chapter},     {"radius", radius_chapter},
       {"precision", precision_chapter}, {"stability", stability_chapter},

@@ -150,7 +150,7 @@ bad "a file cut short" 'damaged/results.sqlite: is damaged' experiment "$study" 
 : >afile
 bad "the folder is a file" 'afile: is no folder' experiment "$study" --quick --out afile
 bad "no such study" 'acuracy: no such command' experiment acuracy
-bad "no study" 'experiment: no study is named; name one: all, accuracy' experiment
+bad "no study" 'experiment: no study is named; name one: all, scenes, accuracy' experiment
 bad "seed 0" '--seed: 0 is out of range' experiment "$study" --seed 0
 bad "a shard that is none" "--shard: '5/4' is no shard" experiment "$study" --shard 5/4
 bad "no shards" 'empty: holds no shards' merge empty

@@ -237,7 +237,7 @@ status=0
 grep -q 'a promise is broken: accuracy: ' "$work/liar.err" || fail "a broken promise is not told of"
 liar=$work/liar/report
 sed '/<nav/,$d' "$liar/index.html" >"$work/liar.summary"
-for study in accuracy error-time radius offsets precision stability efficiency scaling; do
+for study in accuracy error-time radius offsets precision culling stability cloth efficiency scaling; do
   grep -q "<li><a href=\"#$study\">.*BROKEN:" "$work/liar.summary" || fail "the summary hides what $study broke"
 done
 if grep -q 'never misses' "$liar/index.html"; then fail "the page claims what its rows deny"; fi
