@@ -4,14 +4,19 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/base/error.h"
+#include "core/view/view.h"
 #include "experiments/studies/merge.h"
+#include "experiments/studies/provenance.h"
 #include "experiments/studies/run_studies.h"
+#include "experiments/studies/store.h"
 #include "experiments/studies/study.h"
 #include "experiments/system/output_file.h"
 
@@ -76,6 +81,9 @@ void StudiesCommand::add_to(CLI::App& experiment) {
                "measure the Kth of N parts; default the variables of\nSlurm's array jobs and "
                "Open MPI, else everything");
     add_option(*command, "--device", device_, "DEVICE", kDeviceHelp);
+    add_option(*command, "--devices", devices_, "LIST|all",
+               "measure on each of these devices, as in\nnative,software, or on all that answer; "
+               "the first one\ninto DIR, what may differ on the others into DIR/on-DEVICE");
     add_footer(*command,
                fmt::format("Examples:\n"
                            "  farcull experiment {0} --quick\n"
@@ -95,6 +103,27 @@ bool StudiesCommand::named() const {
     if (given(*command)) return true;
   }
   return false;
+}
+
+std::vector<std::string> StudiesCommand::devices() const {
+  if (!devices_) return {device_of(device_)};
+  if (device_)
+    throw Error("--devices", "says what --device says as well", "leave one of the two out");
+  if (*devices_ != "all") {
+    std::vector<std::string> out = split_list(*devices_);
+    for (const std::string& device : out) (void)device_folder(out_, device);
+    return out;
+  }
+  std::vector<std::string> out;
+  for (const char* device : {"native", "hardware", "software"}) {
+    try {
+      (void)provenance_now(device, "");
+      out.emplace_back(device);
+    } catch (const Error& error) {
+      write_output("-", fmt::format("{} is left out: {}\n", device, error.what()));
+    }
+  }
+  return out;
 }
 
 int StudiesCommand::run() {
@@ -122,7 +151,24 @@ int StudiesCommand::run() {
   request.resume = resume_;
   request.shard = shard_ ? parse_shard(*shard_)
                          : shard_from_environment([](const char* v) { return std::getenv(v); });
-  request.device = device_of(device_);
+  int status = 0;
+  bool first = true;
+  for (const std::string& device : devices()) {
+    StudiesRequest of = request;
+    of.device = device;
+    if (!std::exchange(first, false)) {
+      of.folder = device_folder(out_, device);
+      for (Study& study : of.studies) study = on_devices(study);
+      std::erase_if(of.studies, [&](const Study& study) { return study.grid(of.choice).empty(); });
+    }
+    if (devices_) write_output("-", "on " + device + "\n");
+    const int one = run_on(std::move(of), name);
+    status = status == 1 || one == 1 ? 1 : std::max(status, one);
+  }
+  return status;
+}
+
+int StudiesCommand::run_on(StudiesRequest request, const std::string& name) const {
   const Shard& shard = request.shard;
   const std::string options = nlohmann::ordered_json{
       {"experiment", name},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/command/options.h"
+#include "experiments/studies/run_studies.h"
 
 namespace farcull {
 
@@ -24,10 +25,14 @@ class StudiesCommand {
 
  private:
   std::vector<CLI::App*> commands_;  // of studies() and, last, all
+  /// The devices to measure on, one after the other: those of --devices, or that of --device.
+  std::vector<std::string> devices() const;
+  int run_on(StudiesRequest request, const std::string& name) const;
+
   std::string out_ = kResultsFolder;
   bool quick_ = false, resume_ = false;
   std::uint64_t seed_ = 1;
-  Text shard_, device_;
+  Text shard_, device_, devices_;
 };
 
 class MergeCommand {

@@ -24,6 +24,7 @@
 #include "core/base/error.h"
 #include "experiments/record/output.h"
 #include "experiments/report/chapters/chapters.h"
+#include "experiments/report/chapters/devices.h"
 #include "experiments/report/chapters/rows.h"
 #include "experiments/report/figures.h"
 #include "experiments/report/gnuplot.h"
@@ -224,6 +225,43 @@ std::vector<std::string> in_order(std::vector<std::string> names) {
   return names;
 }
 
+// The device of the runs that a store holds.
+std::string device_of(const Store& store) {
+  const auto runs = store.runs();
+  return runs.empty() ? "no device" : runs.back().second.gl_renderer;
+}
+
+// The stores of further devices beside that of the report.
+class OtherDevices {
+ public:
+  // Those of another commit are left out, which `notes` says.
+  OtherDevices(const std::string& folder, const Store& first, std::vector<std::string>& notes) {
+    const auto commit = [](const Store& store) {
+      const auto runs = store.runs();
+      return runs.empty() ? std::string() : runs.back().second.commit;
+    };
+    for (const std::string& other : device_folders(folder)) {
+      Store store(store_path(other), Store::Access::read);
+      if (commit(store) == commit(first)) {
+        stores_.push_back(std::move(store));
+      } else {
+        notes.push_back(other + " is of another commit, and is not compared");
+      }
+    }
+  }
+
+  std::vector<DeviceStudy> of(const std::string& study) const {
+    std::vector<DeviceStudy> out;
+    for (const Store& store : stores_) {
+      if (store.declaration(study)) out.push_back({device_of(store), store.study(study)});
+    }
+    return out;
+  }
+
+ private:
+  std::vector<Store> stores_;
+};
+
 class Reporter {
  public:
   Reporter(const ReportRequest& request, const UnfinishedFolder& unfinished)
@@ -232,13 +270,19 @@ class Reporter {
         figures_(unfinished.folder("figures")),
         tables_(unfinished.folder("tables")) {}
 
-  void add(StoredStudy stored) {
+  void add(StoredStudy stored, const std::string& device, const std::vector<DeviceStudy>& others) {
     DrawnChapter drawn;
     drawn.chapter = chapter_of(stored);
-    for (const Row& row : stored.rows) {
-      if (breaks_promise(row.measurement))
-        summary_.broken.push_back(drawn.chapter.study + ": " + describe(row.point));
-    }
+    add_devices(device, stored, others, drawn.chapter);
+    put_broken_first(drawn.chapter);
+    const auto add_broken = [&](const StoredStudy& of, const std::string& where) {
+      for (const Row& row : of.rows) {
+        if (breaks_promise(row.measurement))
+          summary_.broken.push_back(drawn.chapter.study + where + ": " + describe(row.point));
+      }
+    };
+    add_broken(stored, "");
+    for (const DeviceStudy& other : others) add_broken(other.stored, " on " + other.device);
     if (!stored.complete()) {
       summary_.notes.push_back(fmt::format("{}: {} of {} points have a row", drawn.chapter.study,
                                            stored.rows.size(), stored.declaration.points.size()));
@@ -270,6 +314,8 @@ class Reporter {
     write_output(root_ + "/results.md", page_markdown(page, request_.folder));
     return std::move(summary_);
   }
+
+  void note(std::vector<std::string> notes) { summary_.notes = std::move(notes); }
 
   Page page;
 
@@ -360,7 +406,13 @@ ReportSummary write_report(const ReportRequest& request) {
   reporter.page.commit = FARCULL_COMMIT;
   reporter.page.written = now();
   reporter.page.runs = store.runs();
-  for (StoredStudy& stored : measured) reporter.add(std::move(stored));
+  std::vector<std::string> notes;
+  const OtherDevices others(request.folder, store, notes);
+  reporter.note(std::move(notes));
+  for (StoredStudy& stored : measured) {
+    const std::vector<DeviceStudy> of = others.of(stored.declaration.study);
+    reporter.add(std::move(stored), device_of(store), of);
+  }
   ReportSummary summary = reporter.finish();
   Signals::check();
   unfinished.publish();

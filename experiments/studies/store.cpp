@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -19,6 +20,8 @@ namespace farcull {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr const char* kDeviceFolder = "on-";
 
 // The tables of a file of version kStoreVersion. `results` is for questions in SQL.
 constexpr const char* kSchema = R"(
@@ -373,6 +376,31 @@ StoredStudy Store::study(const std::string& name) const {
                           .measured = text(2)});
     }
   });
+  return out;
+}
+
+std::string device_folder(const std::string& folder, const std::string& device) {
+  const bool plain = !device.empty() && std::ranges::all_of(device, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-';
+  });
+  if (!plain) {
+    throw Error(
+        "--devices", "'" + device + "' is no device",
+        "give all, or some of native, hardware, software and numbers, as in native,software");
+  }
+  return folder + "/" + kDeviceFolder + device;
+}
+
+std::vector<std::string> device_folders(const std::string& folder) {
+  std::vector<std::string> out;
+  std::error_code code;
+  for (std::filesystem::directory_iterator next(folder, code), end; !code && next != end;
+       next.increment(code)) {
+    if (next->path().filename().string().starts_with(kDeviceFolder) &&
+        std::filesystem::exists(store_path(next->path().string())))
+      out.push_back(next->path().string());
+  }
+  std::sort(out.begin(), out.end());
   return out;
 }
 

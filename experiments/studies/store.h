@@ -87,4 +87,10 @@ class Store {
 /// DIR/results.sqlite, or DIR/results-K-of-N.sqlite for a shard.
 std::string store_path(const std::string& folder, int shard = 1, int of = 1);
 
+/// DIR/on-DEVICE: the folder of the results of a further device, a store of its own. Throws Error
+/// naming --devices where a file cannot be called so.
+std::string device_folder(const std::string& folder, const std::string& device);
+/// The folders of further devices in DIR that hold a store, by name.
+std::vector<std::string> device_folders(const std::string& folder);
+
 }  // namespace farcull

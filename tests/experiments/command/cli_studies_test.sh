@@ -46,6 +46,20 @@ points=$(rows_of whole | wc -l)
 ((cases += 1))
 ((points > 20)) || fail whole "only $points points"
 
+# Devices: what may differ on the further one is in a store of its own. Here both are the same one.
+((cases += 1))
+measure --out devices --devices native,native || fail devices "status $?"
+differing() {
+  sqlite3 devices/results.sqlite "ATTACH 'devices/on-native/results.sqlite' AS other;
+    SELECT count(*), sum(a.counts != b.counts) FROM results a JOIN other.results b USING (study, scene,
+    method, \"offset\", radius, depth_format, depth_mode, resolution, views, frame, seed)"
+}
+compared=$(differing)
+[[ $compared =~ ^[1-9][0-9]+\|0$ ]] || fail "the same device twice" "$compared"
+((cases += 1))
+sqlite3 devices/on-native/results.sqlite "UPDATE rows SET counts = '{}' WHERE position = 0"
+[[ $(differing) == "${compared%|0}|1" ]] || fail "a changed count of a device" "$(differing)"
+
 # Ten kills at random moments of a run; what is left is gone on with.
 RANDOM=${SEED:=$$}
 kills=0
@@ -153,6 +167,9 @@ bad "no such study" 'acuracy: no such command' experiment acuracy
 bad "no study" 'experiment: no study is named; name one: all, scenes, accuracy' experiment
 bad "seed 0" '--seed: 0 is out of range' experiment "$study" --seed 0
 bad "a shard that is none" "--shard: '5/4' is no shard" experiment "$study" --shard 5/4
+bad "a device that is no name" "--devices: 'a/b' is no device" experiment "$study" --devices native,a/b
+bad "devices twice" '--devices: says what --device says' experiment "$study" --device native \
+  --devices native
 bad "no shards" 'empty: holds no shards' merge empty
 bad "no folder" 'nowhere' merge nowhere
 settings=(SLURM_ARRAY_TASK_ID=1)
