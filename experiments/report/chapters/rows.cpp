@@ -219,13 +219,21 @@ void add_promises(const StoredStudy& stored, Chapter& chapter) {
   };
   if (kept(pairs)) {
     std::vector<std::string> names;
-    for (const NamedRows& one : rows_by_contestant(pairs)) names.push_back(one.name);
-    chapter.find(fmt::format("{} missed {} colliding pairs in {} runs.", listed(names),
-                             rate_text(0, total(pairs, "colliding")), grouped(pairs.size())));
+    for (const Row* row : pairs) {
+      PointKey point =
+          row->point;  // at a resolution chosen by the size of triangles it is the same
+      point.method = point.method.substr(0, point.method.find(" @"));
+      if (std::find(names.begin(), names.end(), contestant(point)) == names.end())
+        names.push_back(contestant(point));
+    }
+    chapter.find(fmt::format("{} missed {} colliding pairs in {}.", listed(names),
+                             rate_text(0, total(pairs, "colliding")),
+                             counted(pairs.size(), "run", "runs")));
   }
   if (kept(points)) {
-    chapter.find(fmt::format("The lemmas are violated at {} points in {} runs.",
-                             rate_text(0, total(points, "points")), grouped(points.size())));
+    chapter.find(fmt::format("The lemmas are violated at {} points in {}.",
+                             rate_text(0, total(points, "points")),
+                             counted(points.size(), "run", "runs")));
   }
   if (silent > 0) {
     chapter.find(fmt::format("{} of methods that promise {} not say what they missed.",
