@@ -273,13 +273,19 @@ void add_promises(const StoredStudy& stored, Chapter& chapter) {
   };
   if (kept(pairs)) {
     std::vector<std::string> names;
-    for (const NamedRows& one : rows_by_contestant(pairs)) names.push_back(one.name);
-    chapter.find(fmt::format("{} missed {} colliding pairs ({}).", listed(names),
+    for (const Row* row : pairs) {
+      PointKey point = row->point;
+      // At a resolution chosen by the size of triangles it is the same.
+      point.method = point.method.substr(0, point.method.find(" @"));
+      const std::string name = contestant(point);
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+    chapter.find(fmt::format("{} missed {} colliding pairs in {}.", listed(names),
                              rate_text(0, total(pairs, "colliding")),
                              counted(pairs.size(), "run", "runs")));
   }
   if (kept(points)) {
-    chapter.find(fmt::format("{} points violate the lemmas where these must hold ({}).",
+    chapter.find(fmt::format("The lemmas are violated at {} points in {}.",
                              rate_text(0, total(points, "points")),
                              counted(points.size(), "run", "runs")));
   }
