@@ -367,11 +367,13 @@ void add_headline(const Rows& runs, const Rows& placements, Chapter& chapter) {
         "On scenes that were not constructed against it, the published radius missed {} colliding "
         "pairs in {} with fragment depth{}.",
         rate_text(missed, total(natural, "colliding")), counted(natural.size(), "run", "runs"),
-        missed == 0 && !constructed.empty()
+        constructed.empty() ? ""
+        : missed == 0 && total(constructed, "missed") > 0
             ? fmt::format("; its failure end to end rests on the constructed pixel-corners, where "
                           "it missed {}",
                           of_all(constructed, "missed", "colliding"))
-            : ""));
+            : fmt::format("; on the constructed pixel-corners it missed {} here",
+                          of_all(constructed, "missed", "colliding"))));
   }
   for (const auto& [bits, rows] : rows_by(placed, bits_of)) {
     chapter.find(fmt::format(
