@@ -132,7 +132,10 @@ std::vector<std::vector<double>> shifts_of(const Panel& panel, const PlacedPanel
     const auto rank = std::find(here.begin(), here.end(), point.series) - here.begin();
     const double middle = 0.5 * static_cast<double>(here.size() - 1);
     const double apart = here.size() < 2 ? 0 : std::min(kApart, kAllApart / (2 * middle));
-    out[point.series][point.index] = apart * (middle - static_cast<double>(rank));
+    // At an end of the axis all of them move inwards: a point outside would not be drawn.
+    const double reach = apart * middle;
+    const double inwards = std::min(0.0, high - point.y - reach) + std::max(0.0, reach - point.y);
+    out[point.series][point.index] = apart * (middle - static_cast<double>(rank)) + inwards;
   }
   return out;
 }

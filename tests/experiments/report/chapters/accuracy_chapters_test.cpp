@@ -80,7 +80,7 @@ std::vector<Made> accuracy_rows(std::uint64_t far_misses) {
 TEST(AccuracyChapter, ShowsCullideFallingAndFarAtZero) {
   const Chapter chapter = accuracy_chapter(stored_of("accuracy", accuracy_rows(0)));
   EXPECT_FALSE(says(chapter.findings, "BROKEN"));
-  EXPECT_TRUE(says(chapter.findings, "FAR (OBB) miss 0 of 40 colliding pairs in 2 runs"));
+  EXPECT_TRUE(says(chapter.findings, "FAR (OBB) missed 0 of 40 colliding pairs (2 runs)"));
   EXPECT_TRUE(says(chapter.findings, "20 of 20 colliding pairs are missed at 64 px and 3 at 4096"));
   ASSERT_FALSE(chapter.figures.empty());
   EXPECT_TRUE(chapter.figures[0].panels[0].y.shows_zero);
