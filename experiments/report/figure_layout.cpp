@@ -79,7 +79,8 @@ void place_key(const Figure& figure, double top, Layout& out) {
   }
   if (std::any_of(out.panels.begin(), out.panels.end(),
                   [](const PlacedPanel& p) { return p.x.linear_to > 0 || p.y.linear_to > 0; })) {
-    out.note = "Shaded: the axis is linear from 0 to the next number. Beyond, it is logarithmic.";
+    out.note =
+        "Shaded: the axis is linear, from 0 to the end of the shade. Beyond, it is logarithmic.";
     out.note_top = top;
     top += kLine + 4;
   }
@@ -87,7 +88,8 @@ void place_key(const Figure& figure, double top, Layout& out) {
 }
 
 constexpr double kSamePlace = 1.5;  // px: points that are nearer hide each other
-constexpr double kApart = 3;        // px
+constexpr double kApart = 3;        // px from one to the next
+constexpr double kAllApart = 10;    // px from the lowest to the highest, so that 0 stays near 0
 
 }  // namespace
 
@@ -129,7 +131,11 @@ std::vector<std::vector<double>> shifts_of(const Panel& panel, const PlacedPanel
     }
     const auto rank = std::find(here.begin(), here.end(), point.series) - here.begin();
     const double middle = 0.5 * static_cast<double>(here.size() - 1);
-    out[point.series][point.index] = kApart * (middle - static_cast<double>(rank));
+    const double apart = here.size() < 2 ? 0 : std::min(kApart, kAllApart / (2 * middle));
+    // At an end of the axis all of them move inwards: a point outside would not be drawn.
+    const double reach = apart * middle;
+    const double inwards = std::min(0.0, high - point.y - reach) + std::max(0.0, reach - point.y);
+    out[point.series][point.index] = apart * (middle - static_cast<double>(rank)) + inwards;
   }
   return out;
 }

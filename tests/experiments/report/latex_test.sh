@@ -80,7 +80,7 @@ caught() {
 }
 caught "an underscore that is not escaped" '/midrule/a needles_60 \\\\' 'Missing \$'
 caught "an ampersand that is not escaped" '/midrule/a a & b & c & d & e & f & g & h & i \\\\' 'Extra alignment tab'
-caught "a command that is none" '/midrule/a \\nothingofthisname \\\\' 'Undefined control sequence'
+caught "a command that is none" '/midrule/a x \\nothingofthisname \\\\' 'Undefined control sequence'
 # The twins of the twins: the same words, escaped.
 good=$work/good
 mkdir "$good"

@@ -388,6 +388,23 @@ TEST(ReportFigures, PointsAtTheSamePlaceStandAboveEachOther) {
   const auto shifts = shifts_of(figure.panels[0], layout.panels[0]);
   // All three at the first point, two at the second.
   EXPECT_EQ(shifts, (std::vector<std::vector<double>>{{3, 1.5}, {0, -1.5}, {-3, 0}}));
+  // At the end of an axis none is moved out of the panel.
+  Figure end = two_panels();
+  for (Series& series : end.panels[0].series) series.y = {100, 1};
+  end.panels[0].y.to = 100;
+  const Layout at_end = layout_of(end);
+  for (const auto& of_series : shifts_of(end.panels[0], at_end.panels[0]))
+    EXPECT_LE(of_series[0], 1e-9);
+  // However many: not so far that a 0 is taken for more.
+  Figure many = two_panels();
+  for (int i = 0; i < 20; ++i) {
+    Series series = many.panels[0].series[0];
+    series.name += std::to_string(i);
+    many.panels[0].series.push_back(series);
+  }
+  for (const auto& of_series : shifts_of(many.panels[0], layout_of(many).panels[0])) {
+    for (const double shift : of_series) EXPECT_LE(std::abs(shift), 5 + 1e-9);
+  }
 }
 
 TEST(ReportFigures, MarksAreInTheKeyAndNotOverTheData) {
