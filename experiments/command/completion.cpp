@@ -273,7 +273,7 @@ complete -c farcull -f
       const CompletedValues values = completed_values(type);
       std::string list = joined(values.words);
       if (values.folders) list += " (__fish_complete_directories)";
-      if (!list.empty()) list = " -a " + quoted(list);
+      if (!list.empty()) list = " -a " + farcull::quoted(list);
       return (values.files || values.meshes ? " -F" : "") + list;
     };
     for (const DeclaredOption& option : command.options) {
