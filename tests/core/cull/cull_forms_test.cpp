@@ -104,7 +104,9 @@ TEST(CullForms, RoundsEndWhereTheyAreLimited) {
       const auto limit = std::find_if(run.stages.begin(), run.stages.end(), [](const Stage& s) {
         return s.reason == Reason::rounds_given;
       });
-      if (rounds == 1) EXPECT_NE(limit, run.stages.end());
+      if (rounds == 1) {
+        EXPECT_NE(limit, run.stages.end());
+      }
       further += rounds == 1 && run.live != end;
       before = run.live;
     }

@@ -263,7 +263,7 @@ TEST(GlFar, ScalingsByPowersOfTwoAndExactMovesChangeNothingAtAll) {
 TEST(GlFar, FarApartDrawsNothingAndSaysWhy) {
   const Scene scene = make_builtin_scene("far-apart");
   Session none("no such device");  // opening it would throw
-  const Record record = run(scene, {}, none);
+  const Record record = run(scene, {.method = Method::far}, none);
   EXPECT_FALSE(record.found.device.gl.has_value());
   EXPECT_NE(record.found.device.note.find("nothing to draw"), std::string::npos);
   EXPECT_EQ(record.found.triangle_count, 0u);

@@ -119,9 +119,11 @@ TEST(Planner, RefusesWhatTheMethodHasNoUseFor) {
 
 TEST(Planner, CutsObjectsIntoPatchesForFar) {
   Scene scene = make_builtin_scene("two-spheres");
-  EXPECT_FALSE(has(plan(scene, {}), StageKind::patches));
+  RunOptions options;
+  options.method = Method::far;
+  EXPECT_FALSE(has(plan(scene, options), StageKind::patches));
   scene.objects[0].self = true;  // of 5120 triangles, so its patches have 320
-  const Plan planned = plan(scene, {});
+  const Plan planned = plan(scene, options);
   EXPECT_EQ(decision(planned, "patches"), "runs");
   EXPECT_TRUE(reason_of(stage_named(planned, "patches")).starts_with("16 patches of at most 320"));
   for (const Stage& stage : planned.stages()) EXPECT_NE(stage.level, "objects");
@@ -130,13 +132,15 @@ TEST(Planner, CutsObjectsIntoPatchesForFar) {
 // An object of one patch has nothing to draw: the answer is that of a box join, without a device.
 TEST(Planner, FarJoinsSmallObjectsByBoxesAlone) {
   int colliding = 0;
+  RunOptions options;
+  options.method = Method::far;
   for (int seed = 0; seed < 20; ++seed) {
     Scene scene = lab::random_scene(seed);
     scene.objects.resize(1);
     scene.triangles.resize(scene.objects[0].triangle_count);
     scene.source_face.resize(scene.triangles.size());
     scene.objects[0].self = true;
-    const Record far = run(scene, {});
+    const Record far = run(scene, options);
     const Record exact = run(scene, on_cpu(Method::exact));
     EXPECT_EQ(far.collisions.pairs, exact.collisions.pairs);
     EXPECT_EQ(far.verification->false_negatives, 0u);
