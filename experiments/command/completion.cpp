@@ -177,15 +177,15 @@ _farcull() {
   for word in $candidates; do
     case $word in
       @files)
-        compopt -o filenames 2>/dev/null
+        compopt -o filenames 2>/dev/null || :
         while IFS= read -r word; do COMPREPLY+=("$word"); done < <(compgen -f -- "$current")
         ;;
       @folders)
-        compopt -o filenames 2>/dev/null
+        compopt -o filenames 2>/dev/null || :
         while IFS= read -r word; do COMPREPLY+=("$word"); done < <(compgen -d -- "$current")
         ;;
       @meshes)
-        compopt -o filenames 2>/dev/null
+        compopt -o filenames 2>/dev/null || :
         while IFS= read -r word; do
           case $word in
             *.[oO][bB][jJ] | *.[oO][fF][fF] | *.[pP][lL][yY] | *.[sS][tT][lL] | *.json | \

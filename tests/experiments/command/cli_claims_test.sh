@@ -42,7 +42,7 @@ expect 'the hash is that of the list of the run' c.json \
 answers 'a certificate of exact' 0 '^proved: these [0-9,]+ pairs of the scene meet, and no others$' \
   check exact.json two-spheres --pairs pairs.csv
 expect 'a certificate of exact' "$out" "^list .*$sha$"
-expect 'a certificate of exact' "$out" 'pairs\.csv is this list$'
+expect 'a certificate of exact' "$out" 'pairs\.csv is this list: [0-9,]+ rows$'
 expect 'a certificate of exact' "$out" '^  which pairs the run kept'
 answers 'another list' 1 '^not proved: missed\.csv is another list: a pair is missing$' \
   check exact.json two-spheres --pairs missed.csv

@@ -146,9 +146,9 @@ good 'faces' 0 run faces.obj blade.obj --pairs faces.csv --faces
 expect 'faces' <(head -n 1 faces.csv) '^object_a,triangle_a,object_b,triangle_b,face_a,face_b$'
 expect 'faces' faces.csv '^0,1,1,0,0,0$'
 expect 'faces' faces.csv '^0,[2-5],1,1,1,1$'
-good 'without faces' 0 run faces.obj blade.obj --pairs plain.csv
+good 'without faces' 0 run faces.obj blade.obj --pairs unnamed.csv
 ((cases += 1))
-cmp -s plain.csv <(cut -d, -f1-4 faces.csv) || fail 'faces' 'the other columns differ'
+cmp -s unnamed.csv <(cut -d, -f1-4 faces.csv) || fail 'faces' 'the other columns differ'
 good 'faces of self-collision' 0 run faces.obj blade.obj --self --pairs - --faces
 expect 'faces of self-collision' "$out" \
   '^object_a,triangle_a,object_b,triangle_b,neighbours,face_a,face_b$'
