@@ -135,7 +135,7 @@ in_zsh() {
 }
 in_fish() {
   XDG_CONFIG_HOME=$work/fish fish --no-config -c '
-    source script.fish; complete -C $argv[1] | string replace -r "\t.*" ""' -- "$1" | tr '\n' ' '
+    source script.fish; complete -C $argv[1] | string replace -r "\t.*" ""; true' -- "$1" | tr '\n' ' '
 }
 
 # offers SHELL LINE WORD...: all of the words are offered; after "but", none of them.
@@ -184,13 +184,14 @@ for option in --method --offset --depth --depth-format --query --radius --resolu
   --device; do
   taken=0
   for value in $(in_bash "farcull plan two-spheres $option "); do
+    set --
     case $option:$value in --device:gl | --device:software | --device:hardware) continue ;; esac
     method=far
     [[ $option != --resolution ]] || method=far-pairs
     [[ $option == --method ]] || set -- --method $method
+    [[ $value != s-cullide ]] || set -- --self
     farcull plan two-spheres "$@" "$option" "$value" >/dev/null 2>said ||
       fail "$option $value is offered, but: $(<said)"
-    set --
     taken=$((taken + 1))
   done
   ((taken > 0)) || fail "nothing is offered after $option"
