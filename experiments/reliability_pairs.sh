@@ -33,10 +33,10 @@ for run in "${runs[@]}"; do
       # The accounting of the box-hostile scenes decides tens of millions of pairs each time.
       if [[ $scene == needles-* && $views != auto ]]; then resolutions=128; fi
       record="$out/${run// /_}.$device.${views//,/}.json"
-      # A row ends in: resolution, objects, triangles, candidates, colliding, (neighbours,) missed, two times.
+      # A row ends in: resolution, objects, triangles, candidates, colliding, (+ and neighbours,) missed, two times.
       build/farcull compare "${words[@]}" --methods far-pairs --device "$device" --views "$views" --resolutions "$resolutions" \
         --json "$record" |
-        awk -v run="$run" -v device="$device" -v views="$views" '/^method / { colliding = /neighbours/ ? 4 : 3 }
+        awk -v run="$run" -v device="$device" -v views="$views" '/^method / { colliding = /neighbours/ ? 5 : 3 }
           $1 == "far-pairs" && $2 == "-" {
             pairs = $(NF - colliding); candidates = $(NF - colliding - 1)
             row = sprintf("%-30s %-9s %-6s %11s %11s %10s", run, device, views, $(NF - colliding - 4), candidates, pairs)
