@@ -18,7 +18,7 @@ record=build/scaling.json
 printf '%12s %10s %10s %10s %9s %12s %10s %11s\n' triangles ms min max MiB candidates pairs cand./pairs
 for size in "${sizes[@]}"; do
   build/farcull bench "$scene:$size" --peers none --methods far-pairs --device cpu --repeat 5 --json "$record" >/dev/null
-  value() { grep -oE "\"$1\": *-?[0-9.e+]+" "$record" | head -n 1 | grep -oE '[0-9.e+]+$'; }
+  value() { sed -nE "0,/\"$1\": /s/.*\"$1\": *(-?[0-9.e+-]+).*/\1/p" "$record"; }
   printf '%s %s %s %s %s %s %s\n' "$(value triangles)" "$(value median)" "$(value min)" "$(value max)" "$(value peak_mib)" \
     "$(value candidate_pairs)" "$(value pairs)"
 done | awk '{

@@ -275,8 +275,9 @@ int doctor_without_gl(const DoctorArguments& arguments, const NativeFindings& na
 int doctor_command(const DoctorArguments& arguments) {
   const FloatingPointGuard guard;
   if (!arguments.json.empty()) check_output(arguments.json);
-  const NativeFindings native = look_at_native();
-  if (is_cpu(arguments.device)) return doctor_without_gl(arguments, native);
+  if (is_cpu(arguments.device)) return doctor_without_gl(arguments, look_at_native());
+  // Before the probes of the native canvas, which take seconds: a device that is not there is
+  // refused at once.
   const std::vector<GlDevice> devices = GlContext::list_devices();
   const std::optional<int> chosen = choose(devices, arguments.device);
   if (!chosen && arguments.device.empty()) {
@@ -284,10 +285,11 @@ int doctor_command(const DoctorArguments& arguments) {
       write_output("-", devices_table(devices, -1) +
                             "no device offers what farcull needs of OpenGL: "
                             "everything runs on the cores of the CPU\n\n");
-    return doctor_without_gl(arguments, native);
+    return doctor_without_gl(arguments, look_at_native());
   }
   // Where nothing fits, the context says so in an Error.
   const GlContext context(chosen ? std::to_string(*chosen) : arguments.device);
+  const NativeFindings native = look_at_native();
   const GlInfo& gl = context.info();
   const int resolution = gl_canvas(context, DepthMode::fixed, {})->limits().max_resolution;
   const bool people = arguments.json != "-";

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "experiments/report/chapters/numbers.h"
 #include "experiments/report/chapters/rows.h"
@@ -13,12 +14,13 @@ namespace {
 
 // A contestant at a resolution, on a scene or on several drawn alike with different seeds.
 struct Entry {
-  const Row* row = nullptr;                                            // of the first seed
-  double ms = 0;                                                       // the median over the seeds
-  double least = 0, most = 0;                                          // that single runs took
+  const Row* row = nullptr;   // of the first seed
+  std::vector<double> times;  // ms: of each run, or of several seeds the median of each
+  Estimate median_ms;         // of them
   std::uint64_t missed = 0, wrong = 0, colliding = 0, candidates = 0;  // of all seeds
   bool has_candidates = true;
 
+  double ms() const { return median_ms.value; }
   // Pairs that the answer lacks plus pairs in it that do not collide.
   double error() const { return static_cast<double>(missed + wrong); }
 };
@@ -32,21 +34,16 @@ struct TimedGroup {
 
 Entry entry_of(const Rows& rows) {
   Entry out{.row = rows.front()};
-  std::vector<double> ms;
   for (const Row* row : rows) {
-    const double time = *time_of(*row, "total");
-    const double least = time_of(*row, "total_min").value_or(time),
-                 most = time_of(*row, "total_max").value_or(time);
-    out.least = ms.empty() ? least : std::min(out.least, least);
-    out.most = std::max(out.most, most);
-    ms.push_back(time);
+    out.times.push_back(*time_of(*row, "total"));
     out.missed += number_of(*row, "missed");
     out.wrong += number_of(*row, "wrong");
     out.colliding += number_of(*row, "colliding");
     out.candidates += number_of(*row, "candidates");
     out.has_candidates = out.has_candidates && count_of(*row, "candidates");
   }
-  out.ms = median(std::move(ms));
+  if (rows.size() == 1 && !runs_of(*rows.front()).empty()) out.times = runs_of(*rows.front());
+  out.median_ms = median_estimate(out.times);
   return out;
 }
 
@@ -93,7 +90,7 @@ std::string seeds_text(const TimedGroup& group) {
 Entries front_of(const TimedGroup& group) {
   Entries sorted = group.entries;
   std::stable_sort(sorted.begin(), sorted.end(), [](const Entry& a, const Entry& b) {
-    return std::pair(a.ms, a.error()) < std::pair(b.ms, b.error());
+    return std::pair(a.ms(), a.error()) < std::pair(b.ms(), b.error());
   });
   Entries front;
   for (const Entry& entry : sorted) {
@@ -102,11 +99,23 @@ Entries front_of(const TimedGroup& group) {
   return front;
 }
 
-// The time of an entry over that of another in the same study: of the medians, and the least and
-// the most that their fastest and slowest runs allow.
+// The ratio of the medians of two entries of the same study, with its interval.
 std::string times_as_long(const Entry& entry, const Entry& other) {
-  return fmt::format("{} ({} to {})", rounded(entry.ms / other.ms),
-                     rounded(entry.least / other.most), rounded(entry.most / other.least));
+  return estimate_text(ratio_estimate(entry.times, other.times));
+}
+
+// "n = 57 points, each the median of 5 runs; of drawn scenes 5 seeds".
+std::string sample_of(const std::vector<TimedGroup>& groups) {
+  Rows rows;
+  std::set<std::size_t> seeds;
+  for (const TimedGroup& group : groups) {
+    for (const Entry& entry : group.entries) rows.push_back(entry.row);
+    if (group.seeds > 1) seeds.insert(group.seeds);
+  }
+  std::vector<std::string> numbers;
+  for (const std::size_t n : seeds) numbers.push_back(std::to_string(n));
+  return sample_text(rows) +
+         (numbers.empty() ? "" : fmt::format("; of drawn scenes {} seeds", listed(numbers)));
 }
 
 // The peer that times are given against: CGAL's box join, which every build has.
@@ -143,7 +152,10 @@ Panel panel_of(const TimedGroup& group, const std::string& label, double (*value
     } else if (entry.row->point.resolution > 0) {
       at->style = Series::Style::lines_points;  // lines follow the resolution
     }
-    at->x.push_back(entry.ms);
+    const bool bar = entry.median_ms.n > 1;
+    at->x.push_back(entry.ms());
+    at->x_low.push_back(bar ? entry.median_ms.low : kNone);
+    at->x_high.push_back(bar ? entry.median_ms.high : kNone);
     at->y.push_back(value(entry));
   }
   return panel;
@@ -153,13 +165,13 @@ Panel panel_of(const TimedGroup& group, const std::string& label, double (*value
 Series front_series(const TimedGroup& group) {
   Series out{.name = "Pareto front", .style = Series::Style::lines};
   double last = 0;
-  for (const Entry& entry : group.entries) last = std::max(last, entry.ms);
+  for (const Entry& entry : group.entries) last = std::max(last, entry.ms());
   for (const Entry& entry : front_of(group)) {
     if (!out.y.empty()) {
-      out.x.push_back(entry.ms);
+      out.x.push_back(entry.ms());
       out.y.push_back(out.y.back());
     }
-    out.x.push_back(entry.ms);
+    out.x.push_back(entry.ms());
     out.y.push_back(entry.error());
   }
   if (!out.x.empty()) {
@@ -175,15 +187,18 @@ std::vector<Figure> figures_of(const std::vector<TimedGroup>& groups) {
       .title = "Wrong answers against run time",
       .caption =
           "Pairs that are missed plus pairs that are reported and do not collide, over "
-          "the median time from triangles to pairs. Lines follow the resolution. Of scenes that "
-          "are drawn with several seeds, the sum of the errors and the median of the times. The "
-          "Pareto front joins what nothing beats in both."};
-  Figure kept{.name = "error-time-false-positives",
-              .title = "Candidates that do not collide against run time",
-              .caption =
-                  "Candidates that are handed to exact tests and do not collide, over colliding "
-                  "pairs. FCL and ODE use their own tests of triangles instead of exact tests, so "
-                  "what they hand on is their answer."};
+          "the median time from triangles to pairs, with its 95 % interval as a bar. Lines follow "
+          "the resolution. Of scenes that are drawn with several seeds, the sum of the errors and "
+          "the median of the times. The Pareto front joins what nothing beats in both. " +
+          sample_of(groups) + "."};
+  Figure kept{
+      .name = "error-time-false-positives",
+      .title = "Candidates that do not collide against run time",
+      .caption =
+          "Candidates that are handed to exact tests and do not collide, over colliding "
+          "pairs. FCL and ODE use their own tests of triangles instead of exact tests, so "
+          "what they hand on is their answer. Bars are the 95 % intervals of median times; " +
+          sample_of(groups) + "."};
   for (const TimedGroup& group : groups) {
     error.panels.push_back(
         panel_of(group, "missed + wrong pairs", [](const Entry& entry) { return entry.error(); }));
@@ -196,8 +211,9 @@ std::vector<Figure> figures_of(const std::vector<TimedGroup>& groups) {
 DataTable front_table(const std::vector<TimedGroup>& groups) {
   DataTable out{.name = "error-time-front",
                 .caption =
-                    "The Pareto fronts: nothing is as fast with as few errors. Times are "
-                    "ratios of medians, with the least and the most that single runs allow",
+                    "The Pareto fronts: nothing is as fast with as few errors. Times are ratios of "
+                    "medians with their 95 % intervals. " +
+                    sample_of(groups),
                 .columns = columns({"scene", "method"}, {"time over that of cgal-boxes", "missed",
                                                          "wrong", "colliding"})};
   for (const TimedGroup& group : groups) {
@@ -226,7 +242,7 @@ std::vector<EqualTime> equal_times(const TimedGroup& group) {
     if (contestant(far.row->point) != "FAR (OBB)") continue;
     EqualTime one{.far = &far};
     for (const Entry& entry : group.entries) {
-      if (entry.row->point.method.find("cullide") == std::string::npos || entry.ms > far.ms)
+      if (entry.row->point.method.find("cullide") == std::string::npos || entry.ms() > far.ms())
         continue;
       if (one.cullide == nullptr || entry.error() < one.cullide->error()) one.cullide = &entry;
     }
@@ -248,10 +264,10 @@ DataTable equal_table(const std::vector<TimedGroup>& groups) {
   for (const TimedGroup& group : groups) {
     for (const EqualTime& one : equal_times(group)) {
       out.rows.push_back(
-          {group.name, std::to_string(one.far->row->point.resolution), rounded(one.far->ms),
+          {group.name, std::to_string(one.far->row->point.resolution), rounded(one.far->ms()),
            grouped(one.far->candidates),
            one.cullide != nullptr ? in_words(*one.cullide) : "none is as fast",
-           one.cullide != nullptr ? rounded(one.cullide->ms) : "-",
+           one.cullide != nullptr ? rounded(one.cullide->ms()) : "-",
            one.cullide != nullptr ? grouped(one.cullide->candidates) : "-",
            one.cullide != nullptr ? of_all(one.cullide->missed, one.cullide->colliding) : "-"});
     }
@@ -277,16 +293,17 @@ void add_equal_times(const std::vector<TimedGroup>& groups, Chapter& chapter) {
       slower > 0 ? fmt::format(", and no CULLIDE is as fast in {}", grouped(slower)) : ""));
   for (const TimedGroup& group : groups) {
     const std::vector<EqualTime> all = equal_times(group);
-    const auto fastest = std::min_element(
-        all.begin(), all.end(), [](const auto& a, const auto& b) { return a.far->ms < b.far->ms; });
+    const auto fastest = std::min_element(all.begin(), all.end(), [](const auto& a, const auto& b) {
+      return a.far->ms() < b.far->ms();
+    });
     if (fastest == all.end() || fastest->cullide == nullptr) continue;
     chapter.find(fmt::format(
         "{}: FAR (OBB) is fastest at {} px ({} ms, {} missed); within that time "
         "{} misses the fewest, {} ({} ms).",
-        group.name, fastest->far->row->point.resolution, rounded(fastest->far->ms),
+        group.name, fastest->far->row->point.resolution, rounded(fastest->far->ms()),
         of_all(fastest->far->missed, fastest->far->colliding), in_words(*fastest->cullide),
         of_all(fastest->cullide->missed, fastest->cullide->colliding),
-        rounded(fastest->cullide->ms)));
+        rounded(fastest->cullide->ms())));
   }
 }
 
@@ -316,7 +333,7 @@ void add_front_finding(const TimedGroup& group, Chapter& chapter) {
   }
   const auto fastest = [](const Entries& entries) {
     return std::min_element(entries.begin(), entries.end(),
-                            [](const Entry& a, const Entry& b) { return a.ms < b.ms; });
+                            [](const Entry& a, const Entry& b) { return a.ms() < b.ms(); });
   };
   const Entry best = *fastest(right);
   std::erase_if(right, [&](const Entry& entry) {
@@ -324,7 +341,7 @@ void add_front_finding(const TimedGroup& group, Chapter& chapter) {
   });
   const auto next = fastest(right);
   chapter.find(fmt::format("Fastest method without an error on {}{}: {}, {} ms{}.", group.name,
-                           seeds_text(group), in_words(best), rounded(best.ms),
+                           seeds_text(group), in_words(best), rounded(best.ms()),
                            next != right.end()
                                ? fmt::format("; the next method, {}, takes {} times as long",
                                              in_words(*next), times_as_long(*next, best))
@@ -334,7 +351,7 @@ void add_front_finding(const TimedGroup& group, Chapter& chapter) {
     if (entry.error() == 0) continue;
     faster.push_back(fmt::format("{} ({} wrong, {} ms)", in_words(entry),
                                  of_all(static_cast<std::uint64_t>(entry.error()), entry.colliding),
-                                 rounded(entry.ms)));
+                                 rounded(entry.ms())));
   }
   if (faster.empty()) return;
   chapter.find(fmt::format("Faster on {}, with errors: {}.", group.name, listed(faster)));

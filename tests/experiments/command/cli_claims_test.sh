@@ -23,7 +23,7 @@ answers() {
   launch "${@:4}"
   if ((status != $2)); then
     fail "$1" "status $status instead of $2: $(head -n 1 "$out")"
-  elif ! head -n 1 "$out" | grep -qE -- "$3"; then
+  elif ! grep -qE -- "$3" <<<"$(head -n 1 "$out")"; then
     fail "$1" "says: $(head -n 1 "$out")"
   fi
 }

@@ -11,7 +11,10 @@ unset MESA_GL_VERSION_OVERRIDE MESA_GLSL_VERSION_OVERRIDE
 unset __EGL_VENDOR_LIBRARY_DIRS __EGL_VENDOR_LIBRARY_FILENAMES
 export LC_ALL=C MALLOC_ARENA_MAX=2
 
-readonly seconds=5
+# A bad input ends within this much time of all cores, however busy the machine is; and any launch
+# that takes a minute is taken for one that hangs.
+readonly cpu_seconds=5
+readonly seconds=60
 # KiB. A billion vertices are 12 GB as floats, a billion triangles as much in indices; good runs
 # pass with a tenth of it.
 readonly address_space=4000000
@@ -40,22 +43,23 @@ snapshot() { find . -mindepth 1 -printf '%p %y %l %s %T@\n' | sort; }
 
 # launch ARGUMENTS...: the program, with `status`, `$out` and `$err` as its answer. `to` is where
 # its stdout goes: a path, "closed", or "broken" for a pipe that nobody reads. `settings` are
-# variables for its environment.
+# variables for its environment, `cpu` is how many seconds of all cores it may use.
 to=$out
 settings=()
+cpu=unlimited
 launch() {
   : >"$out"
   local command=(env "${settings[@]}" timeout "$seconds" "$program" "$@")
   case $to in
-    closed) (ulimit -v "$address_space" && exec "${command[@]}" >&- 2>"$err") ;;
+    closed) (ulimit -v "$address_space" -t "$cpu" && exec "${command[@]}" >&- 2>"$err") ;;
     broken)
       (
-        ulimit -v "$address_space" && "${command[@]}" 2>"$err"
+        ulimit -v "$address_space" -t "$cpu" && "${command[@]}" 2>"$err"
         echo $? >"$work/status"
       ) | :
       (exit "$(<"$work/status")")
       ;;
-    *) (ulimit -v "$address_space" && exec "${command[@]}" >"$to" 2>"$err") ;;
+    *) (ulimit -v "$address_space" -t "$cpu" && exec "${command[@]}" >"$to" 2>"$err") ;;
   esac
   status=$?
 }
@@ -65,6 +69,8 @@ launch() {
 refused() {
   if ((status == 124)); then
     fail "$1" "not done after $seconds s"
+  elif ((status == 137 || status == 152)); then
+    fail "$1" "not done after $cpu_seconds s of all cores"
   elif ((status != 2)); then
     fail "$1" "status $status instead of 2"
   elif [[ -s $out ]]; then
@@ -82,7 +88,7 @@ refused() {
 
 # bad CASE PATTERN ARGUMENTS...: a bad input, which also leaves the folder as it was.
 bad() {
-  local before after
+  local before after cpu=$cpu_seconds
   ((cases += 1))
   before=$(snapshot)
   launch "${@:3}"

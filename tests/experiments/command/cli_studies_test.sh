@@ -82,7 +82,7 @@ same "killed (seed $SEED)" killed
 env --default-signal=INT "$program" experiment "$study" --quick --out interrupted >"$out" 2>"$err" &
 child=$!
 for _ in {1..100}; do
-  rows_of interrupted 2>/dev/null | grep -q . && break
+  [[ -n $(rows_of interrupted 2>/dev/null) ]] && break
   [[ -e interrupted/results.sqlite ]] && sleep 0.3 && break
   sleep 0.05
 done

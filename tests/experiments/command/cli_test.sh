@@ -265,7 +265,7 @@ launch
 if ((status != 2)) || [[ -s $out ]]; then
   fail 'no argument' "status $status or something on stdout"
 elif ! grep -q '^Usage: farcull' "$err" ||
-  ! tail -n 1 "$err" | grep -q '^farcull: COMMAND: .*; '; then
+  ! grep -q '^farcull: COMMAND: .*; ' <<<"$(tail -n 1 "$err")"; then
   fail 'no argument' 'no help or no message on stderr'
 fi
 

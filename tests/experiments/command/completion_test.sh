@@ -98,7 +98,7 @@ else
   echo "not run: groff"
 fi
 if command -v man >/dev/null; then
-  man -l farcull.1 2>said | grep -q 'farcull' || fail "man -l: $(head -3 said)"
+  grep -q 'farcull' <<<"$(man -l farcull.1 2>said)" || fail "man -l: $(head -3 said)"
 else
   echo "not run: man"
 fi

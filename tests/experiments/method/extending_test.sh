@@ -76,9 +76,9 @@ compile() {
   local overlay=$1 file like command
   while IFS= read -r file; do
     like=$source/$file
-    [[ -e $like ]] || like=$(find "$source/$(dirname "$file")" -maxdepth 1 -name '*.cpp' | sort | head -n 1)
+    [[ -e $like ]] || like=$(find "$source/$(dirname "$file")" -maxdepth 1 -name '*.cpp' | sort | sed -n 1p)
     command=$(sed -nE 's/^ *"command": "(.*)",?$/\1/p' "$build/compile_commands.json" |
-      sed -E 's/\\"/"/g; s/\\\\/\\/g' | grep -F -- " -c $like" | head -n 1)
+      sed -E 's/\\"/"/g; s/\\\\/\\/g' | grep -F -- " -c $like" | sed -n 1p)
     [[ -n $command ]] || fail "no command compiles $like"
     # Neither the precompiled header, which holds headers that have changed, nor the compiler's cache.
     command=$(sed -E "s# -Winvalid-pch##; s# -include [^ ]*cmake_pch[^ ]*# -include $source/core/base/arithmetic.h#; s# -o .*##; s#^[^ ]*ccache ##" <<<"$command")
@@ -113,7 +113,7 @@ by_boxes=$(answer two-spheres --method boxes)
 grep -q '"method": "boxes"' <<<"$by_boxes" || fail "no run by the new method: $by_boxes"
 grep -qF -- "$truth" <<<"$by_boxes" || fail "the new method finds other pairs: $by_boxes"
 grep -q '"false_negatives": 0,' <<<"$by_boxes" || fail "the new method misses pairs: $by_boxes"
-"$farcull" plan two-spheres --method boxes | grep -q 'boxes of all triangles' ||
+grep -q 'boxes of all triangles' <<<"$("$farcull" plan two-spheres --method boxes)" ||
   fail "the plan of the new method lacks its stage"
 wide=$(answer two-spheres --method far --offset wide --resolution 128)
 grep -q '"offset": "wide"' <<<"$wide" || fail "no run with the new offset: $wide"

@@ -143,7 +143,7 @@ check_pdf() {
   local page=$1 pdf=$2 text caption pages
   pages=$(pdfinfo "$pdf" | awk '/^Pages:/ { print $2 }')
   ((pages > 1)) || echo "the PDF has $pages pages"
-  pdfinfo "$pdf" | grep -q 'Page size:.*A4' || echo "the PDF is not of A4"
+  grep -q 'Page size:.*A4' <<<"$(pdfinfo "$pdf")" || echo "the PDF is not of A4"
   text=$(pdftotext "$pdf" - | words)
   while IFS= read -r caption; do
     caption=$(printf '%s' "$caption" | words)
@@ -241,7 +241,7 @@ for study in accuracy error-time radius offsets precision culling stability clot
   grep -q "<li><a href=\"#$study\">.*BROKEN:" "$work/liar.summary" || fail "the summary hides what $study broke"
 done
 if grep -q 'never misses' "$liar/index.html"; then fail "the page claims what its rows deny"; fi
-sed '/^All of this page/,$d' "$liar/results.md" | grep -q 'BROKEN:' || fail "results.md hides a broken promise"
+grep -q 'BROKEN:' <<<"$(sed '/^All of this page/,$d' "$liar/results.md")" || fail "results.md hides a broken promise"
 # The twin: the store of before keeps its promises.
 grep -q 'never misses' "$page" || fail "the page of kept promises claims nothing"
 
