@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes docs/results.md and all its figures: installs what is missing, builds, measures every study
 # (or continues where an earlier call ended), makes the report, and copies page, figures and pictures
-# into docs/. about twenty minutes on two cores without a GPU; docs/results.md was measured on such a
+# into docs/. About twenty minutes on two cores without a GPU; docs/results.md was measured on such a
 # machine.
 #   bash experiments/results.sh [OPTIONS OF farcull experiment all]
 # Exit status: 0; 1 if a method that promises missed a pair; 2 if the measurements did not complete.

@@ -33,7 +33,8 @@ struct TimedGroup {
 };
 
 Entry entry_of(const Rows& rows) {
-  Entry out{.row = rows.front()};
+  Entry out;
+  out.row = rows.front();
   for (const Row* row : rows) {
     out.times.push_back(*time_of(*row, "total"));
     out.missed += number_of(*row, "missed");
