@@ -32,6 +32,7 @@ CullSettings settings_of(const Fattener& fattener) {
   return {.views = parse_views("x,y,z"),
           .resolution = 64,
           .fattener = fattener,
+          .radius = {},
           .least_objects = kFewObjects,
           .worth_a_round = kWorthARound};
 }

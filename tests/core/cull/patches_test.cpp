@@ -288,6 +288,7 @@ TEST(Patches, OwnersOfAnotherSceneAreRefused) {
   const CullSettings settings{.views = parse_views("x"),
                               .resolution = 16,
                               .fattener = fattener,
+                              .radius = {},
                               .owners = std::vector<std::uint32_t>(3)};
   EXPECT_THROW(cull(scene, find_regions(scene, {.self = true}), settings, canvas),
                std::logic_error);

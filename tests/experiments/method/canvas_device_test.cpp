@@ -94,7 +94,10 @@ TEST(CanvasDevice, StudiesSayThatTheNativeCanvasDrawsAndWithWhichInstructionSet)
   EXPECT_EQ(native.gl_renderer, "native (" + lane_target() + ")");
   EXPECT_EQ(native.gl_vendor + native.gl_version, "");
   EXPECT_EQ(driver_text(native), "none");
-  EXPECT_EQ(driver_text({.gl_vendor = "v", .gl_version = "4.5"}), "v, 4.5");
+  Provenance vendor;
+  vendor.gl_vendor = "v";
+  vendor.gl_version = "4.5";
+  EXPECT_EQ(driver_text(vendor), "v, 4.5");
   EXPECT_THROW(provenance_now("no such device", "{}"), Error);
 }
 
