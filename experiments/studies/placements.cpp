@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <stdexcept>
 
 #include "core/native/canvas.h"
@@ -267,6 +268,22 @@ double intersection_length(const std::array<Vec3, 3>& a, const std::array<Vec3, 
   return length;
 }
 
+std::uint64_t placement_seed(const PlacementPoint& point, std::uint64_t window) {
+  // Sides are multiples of 2^-10 px.
+  const auto side = static_cast<std::uint64_t>(std::llrint(std::ldexp(point.side, 10)));
+  std::vector<std::uint32_t> words;
+  for (const std::uint64_t number :
+       {point.seed, window, side, static_cast<std::uint64_t>(point.resolution),
+        static_cast<std::uint64_t>(point.grazing)}) {
+    words.push_back(static_cast<std::uint32_t>(number));
+    words.push_back(static_cast<std::uint32_t>(number >> 32));
+  }
+  std::seed_seq sequence(words.begin(), words.end());  // the standard says what it gives
+  std::array<std::uint32_t, 2> out{};
+  sequence.generate(out.begin(), out.end());
+  return (std::uint64_t{out[0]} << 32) | out[1];
+}
+
 PointResult measure_placements(const PlacementPoint& point, Lab& lab) {
   const PatchSource source(make_builtin_scene(point.from));
   RunOptions options;
@@ -282,10 +299,9 @@ PointResult measure_placements(const PlacementPoint& point, Lab& lab) {
     if (lab.progress()) {
       lab.progress()(fmt::format("{} of {} placements", counts.placements, point.placements));
     }
-    // The same scenes for every radius and number of bits.
     const PlacedPatches placed =
         source.place(point.grazing, point.side, point.resolution,
-                     point.placements - counts.placements, point.seed * 1000003 + window);
+                     point.placements - counts.placements, placement_seed(point, window));
     const Scene& scene = lab.scene(fmt::format("{} {} px, seed {}, window {}", key_of(point).scene,
                                                point.resolution, point.seed, window),
                                    [&] { return placed.scene; });

@@ -41,6 +41,11 @@ class PatchSource {
                                                                    // vertex of the scene
 };
 
+/// The seed of a window of a point: the same for every radius and number of subpixel bits, which so
+/// look at the same placements; another one for another size of triangles, resolution, kind of
+/// contact or window, so that rows which differ in these can be added up.
+std::uint64_t placement_seed(const PlacementPoint& point, std::uint64_t window);
+
 /// px; the longest segment in which two triangles meet, in double; 0 where it finds none.
 double intersection_length(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 

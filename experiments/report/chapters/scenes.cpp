@@ -33,7 +33,7 @@ std::string source_text(const std::string& scene) {
     case Source::simulated:
       return "simulated";
     case Source::drawn:
-      return fmt::format("drawn, seed {}", *find_builtin_scene(scene)->seed);
+      return fmt::format("drawn, seed {}", *builtin_seed(scene));
     case Source::constructed:
       break;
   }

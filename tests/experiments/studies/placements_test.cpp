@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "experiments/measure/lab.h"
 #include "experiments/scenes/builtin/scenes.h"
@@ -78,6 +79,39 @@ TEST(Placements, AreTheSameForASeed) {
   };
   EXPECT_EQ(vertices(5), vertices(5));
   EXPECT_NE(vertices(5), vertices(6));
+}
+
+// Rows of other sizes, resolutions and kinds are added up as if each placement were drawn anew.
+TEST(Placements, AreDrawnAnewForWhatIsAddedUp) {
+  const PlacementPoint point{.from = "random-soup",
+                             .grazing = true,
+                             .side = 0x1p-5,
+                             .placements = 500,
+                             .subpixel_bits = 8,
+                             .radius = {},
+                             .resolution = 256};
+  std::set<std::uint64_t> seeds;
+  for (const std::uint64_t seed : {1, 2}) {
+    for (const bool grazing : {false, true}) {
+      for (const double side : {0x1p-5, 0.25, 1.0, 16.0}) {
+        for (const int resolution : {256, 1024, 4096}) {
+          for (const std::uint64_t window : {0, 1, 100}) {
+            PlacementPoint other = point;
+            other.seed = seed;
+            other.grazing = grazing;
+            other.side = side;
+            other.resolution = resolution;
+            seeds.insert(placement_seed(other, window));
+          }
+        }
+      }
+    }
+  }
+  EXPECT_EQ(seeds.size(), 2u * 2 * 4 * 3 * 3);
+  PlacementPoint other = point;
+  other.subpixel_bits = 0;
+  other.radius = parse_radius("0.5");
+  EXPECT_EQ(placement_seed(other, 3), placement_seed(point, 3)) << "these look at the same ones";
 }
 
 PlacementCounts measured(const RadiusRule& radius, int bits) {
