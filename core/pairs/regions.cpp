@@ -205,7 +205,7 @@ std::vector<Meeting> sort_in(const std::vector<Meeting>& all, std::span<Part> pa
     std::vector<RunPair>& to = meeting.a == meeting.b ? out.inside : out.between;
     for (std::size_t k = begin; k < end; ++k) {
       to.insert(to.end(), parts[k].pairs.begin(), parts[k].pairs.end());
-      parts[k].pairs = {};  // to make room
+      std::vector<RunPair>().swap(parts[k].pairs);  // to make room, which `= {}` would keep
     }
     ++out.meetings;
   }

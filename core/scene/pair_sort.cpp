@@ -109,7 +109,7 @@ std::vector<TrianglePair> sorted_of(Parts parts, unsigned threads, const Release
   out.reserve(distinct);
   for (auto& part : sorted) {
     out.insert(out.end(), part.begin(), part.end());
-    part = {};
+    std::vector<TrianglePair>().swap(part);  // `= {}` would keep its memory
   }
   return out;
 }

@@ -16,6 +16,7 @@
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
 #include "experiments/record/check_result.h"
+#include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/cache.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
@@ -93,12 +94,19 @@ void compare_list(const Scene& scene, const GivenList& list, std::span<const Lis
   result.pair = differ.wrong > 0 ? differ.wrong_pair : differ.missing_pair;
 }
 
-// `certificate`: the file of this scene, empty for none.
-SceneCheck check_scene_with(const CheckArguments& arguments, const std::string& file,
+// The clearance that is asked about: --clearance, or that of the certificate, of several frames the
+// first one. One question for all frames.
+double clearance_of(const CheckArguments& arguments,
+                    const std::optional<Certificate>& certificate) {
+  return arguments.clearance.value_or(certificate ? certificate->clearance : 0);
+}
+
+// `file`: of the certificate of this scene, empty for none.
+SceneCheck check_scene_with(double clearance, const std::string& file,
                             const std::optional<Certificate>& certificate, const Scene& scene,
                             const GivenList* list, std::span<const ListedPair> rows) {
   SceneCheck out;
-  out.clearance = arguments.clearance.value_or(certificate ? certificate->clearance : 0);
+  out.clearance = clearance;
   if (certificate) {
     out.certificate = clean_name(file);
     out.claimed_sha256 = certificate->list_sha256;
@@ -106,7 +114,7 @@ SceneCheck check_scene_with(const CheckArguments& arguments, const std::string& 
     if (out.clearance == certificate->clearance) {
       out.result = check_certificate(*certificate, scene);
     } else {
-      out.result.reason = fmt::format("the certificate is of another clearance: {}, given {}",
+      out.result.reason = fmt::format("the certificate is of another clearance: {}, not {}",
                                       certificate->clearance, out.clearance);
     }
   } else {
@@ -148,7 +156,7 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
   Scene scene = load_scene(arguments.scene);
   if (arguments.self) make_self(scene);
   const SceneCheck done = check_scene_with(
-      arguments, arguments.certificate, certificate, scene, list,
+      clearance_of(arguments, certificate), arguments.certificate, certificate, scene, list,
       list ? std::span<const ListedPair>(list->rows) : std::span<const ListedPair>());
   if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
   if (arguments.json != "-") write_output("-", clean_lines(check_text(scene, done)));
@@ -248,6 +256,7 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
     write_output("-", fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10}\n", "frame", "verdict",
                                   "box pairs", "meeting", "ms"));
   }
+  std::optional<double> clearance;
   for (long frame = range.first; frame <= range.last; ++frame) {
     std::string file;
     std::optional<Certificate> certificate;
@@ -255,10 +264,14 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
       file = numbered(arguments.certificate, frame);
       std::error_code error;
       if (!std::filesystem::exists(file, error)) {
+        // The frames of a built-in motion are those up to its last one.
+        const bool motion = arguments.scene.size() == 1 && is_builtin_scene(arguments.scene[0]);
         throw Error(file, "the file does not exist",
-                    fmt::format("give the numbers that there are: --frames FIRST:LAST instead of "
-                                "{}:{}",
-                                range.first, range.last));
+                    motion ? fmt::format("make it with farcull run --certificate --frames {}:{}",
+                                         frame, range.last)
+                           : fmt::format("give the numbers that there are: --frames FIRST:LAST "
+                                         "instead of {}:{}",
+                                         range.first, range.last));
       }
       certificate = read_certificate(file);
     }
@@ -269,7 +282,8 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
       rows = {found.begin(), found.end()};
     }
     const Scene& scene = source.at(frame);
-    last = check_scene_with(arguments, file, certificate, scene, list, rows);
+    if (!clearance) clearance = clearance_of(arguments, certificate);
+    last = check_scene_with(*clearance, file, certificate, scene, list, rows);
     verdicts.add(frame, last.result);
     if (table) {
       std::string text = row_of(frame, last);
@@ -285,7 +299,7 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
   }
   if (json) json->finish();
   if (table) {
-    write_output("-", "\n" + clean_lines(verdicts.text(last.clearance) + unattested_text(last)));
+    write_output("-", "\n" + clean_lines(verdicts.text(*clearance) + unattested_text(last)));
   }
   return verdicts.in_all() == Verdict::proved ? kExitDone : kExitBroken;
 }
@@ -316,9 +330,9 @@ int run_check(const CheckArguments& arguments) {
 CLI::App* CheckCommand::add_to(CLI::App& app) {
   CLI::App* command =
       add_command(app, "check", "prove or refute a certificate of a run, or a list of pairs");
-  add_required(*command, "CERTIFICATE", arguments_.certificate,
-               "as written by run --certificate; may be left out\nbefore SCENE to check --pairs "
-               "alone");
+  add_option(*command, "CERTIFICATE", arguments_.certificate, "",
+             "as written by run --certificate; may be left out\nbefore SCENE to check --pairs "
+             "alone");
   add_option(*command, "SCENE", arguments_.scene, "", kSceneHelp);
   add_flag(*command, "--self", arguments_.self,
            "every object was tested against itself, as by\nfarcull run --self");
@@ -353,7 +367,8 @@ CLI::App* CheckCommand::add_to(CLI::App& app) {
 
 int CheckCommand::run() {
   CheckArguments& to = arguments_;
-  if (to.certificate.empty()) throw Error("CERTIFICATE", "the path is empty", "name a file");
+  if (to.certificate.empty())
+    throw Error("CERTIFICATE", "is missing", "name a certificate and its scene, or see --help");
   if (pairs_ == "") throw Error("--pairs", "the path is empty", "name the list");
   to.pairs = pairs_.value_or("");
   // A scene of several names is of meshes alone, so a first name that is none is a certificate's.

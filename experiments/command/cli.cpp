@@ -144,7 +144,7 @@ int dispatch(int argc, char** argv) {
   } catch (const CLI::Success& wanted) {  // --help, --version
     std::ostringstream out;
     app.exit(wanted, out, out);
-    write_output("-", out.str());
+    write_help(out.str());
     return kExitDone;
   } catch (const CLI::ParseError& error) {
     throw refusal(app, error);

@@ -331,7 +331,7 @@ CLI::App* CompletionCommand::add_to(CLI::App& app) {
 }
 
 int CompletionCommand::run() const {
-  write_output("-", completion_script(declared(*program_), shell_));
+  write_help(completion_script(declared(*program_), shell_));
   return 0;
 }
 

@@ -57,7 +57,7 @@ int HelpCommand::run() const {
   if (words_.size() == 1) {
     for (const HelpTopic& topic : help_topics()) {
       if (words_[0] != topic.name) continue;
-      write_output("-", topic.text);
+      write_help(topic.text);
       return kExitDone;
     }
   }
@@ -69,7 +69,7 @@ int HelpCommand::run() const {
     throw Error(fmt::format("{}", fmt::join(words_, " ")), "no such command or topic",
                 "give one of the topics " + topics + ", or a command that farcull help lists");
   }
-  write_output("-", text);
+  write_help(text);
   return kExitDone;
 }
 

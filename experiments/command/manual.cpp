@@ -117,8 +117,9 @@ std::string manual_page(const DeclaredCommand& program, const std::string& versi
       ".SH DESCRIPTION\n",
       roff(version), bold("farcull"), italic("command"), italic("options"));
   page += filled(
-      "farcull finds the triangles that can collide by drawing them, and never culls a pair "
-      "that intersects. A scene is one or more meshes, a scene file, or the name of a "
+      "farcull finds the triangles that collide. It culls by drawing triangles or by comparing "
+      "boxes, and never culls a pair that intersects. A scene is one or more meshes, a scene file, "
+      "or the name of a "
       "built-in scene.");
   for (const DeclaredOption& option : program.options)
     page += ".TP\n" + tag(option) + "\n" + filled(option.help);
@@ -138,7 +139,7 @@ CLI::App* ManualCommand::add_to(CLI::App& app) {
 }
 
 int ManualCommand::run() const {
-  write_output("-", manual_page(declared(*program_), kVersion));
+  write_help(manual_page(declared(*program_), kVersion));
   return 0;
 }
 

@@ -144,7 +144,8 @@ void RunCommand::add_outputs(CLI::App& command) {
   add("--frames", frames_, "N|A:B",
       "run N frames (0 to N-1), or those numbered A to B, of\n"
       "meshes with %d or %04d in their names, or of a\n"
-      "built-in scene that moves (see farcull scenes)");
+      "built-in scene that moves (see farcull scenes), where\n"
+      "30:59 is the second half of 60");
   add("--pairs", outputs_.pairs, "FILE",
       "write the colliding pairs as CSV to this file (- for\n"
       "standard output, without the table): object_a,\n"

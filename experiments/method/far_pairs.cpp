@@ -51,7 +51,7 @@ Candidates find_far_pairs(const Scene& scene, const Plan& plan, Session& session
   Candidates out;
   out.by = std::vector<PairView>();
   if (pairs.nothing_can_meet()) {
-    out.device.note = "no two objects' boxes overlap, none collides with itself";
+    out.device.note = "no two objects' boxes overlap, and none is tested against itself";
     out.trace.push_back({.kind = StageKind::setup, .reason = Reason::nothing_to_look_at});
     return out;
   }

@@ -35,13 +35,13 @@ Certificate certificate_of(const Scene& scene, const Record& record) {
   const RunOptions& options = record.options;
   Certificate::Run run;
   run.method = to_string(options.method);
-  if (record.found.device.gl) run.resolution = static_cast<std::uint64_t>(resolution_of(options));
   run.offset = fattens(options.method) ? options.offset : "none";
   for (const ViewReport& view : record.found.views()) {
     if (!view.drawn) continue;
     run.views.push_back({view.name, static_cast<std::uint64_t>(view.width),
                          static_cast<std::uint64_t>(view.height), view.radius_px});
     run.radius_px = std::max(run.radius_px, view.radius_px);
+    run.resolution = static_cast<std::uint64_t>(resolution_of(options));
   }
   for (const PairView& view : record.found.pair_views()) {
     if (!view.looked) continue;

@@ -140,20 +140,21 @@ std::string check_text(const Scene& scene, const SceneCheck& check) {
                        check.clearance == 0 ? "meet" : "are within it", result.list_sha256);
     if (check.differences) out += list_text(scene, check);
     out += not_asked_line(scene);
-    out += fmt::format(
-        "boxes      {} pairs {}: {} separated, {} neighbours, {} {}\n", found.box_pairs,
-        check.clearance == 0 ? "overlap"
-                             : fmt::format("are at most {} apart along each axis", check.clearance),
-        found.separated, found.neighbours, found.meeting,
-        check.clearance == 0 ? "meet" : "within it");
+    out += fmt::format("boxes      {} {}: {} separated, {} neighbours, {} {}\n",
+                       counted(found.box_pairs, "pair", "pairs"),
+                       check.clearance != 0
+                           ? fmt::format("at most {} apart along each axis", check.clearance)
+                           : std::string(found.box_pairs == 1 ? "overlaps" : "overlap"),
+                       grouped(found.separated), grouped(found.neighbours), grouped(found.meeting),
+                       check.clearance == 0 ? "meet" : "within it");
     if (!check.certificate.empty()) {
-      out +=
-          fmt::format("called     kept: {}; culled: {}, of which {} {}\n", found.kept, found.culled,
-                      result.culled_meeting, check.clearance == 0 ? "meet" : "are within it");
+      out += fmt::format("called     kept: {}; culled: {}, of which {} {}\n", grouped(found.kept),
+                         grouped(found.culled), grouped(result.culled_meeting),
+                         check.clearance == 0 ? "meet" : "are within it");
     }
   }
   out += unattested_text(check);
-  out += fmt::format("time: {:.1f} ms; {:.1f} of them for the decisions, {:.0f} ns per pair\n",
+  out += fmt::format("time       {:.1f} ms; {:.1f} of them for the decisions, {:.0f} ns per pair\n",
                      result.ms, result.decide_ms, ns_per_pair(result));
   return out;
 }

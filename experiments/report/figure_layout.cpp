@@ -115,7 +115,10 @@ std::vector<std::vector<double>> shifts_of(const Panel& panel, const PlacedPanel
   for (std::size_t s = 0; s < panel.series.size(); ++s) {
     const Series& series = panel.series[s];
     out.emplace_back(series.x.size(), 0.0);
+    // Elsewhere a shift would be another value.
+    if (series.style == Series::Style::lines || !(placed.y.linear_to > 0)) continue;
     for (std::size_t i = 0; i < series.x.size(); ++i) {
+      if (series.y[i] != 0) continue;
       const double x = wide * placed.x.along(placed.x.place(series.x[i]));
       const double y = high * placed.y.along(placed.y.place(series.y[i]));
       if (std::isfinite(x) && std::isfinite(y)) points.push_back({s, i, x, y});

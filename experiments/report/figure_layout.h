@@ -42,8 +42,9 @@ struct Layout {
 std::vector<std::string> key_names(const Figure& figure);
 
 /// For each series of a panel and each of its points, by how many px upwards it is drawn, so that
-/// points of several series at the same place stand above each other: 3 px apart, less where that
-/// would be more than 10 px in all.
+/// zeros of several series at the same place stand above each other: 3 px apart, less where that
+/// would be more than 10 px in all. Only on an axis that has a part for zeros; all else is drawn
+/// where it is.
 std::vector<std::vector<double>> shifts_of(const Panel& panel, const PlacedPanel& placed);
 
 /// How many panels stand side by side.

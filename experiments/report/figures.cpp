@@ -150,7 +150,9 @@ class Script {
         line(fmt::format(
             "set arrow from screen {0},{2} to screen {1},{2} nohead front dt {3} "
             "lc rgb '{4}' lw {5}",
-            screen_x(x), screen_x(x + 30), screen_y(y), dash(i), styles_[i].colour, width_of(i)));
+            screen_x(x), screen_x(x + 30), screen_y(y), dash(i), styles_[i].colour,
+            // The plotter draws arrows of one colour and width as one path, with one dash.
+            width_of(i) + 0.001 * static_cast<double>(i)));
       }
       if (dots) {
         line(fmt::format("set label '' at screen {},{} front point pt {} ps {} lc rgb '{}'",
@@ -325,10 +327,10 @@ class Script {
                        gnuplot_text(panel.title), screen_x(box.left), screen_y(box.top - 12)));
     }
     for (const Mark& m : panel.marks) mark(m, placed);
-    // Emphasised ones last, above the others.
+    // Emphasised ones first: they are thick, so what has the same values stays visible above them.
     std::vector<std::string> plots;
     const std::vector<std::vector<double>> shifts = shifts_of(panel, placed);
-    for (const bool emphasis : {false, true}) {
+    for (const bool emphasis : {true, false}) {
       for (std::size_t i = 0; i < panel.series.size(); ++i) {
         const Series& series = panel.series[i];
         if (series.emphasis == emphasis && add_data(series, placed, shifts[i]))

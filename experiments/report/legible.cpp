@@ -37,6 +37,13 @@ bool agree(const Figure& figure, const std::string& one, const std::string& othe
   });
 }
 
+bool emphasised(const Figure& figure, const std::string& name) {
+  return std::any_of(figure.panels.begin(), figure.panels.end(), [&](const Panel& panel) {
+    const Series* series = series_in(panel, name);
+    return series != nullptr && series->emphasis;
+  });
+}
+
 constexpr std::size_t kLongestName = 85;  // characters that the key has room for
 
 // The name of series that agree; where all names are too long for the key, the caption has them.
@@ -60,8 +67,11 @@ void merge_series(Figure& figure) {
       at->push_back(name);
     }
   }
-  for (const std::vector<std::string>& group : groups) {
+  for (std::vector<std::string>& group : groups) {
     if (group.size() == 1) continue;
+    // The first gives the colour: what the figure is about.
+    std::ranges::stable_partition(group,
+                                  [&](const std::string& one) { return emphasised(figure, one); });
     const std::string name = name_of(group, figure);
     for (Panel& panel : figure.panels) {
       bool emphasis = false;

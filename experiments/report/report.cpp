@@ -277,6 +277,7 @@ class Reporter {
     drawn.chapter = chapter_of(stored);
     add_devices(device, stored, others, drawn.chapter);
     put_broken_first(drawn.chapter);
+    const std::size_t rows_before = summary_.broken.size();
     const auto add_broken = [&](const StoredStudy& of, const std::string& where) {
       for (const Row& row : of.rows) {
         if (breaks_promise(row.measurement))
@@ -285,6 +286,13 @@ class Reporter {
     };
     add_broken(stored, "");
     for (const DeviceStudy& other : others) add_broken(other.stored, " on " + other.device);
+    // What a chapter finds broken where each row by itself is right, such as energy that a solver
+    // made.
+    const bool rows_are_right = summary_.broken.size() == rows_before;
+    for (const Finding& finding : drawn.chapter.findings) {
+      if (rows_are_right && is_broken(finding))
+        summary_.broken.push_back(drawn.chapter.study + ": " + finding.text);
+    }
     if (!stored.complete()) {
       summary_.notes.push_back(fmt::format("{}: {} of {} points have a row", drawn.chapter.study,
                                            stored.rows.size(), stored.declaration.points.size()));

@@ -80,9 +80,10 @@ std::vector<SeriesStyle> styles_of(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     const Known* k = known_of(name);
     if (k == nullptr) {
-      out.push_back({.colour = free_colours()[unknown % free_colours().size()],
-                     .dash = static_cast<int>(unknown / free_colours().size() % dashes().size()),
-                     .point = points()[unknown % points().size()]});
+      out.push_back(
+          {.colour = free_colours()[unknown % free_colours().size()],
+           .dash = static_cast<int>((unknown + unknown / free_colours().size()) % dashes().size()),
+           .point = points()[unknown % points().size()]});
       ++unknown;
       continue;
     }

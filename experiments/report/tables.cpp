@@ -149,12 +149,21 @@ std::string table_latex(const DataTable& table) {
   std::string alignment;
   for (const Column& column : table.columns)
     alignment += column.side == Column::Side::right ? 'r' : 'l';
-  std::string out = "% \\usepackage{booktabs}\n\\begin{table}\n  \\centering\n  \\caption{" +
-                    latex_text(table.caption) + ".}\n  \\label{tab:" + table.name +
-                    "}\n  \\begin{tabular}{" + alignment + "}\n    \\toprule\n    " +
-                    line(names_of(table.columns)) + "    \\midrule\n";
-  for (const std::vector<std::string>& row : table.rows) out += "    " + line(row);
-  return out + "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n";
+  std::string out = "% \\usepackage{booktabs,graphicx}\n";
+  // A float holds a page at most.
+  constexpr std::size_t kRows = 40;
+  for (std::size_t begin = 0; begin == 0 || begin < table.rows.size(); begin += kRows) {
+    out += "\\begin{table}\n  \\centering\n  \\caption{" + latex_text(table.caption) +
+           (begin == 0 ? ".}\n  \\label{tab:" + table.name + "}\n" : ", continued.}\n") +
+           // Scaled where it is wider than the text.
+           "  \\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n"
+           "  \\begin{tabular}{" +
+           alignment + "}\n    \\toprule\n    " + line(names_of(table.columns)) + "    \\midrule\n";
+    const std::size_t end = std::min(begin + kRows, table.rows.size());
+    for (std::size_t i = begin; i < end; ++i) out += "    " + line(table.rows[i]);
+    out += "    \\bottomrule\n  \\end{tabular}}\n\\end{table}\n";
+  }
+  return out;
 }
 
 std::string rows_csv(const StoredStudy& stored) {

@@ -53,7 +53,7 @@ FrameSource::FrameSource(std::vector<std::string> arguments, FrameRange range, b
     : arguments_(std::move(arguments)), range_(range), self_(self), meshes_(range.first) {
   const bool built_in = arguments_.size() == 1 && is_builtin_scene(arguments_[0]);
   if (built_in && has_motion(arguments_[0])) {
-    built_in_.emplace(arguments_[0], range.count(), range.first, self);
+    built_in_.emplace(arguments_[0], range.last + 1, self);
     return;
   }
   if (!built_in) scene_ = load_scene(arguments_, meshes_);

@@ -18,7 +18,8 @@
 
 namespace farcull {
 
-/// Frames first to last, both included; 0 <= first <= last.
+/// Frames first to last, both included; 0 <= first <= last. Of a built-in motion that is a path
+/// they are the end of last + 1 frames, so that 30:59 is the second half of 60 frames.
 struct FrameRange {
   long first = 0;
   long last = 0;

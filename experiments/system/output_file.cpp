@@ -164,6 +164,13 @@ void write_output(const std::string& path, const std::string& text) {
   if (failure != 0) refuse(path, failure);
 }
 
+void write_help(const std::string& text) {
+  check_output("-");
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0)
+    return;
+  if (errno != EPIPE) refuse("-", errno);
+}
+
 GrowingOutput::~GrowingOutput() {
   try {
     finish();

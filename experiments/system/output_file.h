@@ -19,6 +19,10 @@ void check_output(const std::string& path);
 /// to be ignored for that (prepare_output()).
 void write_output(const std::string& path, const std::string& text);
 
+/// Writes help, or another text that a reader may end early (help run | head), to standard output:
+/// a closed pipe is no error. Throws Error as write_output() where the disk refuses.
+void write_help(const std::string& text);
+
 /// Writes the text to a new file beside `path`, an absolute or relative path that is no symbolic
 /// link, and renames it into place; a file that is replaced leaves its permissions. Returns 0 or
 /// the errno of the first failure. Nothing half-written is left, as by write_output(). One at a

@@ -149,7 +149,7 @@ void add_lines(const SceneGroup& group, const std::function<bool(const Row&)>& w
     series.emphasis = name == "FAR (OBB)" || name == "FAR pairs";
     for (const auto& [resolution, values] : missed[name]) {
       // A resolution that some seeds lack would not be a median of the same scenes.
-      if (values.size() < group.seeds.size() && values.size() > 1) continue;
+      if (values.size() < group.seeds.size()) continue;
       series.x.push_back(resolution);
       series.y.push_back(median(values));
       const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -159,7 +159,7 @@ void add_lines(const SceneGroup& group, const std::function<bool(const Row&)>& w
         spread.y.push_back(value);
       }
     }
-    panel.series.push_back(std::move(series));
+    if (!series.x.empty()) panel.series.push_back(std::move(series));
   }
   if (!spread.x.empty()) panel.series.push_back(std::move(spread));
 }
@@ -168,34 +168,60 @@ std::string seeds_text(const SceneGroup& group) {
   return group.seeds.size() == 1 ? "" : fmt::format(" ({} seeds)", group.seeds.size());
 }
 
+// Of each seed.
+std::vector<double> colliding_of(const SceneGroup& group) {
+  std::vector<double> out;
+  for (const NamedRows& scene : group.seeds)
+    out.push_back(static_cast<double>(number_of(*scene.rows.front(), "colliding")));
+  return out;
+}
+
+// One value where all are equal, else the median with the least and the most.
+std::string value_or_spread(const std::vector<double>& values) {
+  if (values.empty()) return "-";
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  return *least == *most ? rounded(*least) : spread(values);
+}
+
+// The groups with the first seed of each alone, which is the scene's own.
+std::vector<SceneGroup> own_seeds(std::vector<SceneGroup> groups) {
+  for (SceneGroup& group : groups) group.seeds.resize(1);
+  return groups;
+}
+
 Figure missed_figure(const std::vector<SceneGroup>& groups, const std::string& name,
                      const std::string& title, const std::string& shows,
                      const std::function<bool(const Row&)>& wanted) {
   Figure out{.name = name, .title = title};
   std::vector<std::string> of;
+  std::size_t runs = 0;
+  bool seeds = false;
   for (const SceneGroup& group : groups) {
     Panel panel{.title = group.name + seeds_text(group),
                 .x = logarithmic("resolution (px)"),
                 .y = logarithmic("missed pairs", true)};
     add_lines(group, wanted, panel);
     if (panel.series.empty()) continue;
-    std::vector<double> colliding;
-    for (const NamedRows& scene : group.seeds)
-      colliding.push_back(static_cast<double>(number_of(*scene.rows.front(), "colliding")));
-    of.push_back(fmt::format("{}{} {}", colliding.size() > 1 ? "about " : "",
-                             rounded(median(colliding)), group.name));
+    for (const NamedRows& scene : group.seeds) {
+      for (const Row* row : scene.rows)
+        runs += !is_sized(*row) && row->point.resolution > 0 && wanted(*row);
+    }
+    seeds = seeds || group.seeds.size() > 1;
+    of.push_back(group.name + " " + value_or_spread(colliding_of(group)));
     out.panels.push_back(std::move(panel));
   }
-  out.caption = fmt::format(
-      "{} One run at each point. Colliding pairs: {}. Scenes that are drawn at random are drawn "
-      "with several seeds: lines are medians, points the least and the most.",
-      shows, listed(of));
+  out.caption =
+      fmt::format("{} n = {}. Colliding pairs: {}.{}", shows, counted(runs, "run", "runs"),
+                  fmt::format("{}", fmt::join(of, "; ")),
+                  seeds ? " Where a scene was drawn with several seeds, lines are medians over the "
+                          "seeds and points the least and the most; what was measured with one "
+                          "seed alone is in the table."
+                        : "");
   return out;
 }
 
-// Whether a form is between others that are shown: the figure of misses against candidates would
-// have too many names with them.
-bool is_between(const Row& row) {
+// Whether a form is left to the tables: the figures would have too many names with it.
+bool is_left_out(const Row& row) {
   return row.point.method.starts_with("quick-cullide") || row.point.views == kBothDirections ||
          row.point.method.ends_with("--clear all");
 }
@@ -208,7 +234,9 @@ Figure kept_figure(const std::vector<SceneGroup>& groups) {
       .caption =
           "Each point is a run at one resolution. A method that leaves all pairs of "
           "overlapping boxes (exact) misses nothing and has culled nothing: below and to "
-          "the left is better. Forms that lie between those of the figure are in the table."};
+          "the left is better. Scenes that are drawn at random have their own seed. Quick-CULLIDE, "
+          "both directions of each axis and views that all have to clear are in the tables."};
+  std::size_t runs = 0;
   for (const SceneGroup& group : groups) {
     Panel panel{.title = group.name,
                 .x = logarithmic("candidates / colliding pairs"),
@@ -218,9 +246,10 @@ Figure kept_figure(const std::vector<SceneGroup>& groups) {
       std::erase_if(rows, [](const Row* row) {
         return is_sized(*row) || number_of(*row, "colliding") == 0 ||
                !(count_or_none(*row, "candidates") > 0) || row->point.radius == "published" ||
-               row->point.offset == "exact" || is_between(*row);
+               row->point.offset == "exact" || is_left_out(*row);
       });
       if (rows.empty()) continue;
+      runs += rows.size();
       Series series = series_of(
           method.name, rows,
           [](const Row& row) {
@@ -235,6 +264,7 @@ Figure kept_figure(const std::vector<SceneGroup>& groups) {
     }
     if (!panel.series.empty()) out.panels.push_back(std::move(panel));
   }
+  out.caption += fmt::format(" n = {}.", counted(runs, "run", "runs"));
   return out;
 }
 
@@ -244,14 +274,18 @@ Figure size_figure(const std::vector<SceneGroup>& groups) {
              .title = "Missed pairs against the size of triangles",
              .caption =
                  "The resolution is chosen so that a triangle that can take part covers 1, 4 or 16 "
-                 "pixels, on average over the triangles and the axes. One run at each point."};
+                 "pixels, on average over the triangles and the axes. Scenes that are drawn at "
+                 "random have their own seed."};
+  std::size_t runs = 0;
   for (const SceneGroup& group : groups) {
     Panel panel{.title = group.name,
                 .x = logarithmic("mean pixels of a triangle"),
                 .y = logarithmic("missed pairs", true)};
     std::map<std::string, Rows> forms;
     for (const Row* row : group.seeds.front().rows) {
-      if (is_sized(*row)) forms[form_of(*row)].push_back(row);
+      if (!is_sized(*row)) continue;
+      forms[form_of(*row)].push_back(row);
+      ++runs;
     }
     for (const auto& [name, rows] : forms) {
       Series series = series_of(name, rows, pixels_of,
@@ -261,6 +295,7 @@ Figure size_figure(const std::vector<SceneGroup>& groups) {
     }
     if (!panel.series.empty()) out.panels.push_back(std::move(panel));
   }
+  out.caption += fmt::format(" n = {}.", counted(runs, "run", "runs"));
   return out;
 }
 
@@ -281,18 +316,17 @@ DataTable short_table(const std::vector<SceneGroup>& groups) {
       all.insert(all.end(), scene.rows.begin(), scene.rows.end());
     std::erase_if(all, [](const Row* row) { return is_sized(*row); });
     for (const NamedRows& method : rows_by_contestant(all)) {
-      const auto cell = [&](const char* count, int resolution) -> std::string {
-        std::vector<double> values;
+      std::vector<std::string> cells = {group.name, method.name,
+                                        value_or_spread(colliding_of(group))};
+      for (const int resolution : resolutions) {
+        std::vector<double> missed;
         for (const Row* row : method.rows) {
-          if (resolution == 0 || row->point.resolution == resolution)
-            values.push_back(count_or_none(*row, count));
+          if (row->point.resolution == resolution) missed.push_back(count_or_none(*row, "missed"));
         }
-        if (values.empty()) return "-";
-        const auto [least, most] = std::minmax_element(values.begin(), values.end());
-        return *least == *most ? rounded(*least) : spread(values);
-      };
-      std::vector<std::string> cells = {group.name, method.name, cell("colliding", 0)};
-      for (const int resolution : resolutions) cells.push_back(cell("missed", resolution));
+        // What was measured with one seed of several has no median.
+        const bool one = missed.size() < group.seeds.size() && missed.size() == 1;
+        cells.push_back(value_or_spread(missed) + (one ? " (own seed)" : ""));
+      }
       out.rows.push_back(std::move(cells));
     }
   }
@@ -513,16 +547,19 @@ Chapter accuracy_chapter(const StoredStudy& stored) {
       "the radius)."};
   add_gaps(stored, out);
   if (scenes.empty()) return out;
-  out.figures = {missed_figure(groups, "accuracy", "Missed colliding pairs against resolution",
-                               "FAR, and CULLIDE in the form that misses the fewest pairs and as "
-                               "published.",
-                               [&](const Row& row) {
-                                 return always_drawn(row) ||
-                                        headline.contains(contestant(row.point));
-                               }),
-                 missed_figure(groups, "accuracy-forms", "Forms of CULLIDE",
-                               "CULLIDE in all forms that were measured.", is_of_family),
-                 kept_figure(groups)};
+  out.figures = {
+      missed_figure(groups, "accuracy", "Missed colliding pairs against resolution",
+                    "FAR, and CULLIDE in the form that misses the fewest pairs and as "
+                    "published.",
+                    [&](const Row& row) {
+                      return always_drawn(row) || headline.contains(contestant(row.point));
+                    }),
+      missed_figure(own_seeds(groups), "accuracy-forms", "Forms of CULLIDE",
+                    "Scenes that are drawn at random have their own seed. Quick-CULLIDE, "
+                    "both directions of each axis and views that all have to clear are "
+                    "in the tables.",
+                    [](const Row& row) { return is_of_family(row) && !is_left_out(row); }),
+      kept_figure(groups)};
   Figure sizes = size_figure(groups);
   if (!sizes.panels.empty()) out.figures.push_back(std::move(sizes));
   std::erase_if(out.figures, [](const Figure& figure) { return figure.panels.empty(); });

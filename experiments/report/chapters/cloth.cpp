@@ -99,17 +99,19 @@ Figure energy_figure(const std::vector<Course>& courses) {
              .title = "Energy of the cloth, frame by frame",
              .caption =
                  "Left: kinetic energy and all potentials, where 0 is a cloth at rest at the "
-                 "height of the middle of the sphere. Right: iterations of the solver."};
+                 "height of the middle of the sphere. Right: iterations of the solver. One "
+                 "simulation of each stiffness."};
   Panel energy{.title = "total energy", .x = {.label = "frame"}, .y = {.label = "J"}};
   Panel work{.title = "work of a step",
              .x = {.label = "frame"},
              .y = {.label = "factorizations", .from = 0}};
   for (const Course& course : courses) {
-    energy.series.push_back(over_frames(
-        course.name(), course.pairs, [](const Row& row) { return count_or_none(row, "total"); }));
-    work.series.push_back(over_frames(course.name(), course.pairs, [](const Row& row) {
-      return count_or_none(row, "iterations");
-    }));
+    for (const auto& [panel, count] :
+         {std::pair(&energy, "total"), std::pair(&work, "iterations")}) {
+      panel->series.push_back(
+          over_frames(course.name(), course.pairs,
+                      [name = count](const Row& row) { return count_or_none(row, name); }));
+    }
   }
   out.panels = {std::move(energy), std::move(work)};
   return out;

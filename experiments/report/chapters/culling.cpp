@@ -82,7 +82,8 @@ Figure figure_of(const std::vector<SceneRows>& scenes, const std::set<int>& reso
       .caption = fmt::format(
           "Pairs that are left to exact predicates, over the pairs that collide, on {} scenes; "
           "neighbours are in neither. 1 is the least there can be. Boxes, oriented boxes and "
-          "what FAR pairs chooses by itself have no resolution, so they are level lines.",
+          "what FAR pairs chooses by itself have no resolution, so they are level lines; where it "
+          "leaves what boxes leave, its line lies on theirs. One run at each point.",
           scenes.size())};
   for (const SceneRows& scene : scenes) {
     Panel panel{.title = scene.scene,

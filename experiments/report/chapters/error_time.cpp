@@ -153,11 +153,18 @@ Panel panel_of(const TimedGroup& group, const std::string& label, double (*value
     } else if (entry.row->point.resolution > 0) {
       at->style = Series::Style::lines_points;  // lines follow the resolution
     }
+    // What chooses its resolution is no point of the line.
+    const bool chosen = entry.row->point.resolution <= 0;
+    const auto add_gap = [&] {
+      for (auto* values : {&at->x, &at->x_low, &at->x_high, &at->y}) values->push_back(kNone);
+    };
+    if (chosen && !at->x.empty()) add_gap();
     const bool bar = entry.median_ms.n > 1;
     at->x.push_back(entry.ms());
     at->x_low.push_back(bar ? entry.median_ms.low : kNone);
     at->x_high.push_back(bar ? entry.median_ms.high : kNone);
     at->y.push_back(value(entry));
+    if (chosen) add_gap();
   }
   return panel;
 }
@@ -257,8 +264,8 @@ DataTable equal_table(const std::vector<TimedGroup>& groups) {
       .name = "error-time-equal",
       .caption =
           "CULLIDE in the time that FAR takes: of all its forms and resolutions whose "
-          "median time is no longer, the one with the fewest missed pairs. FAR misses "
-          "none. Candidates are what each leaves to exact tests: a form that leaves as "
+          "median time is no longer, the one with the fewest errors. Candidates are what each "
+          "leaves to exact tests: a form that leaves as "
           "many as boxes alone has culled nothing",
       .columns = columns({"scene"}, {"FAR (OBB) at (px)", "ms", "its candidates"},
                          {"CULLIDE within it"}, {"its ms", "its candidates", "missed by CULLIDE"})};

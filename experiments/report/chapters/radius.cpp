@@ -170,11 +170,14 @@ Figure lemma_figure(const Lines& generators, std::uint64_t points) {
 Figure miss_figure(const Lines& depths) {
   Figure out{.name = "radius-missed", .title = "Missed pairs against the radius"};
   std::vector<std::string> scenes;
+  std::size_t runs = 0;
   for (const auto& [depth, lines] : depths) {
     Panel panel = panel_of(depth, "missed pairs (%)");
     Series published{.name = "published radius, each scene", .style = Series::Style::points};
     for (const auto& [scene, line] : lines) {
       panel.series.push_back(line_series(scene, line, missed, Series::Style::lines_points));
+      for (const auto& [factor, rows] : line.at) runs += rows.size();
+      runs += line.published.size();
       if (!line.published.empty()) {
         published.x.push_back(published_factor(line));
         published.y.push_back(missed(line.published));
@@ -188,8 +191,9 @@ Figure miss_figure(const Lines& depths) {
     out.panels.push_back(std::move(panel));
   }
   out.caption = fmt::format(
-      "FAR with oriented boxes: colliding pairs that culling loses, of {}. One run at each point.",
-      listed(scenes));
+      "FAR with oriented boxes: colliding pairs that culling loses, of {}. n = {}, one "
+      "at each point.",
+      listed(scenes), counted(runs, "run", "runs"));
   return out;
 }
 
@@ -466,23 +470,20 @@ Figure placement_figure(const Rows& all) {
       const PlacementScene scene = placement_of(*row);
       if (belongs(*row)) kinds[scene.from + ", " + scene.contact].push_back(row);
     }
-    Series bounds{.name = "95 % interval", .style = Series::Style::points};
     for (auto& [kind, of] : kinds) {
-      Series series{.name = kind};
+      // Not lines: fewer bits are not on the way to corners that are not snapped.
+      Series series{.name = kind, .style = Series::Style::points};
       for (const auto& [at, here] : rows_by(of, value)) {
         const std::uint64_t n = total(here, "colliding_placements");
         if (n == 0) continue;
         const Rate rate = rate_of(total(here, "missed_placements"), n);
         series.x.push_back(at);
         series.y.push_back(100 * rate.value);
-        for (const double bound : {rate.low, rate.high}) {
-          bounds.x.push_back(at);
-          bounds.y.push_back(100 * bound);
-        }
+        series.y_low.push_back(100 * rate.low);
+        series.y_high.push_back(100 * rate.high);
       }
       panel.series.push_back(std::move(series));
     }
-    panel.series.push_back(std::move(bounds));
     out.panels.push_back(std::move(panel));
   };
   add(fmt::format("{} px sides, {:.0f} px windows", rounded(usual_side), usual_pixels),
@@ -495,10 +496,12 @@ Figure placement_figure(const Rows& all) {
       logarithmic("resolution (px)"), pixels,
       [&](const Row& row) { return bits(row) == usual_bits && side(row) == usual_side; });
   out.caption = fmt::format(
-      "FAR with oriented boxes and fragment depth in three views, at the published radius: {} "
-      "placements of two patches of triangles, each decided by exact predicates. Of placements in "
-      "which a pair collides, those in which one is missed, with the 95 % interval of Clopper and "
-      "Pearson (where none is missed, its upper bound is 3 over their number).",
+      "FAR with oriented boxes and fragment depth in three views, on placements of two patches of "
+      "triangles, each decided by exact predicates: of those in which a pair collides, those in "
+      "which one is missed. The first panel is over the radius; the others are at the published "
+      "radius ({} placements, the same ones for each number of subpixel bits), with the 95 % "
+      "interval of Clopper and Pearson (where none is missed, its upper bound is 3 over their "
+      "number).",
       grouped(total(rows, "placements")));
   return out;
 }

@@ -26,6 +26,16 @@ Source source_of(const std::string& scene) {
   return entry->seed ? Source::drawn : Source::constructed;
 }
 
+// The number after @seed, else the scene's own seed. (The studies' names have suffixes that a scene
+// does not know.) Precondition: the scene is drawn.
+std::string drawn_with(const std::string& scene) {
+  const std::string_view mark = "@seed";
+  const std::size_t at = scene.find(mark);
+  if (at == std::string::npos) return std::to_string(*find_builtin_scene(scene)->seed);
+  const std::size_t from = at + mark.size();
+  return scene.substr(from, scene.find('@', from) - from);
+}
+
 std::string source_text(const std::string& scene) {
   switch (source_of(scene)) {
     case Source::meshes:
@@ -33,7 +43,7 @@ std::string source_text(const std::string& scene) {
     case Source::simulated:
       return "simulated";
     case Source::drawn:
-      return fmt::format("drawn, seed {}", *builtin_seed(scene));
+      return fmt::format("drawn, seed {}", drawn_with(scene));
     case Source::constructed:
       break;
   }

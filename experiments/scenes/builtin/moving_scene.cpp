@@ -33,17 +33,16 @@ std::string moving_names() {
   return names;
 }
 
-MovingScene::MovingScene(BuiltScene built, long frames, long first, bool self)
+MovingScene::MovingScene(BuiltScene built, long frames, bool self)
     : frames_(frames),
-      first_(first),
       self_(self),
       motion_(std::move(built.motion)),
       plain_(std::move(built.scene)) {
-  assert(frames >= 1 && first >= 0 && motion_);
+  assert(frames >= 1 && motion_);
 }
 
-MovingScene::MovingScene(const std::string& name, long frames, long first, bool self)
-    : MovingScene(built_for(parse_scene_name(name), name), frames, first, self) {
+MovingScene::MovingScene(const std::string& name, long frames, bool self)
+    : MovingScene(built_for(parse_scene_name(name), name), frames, self) {
   const SceneRequest request = parse_scene_name(name);
   if (request.suffixes.empty()) return;
   changed_ = plain_;
@@ -54,10 +53,10 @@ MovingScene::MovingScene(const std::string& name, long frames, long first, bool 
 }
 
 const Scene& MovingScene::at(long frame) {
-  assert(first_ <= frame && frame < first_ + frames_);
+  assert(0 <= frame && frame < frames_);
   const auto last = static_cast<double>(std::max(1L, frames_ - 1));
   notes_ = {};
-  motion_({frame, static_cast<double>(frame - first_) / last}, plain_, notes_);
+  motion_({frame, static_cast<double>(frame) / last}, plain_, notes_);
   Scene* shown = &plain_;
   if (changes_.empty()) {
     validate(plain_, plain_.name);

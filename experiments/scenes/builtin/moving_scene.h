@@ -18,16 +18,15 @@ bool has_motion(const std::string& name);
 std::string moving_names();
 
 /// A built-in scene that moves, as it is at a frame. Where the motion is a path, the frames go once
-/// through it, from time 0 in the first to time 1 in the last; where it is a simulation, a frame is
-/// a time step and its number counts. The same on every run.
+/// through it, from time 0 in frame 0 to time 1 in the last; where it is a simulation, a frame is a
+/// time step. The same on every run.
 class MovingScene {
  public:
-  /// Frames first to first + frames - 1; frames >= 1, first >= 0. self: every object is tested
-  /// against itself, besides those that are anyway. Throws Error as make_builtin_scene(), and where
-  /// nothing moves.
-  explicit MovingScene(const std::string& name, long frames, long first = 0, bool self = false);
+  /// Frames 0 to frames - 1; frames >= 1. self: every object is tested against itself, besides
+  /// those that are anyway. Throws Error as make_builtin_scene(), and where nothing moves.
+  explicit MovingScene(const std::string& name, long frames, bool self = false);
   /// The same for a scene that is not built in. Precondition: it has a motion.
-  explicit MovingScene(BuiltScene built, long frames, long first = 0, bool self = false);
+  explicit MovingScene(BuiltScene built, long frames, bool self = false);
 
   /// The scene at a frame of the range, validated: the same object each time, and the same memory
   /// of triangles and vertices where the topology is that of the call before. The changes of
@@ -41,7 +40,6 @@ class MovingScene {
 
  private:
   long frames_;
-  long first_;
   bool self_;
   Motion motion_;
   std::vector<SceneChange> changes_;

@@ -126,6 +126,7 @@ SceneRequest parse_scene_name(const std::string& name) {
     const std::string word = name.substr(at, end - at);
     at = end;
     if (word.starts_with(kSeedSuffix)) {
+      if (out.parameters.seed) throw Error(name, "has two seeds", "give @seedN once");
       out.parameters.seed = seed_of_suffix(*out.entry, name, word);
       continue;
     }

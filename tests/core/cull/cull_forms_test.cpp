@@ -2,6 +2,7 @@
 // what single views and single rounds give by themselves.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cfloat>
 #include <iterator>
 
@@ -140,7 +141,6 @@ TEST(CullForms, ObjectsAloneStayWhole) {
     const Indices kept = live(scene, drawing, settings);
     EXPECT_EQ(halves(kept), 0) << "seed " << seed;
     culled += kept.size() < all.size();
-    EXPECT_TRUE(subset(live(scene, drawing, cull_settings(drawing, "x,y,z", kPixels)), all));
   }
   EXPECT_GT(cut, 0) << "the twin: triangles are culled out of objects";
   EXPECT_GT(culled, 0);
@@ -160,7 +160,8 @@ TEST(CullForms, ObjectsAloneNeedObjectsThatOwn) {
 TEST(CullForms, FarMissesNothingInAnyForm) {
   const Drawing drawing = on_worst(obb_fattener());
   const Drawing raw = on_worst(raw_triangles());
-  std::uint64_t missed_raw = 0, culled = 0;
+  std::uint64_t missed_raw = 0;
+  std::array<int, 8> culled{};  // by FAR, in each form
   for (std::uint64_t seed = 1; seed <= kScenes / 8; ++seed) {
     const Scene scene = scene_at(seed);
     for (int form = 0; form < 8; ++form) {
@@ -170,14 +171,14 @@ TEST(CullForms, FarMissesNothingInAnyForm) {
         settings.clear = form & 2 ? ClearRule::all : ClearRule::any;
         settings.objects_alone = form & 4;
         const Indices kept = live(scene, of, settings);
-        culled += kept.size() < scene.triangles.size();
+        if (&of == &drawing) culled.at(form) += kept.size() < scene.triangles.size();
         return account(scene, box_join(triangle_boxes(scene), owners(scene), kept)).false_negatives;
       };
       EXPECT_EQ(missed(drawing), 0u) << "seed " << seed << " form " << form;
       missed_raw += missed(raw);
     }
   }
-  EXPECT_GT(culled, 0u);
+  for (int form = 0; form < 8; ++form) EXPECT_GT(culled.at(form), 0) << "form " << form;
   EXPECT_GT(missed_raw, 0u) << "the twin: raw triangles miss";
 }
 

@@ -199,7 +199,7 @@ TEST_F(Check, ListsAndCertificatesOfAClearance) {
   const Answer other =
       check({.certificate = near, .scene = soup, .clearance = std::nextafter(clearance, 1)});
   EXPECT_EQ(other.status, 1);
-  EXPECT_NE(other.text.find("another clearance: 0.01, given 0.01000"), std::string::npos)
+  EXPECT_NE(other.text.find("another clearance: 0.01, not 0.01000"), std::string::npos)
       << other.text;
   EXPECT_EQ(check({.certificate = plain, .scene = soup, .clearance = clearance}).status, 1);
   const Answer none = check({.certificate = "", .scene = soup, .pairs = list});

@@ -241,6 +241,27 @@ expect 'a certificate that is missing' "$err" '^farcull: certificates/c_03\.json
 expect 'a certificate that is missing' "$out" '^ +1  proved '
 rm -r certificates falls.csv fewer.csv
 
+# Certificates of two questions are not one answer. The first one's is the question.
+spheres_move=(two-spheres --method far-pairs --frames 2)
+good 'certificates of a clearance' 0 run "${spheres_move[@]}" --clearance 0.2 --certificate near_%d.json
+good 'certificates of meeting' 0 run "${spheres_move[@]}" --certificate meet_%d.json
+cp near_0.json mixed_0.json
+cp meet_1.json mixed_1.json
+says 'certificates of two questions' 1 '^not proved: 1 of 2 frames, the first is frame 1$' \
+  check mixed_%d.json two-spheres --frames 2
+expect 'certificates of two questions' "$out" 'not proved: the certificate is of another clearance: 0, not 0\.2$'
+says 'certificates of one question' 0 '^proved: in each of 2 frames these pairs are at distance 0\.2 or less' \
+  check near_%d.json two-spheres --frames 2
+# A built-in motion goes to its last frame, so that its end can be run by itself.
+rm meet_1.json
+((cases += 1))
+launch check meet_%d.json two-spheres --frames 2
+((status == 2)) || fail 'a frame of a motion that is missing' "status $status"
+expect 'a frame of a motion that is missing' "$err" '; make it with farcull run --certificate --frames 1:1$'
+good 'the last frame alone' 0 run two-spheres --method far-pairs --frames 1:1 --certificate meet_%d.json
+says 'certificates of two runs' 0 '^proved: in each of 2 frames ' check meet_%d.json two-spheres --frames 2
+rm ./near_?.json ./meet_?.json ./mixed_?.json
+
 # At 0.1, as at every decimal fraction, the clearance is the double nearest to it.
 near=(two-spheres --method far-pairs --clearance 0.1)
 good 'a clearance' 0 run "${near[@]}" --certificate near.json --pairs near.csv
@@ -249,7 +270,7 @@ expect 'a certificate of a clearance' near.json '^  "clearance": 0\.1,$'
 says 'check of a clearance' 0 '^proved: these [0-9,]+ pairs of the scene are at distance 0\.1 or less, and no others$' \
   check near.json two-spheres --pairs near.csv
 says 'with the clearance' 0 '^proved: ' check near.json two-spheres --clearance 0.1
-says 'with another clearance' 1 '^not proved: the certificate is of another clearance: 0\.1, given 0\.2$' \
+says 'with another clearance' 1 '^not proved: the certificate is of another clearance: 0\.1, not 0\.2$' \
   check near.json two-spheres --clearance 0.2
 says 'the list of a clearance alone' 0 '^proved: these [0-9,]+ pairs of the scene are at distance ' \
   check two-spheres --pairs near.csv --clearance 0.1

@@ -50,10 +50,19 @@ else
   fi
 fi
 
+# off_page LOG: what stands more than 20 pt beyond the margin, or is longer than a page.
+off_page() { grep -E 'Float too large' "$1" || sed -nE 's/^Overfull \\hbox \(([0-9.]+)pt.*/\1/p' "$1" | awk '$1 > 20'; }
+[[ -z $(off_page "$report/report.log") ]] || fail "off the page: $(off_page "$report/report.log" | tr '\n' ' ')"
+# The twin: tables that are not scaled to the width of the text.
+cp -r "$report" "$work/wide"
+sed -i 's/\\ifdim.*\\fi}{!}/\\width}{!}/' "$work"/wide/tables/*.tex
+compile "$work/wide" || fail "tables at their own width do not compile"
+[[ -n $(off_page "$work/wide/report.log") ]] || fail "no table is wider than the text, so the check of widths shows nothing"
+
 # Those that the report links as CSV alone as well.
 mkdir "$work/all"
 {
-  printf '%s\n' '\documentclass{article}' \
+  printf '%s\n' '\documentclass{article}\usepackage{graphicx}' \
     '\IfFileExists{booktabs.sty}{\usepackage{booktabs}}{\let\toprule\hline\let\midrule\hline\let\bottomrule\hline}' \
     '\begin{document}'
   printf '\\input{%s}\\clearpage\n' "${tables[@]}"

@@ -2,7 +2,8 @@
 // it, with made-up numbers of the size of true ones, the same on every run. For tests of the
 // report: they take a second instead of minutes, and no device. PART: `some` (each third point
 // only), `shard` (a shard of two, with its own name), `foreign` (a study that no program has),
-// `broken` (in each study the first row that promises missed something).
+// `broken` (in each study the first row that promises missed something), `unconverged` (a step of
+// the cloth did not converge, and nothing was missed).
 //
 // What is made up says so: the commit is "made-up".
 #include <cmath>
@@ -159,6 +160,8 @@ int make(const std::string& folder, const std::string& part) {
           measurement.counts["violations"] = 1;
           broken = true;
         }
+        if (part == "unconverged" && i == 0 && declaration.study == "cloth")
+          measurement.counts["converged"] = false;
         store.add(declaration.study, run, i, measurement);
       }
     });
@@ -171,7 +174,8 @@ int make(const std::string& folder, const std::string& part) {
 
 int main(int argc, char** argv) {
   if (argc < 2 || argc > 3) {
-    std::fputs("usage: farcull_report_fixture DIR [some|shard|foreign|broken]\n", stderr);
+    std::fputs("usage: farcull_report_fixture DIR [some|shard|foreign|broken|unconverged]\n",
+               stderr);
     return 2;
   }
   try {

@@ -382,29 +382,47 @@ TEST(ReportFigures, PanelsWithoutADifferenceBecomeASentence) {
   EXPECT_EQ(legible(figure).caption, "c");
 }
 
-TEST(ReportFigures, PointsAtTheSamePlaceStandAboveEachOther) {
-  const Figure figure = two_panels();
-  const Layout layout = layout_of(figure);
-  const auto shifts = shifts_of(figure.panels[0], layout.panels[0]);
-  // All three at the first point, two at the second.
-  EXPECT_EQ(shifts, (std::vector<std::vector<double>>{{3, 1.5}, {0, -1.5}, {-3, 0}}));
-  // At the end of an axis none is moved out of the panel.
-  Figure end = two_panels();
-  for (Series& series : end.panels[0].series) series.y = {100, 1};
-  end.panels[0].y.to = 100;
-  const Layout at_end = layout_of(end);
-  for (const auto& of_series : shifts_of(end.panels[0], at_end.panels[0]))
-    EXPECT_LE(of_series[0], 1e-9);
+TEST(ReportFigures, ZerosAtTheSamePlaceStandAboveEachOtherAndNothingElseIsMoved) {
+  Figure figure = two_panels();
+  figure.panels[0].y = farcull::logarithmic("missed", true);
+  std::vector<Series>& series = figure.panels[0].series;
+  series[0].y = {0, 7};
+  series[1].y = {0, 7};
+  series[2].y = {0, 0};
+  const auto shifts = [&] {
+    const Layout layout = layout_of(figure);
+    return shifts_of(figure.panels[0], layout.panels[0]);
+  };
+  // Three zeros at the first point; two values of 7 at the second, which stay where they are.
+  EXPECT_EQ(shifts(), (std::vector<std::vector<double>>{{3, 0}, {0, 0}, {-3, 0}}));
+  // A line without points has no place to stand aside.
+  series[2].style = Series::Style::lines;
+  EXPECT_EQ(shifts(), (std::vector<std::vector<double>>{{1.5, 0}, {-1.5, 0}, {0, 0}}));
   // However many: not so far that a 0 is taken for more.
-  Figure many = two_panels();
   for (int i = 0; i < 20; ++i) {
-    Series series = many.panels[0].series[0];
-    series.name += std::to_string(i);
-    many.panels[0].series.push_back(series);
+    Series one = series[0];
+    one.name += std::to_string(i);
+    series.push_back(one);
   }
-  for (const auto& of_series : shifts_of(many.panels[0], layout_of(many).panels[0])) {
+  for (const auto& of_series : shifts()) {
     for (const double shift : of_series) EXPECT_LE(std::abs(shift), 5 + 1e-9);
   }
+  // On an axis without a part for zeros a shift would be another value.
+  figure.panels[0].y = {.label = "missed", .from = 0, .to = 100};
+  for (const auto& of_series : shifts()) {
+    for (const double shift : of_series) EXPECT_EQ(shift, 0);
+  }
+}
+
+TEST(ReportFigures, OfSeriesThatAgreeTheOneThatTheFigureIsAboutGivesTheStyle) {
+  Figure figure = two_panels();
+  for (Panel& panel : figure.panels) {
+    panel.series[2].y = panel.series[0].y;
+    panel.series[2].emphasis = true;
+    panel.series[1].y = {1, 2};
+  }
+  EXPECT_EQ(names_in(legible(figure).panels[0]),
+            (std::vector<std::string>{"FAR (OBB) = CULLIDE", "Quick-CULLIDE"}));
 }
 
 TEST(ReportFigures, MarksAreInTheKeyAndNotOverTheData) {

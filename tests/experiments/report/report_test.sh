@@ -245,6 +245,13 @@ grep -q 'BROKEN:' <<<"$(sed '/^All of this page/,$d' "$liar/results.md")" || fai
 # The twin: the store of before keeps its promises.
 grep -q 'never misses' "$page" || fail "the page of kept promises claims nothing"
 
+# What a chapter finds broken beyond single rows counts as well.
+"$fixture" "$work/stuck" unconverged
+status=0
+"$farcull" report --no-pictures "$work/stuck" >"$work/stuck.out" 2>"$work/stuck.err" || status=$?
+((status == 1)) || fail "a step that did not converge: status $status"
+grep -q 'a promise is broken: cloth: ' "$work/stuck.err" || fail "a step that did not converge is not told of"
+
 # refuses WHAT PATTERN COMMAND...: status 2 and one line that fits.
 refuses() {
   local what=$1 pattern=$2 status=0 said

@@ -114,6 +114,23 @@ TEST(CullingChapter, CallsItAJoinWhereItKeepsNearlyAllBoxes) {
   EXPECT_FALSE(says(chapter, "keeps fewer"));
 }
 
+TEST(ScenesChapter, NamesTheSeedThatAScenesNameHas) {
+  MadeUp rows("scenes");
+  const Json counts = {{"triangles", 100},    {"objects", 2},       {"self_objects", 0},
+                       {"colliding", 3},      {"neighbours", 0},    {"scene_hash", "ab"},
+                       {"pixels_tenth", 1.0}, {"pixels_half", 4.0}, {"pixels_ninety", 9.0}};
+  // The studies' own suffixes are no names of scenes.
+  for (const char* scene : {"needles:60@seed101", "needles:60", "needles:60@seed103@far",
+                            "crowd:60@offset-1e0", "crowd:60@seed7@scale-1e3"})
+    rows.add(point_of(scene, "exact"), counts);
+  const Chapter chapter = chapter_of(rows.stored);
+  std::vector<std::string> sources;
+  for (const auto& row : chapter.tables.at(0).rows) sources.push_back(row.at(1));
+  EXPECT_EQ(sources,
+            (std::vector<std::string>{"drawn, seed 101", "drawn, seed 2", "drawn, seed 103",
+                                      "drawn, seed 4", "drawn, seed 7"}));
+}
+
 TEST(ScenesChapter, TellsTheSizeOfTrianglesAtEachResolution) {
   MadeUp rows("scenes");
   rows.add(point_of("two-spheres", "exact"), {{"triangles", 10240},

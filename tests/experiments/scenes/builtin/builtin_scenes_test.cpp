@@ -245,7 +245,7 @@ TEST(BuiltinScenes, TakesASeedWhereItIsDrawn) {
   EXPECT_NE(hash("needles:60@seed101"), hash("needles:60"));
   EXPECT_EQ(hash("needles:60@seed101@far"), hash("needles:60@far@seed101"));
   EXPECT_THROW(make_builtin_scene("two-tori@seed3"), Error);
-  for (const char* word : {"@seed", "@seed0", "@seed-1", "@seedx", "@seed1.5"}) {
+  for (const char* word : {"@seed3@seed4", "@seed", "@seed0", "@seed-1", "@seedx", "@seed1.5"}) {
     EXPECT_THROW(make_builtin_scene(std::string("needles:60") + word), Error) << word;
   }
 }

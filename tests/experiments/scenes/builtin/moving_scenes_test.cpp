@@ -79,7 +79,7 @@ void expect_motion(const std::string& name) {
   for (const long frame : {5L, 2L, 6L}) {
     const std::string hash = scene_hash(frames[static_cast<std::size_t>(frame)]);
     EXPECT_EQ(scene_hash(moving.at(first + frame)), hash);
-    EXPECT_EQ(scene_hash(MovingScene(name, kFrames, first).at(first + frame)), hash);
+    EXPECT_EQ(scene_hash(MovingScene(name, first + kFrames).at(first + frame)), hash);
   }
 }
 
