@@ -39,7 +39,8 @@ experiments/record         experiments/method experiments/system
 experiments/measure/peers  experiments/scenes verify
 experiments/measure        experiments/scenes experiments/record experiments/measure/peers
 experiments/lemma          experiments/scenes experiments/record
-experiments/studies        experiments/measure experiments/lemma
+experiments/suite          experiments/scenes verify
+experiments/studies        experiments/measure experiments/lemma experiments/suite
 experiments/picture        experiments/measure
 experiments/report/chapters experiments/studies experiments/picture
 experiments/report         experiments/report/chapters
@@ -64,7 +65,7 @@ GMP/MPFR   ^(gmp|gmpxx|mpfr)\.h$           verify verify/certificate tests
 zlib       ^zlib\.h$                       experiments/scenes/mesh tests
 '
 
-export most_folders=16 # in experiments/
+export most_folders=17 # in experiments/
 ours=(core offsets verify experiments tests)
 top=(CMakeLists.txt README.md docs "${ours[@]}")
 source_names=(-name '*.h' -o -name '*.cpp' -o -name '*.glsl' -o -name '*.vert' -o -name '*.frag'
@@ -503,6 +504,7 @@ break_includes() {
   forbids experiments/record experiments/scenes
   forbids experiments/measure/peers experiments/measure
   forbids experiments/lemma experiments/measure
+  forbids experiments/suite experiments/lemma
   forbids experiments/studies experiments/report
   forbids experiments/picture experiments/studies
   forbids experiments/report/chapters experiments/report
@@ -535,6 +537,7 @@ break_includes() {
   keeps verify/file.cpp '"core/canvas/canvas.h"'
   keeps verify/file.cpp '"verify/certificate/json.h"'
   keeps experiments/method/file.cpp '"core/gl/canvas.h"'
+  keeps experiments/suite/file.cpp '"verify/certificate/integer_pair.h"'
   keeps experiments/picture/file.cpp '"experiments/measure/compare.h"'
   keeps experiments/report/file.cpp '"experiments/report/chapters/rows.h"'
   keeps experiments/report/chapters/file.cpp '"experiments/system/file.h"'
