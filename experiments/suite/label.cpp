@@ -84,6 +84,11 @@ class CommonPoints {
     for (Q& x : out) x /= static_cast<unsigned long>(points_.size());
     return out;
   }
+  /// Whether both are the same set: each holds the corners of the other.
+  bool all_of_both() const {
+    return std::all_of(a_.begin(), a_.end(), [&](const Q3& p) { return has(p); }) &&
+           std::all_of(b_.begin(), b_.end(), [&](const Q3& p) { return has(p); });
+  }
   /// Whether all six corners are in one plane. Precondition: there are two common points, so two
   /// segments have a line in common.
   bool coplanar() const {
@@ -96,7 +101,10 @@ class CommonPoints {
  private:
   void add(const Q3& p) {
     if (!lies_in(p, a_, normal_a_) || !lies_in(p, b_, normal_b_)) return;
-    if (std::find(points_.begin(), points_.end(), p) == points_.end()) points_.push_back(p);
+    if (!has(p)) points_.push_back(p);
+  }
+  bool has(const Q3& p) const {
+    return std::find(points_.begin(), points_.end(), p) != points_.end();
   }
   /// Where edges of s go from one side of the plane of t to the other.
   void add_through_plane(const Triangle& s, const Triangle& t, const Q3& n) {
@@ -128,14 +136,16 @@ Triangle exact(const std::array<Vec3, 3>& t) {
   return {rational::exact(t[0]), rational::exact(t[1]), rational::exact(t[2])};
 }
 
+/// Whether p is a corner of the set of points: of a segment with three corners the inner one is
+/// none.
 bool is_corner(const Q3& p, const Triangle& t) {
-  return std::find(t.begin(), t.end(), p) != t.end();
-}
-
-/// Whether each corner of s is a corner of t.
-bool all_corners_of(const std::array<Vec3, 3>& s, const std::array<Vec3, 3>& t) {
-  return std::all_of(s.begin(), s.end(),
-                     [&](const Vec3& p) { return std::find(t.begin(), t.end(), p) != t.end(); });
+  if (std::find(t.begin(), t.end(), p) == t.end()) return false;
+  if (!is_zero(normal(t))) return true;
+  for (int i = 0; i < 3; ++i) {
+    const Q along = dot(edge(t, i), minus(p, t[i]));
+    if (along > 0 && along < dot(edge(t, i), edge(t, i))) return false;
+  }
+  return true;
 }
 
 SuiteKind kind_of_meeting(const std::array<Vec3, 3>& first, const std::array<Vec3, 3>& second,
@@ -145,7 +155,7 @@ SuiteKind kind_of_meeting(const std::array<Vec3, 3>& first, const std::array<Vec
   const CommonPoints common(a, b);
   found = !common.points().empty();
   if (!found) return SuiteKind::apart;
-  if (all_corners_of(first, second) && all_corners_of(second, first)) return SuiteKind::equal;
+  if (common.all_of_both()) return SuiteKind::equal;
   const bool one_point = common.points().size() == 1;
   const Q3 p = common.inner();
   if (one_point && (is_corner(p, a) || is_corner(p, b))) return SuiteKind::touch_vertex;
