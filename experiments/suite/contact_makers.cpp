@@ -80,6 +80,18 @@ MadePair vertex_face(SuiteDraws& draws, double bits) {
   return corner_at(draws, bits, a, (2 * a[0] + a[1] + a[2]) / 4);
 }
 
+/// An edge of b along a line in the plane of a: inside it, or the edge of a itself.
+MadePair edge_face(SuiteDraws& draws, double bits) {
+  const Corners a = first_triangle(draws, bits);
+  const Vec3 quarter = (a[1] - a[0]) / 4;
+  const bool hinge = draws.chance(4);
+  const Vec3 at = hinge ? a[0] : Vec3((2 * a[0] + a[1] + a[2]) / 4);
+  const Vec3 to = hinge ? a[1] : Vec3(at + draws.whole(1, 3) * quarter);
+  Vec3 v = arm(draws, bits);
+  if (keeps_aside(draws)) v = along(v, normal(a) * draws.sign());
+  return finished(draws, bits, a, {at, to, at + v});
+}
+
 MadePair edge_edge(SuiteDraws& draws, double bits) {
   const Corners a = first_triangle(draws, bits);
   const double weight = draws.whole(1, 3);
@@ -187,6 +199,7 @@ std::vector<PairFamily> contact_families() {
       {"vertex-vertex", "a corner on a corner, or one unit beside it", bits, kBits, vertex_vertex},
       {"vertex-edge", "a corner on an edge, or one unit beside it", bits, kBits, vertex_edge},
       {"vertex-face", "a corner on a face, or one unit beside it", bits, kBits, vertex_face},
+      {"edge-face", "an edge in a face, or one unit beside it", bits, kBits, edge_face},
       {"edge-edge", "an edge across an edge, or one unit beside it", bits, kBits, edge_edge},
       {"coplanar", "in one plane: overlapping, touching, apart, or one unit out of it", bits, kBits,
        coplanar},
