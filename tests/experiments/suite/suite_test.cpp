@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <set>
 
 #include "experiments/library/farcull.h"
@@ -104,11 +105,23 @@ bool found_by_library(Collider& collider, const Scene& scene) {
   return result.pairs.size() + result.neighbour_pairs.size() > 0;
 }
 
+std::string environment(const char* name, const char* usual) {
+  const char* const value = std::getenv(name);
+  return value != nullptr ? value : usual;
+}
+
+/// The pairs of a family: of the small suite, or of the one in the folder FARCULL_SUITE.
+SuitePairs asked_pairs(const PairFamily& family) {
+  const std::string folder = environment("FARCULL_SUITE", "");
+  return folder.empty() ? make_pairs(family.name, {})
+                        : read_pairs(folder + "/pairs/" + family.name + ".txt");
+}
+
 TEST(SuiteAnswers, TheLibraryIsRightAboutEveryPair) {
   Collider two_objects({.threads = 1});
   Collider one_object({.threads = 1, .self = true});
   for (const PairFamily& family : pair_families()) {
-    const SuitePairs pairs = make_pairs(family.name, {});
+    const SuitePairs pairs = asked_pairs(family);
     for (const SuitePair& pair : pairs.pairs) {
       Collider& collider = pair.shared.empty() ? two_objects : one_object;
       EXPECT_EQ(found_by_library(collider, scene_of(pair)), collides(pair.kind))
@@ -117,11 +130,14 @@ TEST(SuiteAnswers, TheLibraryIsRightAboutEveryPair) {
   }
 }
 
+/// The device of methods that draw.
+std::string asked_device() { return environment("FARCULL_SUITE_DEVICE", "native"); }
+
 /// Whether the method reports the pair; everything is left in, so that it is drawn.
 bool found_by(Method method, Session& session, const Scene& scene) {
   RunOptions options;
   options.method = method;
-  options.device = "native";
+  options.device = asked_device();
   options.resolution = 32;
   options.full = true;
   options.verify = false;
@@ -130,9 +146,9 @@ bool found_by(Method method, Session& session, const Scene& scene) {
 }
 
 TEST(SuiteAnswers, FarAndFarPairsAreRightAboutASampleThatIsDrawn) {
-  Session session("native", 1, {});
+  Session session(asked_device(), 1, {});
   for (const PairFamily& family : pair_families()) {
-    SuitePairs pairs = make_pairs(family.name, {});
+    const SuitePairs pairs = asked_pairs(family);
     for (std::size_t i = 0; i < pairs.pairs.size(); i += 9) {
       const SuitePair& pair = pairs.pairs[i];
       for (const Method method : {Method::far, Method::far_pairs}) {
