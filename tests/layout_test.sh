@@ -595,8 +595,8 @@ break_places() {
   put experiments/unknown/file.h '<vector>'
   expect "a folder beyond the table" caught "$(verdict experiments/unknown/file.h 'no folder of the table')"
   rm -r experiments/unknown
-  for ((i = 0; i < 16; ++i)); do put "experiments/measure/more$i/file.h" '<vector>'; done
-  expect "too many folders" caught "$(verdict experiments 'at most 16 may')"
+  for ((i = 0; i < most_folders; ++i)); do put "experiments/measure/more$i/file.h" '<vector>'; done
+  expect "too many folders" caught "$(verdict experiments "at most $most_folders may")"
   rm -r experiments/measure
 }
 

@@ -58,7 +58,7 @@ CLI::App* SuiteCommand::add_to(CLI::App& app) {
   CLI::App* command =
       add_command(app, "suite", "labelled triangle pairs and meshes, to test any library with");
   add_required(*command, "DIR", folder_, "the folder to write, which must not exist or be empty");
-  add_option(*command, "--size", size_, "SIZE",
+  add_option(*command, "--size", size_, "small|full",
              "small: 10,070 pairs and 12 meshes, seconds (default);\nfull: 1,007,000 pairs and "
              "44 meshes, minutes");
   add_option(*command, "--seed", seed_, "N", "seed of all draws; default 1");

@@ -92,13 +92,17 @@ SuiteObject plate(const Vec3& lo, const Vec3& hi, int steps) {
   return out;
 }
 
-/// Two plates that lie on each other, and a bar through both. Every coordinate is short, so the
-/// faces are in one plane exactly.
-Objects plates(SuiteDraws&, double slivers, int) {
-  const int steps = static_cast<int>(slivers);
-  return {plate(Vec3(0, 0, 0), Vec3(1, 1, 0.125), steps),
-          plate(Vec3(0.25, 0.375, 0.125), Vec3(1.25, 1.375, 0.25), steps),
-          plate(Vec3(0.5, 0.5, -0.5), Vec3(0.625, 0.625, 0.75), 1)};
+/// Two plates that lie on each other, and a bar through both, made narrower by 2^halvings. Every
+/// coordinate is short, so the faces are in one plane exactly.
+Objects plates(SuiteDraws&, double slivers, int halvings) {
+  const double width = std::ldexp(1, -halvings);
+  const int steps = static_cast<int>(slivers * width);
+  Objects out = {plate(Vec3(0, 0, 0), Vec3(1, 1, 0.125), steps),
+                 plate(Vec3(0.25, 0.375, 0.125), Vec3(1.25, 1.375, 0.25), steps),
+                 plate(Vec3(0.5, 0.5, -0.5), Vec3(0.625, 0.625, 0.75), 1)};
+  for (SuiteObject& object : out)
+    each_vertex(object, [&](const Vec3& p) { return Vec3(p.x(), p.y() * width, p.z()); });
+  return out;
 }
 
 /// Three shells, each outside the one before by the gap; the outermost is moved by 1.5 gaps, so
@@ -193,7 +197,7 @@ std::vector<MeshFamily> surface_families() {
        "length over width of the triangles, about",
        false,
        plates,
-       {{64, 0}, {1024, 0}, {8192, 0}},
+       {{64, 0}, {0x1p16, 10}, {0x1p36, 30}},
        true},
       {"shells",
        "nested shells, of which the outermost crosses the one below it",
