@@ -57,8 +57,10 @@ struct Contacts : btCollisionWorld::ContactResultCallback {
   const btCollisionObject* first = nullptr;
   std::vector<std::pair<int, int>> pairs;
 
-  btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper* a, int, int triangle_a,
-                           const btCollisionObjectWrapper*, int, int triangle_b) override {
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int,
+                           int triangle_a, const btCollisionObjectWrapper*, int,
+                           int triangle_b) override {
+    if (point.getDistance() > 0) return 0;  // near, and no contact
     if (a->getCollisionObject() != first) std::swap(triangle_a, triangle_b);
     pairs.emplace_back(triangle_a, triangle_b);
     return 0;
