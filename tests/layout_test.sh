@@ -39,7 +39,9 @@ experiments/record         experiments/method experiments/system
 experiments/measure/peers  experiments/scenes verify
 experiments/measure        experiments/scenes experiments/record experiments/measure/peers
 experiments/lemma          experiments/scenes experiments/record
-experiments/studies        experiments/measure experiments/lemma
+experiments/suite          experiments/scenes verify
+experiments/contestants    experiments/suite experiments/library experiments/measure/peers
+experiments/studies        experiments/measure experiments/lemma experiments/contestants
 experiments/picture        experiments/measure
 experiments/report/chapters experiments/studies experiments/picture
 experiments/report         experiments/report/chapters
@@ -59,12 +61,12 @@ verify/certificate core/scene/box_join core/view/budget core/view/plan core/view
 # with a * all files whose path begins so.
 export libraries='
 EGL/OpenGL ^(epoxy|EGL|GL|GLES[0-9]*|KHR)/ core/gl tests/faults/*
-CGAL       ^CGAL/                          verify experiments/measure/peers/cgal* tests
+CGAL       ^CGAL/                          verify experiments/measure/peers/cgal* experiments/contestants/cgal* tests
 GMP/MPFR   ^(gmp|gmpxx|mpfr)\.h$           verify verify/certificate tests
 zlib       ^zlib\.h$                       experiments/scenes/mesh tests
 '
 
-export most_folders=16 # in experiments/
+export most_folders=18 # in experiments/
 ours=(core offsets verify experiments tests)
 top=(CMakeLists.txt README.md docs "${ours[@]}")
 source_names=(-name '*.h' -o -name '*.cpp' -o -name '*.glsl' -o -name '*.vert' -o -name '*.frag'
@@ -503,6 +505,8 @@ break_includes() {
   forbids experiments/record experiments/scenes
   forbids experiments/measure/peers experiments/measure
   forbids experiments/lemma experiments/measure
+  forbids experiments/suite experiments/lemma
+  forbids experiments/contestants experiments/studies
   forbids experiments/studies experiments/report
   forbids experiments/picture experiments/studies
   forbids experiments/report/chapters experiments/report
@@ -535,6 +539,9 @@ break_includes() {
   keeps verify/file.cpp '"core/canvas/canvas.h"'
   keeps verify/file.cpp '"verify/certificate/json.h"'
   keeps experiments/method/file.cpp '"core/gl/canvas.h"'
+  keeps experiments/suite/file.cpp '"verify/certificate/integer_pair.h"'
+  keeps experiments/contestants/file.cpp '"experiments/suite/reader.h"'
+  keeps experiments/contestants/cgal.cpp '<CGAL/Kernel.h>'
   keeps experiments/picture/file.cpp '"experiments/measure/compare.h"'
   keeps experiments/report/file.cpp '"experiments/report/chapters/rows.h"'
   keeps experiments/report/chapters/file.cpp '"experiments/system/file.h"'
@@ -592,8 +599,8 @@ break_places() {
   put experiments/unknown/file.h '<vector>'
   expect "a folder beyond the table" caught "$(verdict experiments/unknown/file.h 'no folder of the table')"
   rm -r experiments/unknown
-  for ((i = 0; i < 16; ++i)); do put "experiments/measure/more$i/file.h" '<vector>'; done
-  expect "too many folders" caught "$(verdict experiments 'at most 16 may')"
+  for ((i = 0; i < most_folders; ++i)); do put "experiments/measure/more$i/file.h" '<vector>'; done
+  expect "too many folders" caught "$(verdict experiments "at most $most_folders may")"
   rm -r experiments/measure
 }
 

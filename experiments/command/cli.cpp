@@ -29,6 +29,7 @@
 #include "experiments/command/run.h"
 #include "experiments/command/scenes.h"
 #include "experiments/command/studies.h"
+#include "experiments/command/suite.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {
@@ -129,6 +130,7 @@ int dispatch(int argc, char** argv) {
   PictureCommand picture;
   ReportCommand report;
   ScenesCommand scenes;
+  SuiteCommand suite;
   HelpCommand help;
   CompletionCommand completion;
   ManualCommand manual;
@@ -137,7 +139,7 @@ int dispatch(int argc, char** argv) {
     (commands.emplace_back(command.add_to(app), [&command] { return command.run(); }), ...);
   };
   add(run, verify, plan, compare, bench, doctor, check, experiments, merge, picture, report, scenes,
-      help, completion, manual);
+      suite, help, completion, manual);
 
   try {
     app.parse(argc, argv);

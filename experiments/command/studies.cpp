@@ -18,6 +18,7 @@
 #include "experiments/studies/run_studies.h"
 #include "experiments/studies/store.h"
 #include "experiments/studies/study.h"
+#include "experiments/suite/reader.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 
@@ -85,6 +86,11 @@ void StudiesCommand::add_to(CLI::App& experiment) {
     add_option(*command, "--devices", devices_, "LIST|all",
                "measure on each of these devices, as in\nnative,software, or on all that answer; "
                "the first one\ninto DIR, what may differ on the others into DIR/on-DEVICE");
+    if (name == "libraries") {
+      add_option(*command, "--suite", suite_, "DIR",
+                 "ask about this suite, which may be without labels,\n"
+                 "instead of the one that farcull suite makes");
+    }
     add_footer(*command,
                fmt::format("Examples:\n"
                            "  farcull experiment {0} --quick\n"
@@ -96,7 +102,7 @@ void StudiesCommand::add_to(CLI::App& experiment) {
     commands_.push_back(command);
   };
   for (const Study& study : studies()) declare(study.name, study.title);
-  declare("all", "all of these studies but cloth, one after the other");
+  declare("all", "all of these studies but cloth and libraries, one\nafter the other");
 }
 
 bool StudiesCommand::named() const {
@@ -148,6 +154,10 @@ int StudiesCommand::run() {
   request.folder = out_;
   // A step of a fine cloth takes seconds, and turns go back and forth between several cloths.
   if (request.studies.front().campaign) ::setenv("FARCULL_CLOTH", (out_ + "/cloth").c_str(), 0);
+  if (suite_) {
+    (void)read_suite(*suite_);
+    ::setenv("FARCULL_SUITE", suite_->c_str(), 1);
+  }
   request.choice = {.quick = quick_, .seed = seed_};
   request.resume = resume_;
   request.shard = shard_ ? parse_shard(*shard_)

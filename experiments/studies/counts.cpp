@@ -131,6 +131,40 @@ NamedCounts named(const SceneCounts& c) {
   return out;
 }
 
+NamedCounts named(const LibraryCounts& c) {
+  NamedCounts out = {{"asked", c.asked},
+                     {"missed", c.missed},
+                     {"wrong", c.wrong},
+                     {"own_asked", c.own_asked},
+                     {"own_missed", c.own_missed},
+                     {"own_wrong", c.own_wrong},
+                     {"refused", c.refused},
+                     {"unanswered", c.unanswered},
+                     {"crashed", c.crashed},
+                     {"hung", c.hung},
+                     {"no_memory", c.no_memory},
+                     {"twice", c.twice},
+                     {"differing", c.differing},
+                     {"neighbours_left_out", c.neighbours_left_out},
+                     {"promises", c.promises},
+                     {"library", c.library},
+                     {"means", c.means},
+                     {"call", c.call},
+                     {"says", c.says},
+                     {"use", c.use},
+                     {"reason", c.reason},
+                     {"scores", c.scores}};
+  add(out, "first_missed", c.first_missed);
+  add(out, "first_wrong", c.first_wrong);
+  add(out, "first_death", c.first_death);
+  for (const auto& [name, example] : {std::pair{"example_missed", &c.example_missed},
+                                      std::pair{"example_wrong", &c.example_wrong},
+                                      std::pair{"example_death", &c.example_death}}) {
+    if (!example->empty()) out.push_back({name, *example});
+  }
+  return out;
+}
+
 }  // namespace
 
 NamedCounts named(const Counts& counts) {

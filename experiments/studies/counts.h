@@ -125,9 +125,29 @@ struct SceneCounts {
   std::optional<PixelCounts> pixels = {};  // empty: no two boxes of objects overlap
 };
 
+/// Counts of a LibraryPoint (contestants/score.h): pairs of triangles, of which `missed` and
+/// `wrong` are measured by closed triangles, and `own_` by what the library's documentation
+/// promises.
+struct LibraryCounts {
+  std::uint64_t asked = 0, missed = 0, wrong = 0;
+  std::uint64_t own_asked = 0, own_missed = 0, own_wrong = 0;
+  std::uint64_t refused = 0, unanswered = 0, crashed = 0, hung = 0, no_memory = 0;
+  std::uint64_t twice = 0, differing = 0;  // asked a second time, and answered otherwise then
+  std::uint64_t neighbours_left_out = 0;   // pairs that it is not made for
+  bool promises = false;                   // as in RunCounts
+  std::string library = {}, means = {}, call = {}, says = {}, use = {};  // as on its card
+  std::string reason = {};  // of the first refusal or death
+  std::string scores = {};  // by kind and parameter: scores_text()
+  /// IDs of the first pairs of their kind in the family.
+  std::optional<std::uint64_t> first_missed = {}, first_wrong = {}, first_death = {};
+  /// Minimized (contestants/minimize.h) from the first of their kind about which the documentation
+  /// promises the answer: 18 coordinates; empty where there is none.
+  std::string example_missed = {}, example_wrong = {}, example_death = {};
+};
+
 /// std::monostate: nothing was measured.
 using Counts = std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts, PlacementCounts,
-                            ClothCounts, SceneCounts>;
+                            ClothCounts, SceneCounts, LibraryCounts>;
 
 /// The names and values of counts, in the order in which a store holds them.
 using CountValue = std::variant<bool, std::uint64_t, double, std::string>;

@@ -93,6 +93,15 @@ PointKey key_of(const PlacementPoint& point) {
   return key;
 }
 
+PointKey key_of(const LibraryPoint& point) {
+  PointKey key;
+  key.scene = fmt::format("{}/{}/{}", point.small ? "small" : "full",
+                          point.mesh ? "meshes" : "pairs", point.family);
+  key.method = point.contestant;
+  key.seed = point.seed;
+  return key;
+}
+
 }  // namespace
 
 PointKey key_of(const Point& point) {

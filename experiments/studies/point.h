@@ -1,5 +1,5 @@
-// The points of studies: three kinds, each with the fields that it needs, and the columns by which
-// a store knows them.
+// The points of studies: several kinds, each with the fields that it needs, and the columns by
+// which a store knows them.
 #pragma once
 
 #include <compare>
@@ -96,7 +96,16 @@ struct PlacementPoint {
   std::uint64_t seed = 1;
 };
 
-using Point = std::variant<RunPoint, PeerPoint, LemmaPoint, PlacementPoint>;
+/// A contestant (contestants/known.h) asked about a family of pairs of a suite, or about a mesh.
+struct LibraryPoint {
+  std::string contestant;
+  std::string family;  // or the name of the mesh
+  bool mesh = false;
+  bool small = false;      // of the small suite; else of the full one
+  std::uint64_t seed = 1;  // of the suite
+};
+
+using Point = std::variant<RunPoint, PeerPoint, LemmaPoint, PlacementPoint, LibraryPoint>;
 
 /// The columns by which a store knows a point. What does not apply is empty, 0 or -1; no two points
 /// of a grid have the same key.
@@ -104,7 +113,8 @@ struct PointKey {
   std::string scene = {};         // as on the command line, or as key_of() writes it
   std::string method = {};        // as --method with the options of its form ("cullide --rounds
                                   // 1"), perhaps with the mean size of triangles ("@4px"); a peer;
-                                  // "lemma", "lemma-worst"; of placements "far", "far-snapped-8"
+                                  // "lemma", "lemma-worst"; of placements "far", "far-snapped-8";
+                                  // a contestant
   std::string offset = {};        // obb or exact
   std::string radius = {};        // as --radius
   std::string depth_format = {};  // float32 or fixed24

@@ -29,8 +29,8 @@ struct Study {
   std::function<std::vector<Point>(const GridChoice&)> grid;
   /// Throws Error for faults of the device or the machine: the run ends there, and can be resumed.
   std::function<PointResult(const Point&, Lab&)> measure;
-  /// It takes many hours, so it is not among `all`, and its scenes take turns: what is measured
-  /// after an hour is of all of them.
+  /// It takes many hours or needs what most machines have not, so it is not among `all`. Its scenes
+  /// may take turns: what is measured after an hour is then of all of them.
   bool campaign = false;
 };
 
@@ -57,5 +57,6 @@ Study efficiency_study();
 Study scaling_study();
 Study cloth_study();
 Study culling_study();
+Study libraries_study();
 
 }  // namespace farcull

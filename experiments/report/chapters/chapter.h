@@ -126,5 +126,6 @@ Chapter culling_chapter(const StoredStudy& stored);
 Chapter cloth_chapter(const StoredStudy& stored);
 Chapter efficiency_chapter(const StoredStudy& stored);
 Chapter scaling_chapter(const StoredStudy& stored);
+Chapter libraries_chapter(const StoredStudy& stored);
 
 }  // namespace farcull

@@ -15,7 +15,7 @@ Chapter chapter_of(const StoredStudy& stored) {
       {"offsets", offsets_chapter},     {"radius", radius_chapter},
       {"precision", precision_chapter}, {"stability", stability_chapter},
       {"cloth", cloth_chapter},         {"efficiency", efficiency_chapter},
-      {"scaling", scaling_chapter},
+      {"scaling", scaling_chapter},     {"libraries", libraries_chapter},
   };
   const auto at = kChapters.find(stored.declaration.study);
   if (at == kChapters.end()) {

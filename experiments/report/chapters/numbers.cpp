@@ -76,6 +76,12 @@ bool flag_of(const Row& row, const std::string& name) {
   return it != counts.end() && it->is_boolean() && it->get<bool>();
 }
 
+std::string text_of(const Row& row, const std::string& name) {
+  const auto& counts = *row.measurement.counts;
+  const auto it = counts.find(name);
+  return it != counts.end() && it->is_string() ? it->get<std::string>() : "";
+}
+
 std::string method_label(const PointKey& point) {
   const std::size_t end = std::min(point.method.find(' '), point.method.size());
   return base_label(point.method.substr(0, end), point) + form_label(point.method.substr(end));

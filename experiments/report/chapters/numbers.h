@@ -27,6 +27,8 @@ inline double time_or_none(const Row& row, const std::string& name) {
 std::vector<double> runs_of(const Row& row);
 /// Whether a row has a count of that name that is true.
 bool flag_of(const Row& row, const std::string& name);
+/// A count of that name that is text; "" where the row has none.
+std::string text_of(const Row& row, const std::string& name);
 
 /// As figures and tables name what a point was measured with: "FAR (OBB)", "FAR pairs", "CULLIDE",
 /// in another form "CULLIDE, one round, all views".

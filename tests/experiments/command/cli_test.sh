@@ -247,6 +247,11 @@ bad 'writing to no folder' '--write: ' scenes two-spheres --write ''
 bad 'writing into a missing folder' 'missing/new: the folder cannot be made: No such' \
   scenes far-apart --write missing/new
 bad 'writing into a file' 'good\.obj: the folder cannot be made' scenes far-apart --write good.obj
+bad 'a suite of no size' '--size: ' suite new --size large
+bad 'a suite into a folder with files' '\.: is there already' suite .
+bad 'a suite with a seed that is none' '--seed: ' suite new --seed one
+bad 'a suite that is not there' 'new/suite\.txt: ' suite new --check
+bad 'a suite that is checked for a seed' '--check: ' suite new --check --seed 2
 bad 'writing frames of a list' '--frames: ' scenes --frames 3
 bad 'writing frames of what stands still' 'two-tori: nothing .*moves' \
   scenes two-tori --write new --frames 3

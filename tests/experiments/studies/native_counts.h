@@ -46,7 +46,8 @@ inline bool needs_meshes(const Point& point) {
 inline std::vector<GridPoint> quick_points(const Study& study) {
   std::vector<GridPoint> out;
   for (Point& point : study.grid({.quick = true, .seed = 1})) {
-    if (std::holds_alternative<PeerPoint>(point)) continue;
+    if (std::holds_alternative<PeerPoint>(point) || std::holds_alternative<LibraryPoint>(point))
+      continue;
     if (auto* const run = std::get_if<RunPoint>(&point)) run->repeat = 1;
     out.push_back({&study, std::move(point)});
   }

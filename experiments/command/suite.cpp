@@ -1,0 +1,98 @@
+// Reads the options and prints the counts; experiments/suite makes and checks the files.
+#include "experiments/command/suite.h"
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "experiments/suite/writer.h"
+#include "experiments/system/output_file.h"
+#include "experiments/system/text_table.h"
+
+namespace farcull {
+namespace {
+
+SuiteSettings settings_of(const Text& size, const Text& seed) {
+  SuiteSettings out;
+  if (size && *size != "small" && *size != "full")
+    throw Error("--size", "'" + *size + "' is no size", "give small or full");
+  if (size && *size == "full") out.size = SuiteSize::full;
+  if (!seed) return out;
+  const std::optional<std::uint64_t> number = parse_number<std::uint64_t>(*seed);
+  if (!number) throw Error("--seed", "'" + *seed + "' is no whole number", "give 0 or more");
+  out.seed = *number;
+  return out;
+}
+
+std::string pairs_table(const std::vector<SuiteCounts>& families) {
+  Table table("lrrrrrrrrrrr");
+  std::vector<std::string> head = {"pairs", "all", "collide"};
+  for (int k = 0; k < 9; ++k) head.push_back(to_string(static_cast<SuiteKind>(k)));
+  table.add(head);
+  std::uint64_t pairs = 0;
+  std::uint64_t colliding = 0;
+  for (const SuiteCounts& family : families) {
+    std::vector<std::string> row = {family.name, grouped(family.pairs), grouped(family.colliding)};
+    for (int k = 0; k < 9; ++k) row.push_back(family.kinds[k] > 0 ? grouped(family.kinds[k]) : "-");
+    table.add(row);
+    pairs += family.pairs;
+    colliding += family.colliding;
+  }
+  table.add({"all", grouped(pairs), grouped(colliding), "", "", "", "", "", "", "", "", ""});
+  return table.text();
+}
+
+std::string meshes_table(const std::vector<SuiteCounts>& meshes) {
+  Table table("lrrr");
+  table.add({"mesh", "triangles", "colliding pairs", "of neighbours"});
+  for (const SuiteCounts& mesh : meshes) {
+    table.add(
+        {mesh.name, grouped(mesh.triangles), grouped(mesh.colliding), grouped(mesh.neighbours)});
+  }
+  return table.text();
+}
+
+}  // namespace
+
+CLI::App* SuiteCommand::add_to(CLI::App& app) {
+  CLI::App* command =
+      add_command(app, "suite", "labelled triangle pairs and meshes, to test any library with");
+  add_required(*command, "DIR", folder_, "the folder to write, which must not exist or be empty");
+  add_option(*command, "--size", size_, "small|full",
+             "small: 10,070 pairs and 12 meshes, seconds (default);\nfull: 1,007,000 pairs and "
+             "44 meshes, minutes");
+  add_option(*command, "--seed", seed_, "N", "seed of all draws; default 1");
+  add_flag(*command, "--check", check_,
+           "read the suite in DIR, compare its sums and decide\nevery label anew");
+  add_footer(*command,
+             "Examples:\n"
+             "  farcull suite pairs-and-meshes\n"
+             "  farcull suite pairs-and-meshes --check\n"
+             "  farcull suite large --size full\n\n"
+             "Every label is decided by two exact programs that share no code, CGAL's predicates\n"
+             "and integers; a disagreement ends the command. The files depend on the size and the\n"
+             "seed alone. docs/suite.md has the format.");
+  return command;
+}
+
+int SuiteCommand::run() const {
+  if (folder_.empty()) throw Error("DIR", "the folder's name is empty", "name a folder");
+  if (check_ && (size_ || seed_)) {
+    throw Error("--check", "the suite itself says its size and its seed",
+                "leave --size and --seed out");
+  }
+  const SuiteSettings settings = settings_of(size_, seed_);
+  check_output("-");
+  TerminalProgress terminal;
+  const Progress progress = terminal.callback();
+  const SuiteSummary summary =
+      check_ ? check_suite(folder_, progress) : write_suite(folder_, settings, progress);
+  terminal.clear();
+  write_output("-", pairs_table(summary.families) + "\n" + meshes_table(summary.meshes) +
+                        fmt::format("\n{} {}, seed {}, {}\nsum {}\n",
+                                    check_ ? "every label is right:" : "written:", folder_,
+                                    summary.index.seed, summary.index.size, summary.index.sum));
+  return kExitDone;
+}
+
+}  // namespace farcull

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# Asks the libraries that Debian and npm have, textbook tests and farcull's own methods about a
+# labelled suite, and makes the report (docs/libraries.md). It installs what is missing, builds the
+# program and the contestants, runs the study and prints where the tables are.
+#   bash experiments/libraries.sh --quick [DIR]   the small suite, some minutes; VTK and Open3D only
+#                                                 where they are installed, since they are large
+#   bash experiments/libraries.sh [DIR]           the full suite, many hours; a second run goes on
+# DIR (default build/libraries-COMMIT) gets the store and the report. Exit status: that of the
+# study, 1 if a method of farcull that promises missed a pair.
+set -euo pipefail
+
+# shellcheck source-path=SCRIPTDIR source=setup.sh
+source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
+cd "$farcull_root"
+
+quick=()
+if [[ ${1-} == --quick ]]; then
+  quick=(--quick)
+  shift
+fi
+farcull_packages+=(libccd-dev libgts-dev)
+if ! command -v npm >/dev/null; then farcull_packages+=(nodejs npm); fi
+if ((${#quick[@]} == 0)); then farcull_packages+=(libvtk9-dev libopen3d-dev); fi
+farcull_setup
+farcull_build farcull farcull_contestants
+
+# Without them the contestant is named as missing.
+mkdir -p build/contestants
+if [[ ! -e build/contestants/node_modules/three-mesh-bvh ]]; then
+  (cd build/contestants && npm install --no-audit --no-fund three@0.187.0 three-mesh-bvh@0.9.17) ||
+    echo "libraries: npm did not install three-mesh-bvh, which is left out" >&2
+fi
+
+# Each commit has a store of its own, since a store refuses rows of another commit.
+commit=$(build/farcull --version)
+out=${1:-build/libraries-${commit##* }}
+status=0
+build/farcull experiment libraries "${quick[@]}" --resume --out "$out" || status=$?
+build/farcull report "$out" || status=$?
+echo
+column -s, -t "$out/report/tables/libraries.csv" 2>/dev/null || cat "$out/report/tables/libraries.csv"
+echo "libraries: all tables and figures are in $out/report/; $out/report/results.md begins with what was found"
+exit "$status"

@@ -1,0 +1,353 @@
+// The chapter of the study "libraries": what each contestant missed, reported wrongly, refused or
+// crashed at, on a suite of labelled pairs and meshes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "experiments/contestants/score.h"
+#include "experiments/report/chapters/numbers.h"
+#include "experiments/report/chapters/rows.h"
+#include "experiments/system/text_table.h"
+
+namespace farcull {
+namespace {
+
+// "pairs/random" of "small/pairs/random".
+std::string family_of(const Row& row) {
+  return row.point.scene.substr(row.point.scene.find('/') + 1);
+}
+bool of_pairs(const Row& row) { return family_of(row).starts_with("pairs/"); }
+
+Rows rows_of_kind(const StoredStudy& stored, bool pairs) {
+  Rows out;
+  for (const Row* row : measured(stored)) {
+    if (of_pairs(*row) == pairs) out.push_back(row);
+  }
+  return out;
+}
+
+std::uint64_t deaths(const Rows& rows) {
+  return total(rows, "crashed") + total(rows, "hung") + total(rows, "no_memory");
+}
+
+// Per million of what was asked; "0" is none at all.
+std::string per_million(std::uint64_t count, std::uint64_t of) {
+  if (of == 0) return "-";
+  if (count == 0) return "0";
+  return rounded(1e6 * static_cast<double>(count) / static_cast<double>(of));
+}
+
+std::string ns_per_pair(const Rows& rows) {
+  double ms = 0;
+  std::uint64_t answered = 0;
+  for (const Row* row : rows) {
+    ms += time_of(*row, "total").value_or(0);
+    answered += number_of(*row, "asked");
+  }
+  return answered == 0 ? "-" : rounded(1e6 * ms / static_cast<double>(answered));
+}
+
+DataTable overview(const std::string& name, const std::string& what, const Rows& rows, bool pairs) {
+  DataTable out{
+      .name = name,
+      .caption = what +
+                 ": missed and reported wrongly per million, first by what the documentation of "
+                 "each promises, then by closed triangles. Refused, unanswered, crashed (a hang or "
+                 "a lack of memory among them) and answered otherwise the second time are counts.",
+      .columns = columns({"contestant", "library", "promises"},
+                         {"asked", "missed, own", "wrong, own", "missed", "wrong", "refused",
+                          "unanswered", "crashed", "differs", pairs ? "ns" : "ms"})};
+  for (const NamedRows& one : rows_by_contestant(rows)) {
+    const Rows& of = one.rows;
+    const std::uint64_t asked = total(of, "asked"), own = total(of, "own_asked");
+    double ms = 0;
+    for (const Row* row : of) ms += time_of(*row, "total").value_or(0);
+    out.rows.push_back(
+        {of.front()->point.method, text_of(*of.front(), "library"), text_of(*of.front(), "means"),
+         grouped(asked), per_million(total(of, "own_missed"), own),
+         per_million(total(of, "own_wrong"), own), per_million(total(of, "missed"), asked),
+         per_million(total(of, "wrong"), asked), grouped(total(of, "refused")),
+         grouped(total(of, "unanswered")), grouped(deaths(of)), grouped(total(of, "differing")),
+         pairs ? ns_per_pair(of) : rounded(ms)});
+  }
+  return out;
+}
+
+// Families against contestants.
+DataTable families_table(const Rows& rows) {
+  DataTable out{.name = "libraries-families",
+                .caption =
+                    "Missed / wrong / refused / crashed per million pairs of each family, by "
+                    "closed triangles; of meshes the counts",
+                .columns = {text_column("contestant")}};
+  std::vector<std::string> families;
+  for (const Row* row : rows) {
+    const std::string family = family_of(*row);
+    if (std::find(families.begin(), families.end(), family) == families.end())
+      families.push_back(family);
+  }
+  for (const std::string& family : families) out.columns.push_back(text_column(family));
+  for (const NamedRows& one : rows_by_contestant(rows)) {
+    std::vector<std::string>& cells = out.rows.emplace_back();
+    cells.push_back(one.rows.front()->point.method);
+    for (const std::string& family : families) {
+      Rows of;
+      for (const Row* row : one.rows) {
+        if (family_of(*row) == family) of.push_back(row);
+      }
+      const std::uint64_t asked = family.starts_with("pairs/") ? total(of, "asked") : 1'000'000;
+      cells.push_back(of.empty() || total(of, "asked") == 0
+                          ? "-"
+                          : fmt::format("{} / {} / {} / {}",
+                                        per_million(total(of, "missed"), asked),
+                                        per_million(total(of, "wrong"), asked),
+                                        per_million(total(of, "refused"), asked),
+                                        per_million(deaths(of), asked)));
+    }
+  }
+  out.in_text = false;
+  return out;
+}
+
+// Kinds of contact against contestants.
+DataTable kinds_table(const Rows& rows) {
+  const std::vector<std::string> kinds = {"apart",      "touch-vertex",    "touch-edge",
+                                          "touch-face", "crossing",        "coplanar",
+                                          "equal",      "neighbours-meet", "neighbours-apart"};
+  DataTable out{.name = "libraries-kinds",
+                .caption =
+                    "Answers that differ from the label per million pairs of each kind of "
+                    "contact, degenerate triangles among them",
+                .columns = columns({"contestant"}, kinds)};
+  for (const NamedRows& one : rows_by_contestant(rows)) {
+    std::map<std::string, Score> sums;
+    for (const Row* row : one.rows) {
+      for (const Score& score : parse_scores(text_of(*row, "scores"))) add(score, sums[score.kind]);
+    }
+    std::vector<std::string>& cells = out.rows.emplace_back();
+    cells.push_back(one.rows.front()->point.method);
+    for (const std::string& kind : kinds) {
+      const Score& sum = sums[kind];
+      cells.push_back(per_million(sum.missed + sum.wrong, sum.asked));
+    }
+  }
+  return out;
+}
+
+DataTable calls_table(const Rows& rows) {
+  DataTable out{.name = "libraries-calls",
+                .caption =
+                    "How each was called, what its documentation says of exactness, and "
+                    "where it is right to be used",
+                .columns = columns({"contestant", "library", "called", "says", "use"}, {})};
+  for (const NamedRows& one : rows_by_contestant(rows)) {
+    const Row& row = *one.rows.front();
+    out.rows.push_back({row.point.method, text_of(row, "library"), text_of(row, "call"),
+                        text_of(row, "says"), text_of(row, "use")});
+  }
+  return out;
+}
+
+// Of each contestant the example with the fewest characters, for each kind of fault.
+DataTable examples_table(const Rows& rows) {
+  DataTable out{.name = "libraries-examples",
+                .caption =
+                    "The smallest pair of each kind of fault, of pairs of which the "
+                    "documentation promises the answer: the corners of the first triangle, "
+                    "then those of the second",
+                .columns = columns({"contestant", "fault", "family", "coordinates"}, {})};
+  for (const NamedRows& one : rows_by_contestant(rows)) {
+    for (const char* fault : {"missed", "wrong", "death"}) {
+      const Row* best = nullptr;
+      std::string example;
+      for (const Row* row : one.rows) {
+        const std::string text = text_of(*row, std::string("example_") + fault);
+        if (text.empty() || (best != nullptr && text.size() >= example.size())) continue;
+        best = row;
+        example = text;
+      }
+      if (best != nullptr)
+        out.rows.push_back({best->point.method, fault, family_of(*best), example});
+    }
+  }
+  return out;
+}
+
+DataTable all_table(const Rows& rows) {
+  DataTable out = table_of_rows(
+      "libraries-all", "Every contestant on every family and mesh", rows,
+      {scene_column(),
+       {text_column("contestant"), [](const Row& row) { return row.point.method; }},
+       count_column("asked", "asked"),
+       count_column("missed, own", "own_missed"),
+       count_column("wrong, own", "own_wrong"),
+       count_column("missed", "missed"),
+       count_column("wrong", "wrong"),
+       count_column("refused", "refused"),
+       count_column("unanswered", "unanswered"),
+       count_column("crashed", "crashed"),
+       count_column("hung", "hung"),
+       count_column("no memory", "no_memory"),
+       count_column("first missed", "first_missed"),
+       count_column("first wrong", "first_wrong"),
+       count_column("first death", "first_death"),
+       {text_column("first reason"), [](const Row& row) { return text_of(row, "reason"); }}});
+  out.in_text = false;
+  return out;
+}
+
+Figure time_figure(const Rows& rows) {
+  Panel panel{.title = "all families of pairs",
+              .x = logarithmic("time of a pair (ns)"),
+              .y = logarithmic("wrong answers per million", true)};
+  for (const NamedRows& one : rows_by_contestant(rows)) {
+    double ms = 0;
+    for (const Row* row : one.rows) ms += time_of(*row, "total").value_or(0);
+    const auto asked = static_cast<double>(total(one.rows, "asked"));
+    if (asked == 0 || ms == 0) continue;
+    const auto errors = static_cast<double>(total(one.rows, "missed") + total(one.rows, "wrong"));
+    const Row& row = *one.rows.front();
+    panel.series.push_back({.name = row.point.method,
+                            .x = {1e6 * ms / asked},
+                            .y = {1e6 * errors / asked},
+                            .style = Series::Style::points,
+                            .emphasis = promises(row)});
+  }
+  return {.name = "libraries-time",
+          .title = "Wrong answers against time",
+          .caption =
+              "Pairs answered otherwise than the label of closed triangles, over the mean "
+              "time of a question as the contestant's own process measured it. Neighbours "
+              "are asked of those alone that know them.",
+          .panels = {panel}};
+}
+
+// Errors over the parameter of a family, of the contestants that err there.
+Panel parameter_panel(const Rows& rows, const std::string& family, const std::string& label) {
+  Panel out{.title = family, .x = logarithmic(label, true), .y = logarithmic("per million", true)};
+  for (const NamedRows& one : rows_by_contestant(rows)) {
+    std::map<double, Score> by_parameter;
+    for (const Row* row : one.rows) {
+      if (family_of(*row) != "pairs/" + family) continue;
+      for (const Score& score : parse_scores(text_of(*row, "scores")))
+        add(score, by_parameter[std::abs(score.parameter)]);
+    }
+    Series series{.name = one.rows.front()->point.method};
+    bool errs = false;
+    for (const auto& [parameter, sum] : by_parameter) {
+      if (sum.asked == 0) continue;
+      errs = errs || sum.missed + sum.wrong > 0;
+      series.x.push_back(parameter);
+      series.y.push_back(1e6 * static_cast<double>(sum.missed + sum.wrong) /
+                         static_cast<double>(sum.asked));
+    }
+    if (errs) out.series.push_back(std::move(series));
+  }
+  return out;
+}
+
+void add_parameter_figure(const Rows& rows, Chapter& chapter) {
+  Figure out{.name = "libraries-parameter",
+             .title = "Wrong answers against the parameter of a family",
+             .caption =
+                 "Pairs answered otherwise than the label, per million of the pairs with "
+                 "that parameter; contestants without an error in a family are left out."};
+  for (const auto& [family, label] : std::vector<std::pair<const char*, const char*>>{
+           {"slivers", "aspect"}, {"gap-face", "gap"}, {"far-away", "distance from the origin"}}) {
+    Panel panel = parameter_panel(rows, family, label);
+    if (!panel.series.empty()) out.panels.push_back(std::move(panel));
+  }
+  if (!out.panels.empty()) chapter.figures.push_back(std::move(out));
+}
+
+// Our own: a wrong answer of a method that promises breaks the promise.
+void add_ours(const Rows& rows, Chapter& chapter) {
+  for (const NamedRows& one : rows_by_contestant(rows)) {
+    Rows of;
+    for (const Row* row : one.rows) {
+      if (promises(*row)) of.push_back(row);
+    }
+    if (of.empty()) continue;
+    const std::string& name = of.front()->point.method;
+    const std::uint64_t asked = total(of, "asked");
+    for (const char* count : {"missed", "wrong"}) {
+      const std::uint64_t bad = total(of, count);
+      if (bad > 0)
+        chapter.find_broken(
+            fmt::format("{}: {} {}, and it promises none.", name, of_all(bad, asked), count));
+    }
+    if (total(of, "missed") + total(of, "wrong") + deaths(of) == 0)
+      chapter.find(fmt::format("{} missed none and reported none wrongly of {} pairs.", name,
+                               grouped(asked)));
+  }
+}
+
+// The contestants that gave no wrong answer by their own words, and the worst of the others.
+void add_others(const Rows& rows, Chapter& chapter) {
+  std::vector<std::string> right, dead;
+  std::vector<std::pair<double, std::string>> worst;
+  for (const NamedRows& one : rows_by_contestant(rows)) {
+    const Row& row = *one.rows.front();
+    if (promises(row) || total(one.rows, "own_asked") == 0) continue;
+    const std::uint64_t bad = total(one.rows, "own_missed") + total(one.rows, "own_wrong"),
+                        own = total(one.rows, "own_asked");
+    if (bad == 0) {
+      right.push_back(row.point.method);
+    } else {
+      worst.emplace_back(static_cast<double>(bad) / static_cast<double>(own),
+                         fmt::format("{} ({})", row.point.method, of_all(bad, own)));
+    }
+    if (deaths(one.rows) > 0)
+      dead.push_back(fmt::format("{} ({})", row.point.method, grouped(deaths(one.rows))));
+  }
+  if (!right.empty())
+    chapter.find("By their own documentation these gave no wrong answer: " + listed(right) + ".");
+  std::stable_sort(worst.begin(), worst.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::string> names;
+  for (const auto& [rate, text] : worst) names.push_back(text);
+  if (!names.empty())
+    chapter.find("Wrong answers about pairs of which their documentation promises the answer: " +
+                 listed(names) + ".");
+  if (!dead.empty())
+    chapter.find(
+        "Questions at which the process crashed, hung or ran out of memory: " + listed(dead) + ".");
+}
+
+}  // namespace
+
+Chapter libraries_chapter(const StoredStudy& stored) {
+  Chapter out = begin_chapter(stored);
+  const Rows all = measured(stored), pairs = rows_of_kind(stored, true),
+             meshes = rows_of_kind(stored, false);
+  add_ours(all, out);
+  add_others(pairs, out);
+  out.limits = {
+      "The families are made to be hard. A rate here is no rate on the scenes of a user: the table "
+      "says which questions a contestant gets wrong, not how often they come.",
+      "Where the documentation of a library does not say whether touching counts, it is measured "
+      "first by the pairs that cross or are apart. Where it does not take degenerate triangles, "
+      "they are left out of that measure.",
+      "The time of a pair includes what the call needs, such as the making of a mesh of one "
+      "triangle; a library made for meshes looks slow on pairs."};
+  add_gaps(stored, out);
+  if (all.empty()) return out;
+  if (!pairs.empty()) {
+    out.tables.push_back(overview("libraries", "Pairs of triangles", pairs, true));
+    out.tables.push_back(kinds_table(pairs));
+    out.tables.push_back(examples_table(pairs));
+    const Figure time = time_figure(pairs);
+    if (!time.panels.front().series.empty()) out.figures.push_back(time);
+    add_parameter_figure(pairs, out);
+  }
+  if (!meshes.empty())
+    out.tables.push_back(overview("libraries-meshes", "Colliding pairs of meshes", meshes, false));
+  out.tables.push_back(calls_table(all));
+  out.tables.push_back(families_table(all));
+  out.tables.push_back(all_table(all));
+  return out;
+}
+
+}  // namespace farcull

@@ -1,0 +1,226 @@
+// The study "libraries": what other libraries, textbook tests and our own methods miss or report
+// wrongly on a labelled suite. Each is asked in processes of its own (contestants/runner.h).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <variant>
+
+#include "core/base/error.h"
+#include "experiments/contestants/known.h"
+#include "experiments/contestants/minimize.h"
+#include "experiments/contestants/score.h"
+#include "experiments/studies/study.h"
+#include "experiments/suite/pair_makers.h"
+#include "experiments/suite/writer.h"
+
+namespace farcull {
+namespace {
+
+constexpr const char* kVariable = "FARCULL_SUITE";
+
+// The folder of a suite of somebody else; empty: the suite is made.
+std::string given_suite() {
+  const char* const folder = std::getenv(kVariable);
+  return folder == nullptr ? "" : folder;
+}
+
+SuiteSettings settings_of(bool small, std::uint64_t seed) {
+  return {.size = small ? SuiteSize::small : SuiteSize::full, .seed = seed};
+}
+
+std::vector<std::string> family_names(const std::string& given) {
+  std::vector<std::string> out;
+  if (given.empty()) {
+    for (const PairFamily& family : pair_families()) out.push_back(family.name);
+    return out;
+  }
+  for (const std::string& path : read_suite(given).pair_files())
+    out.push_back(std::filesystem::path(path).stem().string());
+  return out;
+}
+
+std::vector<std::string> names_of_meshes(const std::string& given, bool small) {
+  if (given.empty()) return mesh_names(small ? SuiteSize::small : SuiteSize::full);
+  std::vector<std::string> out;
+  for (const std::string& path : read_suite(given).mesh_folders())
+    out.push_back(std::filesystem::path(path).filename().string());
+  return out;
+}
+
+// The contestants of one family after the other, so that it is made once.
+std::vector<Point> grid(const GridChoice& choice) {
+  const std::string given = given_suite();
+  std::vector<Point> out;
+  const auto add = [&](const std::string& name, bool mesh) {
+    for (const KnownContestant& contestant : known_contestants()) {
+      if (mesh ? contestant.meshes : contestant.pairs)
+        out.emplace_back(LibraryPoint{contestant.name, name, mesh, choice.quick, choice.seed});
+    }
+  };
+  for (const std::string& family : family_names(given)) add(family, false);
+  for (const std::string& mesh : names_of_meshes(given, choice.quick)) add(mesh, true);
+  return out;
+}
+
+// The family that was asked for last.
+const SuitePairs& pairs_of(const LibraryPoint& point) {
+  static std::pair<std::string, SuitePairs> last;
+  const std::string given = given_suite();
+  const std::string name = fmt::format("{} {} {} {}", given, point.family, point.small, point.seed);
+  if (last.first != name) {
+    SuitePairs pairs = given.empty()
+                           ? make_pairs(point.family, settings_of(point.small, point.seed))
+                           : read_pairs(given + "/pairs/" + point.family + ".txt");
+    last = {name, std::move(pairs)};
+  }
+  return last.second;
+}
+
+// A mesh and the folder with its files, which is removed with it where it was made.
+struct MeshFiles {
+  explicit MeshFiles(const LibraryPoint& point) {
+    const std::string given = given_suite();
+    if (!given.empty()) {
+      folder = given + "/meshes/" + point.family;
+      mesh = read_mesh(folder);
+      return;
+    }
+    mesh = make_mesh(point.family, settings_of(point.small, point.seed));
+    std::string pattern = (std::filesystem::temp_directory_path() / "farcull-mesh-XXXXXX").string();
+    if (::mkdtemp(pattern.data()) == nullptr)
+      throw Error(pattern, "cannot be made", "set TMPDIR to a folder that can be written");
+    folder = pattern;
+    made = true;
+    for (const SuiteText& text : mesh_texts(mesh)) {
+      std::ofstream file(folder + "/" + text.name, std::ios::binary);
+      file << text.text;
+      if (!file.flush()) throw Error(folder, "cannot be written", "free space in TMPDIR");
+    }
+  }
+  ~MeshFiles() {
+    std::error_code error;
+    if (made) std::filesystem::remove_all(folder, error);
+  }
+  MeshFiles(const MeshFiles&) = delete;
+  MeshFiles& operator=(const MeshFiles&) = delete;
+
+  SuiteMesh mesh;
+  std::string folder;
+  bool made = false;
+};
+
+LibraryCounts counts_of(const ContestantCard& card, const std::vector<Score>& scores) {
+  LibraryCounts out;
+  for (const Score& score : scores) {
+    out.asked += score.asked;
+    out.missed += score.missed;
+    out.wrong += score.wrong;
+    out.own_asked += score.own_asked;
+    out.own_missed += score.own_missed;
+    out.own_wrong += score.own_wrong;
+    out.refused += score.refused;
+    out.unanswered += score.unanswered + score.not_asked;
+    out.crashed += score.crashed;
+    out.hung += score.hung;
+    out.no_memory += score.no_memory;
+    out.twice += score.twice;
+    out.differing += score.differing;
+    if (out.reason.empty()) out.reason = score.reason;
+  }
+  out.promises = card.promises;
+  out.library = card.library;
+  out.means = card.means == Means::closed ? "closed" : "crossing";
+  out.call = card.call;
+  out.says = card.says;
+  out.use = card.use;
+  out.scores = scores_text(scores);
+  return out;
+}
+
+bool missed(const SuitePair& pair, ContestOutcome outcome) {
+  return outcome == ContestOutcome::apart && collides(pair.kind);
+}
+bool wrong(const SuitePair& pair, ContestOutcome outcome) {
+  return outcome == ContestOutcome::meets && !collides(pair.kind);
+}
+
+void add_firsts(const std::vector<SuitePair>& pairs, const std::vector<ContestAnswer>& answers,
+                LibraryCounts& counts) {
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto note = [&](std::optional<std::uint64_t>& first) {
+      if (!first) first = pairs[i].id;
+    };
+    const ContestOutcome outcome = answers[i].outcome;
+    if (is_death(outcome)) note(counts.first_death);
+    if (pairs[i].kind == SuiteKind::unlabelled) continue;
+    if (missed(pairs[i], outcome)) note(counts.first_missed);
+    if (wrong(pairs[i], outcome)) note(counts.first_wrong);
+  }
+}
+
+// The first fault of each kind about a pair of which the documentation promises the answer, made
+// small.
+void add_examples(const Invited& invited, const ContestLimits& limits,
+                  const std::vector<SuitePair>& pairs, const std::vector<ContestAnswer>& answers,
+                  LibraryCounts& counts) {
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!promised(invited.card, pairs[i])) continue;
+    const ContestOutcome outcome = answers[i].outcome;
+    std::string* const to = is_death(outcome)           ? &counts.example_death
+                            : missed(pairs[i], outcome) ? &counts.example_missed
+                            : wrong(pairs[i], outcome)  ? &counts.example_wrong
+                                                        : nullptr;
+    if (to == nullptr || !to->empty()) continue;
+    *to = coordinates_text(minimized(invited, {pairs[i], outcome}, limits));
+  }
+}
+
+PointResult ask_about_pairs(const LibraryPoint& point, const Invited& invited,
+                            const ContestLimits& limits) {
+  std::vector<SuitePair> asked;
+  for (const SuitePair& pair : pairs_of(point).pairs) {
+    if (takes(invited.card, pair)) asked.push_back(pair);
+  }
+  const PairsAnswer answer = ask_pairs(invited, asked, limits);
+  LibraryCounts counts = counts_of(invited.card, score_pairs(invited.card, asked, answer));
+  counts.neighbours_left_out = pairs_of(point).pairs.size() - asked.size();
+  double ns = 0;
+  for (const ContestAnswer& one : answer.answers) ns += one.ns;
+  add_firsts(asked, answer.answers, counts);
+  add_examples(invited, limits, asked, answer.answers, counts);
+  return {.counts = counts, .times = {.total = ns / 1e6}, .device = "process"};
+}
+
+PointResult measure(const Point& at, Lab&) {
+  const auto& point = std::get<LibraryPoint>(at);
+  const Invitation invitation = invite_known(known_contestant(point.contestant));
+  if (!invitation.invited) return {.device = "none", .left_out = invitation.missing};
+  const ContestLimits limits = point.small
+                                   ? ContestLimits{.answer_s = 5, .start_s = 30, .most_deaths = 20}
+                                   : ContestLimits{.answer_s = 30, .start_s = 300};
+  const Invited& invited = *invitation.invited;
+  if (!point.mesh) return ask_about_pairs(point, invited, limits);
+  const MeshFiles files(point);
+  const MeshAnswer answer = ask_mesh(invited, files.mesh, files.folder, limits);
+  return {.counts = counts_of(invited.card, {score_mesh(invited.card, files.mesh, answer)}),
+          .times = {.total = answer.ns / 1e6},
+          .device = "process"};
+}
+
+}  // namespace
+
+Study libraries_study() {
+  return {.name = "libraries",
+          .title = "What other libraries miss",
+          .question =
+              "Which pairs of a labelled suite do libraries, textbook tests and the methods "
+              "of farcull miss, report wrongly, or refuse, and at which do they crash?",
+          .grid = grid,
+          .measure = measure,
+          .campaign = true};
+}
+
+}  // namespace farcull

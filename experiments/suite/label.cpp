@@ -1,0 +1,218 @@
+// The kind follows from the common points of two triangles. Their intersection is convex, and each
+// corner of it is a corner of a triangle, a point where an edge crosses the other plane, or a point
+// where two edges cross. All of these are found as rational numbers, so nothing is rounded.
+#include "experiments/suite/label.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "verify/certificate/certificate.h"
+#include "verify/certificate/integer_pair.h"
+#include "verify/contact.h"
+#include "verify/exact.h"
+#include "verify/rational.h"
+
+namespace farcull {
+namespace {
+
+using rational::between;
+using rational::dot;
+using rational::minus;
+using rational::Q;
+using rational::Q3;
+
+using Triangle = std::array<Q3, 3>;
+
+constexpr const char* kReport = "one of the oracles is wrong; report the pair";
+
+Q3 cross(const Q3& u, const Q3& v) {
+  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+}
+
+bool is_zero(const Q3& u) { return sgn(u[0]) == 0 && sgn(u[1]) == 0 && sgn(u[2]) == 0; }
+
+Q3 edge(const Triangle& t, int i) { return minus(t[(i + 1) % 3], t[i]); }
+
+Q3 normal(const Triangle& t) { return cross(edge(t, 0), edge(t, 1)); }
+
+/// Whether p is on one of the three closed edges.
+bool on_edge(const Q3& p, const Triangle& t) {
+  for (int i = 0; i < 3; ++i) {
+    const Q3 e = edge(t, i);
+    const Q3 w = minus(p, t[i]);
+    if (!is_zero(cross(e, w))) continue;
+    const Q along = dot(e, w);
+    // An edge without length holds its end alone.
+    if (is_zero(e) ? is_zero(w) : along >= 0 && along <= dot(e, e)) return true;
+  }
+  return false;
+}
+
+/// Whether p is in the closed triangle, which may be a segment or a point.
+bool lies_in(const Q3& p, const Triangle& t, const Q3& n) {
+  if (is_zero(n)) return on_edge(p, t);
+  if (sgn(dot(n, minus(p, t[0]))) != 0) return false;
+  for (int i = 0; i < 3; ++i) {
+    if (sgn(dot(n, cross(edge(t, i), minus(p, t[i])))) < 0) return false;
+  }
+  return true;
+}
+
+/// The corners of the intersection of two triangles, each once, and perhaps more of its points.
+class CommonPoints {
+ public:
+  CommonPoints(const Triangle& a, const Triangle& b)
+      : a_(a), b_(b), normal_a_(normal(a)), normal_b_(normal(b)) {
+    for (const Q3& p : a) add(p);
+    for (const Q3& p : b) add(p);
+    add_through_plane(a, b, normal_b_);
+    add_through_plane(b, a, normal_a_);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) add_of_edges(i, j);
+    }
+  }
+
+  const std::vector<Q3>& points() const { return points_; }
+  /// Their mean: a point of the relative interior of the intersection.
+  Q3 inner() const {
+    Q3 out;
+    for (const Q3& p : points_) {
+      for (int k = 0; k < 3; ++k) out[k] += p[k];
+    }
+    for (Q& x : out) x /= static_cast<unsigned long>(points_.size());
+    return out;
+  }
+  /// Whether both are the same set: each holds the corners of the other.
+  bool all_of_both() const {
+    return std::all_of(a_.begin(), a_.end(), [&](const Q3& p) { return has(p); }) &&
+           std::all_of(b_.begin(), b_.end(), [&](const Q3& p) { return has(p); });
+  }
+  /// Whether all six corners are in one plane. Precondition: there are two common points, so two
+  /// segments have a line in common.
+  bool coplanar() const {
+    const Q3& n = is_zero(normal_a_) ? normal_b_ : normal_a_;
+    const auto in_plane = [&](const Q3& p) { return sgn(dot(n, minus(p, a_[0]))) == 0; };
+    return std::all_of(a_.begin(), a_.end(), in_plane) &&
+           std::all_of(b_.begin(), b_.end(), in_plane);
+  }
+
+ private:
+  void add(const Q3& p) {
+    if (!lies_in(p, a_, normal_a_) || !lies_in(p, b_, normal_b_)) return;
+    if (!has(p)) points_.push_back(p);
+  }
+  bool has(const Q3& p) const {
+    return std::find(points_.begin(), points_.end(), p) != points_.end();
+  }
+  /// Where edges of s go from one side of the plane of t to the other.
+  void add_through_plane(const Triangle& s, const Triangle& t, const Q3& n) {
+    if (is_zero(n)) return;
+    for (int i = 0; i < 3; ++i) {
+      const Q from = dot(n, minus(s[i], t[0]));
+      const Q to = dot(n, minus(s[(i + 1) % 3], t[0]));
+      if (sgn(from) * sgn(to) < 0) add(between(s[i], s[(i + 1) % 3], from / (from - to)));
+    }
+  }
+  /// Where two edges that are not parallel meet.
+  void add_of_edges(int i, int j) {
+    const Q3 u = edge(a_, i);
+    const Q3 v = edge(b_, j);
+    const Q3 n = cross(u, v);
+    const Q3 w = minus(b_[j], a_[i]);
+    if (is_zero(n) || sgn(dot(w, n)) != 0) return;
+    const Q along = dot(cross(w, v), n) / dot(n, n);
+    if (along >= 0 && along <= 1) add(between(a_[i], a_[(i + 1) % 3], along));
+  }
+
+  const Triangle& a_;
+  const Triangle& b_;
+  Q3 normal_a_, normal_b_;
+  std::vector<Q3> points_;
+};
+
+Triangle exact(const std::array<Vec3, 3>& t) {
+  return {rational::exact(t[0]), rational::exact(t[1]), rational::exact(t[2])};
+}
+
+/// Whether p is a corner of the set of points: of a segment with three corners the inner one is
+/// none.
+bool is_corner(const Q3& p, const Triangle& t) {
+  if (std::find(t.begin(), t.end(), p) == t.end()) return false;
+  if (!is_zero(normal(t))) return true;
+  for (int i = 0; i < 3; ++i) {
+    const Q along = dot(edge(t, i), minus(p, t[i]));
+    if (along > 0 && along < dot(edge(t, i), edge(t, i))) return false;
+  }
+  return true;
+}
+
+SuiteKind kind_of_meeting(const std::array<Vec3, 3>& first, const std::array<Vec3, 3>& second,
+                          bool& found) {
+  const Triangle a = exact(first);
+  const Triangle b = exact(second);
+  const CommonPoints common(a, b);
+  found = !common.points().empty();
+  if (!found) return SuiteKind::apart;
+  if (common.all_of_both()) return SuiteKind::equal;
+  const bool one_point = common.points().size() == 1;
+  const Q3 p = common.inner();
+  if (one_point && (is_corner(p, a) || is_corner(p, b))) return SuiteKind::touch_vertex;
+  if (one_point && on_edge(p, a) && on_edge(p, b)) return SuiteKind::touch_edge;
+  if (!one_point && common.coplanar()) return SuiteKind::coplanar;
+  // Of a triangle the relative interior is what its edges leave. A segment is all edge, and comes
+  // here only where it goes through the inside of a triangle.
+  const bool inside = one_point || (!on_edge(p, a) && !on_edge(p, b));
+  return inside ? SuiteKind::crossing : SuiteKind::touch_face;
+}
+
+void require_equal(bool one, bool other, const char* oracles, const std::string& where, long line) {
+  if (one != other) throw Error(where, fmt::format("{} disagree", oracles), kReport, line);
+}
+
+}  // namespace
+
+SuiteKind decide_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                      const std::string& where, long line) {
+  const bool meets = intersects(a, b);
+  IntegerPair integers(a, b);
+  require_equal(meets, !integers.separating_direction(),
+                "CGAL's predicates and the directions in integers", where, line);
+  require_equal(meets, integers.has_common_point(), "CGAL's predicates and the points in integers",
+                where, line);
+  if (!meets) return SuiteKind::apart;
+  bool found = false;
+  const SuiteKind kind = kind_of_meeting(a, b, found);
+  require_equal(meets, found, "CGAL's predicates and the points in rational numbers", where, line);
+  require_equal(contact_of(a, b) == Contact::penetrating, kind == SuiteKind::crossing,
+                "CGAL's predicates and rational numbers, about whether the triangles cross,", where,
+                line);
+  return kind;
+}
+
+SuiteKind decide_neighbours(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                            const std::string& where, long line) {
+  const bool meets = intersects_beyond_shared(a, b);
+  require_equal(meets, IntegerPair(a, b).meets_beyond_shared(),
+                "CGAL's predicates and integers, about neighbours,", where, line);
+  return meets ? SuiteKind::neighbours_meet : SuiteKind::neighbours_apart;
+}
+
+SuiteKind decide(const SuitePair& pair, const std::string& where) {
+  return pair.shared.empty() ? decide_kind(pair.a, pair.b, where, pair.line)
+                             : decide_neighbours(pair.a, pair.b, where, pair.line);
+}
+
+std::vector<SharedCorner> equal_corners(const std::array<Vec3, 3>& a,
+                                        const std::array<Vec3, 3>& b) {
+  std::vector<SharedCorner> out;
+  for (std::uint8_t i = 0; i < 3; ++i) {
+    for (std::uint8_t j = 0; j < 3; ++j) {
+      if (a[i] == b[j]) out.push_back({i, j});
+    }
+  }
+  return out;
+}
+
+}  // namespace farcull

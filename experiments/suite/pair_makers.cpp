@@ -1,0 +1,62 @@
+// Each pair is drawn with a seed of its own. So any part of a suite can be made alone, and threads
+// change nothing.
+#include "experiments/suite/pair_makers.h"
+
+#include <iterator>
+#include <utility>
+
+#include "experiments/suite/label.h"
+
+namespace farcull {
+namespace {
+
+void shuffle(SuiteDraws& draws, std::array<Vec3, 3>& t) {
+  std::swap(t[0], t[draws.below(3)]);
+  std::swap(t[1], t[1 + draws.below(2)]);
+}
+
+/// The finalizer of splitmix64 (Steele, Lea, Flood: Fast splittable pseudorandom number generators,
+/// 2014): every bit of the result depends on every bit of x.
+std::uint64_t mixed(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+  return x ^ (x >> 31);
+}
+
+}  // namespace
+
+std::uint64_t seed_of_item(std::uint64_t seed, std::string_view name, std::uint64_t number) {
+  std::uint64_t out = mixed(seed + 0x9e3779b97f4a7c15);
+  for (const char c : name) out = mixed(out + static_cast<unsigned char>(c));
+  return mixed(out + number);
+}
+
+const std::vector<PairFamily>& pair_families() {
+  static const std::vector<PairFamily> families = [] {
+    std::vector<PairFamily> out;
+    for (auto* part : {&shape_families, &contact_families, &distance_families}) {
+      std::vector<PairFamily> more = part();
+      out.insert(out.end(), std::make_move_iterator(more.begin()),
+                 std::make_move_iterator(more.end()));
+    }
+    return out;
+  }();
+  return families;
+}
+
+SuitePair make_suite_pair(const PairFamily& family, std::uint64_t seed, std::uint64_t id) {
+  SuiteDraws draws(seed_of_item(seed, family.name, id));
+  SuitePair out;
+  out.id = id;
+  out.parameter = family.values[id % family.values.size()];
+  MadePair made = family.make(draws, out.parameter);
+  shuffle(draws, made.a);
+  shuffle(draws, made.b);
+  if (draws.chance(2)) std::swap(made.a, made.b);
+  out.a = made.a;
+  out.b = made.b;
+  if (made.neighbours) out.shared = equal_corners(out.a, out.b);
+  return out;
+}
+
+}  // namespace farcull

@@ -1,0 +1,127 @@
+// Reads a suite of labelled triangle pairs and meshes. docs/suite.md has the format; the writer is
+// experiments/suite/writer.h. What is read is checked as far as it can be without deciding whether
+// triangles meet: experiments/suite/check.h decides that.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+/// How two closed triangles meet. docs/suite.md defines each; of a pair exactly one is true.
+/// unlabelled stands in the lists of others, whose answers nobody has decided.
+enum class SuiteKind : std::uint8_t {
+  apart,
+  touch_vertex,
+  touch_edge,
+  touch_face,
+  crossing,
+  coplanar,
+  equal,
+  neighbours_meet,   // of triangles that share vertices: they meet in more than these and the edge
+  neighbours_apart,  // between them; or they do not
+  unlabelled
+};
+
+/// As in a list of pairs: "touch-vertex"; "?" for unlabelled.
+std::string to_string(SuiteKind kind);
+/// The inverse; empty where no kind is called so.
+std::optional<SuiteKind> parse_suite_kind(std::string_view name);
+/// Whether a pair of this kind collides. Precondition: not unlabelled.
+bool collides(SuiteKind kind);
+
+/// Corner `a` (0 to 2) of the first triangle and corner `b` of the second are one vertex of a mesh.
+struct SharedCorner {
+  std::uint8_t a = 0;
+  std::uint8_t b = 0;
+  auto operator<=>(const SharedCorner&) const = default;
+};
+
+struct SuitePair {
+  std::uint64_t id = 0;  // counts from 0 in its file
+  long line = 0;         // of the file it was read from, from 1; 0 where it was made
+  double parameter = 0;  // the family's number; 0 where it has none
+  /// Ascending, each once; empty for triangles that are not neighbours in a mesh.
+  std::vector<SharedCorner> shared;
+  SuiteKind kind = SuiteKind::unlabelled;
+  std::array<Vec3, 3> a, b;  // finite corners; either triangle may be degenerate
+};
+
+/// One file of pairs.
+struct SuitePairs {
+  std::string family;
+  std::vector<SuitePair> pairs;
+};
+
+/// Reads a file of pairs. Throws Error naming the file, the line and a remedy where the file cannot
+/// be read, does not end with a newline, or has another form: the first line, IDs that do not count
+/// from 0, a word that is no number or no kind, a shared corner whose coordinates differ, a kind of
+/// neighbours without shared corners or the contrary, fewer or more words.
+SuitePairs read_pairs(const std::string& path);
+/// The same of bytes in memory; `name` stands for the path in errors.
+SuitePairs parse_pairs(std::string_view text, const std::string& name);
+
+/// A colliding pair of a mesh.
+struct SuiteMeshPair {
+  TrianglePair pair;         // of SuiteMesh::scene
+  std::uint32_t shared = 0;  // vertices that they share by index, 0 to 3; 0 in different objects
+  auto operator<=>(const SuiteMeshPair&) const = default;
+};
+
+struct SuiteMesh {
+  std::string name;    // of the folder
+  std::string family;  //
+  double parameter = 0;
+  bool self = false;     // every object is tested against itself too
+  Scene scene;           // objects "0", "1", ... in order; each is `self` where the mesh is
+  bool labelled = true;  // false: there is no pairs.csv, and `pairs` is empty
+  std::vector<SuiteMeshPair> pairs;  // all that collide, ascending, each once
+};
+
+/// Reads a folder of a mesh. Throws Error naming the file, the line and a remedy where a file is
+/// missing or malformed, a face is no triangle, a pair names no triangle of the mesh, does not
+/// count (one object, and self is no), is out of order, or where `shared` is not what the indices
+/// say.
+SuiteMesh read_mesh(const std::string& folder);
+
+/// How many vertices two triangles of one object share: indices that stand in both, each once.
+std::uint32_t shared_vertices(const Scene& scene, const TrianglePair& pair);
+
+/// The folder of a suite, by its suite.txt.
+struct SuiteIndex {
+  struct File {
+    std::string path;  // relative to the folder
+    std::uint64_t bytes = 0;
+    std::string sha256;       // 64 lower-case hexadecimal digits
+    std::uint64_t items = 0;  // pairs, or the triangles of an OBJ; 0 for mesh.txt
+    bool operator==(const File&) const = default;
+  };
+
+  std::uint64_t seed = 0;
+  std::string size;         // small or full
+  std::string licence;      //
+  std::vector<File> files;  // by path, ascending
+  std::string sum;          // SHA-256 of the lines before the last: it names the whole suite
+
+  std::vector<std::string> pair_files() const;    // their paths, as in "pairs/random.txt"
+  std::vector<std::string> mesh_folders() const;  // as in "meshes/cloth-1"
+};
+
+/// Reads FOLDER/suite.txt and compares its sum. Throws Error naming the file, the line and a
+/// remedy. The files that it names are not looked at: check_files() does that.
+SuiteIndex read_suite(const std::string& folder);
+/// The same of bytes in memory; `name` stands for the path in errors.
+SuiteIndex parse_suite(std::string_view text, const std::string& name);
+
+/// Throws Error naming the first file of the suite that is missing, has another length or another
+/// sum, and the first one below pairs/ and meshes/ that the suite does not name.
+void check_files(const std::string& folder, const SuiteIndex& index);
+
+}  // namespace farcull

@@ -1,0 +1,74 @@
+// Makes a suite and writes it as files; docs/suite.md has the format. The bytes depend on the size
+// and the seed alone, neither on the machine nor on its number of cores.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "experiments/suite/reader.h"
+
+namespace farcull {
+
+enum class SuiteSize : std::uint8_t { small, full };
+
+struct SuiteSettings {
+  SuiteSize size = SuiteSize::small;
+  std::uint64_t seed = 1;
+};
+
+/// Pairs of one family, or a mesh: how many there are of each kind.
+struct SuiteCounts {
+  std::string name;                       // of the family, or of the mesh
+  std::uint64_t triangles = 0;            // of a mesh; 0 for a family of pairs
+  std::uint64_t pairs = 0;                // of a family; of a mesh those that collide
+  std::uint64_t colliding = 0;            // of a mesh the same as `pairs`
+  std::uint64_t neighbours = 0;           // of the colliding pairs of a mesh
+  std::array<std::uint64_t, 10> kinds{};  // by SuiteKind; of a mesh all 0
+};
+
+/// What was written or checked.
+struct SuiteSummary {
+  SuiteIndex index;
+  std::vector<SuiteCounts> families;
+  std::vector<SuiteCounts> meshes;
+};
+
+/// The counts of a family and of a mesh.
+SuiteCounts counts_of(const SuitePairs& pairs);
+SuiteCounts counts_of(const SuiteMesh& mesh);
+
+/// The pairs of a family of this suite, decided, in the order of their IDs. Throws Error naming the
+/// family and the pair where two oracles disagree, std::logic_error where there is no such family.
+SuitePairs make_pairs(const std::string& family, const SuiteSettings& settings);
+/// The names of the meshes of this suite, such as "cloth-1", ascending.
+std::vector<std::string> mesh_names(SuiteSize size);
+/// A mesh of this suite with its colliding pairs. Throws as make_pairs().
+SuiteMesh make_mesh(const std::string& name, const SuiteSettings& settings);
+
+/// The text of a file of pairs, and of the files of a mesh by their names in its folder, ascending.
+std::string pairs_text(const SuitePairs& pairs);
+struct SuiteText {
+  std::string name;
+  std::string text;
+  std::uint64_t items = 0;  // as SuiteIndex::File::items
+};
+std::vector<SuiteText> mesh_texts(const SuiteMesh& mesh);
+/// The text of suite.txt; `index.sum` is not used.
+std::string index_text(const SuiteIndex& index);
+
+/// Makes the suite in `folder`, which must not exist or be empty. suite.txt comes last, so a folder
+/// without it is not whole. Throws Error naming a path that the system refuses, and as
+/// make_pairs().
+SuiteSummary write_suite(const std::string& folder, const SuiteSettings& settings,
+                         const Progress& progress = {});
+
+/// Reads a suite again, compares all sums and decides every label anew. Throws Error naming the
+/// file, and the line where there is one, at the first thing that is wrong: what the readers
+/// refuse, a wrong kind, equal corners that are not called shared, a list of colliding pairs that
+/// is not the one of its mesh. Unlabelled pairs and meshes count as right.
+SuiteSummary check_suite(const std::string& folder, const Progress& progress = {});
+
+}  // namespace farcull

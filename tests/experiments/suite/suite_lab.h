@@ -1,0 +1,85 @@
+// A folder of its own for a test, and a suite of a few pairs and one mesh to corrupt.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "experiments/suite/writer.h"
+#include "tests/experiments/system/error_of.h"
+#include "verify/certificate/sha256.h"
+
+namespace farcull::lab {
+
+/// A folder of the running test's own, removed with the object.
+class TestFolder {
+ public:
+  std::string path() const { return folder_.folder(); }
+  std::string at(const std::string& name) const { return folder_.path(name); }
+  std::string read(const std::string& name) const {
+    std::ifstream file(at(name));
+    std::ostringstream out;
+    out << file.rdbuf();
+    return out.str();
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories(std::filesystem::path(at(name)).parent_path());
+    folder_.write(name, text);
+  }
+  /// Replaces the first `old` of a file, which has to be there.
+  void replace(const std::string& name, const std::string& old, const std::string& by) const {
+    std::string text = read(name);
+    const std::size_t place = text.find(old);
+    ASSERT_NE(place, std::string::npos) << name << " has no '" << old << "'";
+    write(name, text.replace(place, old.size(), by));
+  }
+
+ private:
+  ScratchFolder folder_;
+};
+
+/// A file of three pairs that is right.
+inline std::string good_pairs() {
+  return "farcull-pairs 1 few\n"
+         "# a comment\n"
+         "0 0.5 - crossing 0x0p+0 0x0p+0 0x0p+0 0x1p+2 0x0p+0 0x0p+0 0x0p+0 0x1p+2 0x0p+0 "
+         "0x1p+0 0x1p+0 -0x1p+0 0x1p+0 0x1p+0 0x1p+0 0x1.8p+1 0x1.8p+1 0x0p+0\n"
+         "1 1e-9 - apart 0x0p+0 0x0p+0 0x0p+0 0x1p+2 0x0p+0 0x0p+0 0x0p+0 0x1p+2 0x0p+0 "
+         "0x1p+0 0x1p+0 0x1p-52 0x1p+0 0x1p+0 0x1p+0 0x1.8p+1 0x1.8p+1 0x1p+0\n"
+         "2 0 0-0,1-1 neighbours-apart 0x0p+0 0x0p+0 0x0p+0 0x1p+2 0x0p+0 0x0p+0 0x0p+0 0x1p+2 "
+         "0x0p+0 0x0p+0 0x0p+0 0x0p+0 0x1p+2 0x0p+0 0x0p+0 0x0p+0 0x1p+0 0x1p-40\n";
+}
+
+/// suite.txt for the files that are there now; `listed` is what it says of the mesh's pairs.
+inline void write_index(const TestFolder& folder, int listed = 1) {
+  SuiteIndex index;
+  index.seed = 1;
+  index.size = "small";
+  index.licence = "CC0-1.0";
+  for (const auto& [name, items] : {std::pair{"meshes/two-1/0.obj", 2},
+                                    {"meshes/two-1/mesh.txt", 0},
+                                    {"meshes/two-1/pairs.csv", listed},
+                                    {"pairs/few.txt", 3}}) {
+    const std::string text = folder.read(name);
+    Sha256 sum;
+    sum.add(text);
+    index.files.push_back({name, text.size(), sum.digest(), static_cast<std::uint64_t>(items)});
+  }
+  folder.write("suite.txt", index_text(index));
+}
+
+/// A suite that is right: three pairs, and a mesh of two triangles that lie on each other.
+inline void write_few(const TestFolder& folder) {
+  folder.write("pairs/few.txt", good_pairs());
+  folder.write("meshes/two-1/0.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 0\nf 1 2 3\nf 1 2 4\n");
+  folder.write("meshes/two-1/mesh.txt", "self yes\nparameter 0\nfamily two\n");
+  folder.write("meshes/two-1/pairs.csv",
+               "object_a,triangle_a,object_b,triangle_b,shared\n0,0,0,1,2\n");
+  write_index(folder);
+}
+
+}  // namespace farcull::lab

@@ -1,0 +1,184 @@
+// The small suite as a whole: its checksum, its kinds, and our own answers to all of it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+
+#include "experiments/library/farcull.h"
+#include "experiments/method/run.h"
+#include "experiments/suite/label.h"
+#include "experiments/suite/mesh_makers.h"
+#include "experiments/suite/pair_makers.h"
+#include "tests/experiments/suite/suite_lab.h"
+
+namespace farcull {
+namespace {
+
+// The small suite of seed 1, as it was published. Where this changes, so do the answers of everyone
+// who measures with it.
+constexpr const char* kSmallSuite =
+    "87a146da64ae0cd87e515eeae708caeed5617169260c606bc0cb350281b1aa36";
+
+TEST(Suite, TheSmallOneHasItsChecksumAndEveryLabelIsRight) {
+  const lab::TestFolder folder;
+  const SuiteSummary written = write_suite(folder.path(), {});
+  EXPECT_EQ(written.index.sum, kSmallSuite);
+  EXPECT_EQ(written.meshes.size(), 12u);
+  const SuiteSummary checked = check_suite(folder.path());
+  EXPECT_EQ(checked.index.sum, kSmallSuite);
+  std::uint64_t pairs = 0;
+  for (const SuiteCounts& family : checked.families) pairs += family.pairs;
+  EXPECT_EQ(pairs, 10070u);
+  const Error again = error_of([&] { write_suite(folder.path(), {}); });
+  EXPECT_EQ(again.reason, "is there already");
+}
+
+TEST(Suite, EachFamilyHasPairsOnBothSidesAndEachKindIsThere) {
+  std::set<SuiteKind> seen;
+  for (const PairFamily& family : pair_families()) {
+    SuiteSettings settings;
+    settings.seed = 5;
+    const SuitePairs pairs = make_pairs(family.name, settings);
+    const SuiteCounts counts = counts_of(pairs);
+    EXPECT_GE(counts.colliding * 12, counts.pairs) << family.name;
+    EXPECT_LE(counts.colliding * 12, counts.pairs * 11) << family.name;
+    for (const SuitePair& pair : pairs.pairs) seen.insert(pair.kind);
+    // Text and back.
+    const SuitePairs back = parse_pairs(pairs_text(pairs), family.name);
+    ASSERT_EQ(back.pairs.size(), pairs.pairs.size());
+    for (std::size_t i = 0; i < back.pairs.size(); ++i) {
+      EXPECT_TRUE(back.pairs[i].a == pairs.pairs[i].a);
+      EXPECT_TRUE(back.pairs[i].b == pairs.pairs[i].b);
+      EXPECT_TRUE(back.pairs[i].shared == pairs.pairs[i].shared);
+      EXPECT_EQ(back.pairs[i].kind, pairs.pairs[i].kind);
+      EXPECT_EQ(back.pairs[i].parameter, pairs.pairs[i].parameter);
+    }
+  }
+  EXPECT_EQ(seen.size(), 9u);
+}
+
+TEST(Suite, AnotherSeedMakesOtherPairs) {
+  const PairFamily& family = pair_families().front();
+  const auto first = [&](std::uint64_t seed, std::uint64_t id) {
+    return make_suite_pair(family, seed, id).a;
+  };
+  EXPECT_FALSE(first(1, 0) == first(2, 0));
+  EXPECT_FALSE(first(1, 0) == first(1, 1));
+  EXPECT_TRUE(first(1, 7) == first(1, 7));
+}
+
+TEST(Suite, MeshesOfTheSmallOneAreThoseOfTheFullOne) {
+  const std::vector<std::string> small = mesh_names(SuiteSize::small);
+  const std::vector<std::string> full = mesh_names(SuiteSize::full);
+  EXPECT_EQ(small.size(), 12u);
+  EXPECT_EQ(full.size(), 44u);
+  EXPECT_TRUE(std::includes(full.begin(), full.end(), small.begin(), small.end()));
+  EXPECT_EQ(std::set<std::string>(full.begin(), full.end()).size(), full.size());
+}
+
+/// A pair as a scene: two objects, or one with joined vertices where the triangles are neighbours.
+Scene scene_of(const SuitePair& pair) {
+  Scene scene;
+  scene.name = "pair";
+  scene.source_face = {0, 1};
+  scene.vertices.assign(pair.a.begin(), pair.a.end());
+  scene.vertices.insert(scene.vertices.end(), pair.b.begin(), pair.b.end());
+  scene.triangles = {{0, 1, 2}, {3, 4, 5}};
+  for (const auto& [i, j] : pair.shared) scene.triangles[1][j] = i;
+  if (pair.shared.empty()) {
+    scene.objects = {{"a", 0, 1, false}, {"b", 1, 1, false}};
+  } else {
+    scene.objects = {{"ab", 0, 2, true}};
+  }
+  return scene;
+}
+
+/// Whether the library reports the pair.
+bool found_by_library(Collider& collider, const Scene& scene) {
+  std::vector<double> vertices;
+  for (const Vec3& p : scene.vertices) vertices.insert(vertices.end(), p.data(), p.data() + 3);
+  std::vector<std::uint32_t> triangles, starts;
+  for (const auto& t : scene.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+  for (const Object& object : scene.objects) starts.push_back(object.first_triangle);
+  const ColliderResult result = collider.find({vertices, triangles, starts});
+  return result.pairs.size() + result.neighbour_pairs.size() > 0;
+}
+
+std::string environment(const char* name, const char* usual) {
+  const char* const value = std::getenv(name);
+  return value != nullptr ? value : usual;
+}
+
+/// The pairs of a family: of the small suite, or of the one in the folder FARCULL_SUITE.
+SuitePairs asked_pairs(const PairFamily& family) {
+  const std::string folder = environment("FARCULL_SUITE", "");
+  return folder.empty() ? make_pairs(family.name, {})
+                        : read_pairs(folder + "/pairs/" + family.name + ".txt");
+}
+
+TEST(SuiteAnswers, TheLibraryIsRightAboutEveryPair) {
+  Collider two_objects({.threads = 1});
+  Collider one_object({.threads = 1, .self = true});
+  for (const PairFamily& family : pair_families()) {
+    const SuitePairs pairs = asked_pairs(family);
+    for (const SuitePair& pair : pairs.pairs) {
+      Collider& collider = pair.shared.empty() ? two_objects : one_object;
+      EXPECT_EQ(found_by_library(collider, scene_of(pair)), collides(pair.kind))
+          << family.name << " " << pair.id << ", " << to_string(pair.kind);
+    }
+  }
+}
+
+/// The device of methods that draw.
+std::string asked_device() { return environment("FARCULL_SUITE_DEVICE", "native"); }
+
+/// Whether the method reports the pair; everything is left in, so that it is drawn.
+bool found_by(Method method, Session& session, const Scene& scene) {
+  RunOptions options;
+  options.method = method;
+  options.device = asked_device();
+  options.resolution = 32;
+  options.full = true;
+  options.verify = false;
+  const Record record = run(scene, options, session);
+  return record.collisions.pairs.size() + record.collisions.neighbour_pairs.size() > 0;
+}
+
+TEST(SuiteAnswers, FarAndFarPairsAreRightAboutASampleThatIsDrawn) {
+  Session session(asked_device(), 1, {});
+  for (const PairFamily& family : pair_families()) {
+    const SuitePairs pairs = asked_pairs(family);
+    for (std::size_t i = 0; i < pairs.pairs.size(); i += 9) {
+      const SuitePair& pair = pairs.pairs[i];
+      for (const Method method : {Method::far, Method::far_pairs}) {
+        EXPECT_EQ(found_by(method, session, scene_of(pair)), collides(pair.kind))
+            << to_string(method) << ": " << family.name << " " << pair.id << ", "
+            << to_string(pair.kind);
+      }
+    }
+  }
+}
+
+TEST(SuiteAnswers, FarPairsFindsTheListsOfAllMeshes) {
+  Session session("native", 0, {});
+  for (const std::string& name : mesh_names(SuiteSize::small)) {
+    const SuiteMesh mesh = make_mesh(name, {});
+    RunOptions options;
+    options.method = Method::far_pairs;
+    options.device = "native";
+    options.verify = false;
+    const Record record = run(mesh.scene, options, session);
+    std::vector<TrianglePair> found = record.collisions.pairs;
+    found.insert(found.end(), record.collisions.neighbour_pairs.begin(),
+                 record.collisions.neighbour_pairs.end());
+    std::sort(found.begin(), found.end());
+    std::vector<TrianglePair> listed;
+    for (const SuiteMeshPair& pair : mesh.pairs) listed.push_back(pair.pair);
+    EXPECT_EQ(found, listed) << name;
+    EXPECT_FALSE(listed.empty()) << name;
+  }
+}
+
+}  // namespace
+}  // namespace farcull
