@@ -8,7 +8,6 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "verify/certificate/certificate.h"
 #include "verify/certificate/integer_pair.h"
 #include "verify/contact.h"
 #include "verify/exact.h"

@@ -28,8 +28,8 @@ struct MeshFamily {
     double parameter = 0;
     int detail = 0;
   };
-  std::vector<Member> members;  // the first one is in a small suite too where `small` says so
-  bool small = false;
+  std::vector<Member> members;
+  bool small = false;  // the first member is in a small suite too
 };
 
 /// In the order of the names.

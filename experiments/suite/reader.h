@@ -76,8 +76,8 @@ struct SuiteMeshPair {
 };
 
 struct SuiteMesh {
-  std::string name;    // of the folder
-  std::string family;  //
+  std::string name;  // of the folder
+  std::string family;
   double parameter = 0;
   bool self = false;     // every object is tested against itself too
   Scene scene;           // objects "0", "1", ... in order; each is `self` where the mesh is
@@ -105,8 +105,8 @@ struct SuiteIndex {
   };
 
   std::uint64_t seed = 0;
-  std::string size;         // small or full
-  std::string licence;      //
+  std::string size;  // small or full
+  std::string licence;
   std::vector<File> files;  // by path, ascending
   std::string sum;          // SHA-256 of the lines before the last: it names the whole suite
 
