@@ -155,7 +155,7 @@ void ScenesCommand::write() const {
   if (progress) progress("making the scene");
   WrittenScene written;
   if (range) {
-    MovingScene moving(*name_, range->count(), range->first);
+    MovingScene moving(*name_, range->last + 1);
     const auto at = [&](long frame) -> const Scene& { return moving.at(frame); };
     written = write_frames(at, *range, parse_scene_name(*name_).entry->topology_changes, *folder_,
                            progress);

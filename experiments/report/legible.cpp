@@ -69,9 +69,10 @@ void merge_series(Figure& figure) {
   }
   for (std::vector<std::string>& group : groups) {
     if (group.size() == 1) continue;
-    // The first gives the colour: what the figure is about.
-    std::ranges::stable_partition(group,
-                                  [&](const std::string& one) { return emphasised(figure, one); });
+    // The first gives the colour: what the figure is about, or ours.
+    std::ranges::stable_partition(group, [&](const std::string& one) {
+      return emphasised(figure, one) || one.starts_with("FAR");
+    });
     const std::string name = name_of(group, figure);
     for (Panel& panel : figure.panels) {
       bool emphasis = false;

@@ -282,11 +282,16 @@ Figure size_figure(const std::vector<SceneGroup>& groups) {
                 .x = logarithmic("mean pixels of a triangle"),
                 .y = logarithmic("missed pairs", true)};
     std::map<std::string, Rows> forms;
+    std::size_t sizes = 0;
     for (const Row* row : group.seeds.front().rows) {
       if (!is_sized(*row)) continue;
-      forms[form_of(*row)].push_back(row);
-      ++runs;
+      Rows& of = forms[form_of(*row)];
+      of.push_back(row);
+      sizes = std::max(sizes, of.size());
     }
+    if (sizes == 1) out.caption += " Not drawn, since one size alone fits: " + group.name + ".";
+    if (sizes < 2) continue;
+    for (const auto& [name, rows] : forms) runs += rows.size();
     for (const auto& [name, rows] : forms) {
       Series series = series_of(name, rows, pixels_of,
                                 [](const Row& row) { return count_or_none(row, "missed"); });

@@ -90,7 +90,8 @@ Figure figure_of(const std::vector<SceneRows>& scenes, const std::set<int>& reso
                 .x = logarithmic("resolution (px)"),
                 .y = logarithmic("candidates / colliding")};
     for (const char* name : {kBoxes, kOriented, kChosen, kOneView, kThreeViews}) {
-      Series series{.name = name, .emphasis = name == kThreeViews};
+      // Boxes as well: what FAR pairs chooses often lies on their line.
+      Series series{.name = name, .emphasis = name == kThreeViews || name == kBoxes};
       const Row* level = scene.find(name, 0);
       if (level != nullptr) series.style = Series::Style::lines;
       for (const int resolution : resolutions) {

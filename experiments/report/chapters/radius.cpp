@@ -423,7 +423,7 @@ Panel placements_by_radius(const Rows& all) {
   }
   for (const auto& [side, factors] : sides) {
     if (factors.size() < 2) continue;
-    Series series{.name = fmt::format("sides of {} px", rounded(side))};
+    Series series{.name = fmt::format("sides of {:.4g} px", side)};
     for (const auto& [factor, rows] : factors) {
       series.x.push_back(factor);
       series.y.push_back(

@@ -25,6 +25,7 @@ class MovingScene {
   /// Frames 0 to frames - 1; frames >= 1. self: every object is tested against itself, besides
   /// those that are anyway. Throws Error as make_builtin_scene(), and where nothing moves.
   explicit MovingScene(const std::string& name, long frames, bool self = false);
+  MovingScene(const std::string& name, long frames, long first) = delete;  // a number is no bool
   /// The same for a scene that is not built in. Precondition: it has a motion.
   explicit MovingScene(BuiltScene built, long frames, bool self = false);
 

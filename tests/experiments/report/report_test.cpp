@@ -422,7 +422,7 @@ TEST(ReportFigures, OfSeriesThatAgreeTheOneThatTheFigureIsAboutGivesTheStyle) {
     panel.series[1].y = {1, 2};
   }
   EXPECT_EQ(names_in(legible(figure).panels[0]),
-            (std::vector<std::string>{"FAR (OBB) = CULLIDE", "Quick-CULLIDE"}));
+            (std::vector<std::string>{"Quick-CULLIDE", "FAR (OBB) = CULLIDE"}));
 }
 
 TEST(ReportFigures, MarksAreInTheKeyAndNotOverTheData) {

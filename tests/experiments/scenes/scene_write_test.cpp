@@ -100,7 +100,7 @@ TEST(MeshWrite, ReplacesFilesAndTakesItsOwnBackWhereItFails) {
 }
 
 WrittenScene write_moving(const std::string& name, FrameRange range, const std::string& folder) {
-  MovingScene moving(name, range.count(), range.first);
+  MovingScene moving(name, range.last + 1);
   return write_frames([&](long frame) -> const Scene& { return moving.at(frame); }, range,
                       parse_scene_name(name).entry->topology_changes, folder);
 }
