@@ -28,7 +28,8 @@ std::string items(const std::vector<std::string>& sentences) {
 
 std::string figure(const Figure& figure) {
   return fmt::format(
-      "\\begin{{figure}}[htbp]\n  \\centering\n  \\includegraphics[width=\\linewidth]"
+      "\\begin{{figure}}[htbp]\n  \\centering\n"
+      "  \\includegraphics[width=\\linewidth,height=0.8\\textheight,keepaspectratio]"
       "{{figures/{}.pdf}}\n  \\caption{{{} {}}}\n  \\label{{fig:{}}}\n\\end{{figure}}\n",
       figure.name, latex_text(sentence(figure.title)), latex_text(sentence(figure.caption)),
       figure.name);
