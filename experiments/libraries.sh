@@ -22,6 +22,8 @@ farcull_packages+=(libccd-dev libgts-dev)
 if ! command -v npm >/dev/null; then farcull_packages+=(nodejs npm); fi
 if ((${#quick[@]} == 0)); then farcull_packages+=(libvtk9-dev libopen3d-dev); fi
 farcull_setup
+# What was installed since the last time is found only if CMake looks again.
+[[ ! -e build/CMakeCache.txt ]] || cmake build >/dev/null
 farcull_build farcull farcull_contestants
 
 # Without them the contestant is named as missing.

@@ -155,8 +155,8 @@ int StudiesCommand::run() {
   // A step of a fine cloth takes seconds, and turns go back and forth between several cloths.
   if (request.studies.front().campaign) ::setenv("FARCULL_CLOTH", (out_ + "/cloth").c_str(), 0);
   if (suite_) {
-    (void)read_suite(*suite_);
-    ::setenv("FARCULL_SUITE", suite_->c_str(), 1);
+    check_files(*suite_, read_suite(*suite_));
+    ::setenv("FARCULL_LIBRARIES_SUITE", suite_->c_str(), 1);
   }
   request.choice = {.quick = quick_, .seed = seed_};
   request.resume = resume_;

@@ -132,8 +132,10 @@ std::vector<ContestFound> tree_scene(const ContestScene& scene) {
     for (std::uint32_t t = 0; t < triangles[a].size(); ++t) {
       std::vector<Triangles::const_iterator> found;
       tree.all_intersected_primitives(triangles[a][t], std::back_inserter(found));
-      for (const auto at : found)
-        out.push_back({a, t, b, static_cast<std::uint32_t>(at - triangles[b].cbegin())});
+      for (const auto at : found) {
+        const auto u = static_cast<std::uint32_t>(at - triangles[b].cbegin());
+        if (a != b || t < u) out.push_back({a, t, b, u});
+      }
     }
   });
   return out;

@@ -84,11 +84,10 @@ constexpr std::uint64_t kMostPrinted = 16 << 20;  // bytes on standard error
 }
 
 /// The last that was printed, on one line.
-std::string last_words(int file) {
-  constexpr off_t kMost = 400;
+std::string last_words(int file, off_t most = 400) {
   const off_t size = ::lseek(file, 0, SEEK_END);
-  std::string text(static_cast<std::size_t>(std::clamp<off_t>(size, 0, kMost)), '\0');
-  const ssize_t got = ::pread(file, text.data(), text.size(), std::max<off_t>(0, size - kMost));
+  std::string text(static_cast<std::size_t>(std::clamp<off_t>(size, 0, most)), '\0');
+  const ssize_t got = ::pread(file, text.data(), text.size(), std::max<off_t>(0, size - most));
   text.resize(static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
   while (!text.empty() && static_cast<unsigned char>(text.back()) <= ' ') text.pop_back();
   for (char& c : text) {
@@ -254,14 +253,24 @@ class Child {
     const double used = static_cast<double>(usage_.ru_utime.tv_sec + usage_.ru_stime.tv_sec);
     if (signal == SIGXCPU || (signal == SIGKILL && used >= static_cast<double>(limits_.cpu_s)))
       return end(How::time, "CPU time beyond the limit");
+    // A process begins with the peak of the one that started it, which says nothing.
     const bool nearly_all =
-        limits_.memory_mib > 0 &&
+        limits_.memory_mib > 0 && usage_.ru_maxrss > parents_peak_ &&
         static_cast<std::uint64_t>(usage_.ru_maxrss) / 1024 * 4 >= limits_.memory_mib * 3;
-    if (says_no_memory(words) || nearly_all || signal == SIGKILL) return end(How::memory, reason);
+    // Node prints a long stack after the words.
+    if (says_no_memory(last_words(errors_.get(), 1 << 14)) || nearly_all || signal == SIGKILL)
+      return end(How::memory, reason);
     return end(How::crash, reason);
   }
 
+  static long peak_of_this() {
+    rusage usage = {};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;
+  }
+
   const ChildLimits limits_;
+  const long parents_peak_ = peak_of_this();  // KiB
   Descriptor errors_, in_, out_;
   pid_t pid_ = -1;
   int status_ = 0;

@@ -24,6 +24,7 @@ class Surface {
     return gts_vertex_new(surface_->vertex_class, p[0], p[1], p[2]);
   }
   void add(GtsVertex* a, GtsVertex* b, GtsVertex* c, std::uint32_t object, std::uint32_t triangle) {
+    if (a == b || b == c || c == a) throw Refusal("GTS has no face that names a vertex twice");
     GtsFace* const face = gts_face_new(surface_->face_class, edge(a, b), edge(b, c), edge(c, a));
     gts_surface_add_face(surface_, face);
     from_[GTS_BOUNDED(GTS_TRIANGLE(face))] = {object, triangle};

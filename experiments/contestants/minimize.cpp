@@ -101,6 +101,8 @@ std::vector<SuitePair> simpler(const SuitePair& from) {
 /// Whether a simpler pair is of the same sort: it meets or not as before, and what the
 /// documentation promises of it is the same.
 bool like(const ContestantCard& card, const SuitePair& before, SuitePair& pair) {
+  // Corners that came together by rounding would be shared by place and not by index.
+  if (!pair.shared.empty() && pair.shared != equal_corners(pair.a, pair.b)) return false;
   try {
     pair.kind = decide(pair, "a smaller pair");
   } catch (const Error&) {

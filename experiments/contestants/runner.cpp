@@ -222,9 +222,11 @@ PairsAnswer ask_pairs(const Invited& invited, std::span<const SuitePair> pairs,
     if (answered(out.answers[i].outcome)) again.push_back(i);
   }
   std::reverse(again.begin(), again.end());
-  out.asked_twice = again.size();
   const std::vector<ContestAnswer> second = asker.ask(again);
   for (std::size_t i = 0; i < again.size(); ++i) {
+    // A death is no other answer.
+    if (!answered(second[i].outcome)) continue;
+    ++out.asked_twice;
     if (second[i].outcome != out.answers[again[i]].outcome) out.differing.push_back(again[i]);
   }
   std::sort(out.differing.begin(), out.differing.end());
@@ -237,7 +239,8 @@ MeshAnswer ask_mesh(const Invited& invited, const SuiteMesh& mesh, const std::st
   MeshAnswer out = ask_mesh_once(invited, mesh, folder, limits);
   if (!twice || !answered(out.outcome)) return out;
   const MeshAnswer second = ask_mesh_once(invited, mesh, folder, limits);
-  out.differs = second.outcome != out.outcome || second.pairs != out.pairs;
+  out.differs =
+      answered(second.outcome) && (second.outcome != out.outcome || second.pairs != out.pairs);
   out.ns = std::min(out.ns, second.ns);
   return out;
 }

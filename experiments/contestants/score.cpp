@@ -100,8 +100,9 @@ std::optional<bool> promised(const ContestantCard& card, const SuitePair& pair) 
   if (pair.kind == SuiteKind::unlabelled) return {};
   if (!card.degenerate && (degenerate(pair.a) || degenerate(pair.b))) return {};
   const bool label = collides(pair.kind);
-  const bool touches = label && pair.kind != SuiteKind::crossing;
-  if (card.means == Means::crossing && touches && pair.kind != SuiteKind::neighbours_meet)
+  if (card.means == Means::crossing && label && pair.kind != SuiteKind::crossing &&
+      (pair.kind != SuiteKind::neighbours_meet ||
+       contact_of(pair.a, pair.b) != Contact::penetrating))
     return {};
   return label;
 }

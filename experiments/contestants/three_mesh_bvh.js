@@ -59,14 +59,16 @@ function askMesh(fields, { three, bvh }) {
   const self = fields[1] === '1';
   const geometries = fields.slice(2).map((file) => readObj(file, three));
   const since = process.hrtime.bigint();
-  // The tree sorts triangles; `indirect` keeps their order.
+  // The tree orders triangles anew; `indirect` leaves the geometry as it is, and the tree says which
+  // triangle stands at a place of its order.
   const trees = geometries.map((geometry) => new bvh.MeshBVH(geometry, { indirect: true }));
   const identity = new three.Matrix4();
   let out = '';
   for (let a = 0; a < trees.length; ++a) {
     for (let b = self ? a : a + 1; b < trees.length; ++b) {
       trees[a].bvhcast(trees[b], identity, {
-        intersectsTriangles(first, second, i, j) {
+        intersectsTriangles(first, second, atFirst, atSecond) {
+          const i = trees[a].resolveTriangleIndex(atFirst), j = trees[b].resolveTriangleIndex(atSecond);
           if (a === b && i >= j) return false;
           if (first.intersectsTriangle(second)) out += `${fields[0]}\tpair\t${a}\t${i}\t${b}\t${j}\n`;
           return false;

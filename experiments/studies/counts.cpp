@@ -190,6 +190,7 @@ bool breaks_promise(const Measurement& measurement) {
   const auto& counts = *measurement.counts;
   if (!counts.value("promises", false)) return false;
   return counts.value("missed", std::uint64_t{0}) > 0 ||
+         counts.value("wrong", std::uint64_t{0}) > 0 ||
          counts.value("violations", std::uint64_t{0}) > 0;
 }
 

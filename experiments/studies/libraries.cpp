@@ -19,7 +19,7 @@
 namespace farcull {
 namespace {
 
-constexpr const char* kVariable = "FARCULL_SUITE";
+constexpr const char* kVariable = "FARCULL_LIBRARIES_SUITE";
 
 // The folder of a suite of somebody else; empty: the suite is made.
 std::string given_suite() {

@@ -32,7 +32,28 @@ std::uint64_t deaths(const Rows& rows) {
   return total(rows, "crashed") + total(rows, "hung") + total(rows, "no_memory");
 }
 
-// Per million of what was asked; "0" is none at all.
+// Questions without an answer, for whatever reason.
+std::uint64_t without_answer(const Row& row) {
+  const Rows one = {&row};
+  return number_of(row, "refused") + number_of(row, "unanswered") + number_of(row, "not_asked") +
+         deaths(one);
+}
+std::uint64_t without_answer(const Score& score) {
+  return score.refused + score.unanswered + score.not_asked + score.crashed + score.hung +
+         score.no_memory;
+}
+
+// Pairs that were answered; of a mesh, which is one question, all pairs or none.
+std::uint64_t answered(const Rows& rows) {
+  std::uint64_t out = 0;
+  for (const Row* row : rows) {
+    const std::uint64_t asked = number_of(*row, "asked"), none = without_answer(*row);
+    out += of_pairs(*row) ? asked - std::min(asked, none) : none == 0 ? asked : 0;
+  }
+  return out;
+}
+
+// Per million of what was answered; "0" is none at all.
 std::string per_million(std::uint64_t count, std::uint64_t of) {
   if (of == 0) return "-";
   if (count == 0) return "0";
@@ -41,12 +62,9 @@ std::string per_million(std::uint64_t count, std::uint64_t of) {
 
 std::string ns_per_pair(const Rows& rows) {
   double ms = 0;
-  std::uint64_t answered = 0;
-  for (const Row* row : rows) {
-    ms += time_of(*row, "total").value_or(0);
-    answered += number_of(*row, "asked");
-  }
-  return answered == 0 ? "-" : rounded(1e6 * ms / static_cast<double>(answered));
+  for (const Row* row : rows) ms += time_of(*row, "total").value_or(0);
+  const std::uint64_t pairs = answered(rows);
+  return pairs == 0 ? "-" : rounded(1e6 * ms / static_cast<double>(pairs));
 }
 
 DataTable overview(const std::string& name, const std::string& what, const Rows& rows, bool pairs) {
@@ -54,21 +72,23 @@ DataTable overview(const std::string& name, const std::string& what, const Rows&
       .name = name,
       .caption = what +
                  ": missed and reported wrongly per million, first by what the documentation of "
-                 "each promises, then by closed triangles. Refused, unanswered, crashed (a hang or "
+                 "each promises, then by closed triangles; of the pairs that it answered. Refused, "
+                 "unanswered, crashed (a hang or "
                  "a lack of memory among them) and answered otherwise the second time are counts.",
       .columns = columns({"contestant", "library", "promises"},
                          {"asked", "missed, own", "wrong, own", "missed", "wrong", "refused",
                           "unanswered", "crashed", "differs", pairs ? "ns" : "ms"})};
   for (const NamedRows& one : rows_by_contestant(rows)) {
     const Rows& of = one.rows;
-    const std::uint64_t asked = total(of, "asked"), own = total(of, "own_asked");
+    const std::uint64_t asked = total(of, "asked"), own = total(of, "own_asked"),
+                        said = answered(of);
     double ms = 0;
     for (const Row* row : of) ms += time_of(*row, "total").value_or(0);
     out.rows.push_back(
         {of.front()->point.method, text_of(*of.front(), "library"), text_of(*of.front(), "means"),
          grouped(asked), per_million(total(of, "own_missed"), own),
-         per_million(total(of, "own_wrong"), own), per_million(total(of, "missed"), asked),
-         per_million(total(of, "wrong"), asked), grouped(total(of, "refused")),
+         per_million(total(of, "own_wrong"), own), per_million(total(of, "missed"), said),
+         per_million(total(of, "wrong"), said), grouped(total(of, "refused")),
          grouped(total(of, "unanswered")), grouped(deaths(of)), grouped(total(of, "differing")),
          pairs ? ns_per_pair(of) : rounded(ms)});
   }
@@ -98,7 +118,7 @@ DataTable families_table(const Rows& rows) {
         if (family_of(*row) == family) of.push_back(row);
       }
       const std::uint64_t asked = family.starts_with("pairs/") ? total(of, "asked") : 1'000'000;
-      cells.push_back(of.empty() || total(of, "asked") == 0
+      cells.push_back(of.empty() || (family.starts_with("pairs/") && total(of, "asked") == 0)
                           ? "-"
                           : fmt::format("{} / {} / {} / {}",
                                         per_million(total(of, "missed"), asked),
@@ -130,7 +150,8 @@ DataTable kinds_table(const Rows& rows) {
     cells.push_back(one.rows.front()->point.method);
     for (const std::string& kind : kinds) {
       const Score& sum = sums[kind];
-      cells.push_back(per_million(sum.missed + sum.wrong, sum.asked));
+      cells.push_back(per_million(sum.missed + sum.wrong,
+                                  sum.asked - std::min(sum.asked, without_answer(sum))));
     }
   }
   return out;
@@ -205,7 +226,7 @@ Figure time_figure(const Rows& rows) {
   for (const NamedRows& one : rows_by_contestant(rows)) {
     double ms = 0;
     for (const Row* row : one.rows) ms += time_of(*row, "total").value_or(0);
-    const auto asked = static_cast<double>(total(one.rows, "asked"));
+    const auto asked = static_cast<double>(answered(one.rows));
     if (asked == 0 || ms == 0) continue;
     const auto errors = static_cast<double>(total(one.rows, "missed") + total(one.rows, "wrong"));
     const Row& row = *one.rows.front();
@@ -237,11 +258,12 @@ Panel parameter_panel(const Rows& rows, const std::string& family, const std::st
     Series series{.name = one.rows.front()->point.method};
     bool errs = false;
     for (const auto& [parameter, sum] : by_parameter) {
-      if (sum.asked == 0) continue;
+      const std::uint64_t said = sum.asked - std::min(sum.asked, without_answer(sum));
+      if (said == 0) continue;
       errs = errs || sum.missed + sum.wrong > 0;
       series.x.push_back(parameter);
       series.y.push_back(1e6 * static_cast<double>(sum.missed + sum.wrong) /
-                         static_cast<double>(sum.asked));
+                         static_cast<double>(said));
     }
     if (errs) out.series.push_back(std::move(series));
   }
@@ -278,7 +300,11 @@ void add_ours(const Rows& rows, Chapter& chapter) {
         chapter.find_broken(
             fmt::format("{}: {} {}, and it promises none.", name, of_all(bad, asked), count));
     }
-    if (total(of, "missed") + total(of, "wrong") + deaths(of) == 0)
+    std::uint64_t silent = 0;
+    for (const Row* row : of) silent += without_answer(*row);
+    if (silent > 0)
+      chapter.find_broken(fmt::format("{} has no answer to {} questions.", name, grouped(silent)));
+    if (total(of, "missed") + total(of, "wrong") + silent == 0)
       chapter.find(fmt::format("{} missed none and reported none wrongly of {} pairs.", name,
                                grouped(asked)));
   }

@@ -118,6 +118,7 @@ int main(int argc, char** argv) {
                   liar("blind", [](const ContestPair&) { return false; }),
                   liar("talks", [](const ContestPair& pair) {
                     std::printf("talk\n");  // goes to standard error, and does no harm
+                    std::fflush(stdout);
                     return truth(pair);
                   })});
 }
