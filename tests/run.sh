@@ -48,5 +48,9 @@ left_out='^gl$'
 if ((${#without[@]})); then left_out='^(gl|meshes)$'; fi
 ctest --test-dir build-sanitize -N -L "$left_out" | grep -E '^ +Test +#|^Total Tests' |
   sed 's/^/  not run with sanitizers:/' || true
+# Nor is the program built with sanitizers, so tests that call it are left out.
+program='^(cli\.|readme$)'
+ctest --test-dir build-sanitize -N -R "$program" -LE "$left_out" | grep -E '^ +Test +#' |
+  sed 's/^/  not run with sanitizers:/' || true
 ctest --test-dir build-sanitize --output-on-failure --no-tests=error \
-  -j "$(nproc 2>/dev/null || echo 1)" -LE "$left_out" "$@"
+  -j "$(nproc 2>/dev/null || echo 1)" -LE "$left_out" -E "$program" "$@"
