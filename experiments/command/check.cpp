@@ -299,7 +299,10 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
   }
   if (json) json->finish();
   if (table) {
-    write_output("-", "\n" + clean_lines(verdicts.text(*clearance) + unattested_text(last)));
+    const std::string rest = unattested_text(last);
+    const bool several = range.count() > 1 && !last.result.unattested.empty();
+    write_output("-", "\n" + clean_lines(verdicts.text(*clearance) +
+                                         (several ? "of the last frame's run: " : "") + rest));
   }
   return verdicts.in_all() == Verdict::proved ? kExitDone : kExitBroken;
 }

@@ -154,11 +154,8 @@ int StudiesCommand::run() {
   request.folder = out_;
   // A step of a fine cloth takes seconds, and turns go back and forth between several cloths.
   if (request.studies.front().campaign) ::setenv("FARCULL_CLOTH", (out_ + "/cloth").c_str(), 0);
-  if (suite_) {
-    check_files(*suite_, read_suite(*suite_));
-    ::setenv("FARCULL_LIBRARIES_SUITE", suite_->c_str(), 1);
-  }
-  request.choice = {.quick = quick_, .seed = seed_};
+  if (suite_) check_files(*suite_, read_suite(*suite_));
+  request.choice = {.quick = quick_, .seed = seed_, .suite = suite_.value_or("")};
   request.resume = resume_;
   request.shard = shard_ ? parse_shard(*shard_)
                          : shard_from_environment([](const char* v) { return std::getenv(v); });

@@ -252,15 +252,19 @@ class Child {
                                            : "exit status " + std::to_string(WEXITSTATUS(status_));
     const double used = static_cast<double>(usage_.ru_utime.tv_sec + usage_.ru_stime.tv_sec);
     if (signal == SIGXCPU || (signal == SIGKILL && used >= static_cast<double>(limits_.cpu_s)))
-      return end(How::time, "CPU time beyond the limit");
+      return used_up(end(How::time, "CPU time beyond the limit"));
     // A process begins with the peak of the one that started it, which says nothing.
     const bool nearly_all =
         limits_.memory_mib > 0 && usage_.ru_maxrss > parents_peak_ &&
         static_cast<std::uint64_t>(usage_.ru_maxrss) / 1024 * 4 >= limits_.memory_mib * 3;
     // Node prints a long stack after the words.
     if (says_no_memory(last_words(errors_.get(), 1 << 14)) || nearly_all || signal == SIGKILL)
-      return end(How::memory, reason);
+      return used_up(end(How::memory, reason));
     return end(How::crash, reason);
+  }
+  static ChildEnd used_up(ChildEnd end) {
+    end.used_up = true;
+    return end;
   }
 
   static long peak_of_this() {

@@ -20,6 +20,9 @@ struct ChildEnd {
   enum class How : std::uint8_t { peace, crash, time, memory } how = How::peace;
   std::string reason;     // but for peace: the signal or the status, and the last that it printed
   bool read_all = false;  // it was given all of its input
+  /// A limit of the whole process ended it, of CPU time or memory, and not that of one line: what
+  /// it did before may have used that up.
+  bool used_up = false;
 };
 
 /// Starts `command`, whose first word is a path or looked for in PATH, in a process group of its

@@ -50,7 +50,7 @@ bool pair(const ContestPair& asked) {
 
 ContestantCard card(const std::string& name, const std::string& call) {
   return {.name = name,
-          .library = "libccd 2.1",
+          .library = std::string("libccd ") + FARCULL_CCD_VERSION,
           .means = Means::crossing,
           .degenerate = false,
           .call = call +

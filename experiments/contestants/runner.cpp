@@ -84,8 +84,12 @@ class PairAsker {
     std::size_t next = 0, deaths = 0;
     while (next < order.size() && deaths < limits_.most_deaths) {
       ++processes;
+      const std::size_t first = next;
       const ChildEnd end = ask_from(next, order, answers);
       if (next == order.size()) break;
+      // A process that answered others may have used its limit up with them: this question is asked
+      // again, as the first of a new one.
+      if (end.used_up && next > first) continue;
       // Where it had all questions and ended in peace, it has no answer to any of the rest.
       const bool rest = end.how == ChildEnd::How::peace && end.read_all;
       const std::size_t until = rest ? order.size() : next + 1;
@@ -118,7 +122,10 @@ class PairAsker {
       answers[next++] = std::move(*answer);
       return true;
     };
-    return run_child(command_of(invited_, "pairs"), child_limits(invited_, limits_), more, line);
+    ChildLimits limits = child_limits(invited_, limits_);
+    // Once it has started, the program and its libraries are in memory.
+    if (processes > 1) limits.start_s = std::min(limits.start_s, 2 * limits.line_s);
+    return run_child(command_of(invited_, "pairs"), limits, more, line);
   }
 
   static constexpr std::size_t kPart = 1 << 15;  // bytes of questions at a time

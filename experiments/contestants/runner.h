@@ -23,7 +23,8 @@ struct Invited {
 
 struct ContestLimits {
   double answer_s = 10;          // wall clock from one answer to the next
-  double start_s = 60;           // the same to the first answer of a process
+  double start_s = 60;           // the same to the first answer of the first process; of later ones
+                                 // at most twice answer_s
   std::uint64_t cpu_s = 3600;    // of a process
   std::uint64_t memory_mib = 0;  // of addresses; 0: as the card says
   /// When so many processes ended badly, the questions that are left are not asked.
@@ -60,7 +61,9 @@ struct PairsAnswer {
 };
 
 /// Asks about all pairs, then about every `sample`th of them once more, in a new process and in the
-/// opposite order; 0: none. Throws Error where no process can be started.
+/// opposite order; 0: none. A limit of memory or of CPU time is one of the whole process: where it
+/// ends a process that has answered something, the question is asked again in a new process, and is
+/// blamed if that one ends too. Throws Error where no process can be started.
 PairsAnswer ask_pairs(const Invited& invited, std::span<const SuitePair> pairs,
                       const ContestLimits& limits = {}, std::size_t sample = 16);
 

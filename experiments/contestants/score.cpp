@@ -17,10 +17,11 @@ namespace farcull {
 namespace {
 
 /// The counts that are written, in this order.
-constexpr std::array kCounts = {
-    &Score::asked,     &Score::missed,    &Score::wrong,      &Score::own_asked, &Score::own_missed,
-    &Score::own_wrong, &Score::refused,   &Score::unanswered, &Score::crashed,   &Score::hung,
-    &Score::no_memory, &Score::not_asked, &Score::twice,      &Score::differing};
+constexpr std::array kCounts = {&Score::asked,     &Score::answered,  &Score::missed,
+                                &Score::wrong,     &Score::own_asked, &Score::own_missed,
+                                &Score::own_wrong, &Score::refused,   &Score::unanswered,
+                                &Score::crashed,   &Score::hung,      &Score::no_memory,
+                                &Score::not_asked, &Score::twice,     &Score::differing};
 
 bool degenerate(const std::array<Vec3, 3>& corners) { return shape(corners) != Shape::triangle; }
 
@@ -69,6 +70,7 @@ void count_pair(const ContestantCard& card, const SuitePair& pair, const Contest
   if (pair.kind == SuiteKind::unlabelled) return;
   const bool label = collides(pair.kind), apart = answer.outcome == ContestOutcome::apart,
              meets = answer.outcome == ContestOutcome::meets;
+  score.answered += apart || meets;
   score.missed += label && apart;
   score.wrong += !label && meets;
   score.own_missed += own == true && apart;
@@ -131,6 +133,7 @@ Score score_mesh(const ContestantCard& card, const SuiteMesh& mesh, const MeshAn
     if (pair.shared == 0 || card.neighbours) truth.push_back(pair.pair);
   }
   out.asked = truth.size();
+  if (answer.outcome == ContestOutcome::meets) out.answered = truth.size();
   out.ns = answer.ns;
   out.twice = answered(answer.outcome);
   out.differing = answer.differs;

@@ -133,6 +133,7 @@ NamedCounts named(const SceneCounts& c) {
 
 NamedCounts named(const LibraryCounts& c) {
   NamedCounts out = {{"asked", c.asked},
+                     {"answered", c.answered},
                      {"missed", c.missed},
                      {"wrong", c.wrong},
                      {"own_asked", c.own_asked},

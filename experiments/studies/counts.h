@@ -129,7 +129,7 @@ struct SceneCounts {
 /// `wrong` are measured by closed triangles, and `own_` by what the library's documentation
 /// promises.
 struct LibraryCounts {
-  std::uint64_t asked = 0, missed = 0, wrong = 0;
+  std::uint64_t asked = 0, answered = 0, missed = 0, wrong = 0;
   std::uint64_t own_asked = 0, own_missed = 0, own_wrong = 0;
   std::uint64_t refused = 0, unanswered = 0, crashed = 0, hung = 0, no_memory = 0;
   std::uint64_t twice = 0, differing = 0;  // asked a second time, and answered otherwise then

@@ -19,103 +19,104 @@
 namespace farcull {
 namespace {
 
-constexpr const char* kVariable = "FARCULL_LIBRARIES_SUITE";
-
-// The folder of a suite of somebody else; empty: the suite is made.
-std::string given_suite() {
-  const char* const folder = std::getenv(kVariable);
-  return folder == nullptr ? "" : folder;
-}
-
 SuiteSettings settings_of(bool small, std::uint64_t seed) {
   return {.size = small ? SuiteSize::small : SuiteSize::full, .seed = seed};
 }
 
-std::vector<std::string> family_names(const std::string& given) {
+std::vector<std::string> last_parts(const std::vector<std::string>& paths, bool extension) {
   std::vector<std::string> out;
-  if (given.empty()) {
-    for (const PairFamily& family : pair_families()) out.push_back(family.name);
-    return out;
-  }
-  for (const std::string& path : read_suite(given).pair_files())
-    out.push_back(std::filesystem::path(path).stem().string());
+  for (const std::filesystem::path path : paths)
+    out.push_back((extension ? path.stem() : path.filename()).string());
   return out;
 }
 
-std::vector<std::string> names_of_meshes(const std::string& given, bool small) {
-  if (given.empty()) return mesh_names(small ? SuiteSize::small : SuiteSize::full);
-  std::vector<std::string> out;
-  for (const std::string& path : read_suite(given).mesh_folders())
-    out.push_back(std::filesystem::path(path).filename().string());
-  return out;
+// Adds a point for each contestant and each name.
+void add(const std::vector<std::string>& names, LibraryPoint point, std::vector<Point>& out) {
+  for (const std::string& name : names) {
+    for (const KnownContestant& contestant : known_contestants()) {
+      if (!(point.mesh ? contestant.meshes : contestant.pairs)) continue;
+      point.contestant = contestant.name;
+      point.family = name;
+      out.emplace_back(point);
+    }
+  }
 }
 
 // The contestants of one family after the other, so that it is made once.
 std::vector<Point> grid(const GridChoice& choice) {
-  const std::string given = given_suite();
+  LibraryPoint pairs{.contestant = {},
+                     .family = {},
+                     .small = choice.quick,
+                     .seed = choice.seed,
+                     .suite = choice.suite};
+  std::vector<std::string> families, meshes;
+  if (choice.suite.empty()) {
+    for (const PairFamily& family : pair_families()) families.push_back(family.name);
+    meshes = mesh_names(choice.quick ? SuiteSize::small : SuiteSize::full);
+  } else {
+    const SuiteIndex index = read_suite(choice.suite);
+    pairs.suite_name = index.sum.substr(0, 8);
+    families = last_parts(index.pair_files(), true);
+    meshes = last_parts(index.mesh_folders(), false);
+  }
+  LibraryPoint of_meshes = pairs;
+  of_meshes.mesh = true;
   std::vector<Point> out;
-  const auto add = [&](const std::string& name, bool mesh) {
-    for (const KnownContestant& contestant : known_contestants()) {
-      if (mesh ? contestant.meshes : contestant.pairs)
-        out.emplace_back(LibraryPoint{contestant.name, name, mesh, choice.quick, choice.seed});
-    }
-  };
-  for (const std::string& family : family_names(given)) add(family, false);
-  for (const std::string& mesh : names_of_meshes(given, choice.quick)) add(mesh, true);
+  add(families, pairs, out);
+  add(meshes, of_meshes, out);
   return out;
 }
 
 // The family that was asked for last.
 const SuitePairs& pairs_of(const LibraryPoint& point) {
   static std::pair<std::string, SuitePairs> last;
-  const std::string given = given_suite();
-  const std::string name = fmt::format("{} {} {} {}", given, point.family, point.small, point.seed);
+  const std::string name = key_of(point).scene + fmt::format(", seed {}", point.seed);
   if (last.first != name) {
-    SuitePairs pairs = given.empty()
+    SuitePairs pairs = point.suite.empty()
                            ? make_pairs(point.family, settings_of(point.small, point.seed))
-                           : read_pairs(given + "/pairs/" + point.family + ".txt");
+                           : read_pairs(point.suite + "/pairs/" + point.family + ".txt");
     last = {name, std::move(pairs)};
   }
   return last.second;
 }
 
-// A mesh and the folder with its files, which is removed with it where it was made.
+// A mesh, and a folder with its files as a contestant reads them, which is removed with it.
 struct MeshFiles {
-  explicit MeshFiles(const LibraryPoint& point) {
-    const std::string given = given_suite();
-    if (!given.empty()) {
-      folder = given + "/meshes/" + point.family;
-      mesh = read_mesh(folder);
-      return;
-    }
-    mesh = make_mesh(point.family, settings_of(point.small, point.seed));
+  explicit MeshFiles(const LibraryPoint& point)
+      : mesh(point.suite.empty() ? make_mesh(point.family, settings_of(point.small, point.seed))
+                                 : read_mesh(point.suite + "/meshes/" + point.family)) {
     std::string pattern = (std::filesystem::temp_directory_path() / "farcull-mesh-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr)
       throw Error(pattern, "cannot be made", "set TMPDIR to a folder that can be written");
     folder = pattern;
-    made = true;
     for (const SuiteText& text : mesh_texts(mesh)) {
       std::ofstream file(folder + "/" + text.name, std::ios::binary);
       file << text.text;
-      if (!file.flush()) throw Error(folder, "cannot be written", "free space in TMPDIR");
+      if (!file.flush()) {
+        remove();
+        throw Error(folder, "cannot be written", "free space in TMPDIR");
+      }
     }
   }
-  ~MeshFiles() {
-    std::error_code error;
-    if (made) std::filesystem::remove_all(folder, error);
-  }
+  ~MeshFiles() { remove(); }
   MeshFiles(const MeshFiles&) = delete;
   MeshFiles& operator=(const MeshFiles&) = delete;
 
   SuiteMesh mesh;
   std::string folder;
-  bool made = false;
+
+ private:
+  void remove() const {
+    std::error_code error;
+    std::filesystem::remove_all(folder, error);
+  }
 };
 
 LibraryCounts counts_of(const ContestantCard& card, const std::vector<Score>& scores) {
   LibraryCounts out;
   for (const Score& score : scores) {
     out.asked += score.asked;
+    out.answered += score.answered;
     out.missed += score.missed;
     out.wrong += score.wrong;
     out.own_asked += score.own_asked;
@@ -181,12 +182,17 @@ void add_examples(const Invited& invited, const ContestLimits& limits,
 PointResult ask_about_pairs(const LibraryPoint& point, const Invited& invited,
                             const ContestLimits& limits) {
   std::vector<SuitePair> asked;
+  std::uint64_t left_out = 0;
   for (const SuitePair& pair : pairs_of(point).pairs) {
-    if (takes(invited.card, pair)) asked.push_back(pair);
+    if (takes(invited.card, pair)) {
+      asked.push_back(pair);
+    } else {
+      ++left_out;
+    }
   }
   const PairsAnswer answer = ask_pairs(invited, asked, limits);
   LibraryCounts counts = counts_of(invited.card, score_pairs(invited.card, asked, answer));
-  counts.neighbours_left_out = pairs_of(point).pairs.size() - asked.size();
+  counts.neighbours_left_out = left_out;
   double ns = 0;
   for (const ContestAnswer& one : answer.answers) ns += one.ns;
   add_firsts(asked, answer.answers, counts);

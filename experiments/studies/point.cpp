@@ -95,8 +95,10 @@ PointKey key_of(const PlacementPoint& point) {
 
 PointKey key_of(const LibraryPoint& point) {
   PointKey key;
-  key.scene = fmt::format("{}/{}/{}", point.small ? "small" : "full",
-                          point.mesh ? "meshes" : "pairs", point.family);
+  const std::string suite = !point.suite.empty() ? "suite-" + point.suite_name
+                            : point.small        ? "small"
+                                                 : "full";
+  key.scene = fmt::format("{}/{}/{}", suite, point.mesh ? "meshes" : "pairs", point.family);
   key.method = point.contestant;
   key.seed = point.seed;
   return key;

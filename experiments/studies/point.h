@@ -101,8 +101,10 @@ struct LibraryPoint {
   std::string contestant;
   std::string family;  // or the name of the mesh
   bool mesh = false;
-  bool small = false;      // of the small suite; else of the full one
-  std::uint64_t seed = 1;  // of the suite
+  bool small = false;           // of the small suite; else of the full one
+  std::uint64_t seed = 1;       // of the suite
+  std::string suite = {};       // the folder of a suite that is given; empty: it is made
+  std::string suite_name = {};  // of that: the beginning of its sum
 };
 
 using Point = std::variant<RunPoint, PeerPoint, LemmaPoint, PlacementPoint, LibraryPoint>;

@@ -48,7 +48,7 @@ struct StudiesSummary {
   /// Points whose measuring failed, in words, with the error. They have no row and are tried again
   /// by the next run.
   std::vector<std::string> failed;
-  /// Rows, of this run or an earlier one, of methods that promise and missed. Empty, or the worst
+  /// Rows, of this run or an earlier one, of methods that broke their promise. Empty, or the worst
   /// has happened.
   std::vector<std::string> broken;
 };

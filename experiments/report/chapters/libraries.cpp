@@ -33,24 +33,8 @@ std::uint64_t deaths(const Rows& rows) {
 }
 
 // Questions without an answer, for whatever reason.
-std::uint64_t without_answer(const Row& row) {
-  const Rows one = {&row};
-  return number_of(row, "refused") + number_of(row, "unanswered") + number_of(row, "not_asked") +
-         deaths(one);
-}
-std::uint64_t without_answer(const Score& score) {
-  return score.refused + score.unanswered + score.not_asked + score.crashed + score.hung +
-         score.no_memory;
-}
-
-// Pairs that were answered; of a mesh, which is one question, all pairs or none.
-std::uint64_t answered(const Rows& rows) {
-  std::uint64_t out = 0;
-  for (const Row* row : rows) {
-    const std::uint64_t asked = number_of(*row, "asked"), none = without_answer(*row);
-    out += of_pairs(*row) ? asked - std::min(asked, none) : none == 0 ? asked : 0;
-  }
-  return out;
+std::uint64_t without_answer(const Rows& rows) {
+  return total(rows, "refused") + total(rows, "unanswered") + deaths(rows);
 }
 
 // Per million of what was answered; "0" is none at all.
@@ -63,7 +47,7 @@ std::string per_million(std::uint64_t count, std::uint64_t of) {
 std::string ns_per_pair(const Rows& rows) {
   double ms = 0;
   for (const Row* row : rows) ms += time_of(*row, "total").value_or(0);
-  const std::uint64_t pairs = answered(rows);
+  const std::uint64_t pairs = total(rows, "answered");
   return pairs == 0 ? "-" : rounded(1e6 * ms / static_cast<double>(pairs));
 }
 
@@ -81,7 +65,7 @@ DataTable overview(const std::string& name, const std::string& what, const Rows&
   for (const NamedRows& one : rows_by_contestant(rows)) {
     const Rows& of = one.rows;
     const std::uint64_t asked = total(of, "asked"), own = total(of, "own_asked"),
-                        said = answered(of);
+                        said = total(of, "answered");
     double ms = 0;
     for (const Row* row : of) ms += time_of(*row, "total").value_or(0);
     out.rows.push_back(
@@ -99,8 +83,8 @@ DataTable overview(const std::string& name, const std::string& what, const Rows&
 DataTable families_table(const Rows& rows) {
   DataTable out{.name = "libraries-families",
                 .caption =
-                    "Missed / wrong / refused / crashed per million pairs of each family, by "
-                    "closed triangles; of meshes the counts",
+                    "Missed / wrong per million answers and refused / crashed per million pairs "
+                    "of each family, by closed triangles; of meshes the counts",
                 .columns = {text_column("contestant")}};
   std::vector<std::string> families;
   for (const Row* row : rows) {
@@ -117,12 +101,13 @@ DataTable families_table(const Rows& rows) {
       for (const Row* row : one.rows) {
         if (family_of(*row) == family) of.push_back(row);
       }
-      const std::uint64_t asked = family.starts_with("pairs/") ? total(of, "asked") : 1'000'000;
-      cells.push_back(of.empty() || (family.starts_with("pairs/") && total(of, "asked") == 0)
+      const bool pairs = family.starts_with("pairs/");
+      const std::uint64_t asked = pairs ? total(of, "asked") : 1'000'000,
+                          said = pairs ? total(of, "answered") : asked;
+      cells.push_back(of.empty() || (pairs && asked == 0)
                           ? "-"
-                          : fmt::format("{} / {} / {} / {}",
-                                        per_million(total(of, "missed"), asked),
-                                        per_million(total(of, "wrong"), asked),
+                          : fmt::format("{} / {} / {} / {}", per_million(total(of, "missed"), said),
+                                        per_million(total(of, "wrong"), said),
                                         per_million(total(of, "refused"), asked),
                                         per_million(deaths(of), asked)));
     }
@@ -150,8 +135,7 @@ DataTable kinds_table(const Rows& rows) {
     cells.push_back(one.rows.front()->point.method);
     for (const std::string& kind : kinds) {
       const Score& sum = sums[kind];
-      cells.push_back(per_million(sum.missed + sum.wrong,
-                                  sum.asked - std::min(sum.asked, without_answer(sum))));
+      cells.push_back(per_million(sum.missed + sum.wrong, sum.answered));
     }
   }
   return out;
@@ -226,7 +210,7 @@ Figure time_figure(const Rows& rows) {
   for (const NamedRows& one : rows_by_contestant(rows)) {
     double ms = 0;
     for (const Row* row : one.rows) ms += time_of(*row, "total").value_or(0);
-    const auto asked = static_cast<double>(answered(one.rows));
+    const auto asked = static_cast<double>(total(one.rows, "answered"));
     if (asked == 0 || ms == 0) continue;
     const auto errors = static_cast<double>(total(one.rows, "missed") + total(one.rows, "wrong"));
     const Row& row = *one.rows.front();
@@ -258,12 +242,11 @@ Panel parameter_panel(const Rows& rows, const std::string& family, const std::st
     Series series{.name = one.rows.front()->point.method};
     bool errs = false;
     for (const auto& [parameter, sum] : by_parameter) {
-      const std::uint64_t said = sum.asked - std::min(sum.asked, without_answer(sum));
-      if (said == 0) continue;
+      if (sum.answered == 0) continue;
       errs = errs || sum.missed + sum.wrong > 0;
       series.x.push_back(parameter);
       series.y.push_back(1e6 * static_cast<double>(sum.missed + sum.wrong) /
-                         static_cast<double>(said));
+                         static_cast<double>(sum.answered));
     }
     if (errs) out.series.push_back(std::move(series));
   }
@@ -300,8 +283,7 @@ void add_ours(const Rows& rows, Chapter& chapter) {
         chapter.find_broken(
             fmt::format("{}: {} {}, and it promises none.", name, of_all(bad, asked), count));
     }
-    std::uint64_t silent = 0;
-    for (const Row* row : of) silent += without_answer(*row);
+    const std::uint64_t silent = without_answer(of);
     if (silent > 0)
       chapter.find_broken(fmt::format("{} has no answer to {} questions.", name, grouped(silent)));
     if (total(of, "missed") + total(of, "wrong") + silent == 0)

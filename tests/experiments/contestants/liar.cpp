@@ -99,6 +99,12 @@ int main(int argc, char** argv) {
                          if (number_of(pair) == 33) take_all_memory();
                          return truth(pair);
                        }),
+                  // Keeps what it takes: no pair of its own takes much.
+                  liar("leaks",
+                       [kept = std::vector<std::vector<char>>()](const ContestPair& pair) mutable {
+                         kept.emplace_back(std::size_t{4} << 20, 'x');
+                         return truth(pair);
+                       }),
                   liar("differs",
                        [asked = 0](const ContestPair& pair) mutable {
                          // Right on every question of the first process, wrong on the first of a
