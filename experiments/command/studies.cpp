@@ -13,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/view/view.h"
+#include "experiments/contestants/known.h"
 #include "experiments/studies/merge.h"
 #include "experiments/studies/provenance.h"
 #include "experiments/studies/run_studies.h"
@@ -90,6 +91,9 @@ void StudiesCommand::add_to(CLI::App& experiment) {
       add_option(*command, "--suite", suite_, "DIR",
                  "ask about this suite, which may be without labels,\n"
                  "instead of the one that farcull suite makes");
+      add_option(*command, "--contestants", contestants_, "NAMES",
+                 "ask these alone, as in far,far-pairs,exact; default all.\n"
+                 "Methods of farcull run on native unless --device is given");
     }
     add_footer(*command,
                fmt::format("Examples:\n"
@@ -156,6 +160,11 @@ int StudiesCommand::run() {
   if (request.studies.front().campaign) ::setenv("FARCULL_CLOTH", (out_ + "/cloth").c_str(), 0);
   if (suite_) check_files(*suite_, read_suite(*suite_));
   request.choice = {.quick = quick_, .seed = seed_, .suite = suite_.value_or("")};
+  if (contestants_) {
+    request.choice.contestants = split_list(*contestants_);
+    for (const std::string& contestant : request.choice.contestants)
+      (void)known_contestant(contestant);
+  }
   request.resume = resume_;
   request.shard = shard_ ? parse_shard(*shard_)
                          : shard_from_environment([](const char* v) { return std::getenv(v); });

@@ -32,7 +32,7 @@ class StudiesCommand {
   std::string out_ = kResultsFolder;
   bool quick_ = false, resume_ = false;
   std::uint64_t seed_ = 1;
-  Text shard_, device_, devices_, suite_;
+  Text shard_, device_, devices_, suite_, contestants_;
 };
 
 class MergeCommand {

@@ -1,5 +1,6 @@
-// farcull's own methods as contestants: far-pairs by the library, the others as `farcull run` runs
-// them on the cores of the CPU, or on the device that the variable FARCULL_CONTEST_DEVICE names.
+// farcull's own methods as contestants, on the device that the variable FARCULL_CONTEST_DEVICE
+// names, or on the cores of the CPU: there far-pairs runs by the library, the others as `farcull
+// run` runs them.
 #include <algorithm>
 #include <cstdlib>
 #include <map>
@@ -121,10 +122,22 @@ Contestant of_method(Method method, const std::string& says, const std::string& 
       {.name = to_string(method),
        .neighbours = tests_self(method),
        .promises = exact || promises(RunOptions{.method = method}),
-       .call = "farcull run --method " + to_string(method) + " --device native",
+       .call = "farcull run --method " + to_string(method) + " --device " + device(),
        .says = says,
        .use = use},
       [method](const Scene& scene) { return pairs_by(method, scene); }, tests_self_alone(method));
+}
+
+constexpr const char* kWhereNoneIsMissed = "where no pair may be missed";
+
+Contestant far_pairs_of_library(const std::string& says) {
+  return contestant({.name = "far-pairs",
+                     .neighbours = true,
+                     .promises = true,
+                     .call = "farcull::Collider::find() on the CPU",
+                     .says = says,
+                     .use = kWhereNoneIsMissed},
+                    pairs_by_library);
 }
 
 }  // namespace
@@ -137,13 +150,8 @@ int main(int argc, char** argv) {
   const char* const published = "to see what the published method loses";
   return contest(
       argc, argv,
-      {contestant({.name = "far-pairs",
-                   .neighbours = true,
-                   .promises = true,
-                   .call = "farcull::Collider::find() on the CPU",
-                   .says = reliable,
-                   .use = "where no pair may be missed"},
-                  pairs_by_library),
+      {device() == "native" ? far_pairs_of_library(reliable)
+                            : of_method(Method::far_pairs, reliable, kWhereNoneIsMissed),
        of_method(Method::exact, "every pair whose boxes meet is decided exactly",
                  "the answer to compare with"),
        of_method(Method::far, reliable, "FAR as published, with the radius of the budget"),

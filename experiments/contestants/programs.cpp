@@ -90,9 +90,11 @@ const KnownContestant& known_contestant(const std::string& name) {
   const std::vector<KnownContestant>& all = known_contestants();
   const auto at = std::find_if(all.begin(), all.end(),
                                [&](const KnownContestant& of) { return of.name == name; });
-  if (at == all.end())
-    throw Error("contestant", "'" + name + "' is none",
-                "farcull experiment libraries --help has the list");
+  if (at == all.end()) {
+    std::string names;
+    for (const KnownContestant& of : all) names += (names.empty() ? "" : ", ") + of.name;
+    throw Error("contestant", "'" + name + "' is none", "choose of " + names);
+  }
   return *at;
 }
 

@@ -312,6 +312,8 @@ class Reporter {
       ++summary_.tables;
     }
     write_output(tables_ + "/" + drawn.chapter.study + "-rows.csv", rows_csv(stored));
+    for (const TextFile& file : drawn.chapter.files)
+      write_output(root_ + "/" + file.name, file.text);
     for (const Picture& picture : drawn.chapter.pictures)
       drawn.pictures.push_back(draw(picture, drawn.chapter));
     put_broken_first(drawn.chapter);

@@ -141,7 +141,7 @@ struct LibraryCounts {
   /// IDs of the first pairs of their kind in the family.
   std::optional<std::uint64_t> first_missed = {}, first_wrong = {}, first_death = {};
   /// Minimized (contestants/minimize.h) from the first of their kind about which the documentation
-  /// promises the answer: 18 coordinates; empty where there is none.
+  /// promises the answer: the line of a pair with ID 0 (suite/writer.h); empty where there is none.
   std::string example_missed = {}, example_wrong = {}, example_death = {};
 };
 

@@ -12,6 +12,7 @@
 #include "experiments/contestants/known.h"
 #include "experiments/contestants/minimize.h"
 #include "experiments/contestants/score.h"
+#include "experiments/measure/lab.h"
 #include "experiments/studies/study.h"
 #include "experiments/suite/pair_makers.h"
 #include "experiments/suite/writer.h"
@@ -30,11 +31,16 @@ std::vector<std::string> last_parts(const std::vector<std::string>& paths, bool 
   return out;
 }
 
-// Adds a point for each contestant and each name.
-void add(const std::vector<std::string>& names, LibraryPoint point, std::vector<Point>& out) {
+// Adds a point for each contestant that was chosen and each name.
+void add(const std::vector<std::string>& names, const GridChoice& choice, LibraryPoint point,
+         std::vector<Point>& out) {
+  const std::vector<std::string>& chosen = choice.contestants;
   for (const std::string& name : names) {
     for (const KnownContestant& contestant : known_contestants()) {
       if (!(point.mesh ? contestant.meshes : contestant.pairs)) continue;
+      if (!chosen.empty() &&
+          std::find(chosen.begin(), chosen.end(), contestant.name) == chosen.end())
+        continue;
       point.contestant = contestant.name;
       point.family = name;
       out.emplace_back(point);
@@ -62,8 +68,8 @@ std::vector<Point> grid(const GridChoice& choice) {
   LibraryPoint of_meshes = pairs;
   of_meshes.mesh = true;
   std::vector<Point> out;
-  add(families, pairs, out);
-  add(meshes, of_meshes, out);
+  add(families, choice, pairs, out);
+  add(meshes, choice, of_meshes, out);
   return out;
 }
 
@@ -175,7 +181,9 @@ void add_examples(const Invited& invited, const ContestLimits& limits,
                             : wrong(pairs[i], outcome)  ? &counts.example_wrong
                                                         : nullptr;
     if (to == nullptr || !to->empty()) continue;
-    *to = coordinates_text(minimized(invited, {pairs[i], outcome}, limits));
+    SuitePair small = minimized(invited, {pairs[i], outcome}, limits);
+    small.id = 0;
+    *to = pair_line(small);
   }
 }
 
@@ -200,8 +208,10 @@ PointResult ask_about_pairs(const LibraryPoint& point, const Invited& invited,
   return {.counts = counts, .times = {.total = ns / 1e6}, .device = "process"};
 }
 
-PointResult measure(const Point& at, Lab&) {
+PointResult measure(const Point& at, Lab& lab) {
   const auto& point = std::get<LibraryPoint>(at);
+  // Processes of our own methods read it.
+  ::setenv("FARCULL_CONTEST_DEVICE", lab.device().c_str(), 1);
   const Invitation invitation = invite_known(known_contestant(point.contestant));
   if (!invitation.invited) return {.device = "none", .left_out = invitation.missing};
   const ContestLimits limits = point.small

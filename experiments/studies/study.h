@@ -19,6 +19,7 @@ struct GridChoice {
   bool quick = false;      // the small one, for a first look and for tests
   std::uint64_t seed = 1;  // what random points are drawn from; at least 1
   std::string suite = {};  // of the study "libraries": the folder of a suite; empty: it is made
+  std::vector<std::string> contestants = {};  // of the same study: those to ask; empty: all
 };
 
 struct Study {

@@ -95,6 +95,24 @@ class Folder {
 
 }  // namespace
 
+std::string pair_line(const SuitePair& pair) {
+  std::string shared;
+  for (const auto& [i, j] : pair.shared)
+    shared += fmt::format("{}{}-{}", shared.empty() ? "" : ",", i, j);
+  if (shared.empty()) shared = "-";
+  std::string out =
+      fmt::format("{} {} {} {}", pair.id, decimal(pair.parameter), shared, to_string(pair.kind));
+  for (const auto* t : {&pair.a, &pair.b}) {
+    for (const Vec3& p : *t) {
+      for (int k = 0; k < 3; ++k) {
+        out += ' ';
+        append_hexadecimal(out, p[k]);
+      }
+    }
+  }
+  return out;
+}
+
 std::string pairs_text(const SuitePairs& pairs) {
   std::string out = "farcull-pairs 1 " + pairs.family + "\n";
   for (const PairFamily& family : pair_families()) {
@@ -102,23 +120,7 @@ std::string pairs_text(const SuitePairs& pairs) {
     out += "# " + family.description + "\n";
     if (!family.parameter.empty()) out += "# parameter: " + family.parameter + "\n";
   }
-  for (const SuitePair& pair : pairs.pairs) {
-    std::string shared;
-    for (const auto& [i, j] : pair.shared)
-      shared += fmt::format("{}{}-{}", shared.empty() ? "" : ",", i, j);
-    if (shared.empty()) shared = "-";
-    fmt::format_to(std::back_inserter(out), "{} {} {} {}", pair.id, decimal(pair.parameter), shared,
-                   to_string(pair.kind));
-    for (const auto* t : {&pair.a, &pair.b}) {
-      for (const Vec3& p : *t) {
-        for (int k = 0; k < 3; ++k) {
-          out += ' ';
-          append_hexadecimal(out, p[k]);
-        }
-      }
-    }
-    out += '\n';
-  }
+  for (const SuitePair& pair : pairs.pairs) out += pair_line(pair) + "\n";
   return out;
 }
 

@@ -50,6 +50,8 @@ SuiteMesh make_mesh(const std::string& name, const SuiteSettings& settings);
 
 /// The text of a file of pairs, and of the files of a mesh by their names in its folder, ascending.
 std::string pairs_text(const SuitePairs& pairs);
+/// The line of one pair in such a file, without its newline.
+std::string pair_line(const SuitePair& pair);
 struct SuiteText {
   std::string name;
   std::string text;

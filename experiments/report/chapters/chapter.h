@@ -86,6 +86,12 @@ struct Picture {
   std::vector<PanelCounts> panels = {};  // from the left
 };
 
+/// A file of the report that is made for programs.
+struct TextFile {
+  std::string name;  // in the report's folder
+  std::string text;
+};
+
 /// One sentence with numbers from the rows.
 struct Finding {
   enum class Kind { result, broken } kind = Kind::result;  // broken: a promise was not kept
@@ -108,6 +114,7 @@ struct Chapter {
   std::vector<DataTable> tables;
   std::string command;  // that measures it again
   std::vector<Picture> pictures = {};
+  std::vector<TextFile> files = {};
 
   void find(std::string text) { findings.push_back({Finding::Kind::result, std::move(text)}); }
   void find_broken(std::string text) { findings.push_back(broken_promise(std::move(text))); }

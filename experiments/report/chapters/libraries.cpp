@@ -7,6 +7,7 @@
 #include <map>
 
 #include "experiments/contestants/score.h"
+#include "experiments/report/chapters/library_examples.h"
 #include "experiments/report/chapters/numbers.h"
 #include "experiments/report/chapters/rows.h"
 #include "experiments/system/text_table.h"
@@ -14,10 +15,13 @@
 namespace farcull {
 namespace {
 
+constexpr const char* kReference = "far-pairs";  // stands beside all others in figures
+
 // "pairs/random" of "small/pairs/random".
 std::string family_of(const Row& row) {
   return row.point.scene.substr(row.point.scene.find('/') + 1);
 }
+bool is_ours(const Row& row) { return text_of(row, "library") == "farcull"; }
 bool of_pairs(const Row& row) { return family_of(row).starts_with("pairs/"); }
 
 Rows rows_of_kind(const StoredStudy& stored, bool pairs) {
@@ -155,26 +159,19 @@ DataTable calls_table(const Rows& rows) {
   return out;
 }
 
-// Of each contestant the example with the fewest characters, for each kind of fault.
-DataTable examples_table(const Rows& rows) {
-  DataTable out{.name = "libraries-examples",
-                .caption =
-                    "The smallest pair of each kind of fault, of pairs of which the "
-                    "documentation promises the answer: the corners of the first triangle, "
-                    "then those of the second",
-                .columns = columns({"contestant", "fault", "family", "coordinates"}, {})};
+// Of each library's contestant the example with the fewest characters, for each kind of fault.
+std::vector<LibraryExample> examples_of(const Rows& rows) {
+  std::vector<LibraryExample> out;
   for (const NamedRows& one : rows_by_contestant(rows)) {
+    if (is_ours(*one.rows.front())) continue;
     for (const char* fault : {"missed", "wrong", "death"}) {
-      const Row* best = nullptr;
-      std::string example;
+      LibraryExample best;
       for (const Row* row : one.rows) {
-        const std::string text = text_of(*row, std::string("example_") + fault);
-        if (text.empty() || (best != nullptr && text.size() >= example.size())) continue;
-        best = row;
-        example = text;
+        const std::string line = text_of(*row, std::string("example_") + fault);
+        if (line.empty() || (!best.line.empty() && line.size() >= best.line.size())) continue;
+        best = {row->point.method, fault, family_of(*row), line};
       }
-      if (best != nullptr)
-        out.rows.push_back({best->point.method, fault, family_of(*best), example});
+      if (!best.line.empty()) out.push_back(best);
     }
   }
   return out;
@@ -203,36 +200,82 @@ DataTable all_table(const Rows& rows) {
   return out;
 }
 
-Figure time_figure(const Rows& rows) {
-  Panel panel{.title = "all families of pairs",
-              .x = logarithmic("time of a pair (ns)"),
-              .y = logarithmic("wrong answers per million", true)};
-  for (const NamedRows& one : rows_by_contestant(rows)) {
-    double ms = 0;
-    for (const Row* row : one.rows) ms += time_of(*row, "total").value_or(0);
-    const auto asked = static_cast<double>(total(one.rows, "answered"));
-    if (asked == 0 || ms == 0) continue;
-    const auto errors = static_cast<double>(total(one.rows, "missed") + total(one.rows, "wrong"));
-    const Row& row = *one.rows.front();
-    panel.series.push_back({.name = row.point.method,
-                            .x = {1e6 * ms / asked},
-                            .y = {1e6 * errors / asked},
-                            .style = Series::Style::points,
-                            .emphasis = promises(row)});
+// Contestants that stand in one panel, by the first word of their library; the last group takes the
+// others.
+struct Group {
+  const char* title;
+  std::vector<std::string> libraries;
+};
+const std::vector<Group>& groups() {
+  static const std::vector<Group> all = {
+      {"farcull", {"farcull"}},
+      {"libraries for simulation", {"FCL", "Bullet", "ODE", "libccd"}},
+      {"libraries for meshes", {"CGAL", "GTS", "VTK", "Open3D", "three-mesh-bvh"}},
+      {"tests of papers, others", {}}};
+  return all;
+}
+std::size_t group_of(const NamedRows& one) {
+  const std::string library = text_of(*one.rows.front(), "library");
+  const std::string word = library.substr(0, library.find(' '));
+  for (std::size_t g = 0; g < groups().size(); ++g) {
+    const std::vector<std::string>& of = groups()[g].libraries;
+    if (of.empty() || std::find(of.begin(), of.end(), word) != of.end()) return g;
   }
-  return {.name = "libraries-time",
-          .title = "Wrong answers against time",
-          .caption =
-              "Pairs answered otherwise than the label of closed triangles, over the mean "
-              "time of a question as the contestant's own process measured it. Neighbours "
-              "are asked of those alone that know them.",
-          .panels = {panel}};
+  return groups().size() - 1;
 }
 
-// Errors over the parameter of a family, of the contestants that err there.
-Panel parameter_panel(const Rows& rows, const std::string& family, const std::string& label) {
-  Panel out{.title = family, .x = logarithmic(label, true), .y = logarithmic("per million", true)};
+// The mean time of a pair, and wrong answers: a point. Empty: there is none.
+std::optional<Series> time_series(const NamedRows& one) {
+  double ms = 0;
+  for (const Row* row : one.rows) ms += time_of(*row, "total").value_or(0);
+  const auto said = static_cast<double>(total(one.rows, "answered"));
+  if (said == 0 || ms == 0) return std::nullopt;
+  const auto errors = static_cast<double>(total(one.rows, "missed") + total(one.rows, "wrong"));
+  const Row& row = *one.rows.front();
+  return Series{.name = row.point.method,
+                .x = {1e6 * ms / said},
+                .y = {1e6 * errors / said},
+                .style = Series::Style::points,
+                .emphasis = row.point.method == kReference};
+}
+
+// A panel for each group; the reference stands in all of them.
+Figure time_figure(const Rows& rows) {
+  Figure out{.name = "libraries-time",
+             .title = "Wrong answers against time",
+             .caption = fmt::format(
+                 "Pairs answered otherwise than the label of closed triangles, over the mean time "
+                 "of a question as the contestant's own process measured it. {} stands in every "
+                 "panel. Neighbours are asked of those alone that know them.",
+                 kReference)};
+  for (std::size_t g = 0; g < groups().size(); ++g) {
+    Panel panel{.title = groups()[g].title,
+                .x = logarithmic("time of a pair (ns)"),
+                .y = logarithmic("wrong per million", true)};
+    panel.x.from = 50;
+    panel.x.to = 2e6;
+    panel.y.to = 1e6;
+    bool any = false;
+    for (const NamedRows& one : rows_by_contestant(rows)) {
+      const bool here = group_of(one) == g;
+      if (!here && one.rows.front()->point.method != kReference) continue;
+      std::optional<Series> series = time_series(one);
+      any = any || (here && series);
+      if (series) panel.series.push_back(std::move(*series));
+    }
+    if (any) out.panels.push_back(std::move(panel));
+  }
+  return out;
+}
+
+// Errors over the parameter of a family, of the contestants of a group that err there.
+Panel parameter_panel(const Rows& rows, std::size_t group, const std::string& family,
+                      const std::string& label) {
+  Panel out{.title = family + ", " + groups()[group].title,
+            .x = logarithmic(label, true),
+            .y = logarithmic("per million", true)};
   for (const NamedRows& one : rows_by_contestant(rows)) {
+    if (group_of(one) != group) continue;
     std::map<double, Score> by_parameter;
     for (const Row* row : one.rows) {
       if (family_of(*row) != "pairs/" + family) continue;
@@ -253,18 +296,21 @@ Panel parameter_panel(const Rows& rows, const std::string& family, const std::st
   return out;
 }
 
-void add_parameter_figure(const Rows& rows, Chapter& chapter) {
-  Figure out{.name = "libraries-parameter",
-             .title = "Wrong answers against the parameter of a family",
-             .caption =
-                 "Pairs answered otherwise than the label, per million of the pairs with "
-                 "that parameter; contestants without an error in a family are left out."};
+// A figure for each family; a panel for each group of contestants.
+void add_parameter_figures(const Rows& rows, Chapter& chapter) {
   for (const auto& [family, label] : std::vector<std::pair<const char*, const char*>>{
            {"slivers", "aspect"}, {"gap-face", "gap"}, {"far-away", "distance from the origin"}}) {
-    Panel panel = parameter_panel(rows, family, label);
-    if (!panel.series.empty()) out.panels.push_back(std::move(panel));
+    Figure out{.name = std::string("libraries-") + family,
+               .title = fmt::format("Wrong answers against the parameter of {}", family),
+               .caption =
+                   "Pairs answered otherwise than the label, per million of those answered with "
+                   "that parameter; contestants without an error in this family are left out."};
+    for (std::size_t g = 0; g < groups().size(); ++g) {
+      Panel panel = parameter_panel(rows, g, family, label);
+      if (!panel.series.empty()) out.panels.push_back(std::move(panel));
+    }
+    if (!out.panels.empty()) chapter.figures.push_back(std::move(out));
   }
-  if (!out.panels.empty()) chapter.figures.push_back(std::move(out));
 }
 
 // Our own: a wrong answer of a method that promises breaks the promise.
@@ -294,11 +340,17 @@ void add_ours(const Rows& rows, Chapter& chapter) {
 
 // The contestants that gave no wrong answer by their own words, and the worst of the others.
 void add_others(const Rows& rows, Chapter& chapter) {
-  std::vector<std::string> right, dead;
+  std::vector<std::string> right, dead, published;
   std::vector<std::pair<double, std::string>> worst;
   for (const NamedRows& one : rows_by_contestant(rows)) {
     const Row& row = *one.rows.front();
     if (promises(row) || total(one.rows, "own_asked") == 0) continue;
+    if (is_ours(row)) {
+      const std::uint64_t lost = total(one.rows, "missed") + total(one.rows, "wrong");
+      published.push_back(
+          fmt::format("{} ({})", row.point.method, of_all(lost, total(one.rows, "answered"))));
+      continue;
+    }
     const std::uint64_t bad = total(one.rows, "own_missed") + total(one.rows, "own_wrong"),
                         own = total(one.rows, "own_asked");
     if (bad == 0) {
@@ -319,6 +371,11 @@ void add_others(const Rows& rows, Chapter& chapter) {
   if (!names.empty())
     chapter.find("Wrong answers about pairs of which their documentation promises the answer: " +
                  listed(names) + ".");
+  if (!published.empty())
+    chapter.find(
+        "Methods as they were published, which promise nothing below the size of a pixel: "
+        "wrong answers of " +
+        listed(published) + ".");
   if (!dead.empty())
     chapter.find(
         "Questions at which the process crashed, hung or ran out of memory: " + listed(dead) + ".");
@@ -345,10 +402,10 @@ Chapter libraries_chapter(const StoredStudy& stored) {
   if (!pairs.empty()) {
     out.tables.push_back(overview("libraries", "Pairs of triangles", pairs, true));
     out.tables.push_back(kinds_table(pairs));
-    out.tables.push_back(examples_table(pairs));
+    add_examples(examples_of(pairs), out);
     const Figure time = time_figure(pairs);
-    if (!time.panels.front().series.empty()) out.figures.push_back(time);
-    add_parameter_figure(pairs, out);
+    if (!time.panels.empty()) out.figures.push_back(time);
+    add_parameter_figures(pairs, out);
   }
   if (!meshes.empty())
     out.tables.push_back(overview("libraries-meshes", "Colliding pairs of meshes", meshes, false));

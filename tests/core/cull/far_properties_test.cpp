@@ -1,6 +1,7 @@
 // FAR as a property on the worst canvas; the same on GL in gl_far_properties_test.cpp.
 #include "tests/core/cull/far_properties.h"
 
+#include "tests/core/base/trials.h"
 #include "verify/worst_canvas.h"
 
 namespace farcull {
@@ -11,7 +12,7 @@ std::unique_ptr<Canvas> worst(const Fattener& fattener) {
 }
 
 TEST(FarProperty, NoFamilyOfExtremeScenesLosesAPairOnTheWorstCanvas) {
-  lab::expect_far_survives_all_families(worst, 40, "worst");
+  lab::expect_far_survives_all_families(worst, trials(40, 12), "worst");
 }
 
 TEST(FarProperty, KeptCasesStayMended) { EXPECT_GT(lab::replay_cases(worst), 0); }

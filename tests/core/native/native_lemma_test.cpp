@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "offsets/fit.h"
+#include "tests/core/base/trials.h"
 #include "tests/core/canvas/lemma_suite.h"
 #include "tests/core/cull/far_properties.h"
 #include "verify/worst_canvas.h"
@@ -26,7 +27,9 @@ lab::MakeCanvas worst() {
   };
 }
 
-TEST(NativeLemma, Lemmas1And2HoldAtTheBudgetRadius) { lab::expect_lemmas(canvases(), 400'000); }
+TEST(NativeLemma, Lemmas1And2HoldAtTheBudgetRadius) {
+  lab::expect_lemmas(canvases(), trials(400'000));
+}
 
 TEST(NativeLemma, AndOnTheWorstCanvasThatKeepsItsPromises) { lab::expect_lemmas(worst(), 60'000); }
 
@@ -114,7 +117,7 @@ TEST(NativeLemma, Theorem1IntersectingTrianglesSeeEachOther) {
 TEST(NativeLemma, Corollary1UnseenMeansDisjoint) { lab::expect_corollary1(canvases(), 40); }
 
 TEST(NativeFarProperty, NoFamilyOfExtremeScenesLosesAPair) {
-  lab::expect_far_survives_all_families(canvases(), 250, "native");
+  lab::expect_far_survives_all_families(canvases(), trials(250, 40), "native");
 }
 TEST(NativeFarProperty, NorOn24BitDepth) {
   lab::expect_far_survives_all_families(canvases({.depth_bits = 24}), 50, "native24");

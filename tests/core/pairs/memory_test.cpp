@@ -8,6 +8,7 @@
 
 #include "core/pairs/regions.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "tests/core/base/trials.h"
 #include "tests/core/pairs/pairs_lab.h"
 #include "verify/exact.h"
 
@@ -138,7 +139,7 @@ TEST(PairMemory, IsNotMisledByWhatHappenedBetweenTwoFrames) {
   Random random(12);
   std::vector<Scene> all = scenes();
   Film film;
-  for (int frame = 0; frame < 300; ++frame) {
+  for (int frame = 0; frame < trials(300); ++frame) {
     Scene& scene = all[random.below(3)];  // mostly another one than before
     switch (random.below(8)) {
       case 0:  // planned, and not found

@@ -14,6 +14,7 @@
 #include "core/scene/box_join.h"
 #include "core/scene/pair_sort.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "tests/core/base/trials.h"
 #include "tests/core/pairs/pairs_lab.h"
 
 namespace farcull {
@@ -39,8 +40,9 @@ std::vector<PairSettings> all_settings() {
 
 TEST(Pairs, MissNothingOnRandomScenes) {
   const auto backend = cpu_pair_backend(2);
+  constexpr std::uint64_t kScenes = trials(150);
   std::size_t pairs = 0;
-  for (std::uint64_t seed = 0; seed < 150; ++seed) {
+  for (std::uint64_t seed = 0; seed < kScenes; ++seed) {
     const Scene scene = random_scene(seed);
     pairs += truth_of(scene).size();
     for (const PairSettings& settings : all_settings()) {
@@ -48,12 +50,12 @@ TEST(Pairs, MissNothingOnRandomScenes) {
           << "seed " << seed << " at " << settings.resolution;
     }
   }
-  EXPECT_GT(pairs, 1000u);
+  EXPECT_GT(pairs, 1000 * kScenes / 150);
 }
 
 TEST(Pairs, MissNothingInsideObjects) {
   const auto backend = cpu_pair_backend(2);
-  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+  for (std::uint64_t seed = 0; seed < trials(100); ++seed) {
     Scene scene = with_self(random_scene(seed));
     if (seed % 3 == 0) scene.objects[0].self = false;
     for (const PairSettings& settings : all_settings()) {
@@ -65,7 +67,7 @@ TEST(Pairs, MissNothingInsideObjects) {
 
 TEST(Pairs, MissNothingWithinAClearance) {
   const auto backend = cpu_pair_backend(2);
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < trials(60); ++seed) {
     Scene scene = random_scene(seed);
     if (seed % 2 == 0) scene = with_self(std::move(scene));
     for (const double clearance : {0x1p-10, 0.01, 0.3}) {

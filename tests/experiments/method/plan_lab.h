@@ -8,13 +8,14 @@
 
 #include "experiments/method/run.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "tests/core/base/trials.h"
 
 namespace farcull::lab {
 
-/// Every built-in scene, of the packaged meshes or not, cut down to about 20,000 triangles where
-/// its name takes a size.
+/// Every built-in scene, of the packaged meshes or not, cut down to about 20,000 triangles (fewer
+/// under a sanitizer) where its name takes a size.
 inline std::vector<std::string> scene_names(bool of_packaged_meshes) {
-  constexpr double kTriangles = 20000;
+  constexpr double kTriangles = trials(20000);
   std::vector<std::string> names;
   for (const BuiltinScene& scene : builtin_scenes()) {
     if (scene.needs_meshes != of_packaged_meshes) continue;
