@@ -176,7 +176,7 @@ TEST(FarSelf, MissesNothingInTheFamiliesOfExtremeScenes) {
     WorstCanvas canvas(fattener.solid);
     for (const lab::Family& family : lab::families()) {
       Found sum;
-      for (int seed = 0; seed < trials(4, 2); ++seed) {
+      for (int seed = 0; seed < 4; ++seed) {
         const Found found = far_self_on(canvas, extreme(family, seed), fattener, asked_of(seed));
         EXPECT_EQ(found.missed, 0u) << family.name << ", " << fattener.name << ", seed " << seed;
         sum.colliding += found.colliding;
