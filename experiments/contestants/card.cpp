@@ -1,6 +1,8 @@
 // Writes and reads cards, a line for each field.
 #include "experiments/contestants/card.h"
 
+#include <charconv>
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -17,6 +19,12 @@ std::string one_line(std::string text) {
   return text;
 }
 
+/// The shortest decimal number that is read back as this one.
+std::string shortest(double number) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+
 std::optional<bool> yes_or_no(const std::string& text) {
   if (text == "yes") return true;
   if (text == "no") return false;
@@ -25,11 +33,9 @@ std::optional<bool> yes_or_no(const std::string& text) {
 
 // False: the key is unknown or the value is none of it.
 bool set(ContestantCard& card, const std::string& key, const std::string& value) {
-  const std::map<std::string, std::string*> texts = {{"name", &card.name},
-                                                     {"library", &card.library},
-                                                     {"call", &card.call},
-                                                     {"says", &card.says},
-                                                     {"use", &card.use}};
+  const std::map<std::string, std::string*> texts = {
+      {"name", &card.name}, {"library", &card.library}, {"call", &card.call},
+      {"says", &card.says}, {"source", &card.source},   {"use", &card.use}};
   const std::map<std::string, bool*> flags = {{"degenerate", &card.degenerate},
                                               {"neighbours", &card.neighbours},
                                               {"promises", &card.promises},
@@ -47,6 +53,11 @@ bool set(ContestantCard& card, const std::string& key, const std::string& value)
   if (key == "means") {
     card.means = value == "crossing" ? Means::crossing : Means::closed;
     return value == "crossing" || value == "closed";
+  }
+  if (key == "margin") {
+    const auto margin = parse_number<double>(value);
+    if (margin) card.margin = *margin;
+    return margin.has_value() && *margin >= 0 && std::isfinite(*margin);
   }
   if (key == "memory") {
     const auto mib = parse_number<std::uint64_t>(value);
@@ -72,9 +83,11 @@ std::string card_text(const ContestantCard& card) {
   flag("promises", card.promises);
   flag("pairs", card.pairs);
   flag("meshes", card.meshes);
+  if (card.margin > 0) add("margin", shortest(card.margin));
   add("memory", std::to_string(card.memory_mib));
   add("call", card.call);
   add("says", card.says);
+  if (!card.source.empty()) add("source", card.source);
   add("use", card.use);
   return out + "\n";
 }

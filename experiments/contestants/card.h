@@ -20,11 +20,13 @@ struct ContestantCard {
   Means means = Means::closed;
   bool degenerate = true;   // it takes triangles that are segments or points
   bool neighbours = false;  // it is told which corners two triangles share, and leaves that out
-  bool promises = false;    // ours alone: a miss breaks a promise
+  double margin = 0;  // units: triangles that are no farther apart than this may count as colliding
+  bool promises = false;               // ours alone: a miss breaks a promise
   bool pairs = false, meshes = false;  // what it can be asked
   std::uint64_t memory_mib = 4096;     // of addresses, that its process may have
   std::string call = {};               // the function that is called, and with what
-  std::string says = {};               // what its documentation says of exactness
+  std::string says = {};               // what its documentation says of exactness and of touching
+  std::string source = {};             // where it says that; others' contestants may leave it out
   std::string use = {};                // where it is right to be used
 };
 

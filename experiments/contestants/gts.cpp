@@ -94,19 +94,22 @@ int main(int argc, char** argv) {
   using namespace farcull;
   return contest(
       argc, argv,
-      {{.card = {.name = "gts",
-                 .library = "GTS " + std::to_string(gts_major_version) + "." +
-                            std::to_string(gts_minor_version) + "." +
-                            std::to_string(gts_micro_version),
-                 .means = Means::crossing,
-                 .degenerate = false,
-                 .neighbours = true,
-                 .call =
-                     "gts_surface_foreach_intersecting_face() of one surface of both triangles, "
+      {{.card =
+            {.name = "gts",
+             .library = "GTS " + std::to_string(gts_major_version) + "." +
+                        std::to_string(gts_minor_version) + "." + std::to_string(gts_micro_version),
+             .means = Means::crossing,
+             .degenerate = false,
+             .neighbours = true,
+             .call = "gts_surface_foreach_intersecting_face() of one surface of both triangles, "
                      "or of all objects",
-                 .says = "its geometric predicates are robust (adaptive, after Shewchuk); what of "
-                         "touching faces is reported is not said",
-                 .use = "surfaces before and after boolean operations"},
+             .says = "its test of a segment and a triangle is \"geometrically robust in the sense "
+                     "that it will not return a point if s and t do not intersect\"; coplanar "
+                     "ones it leaves out, of touching it says nothing",
+             .source = "GTS Library Reference Manual, Points, "
+                       "gts_segment_triangle_intersection(); boolean.c, "
+                       "gts_surface_foreach_intersecting_face()",
+             .use = "\"collision and intersection detection\" of triangulated surfaces (README)"},
         .pair = pair,
         .mesh = meshes}});
 }

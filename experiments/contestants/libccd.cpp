@@ -57,9 +57,13 @@ ContestantCard card(const std::string& name, const std::string& call) {
                   ", each triangle by its support function and centre, at most 100 "
                   "iterations",
           .says =
-              "for convex shapes; the answer comes from iterations in double that end at a "
-              "tolerance",
-          .use = "convex bodies with a volume, in games and planning"};
+              "nothing of exactness or of touching; it is for \"a collision detection between two "
+              "convex shapes\" and has a \"Boundary tolerance for MPR algorithm\" (0.0001) and a "
+              "\"Maximal number of iterations\"",
+          .source =
+              "libccd README; ccd/ccd.h, struct _ccd_t; the manual's examples, whose limit of "
+              "100 iterations is taken",
+          .use = "convex shapes; of flat ones, such as a triangle, nothing is said"};
 }
 
 }  // namespace

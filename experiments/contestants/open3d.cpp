@@ -51,8 +51,12 @@ int main(int argc, char** argv) {
                             .call = "IntersectionTest::TriangleTriangle3d(); meshes by "
                                     "TriangleMesh::GetSelfIntersectingTriangles() of all objects "
                                     "as one",
-                            .says = "its documentation says nothing of exactness or of touching",
-                            .use = "to inspect scans"},
+                            .says = "nothing of exactness or of touching: the test of two "
+                                    "triangles has no comment, the other is a \"list of triangles "
+                                    "that are intersecting the mesh\"",
+                            .source = "open3d/geometry/IntersectionTest.h; TriangleMesh.h, "
+                                      "GetSelfIntersectingTriangles()",
+                            .use = "to inspect and repair scanned meshes"},
                    .pair = pair,
                    .mesh = meshes}});
 }

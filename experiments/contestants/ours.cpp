@@ -101,6 +101,7 @@ Scene as_one_object(Scene scene) {
 
 Contestant contestant(ContestantCard card, const Finder& find, bool one_object = false) {
   card.library = "farcull";
+  card.source = "docs/methods.md and docs/reliability.md";
   return {.card = std::move(card),
           .pair =
               [=](const ContestPair& pair) {

@@ -47,20 +47,28 @@ Contestant narrow(const Peer& peer) {
   const bool fcl = peer.name.starts_with("fcl");
   ContestantCard card{.name = peer.name, .means = Means::crossing, .degenerate = false};
   if (fcl) {
-    card.call = "fcl::collide() of two BVHModel<OBBRSS> with all contacts, scalar " +
-                peer.name.substr(peer.name.find('-') + 1);
+    card.call =
+        "what fcl::collide() calls for two BVHModel<OBBRSS>, all contacts, behind its broad phase; "
+        "scalar " +
+        peer.name.substr(peer.name.find('-') + 1);
     card.says =
-        "its documentation says nothing of exactness; the test of two triangles compares "
-        "rounded numbers with tolerances";
-    card.use = "motion planning, with a safety margin around the robot";
+        "nothing of exactness or of touching: \"detecting whether the two models overlap, and "
+        "optionally, all of the triangles that overlap\"";
+    card.source = "FCL README; fcl/narrowphase/collision.h, collide()";
+    card.use =
+        "\"proximity queries on a pair of geometric models composed of triangles\"; where a wrong "
+        "answer near contact does no harm";
   } else {
     card.call =
         "dCollide() of two trimeshes with 65,535 contacts at most; of a pair each triangle twice, "
         "since two meshes of one triangle crash it";
     card.says =
-        "contacts are for dynamics; the manual says that trimeshes against trimeshes are "
-        "not perfect";
-    card.use = "simulation of bodies, where a lost contact is found in the next step";
+        "nothing of exactness or of triangles that only touch: \"Trimesh/Trimesh collisions, "
+        "perform "
+        "quite well, but there are three minor caveats\"; those listed are about time steps";
+    card.source =
+        "ODE manual, Collision Detection, Triangle Mesh Class; ode/collision.h, dCollide()";
+    card.use = "simulation of bodies; \"It works well for relatively large triangles\"";
   }
   Contestant out = contestant(peer, std::move(card));
   if (!fcl) {
@@ -74,7 +82,8 @@ Contestant broad(const Peer& peer) {
       peer, {.name = peer.name + "-exact",
              .call = "the broad phase `" + peer.name +
                      "` of farcull bench, then exact tests of its candidates by farcull",
-             .says = "whether it loses pairs of boxes or triangles that meet is what is measured",
+             .says = "nothing is quoted: whether it loses pairs that meet is what is measured",
+             .source = "experiments/measure/peers",
              .use = "to tell a broad phase that loses pairs from a test that does"});
   out.pair = {};  // a broad phase has no answer about a pair
   return out;

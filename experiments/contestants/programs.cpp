@@ -28,8 +28,10 @@ std::vector<KnownContestant> make_list() {
   add(all, "cgal", "libcgal-dev", {"cgal-exact", "cgal-self-intersections"});
   add(all, "cgal", "libcgal-dev", {"cgal-do-intersect", "cgal-double"}, true, false);
   add(all, "peers", "libfcl-dev", {"fcl-double", "fcl-float"});
-  add(all, "bullet_double", "libbullet-dev", {"bullet-gimpact-double"});
-  add(all, "bullet_float", "libbullet-dev", {"bullet-gimpact-float"});
+  add(all, "bullet_double", "libbullet-dev",
+      {"bullet-gimpact-double", "bullet-gimpact-margin-double"});
+  add(all, "bullet_float", "libbullet-dev",
+      {"bullet-gimpact-float", "bullet-gimpact-margin-float"});
   add(all, "peers", "libode-dev", {"ode-trimesh"});
   add(all, "libccd", "libccd-dev", {"libccd-gjk", "libccd-mpr"}, true, false);
   add(all, "gts", "libgts-dev", {"gts"});

@@ -82,7 +82,8 @@ bool speaks_of(const ContestantCard& card, const Scene& scene, const TrianglePai
                bool collides) {
   const std::array<Vec3, 3> a = scene.corners(pair.a), b = scene.corners(pair.b);
   if (!card.degenerate && (degenerate(a) || degenerate(b))) return false;
-  if (card.means == Means::closed || !collides) return true;
+  if (!collides) return card.margin == 0 || !within(a, b, card.margin);
+  if (card.means == Means::closed) return true;
   return contact_of(a, b) == Contact::penetrating;
 }
 
@@ -102,6 +103,7 @@ std::optional<bool> promised(const ContestantCard& card, const SuitePair& pair) 
   if (pair.kind == SuiteKind::unlabelled) return {};
   if (!card.degenerate && (degenerate(pair.a) || degenerate(pair.b))) return {};
   const bool label = collides(pair.kind);
+  if (!label && card.margin > 0 && within(pair.a, pair.b, card.margin)) return {};
   if (card.means == Means::crossing && label && pair.kind != SuiteKind::crossing &&
       (pair.kind != SuiteKind::neighbours_meet ||
        contact_of(pair.a, pair.b) != Contact::penetrating))

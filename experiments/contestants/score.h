@@ -37,7 +37,8 @@ bool takes(const ContestantCard& card, const SuitePair& pair);
 /// What the documentation of a contestant promises about a pair: true or false; empty: nothing. It
 /// promises the label to the pairs that cross and to those that are apart. About those that touch
 /// or overlap in a plane it promises the label where it speaks of closed triangles. About
-/// degenerate triangles it promises nothing where it does not take them.
+/// degenerate triangles it promises nothing where it does not take them, and nothing about
+/// triangles that are apart by no more than its margin.
 std::optional<bool> promised(const ContestantCard& card, const SuitePair& pair);
 
 /// By kind and parameter, in the order of the pairs. `answer` is of these pairs.

@@ -11,16 +11,17 @@ const readline = require('readline');
 
 const card = (version) => `name three-mesh-bvh
 library three-mesh-bvh ${version}
-means closed
+means crossing
 degenerate no
 neighbours no
 promises no
 pairs yes
 meshes yes
 memory 65536
-call ExtendedTriangle.intersectsTriangle(); meshes by MeshBVH.bvhcast() with intersectsTriangles
-says its documentation says nothing of exactness; directions are compared with tolerances
-use selection and measurement in a browser
+call ExtendedTriangle.intersectsTriangle(); meshes by MeshBVH.bvhcast() with intersectsTriangles; not centred, which would round
+says nothing of exactness or of touching: "Returns whether the triangles intersect"; of geometry far from the origin "it is recommended that geometry be centered"
+source README, Gotchas; the comments of ExtendedTriangle.intersectsTriangle() and MeshBVH.bvhcast()
+use to "speed up raycasting and enable spatial queries against three.js meshes", near the origin
 
 `;
 

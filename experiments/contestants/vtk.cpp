@@ -51,8 +51,6 @@ std::vector<std::pair<vtkIdType, vtkIdType>> contacts(vtkPolyData* a, vtkPolyDat
   filter->SetInputData(1, b);
   filter->SetMatrix(0, identity);
   filter->SetMatrix(1, identity);
-  filter->SetBoxTolerance(0);
-  filter->SetCellTolerance(0);
   filter->SetCollisionModeToAllContacts();
   filter->GenerateScalarsOff();
   filter->Update();
@@ -85,14 +83,54 @@ std::vector<ContestFound> collision_scene(const ContestScene& scene) {
   return out;
 }
 
-ContestantCard card(const std::string& name, const std::string& call, const std::string& says) {
+ContestantCard card(const std::string& name, const std::string& call, const std::string& says,
+                    const std::string& source, const std::string& use) {
   return {.name = name,
           .library = std::string("VTK ") + vtkVersion::GetVTKVersion(),
           .means = Means::crossing,
           .degenerate = false,
           .call = call,
           .says = says,
-          .use = "visualization, where a wrong contact is seen and does no harm"};
+          .source = source,
+          .use = use};
+}
+
+Contestant collision() {
+  return {
+      .card = card("vtk-collision",
+                   "vtkCollisionDetectionFilter, all contacts, tolerances as they are by default "
+                   "(0.001 for boxes, 0 for cells)",
+                   "nothing of exactness or of touching; each pair names \"a cell (triangle) which "
+                   "contacts/intersects a cell\" of the other model",
+                   "vtkCollisionDetectionFilter.h, GetContactCells()",
+                   "\"collision determination between two polyhedral surfaces\", and clipping one "
+                   "with the other"),
+      .pair = collision_pair,
+      .mesh = collision_scene};
+}
+
+Contestant triangle() {
+  return {
+      .card = card("vtk-triangle", "vtkTriangle::TrianglesIntersect()",
+                   "nothing of exactness or of touching; \"Determine whether or not triangle "
+                   "(p1,q1,r1) intersects triangle (p2,q2,r2)\", adapted from Devillers and Guigue",
+                   "vtkTriangle.h, TrianglesIntersect()",
+                   "two triangles, where a wrong answer near contact does no harm"),
+      .pair = triangles_intersect};
+}
+
+Contestant intersection() {
+  return {
+      .card = card(
+          "vtk-intersection",
+          "vtkIntersectionPolyDataFilter::TriangleTriangleIntersection(), tolerance 1e-6",
+          "nothing of exactness or of touching; \"A geometric tolerance can be specified\", and "
+          "the "
+          "filter \"relies on the inputs having no co-planar, overlapping cells\"",
+          "vtkIntersectionPolyDataFilter.h, TriangleTriangleIntersection() and the warning of the "
+          "class",
+          "the line in which two surfaces intersect, without coplanar overlap"),
+      .pair = intersection_filter};
 }
 
 }  // namespace
@@ -100,19 +138,5 @@ ContestantCard card(const std::string& name, const std::string& call, const std:
 
 int main(int argc, char** argv) {
   using namespace farcull;
-  return contest(
-      argc, argv,
-      {{.card = card("vtk-collision", "vtkCollisionDetectionFilter, all contacts, tolerances 0",
-                     "its documentation says nothing of exactness; cells intersect where lines of "
-                     "contact are found"),
-        .pair = collision_pair,
-        .mesh = collision_scene},
-       {.card = card("vtk-triangle", "vtkTriangle::TrianglesIntersect()",
-                     "the algorithm of Guigue and Devillers, in double"),
-        .pair = triangles_intersect},
-       {.card =
-            card("vtk-intersection",
-                 "vtkIntersectionPolyDataFilter::TriangleTriangleIntersection(), tolerance 1e-6",
-                 "a geometric tolerance is given; coplanar triangles are told apart"),
-        .pair = intersection_filter}});
+  return contest(argc, argv, {collision(), triangle(), intersection()});
 }

@@ -152,6 +152,7 @@ NamedCounts named(const LibraryCounts& c) {
                      {"means", c.means},
                      {"call", c.call},
                      {"says", c.says},
+                     {"source", c.source},
                      {"use", c.use},
                      {"reason", c.reason},
                      {"scores", c.scores}};

@@ -135,9 +135,10 @@ struct LibraryCounts {
   std::uint64_t twice = 0, differing = 0;  // asked a second time, and answered otherwise then
   std::uint64_t neighbours_left_out = 0;   // pairs that it is not made for
   bool promises = false;                   // as in RunCounts
-  std::string library = {}, means = {}, call = {}, says = {}, use = {};  // as on its card
-  std::string reason = {};  // of the first refusal or death
-  std::string scores = {};  // by kind and parameter: scores_text()
+  std::string library = {}, means = {}, call = {};  // as on its card
+  std::string says = {}, source = {}, use = {};     // as on its card
+  std::string reason = {};                          // of the first refusal or death
+  std::string scores = {};                          // by kind and parameter: scores_text()
   /// IDs of the first pairs of their kind in the family.
   std::optional<std::uint64_t> first_missed = {}, first_wrong = {}, first_death = {};
   /// Minimized (contestants/minimize.h) from the first of their kind about which the documentation

@@ -142,6 +142,7 @@ LibraryCounts counts_of(const ContestantCard& card, const std::vector<Score>& sc
   out.means = card.means == Means::closed ? "closed" : "crossing";
   out.call = card.call;
   out.says = card.says;
+  out.source = card.source;
   out.use = card.use;
   out.scores = scores_text(scores);
   return out;

@@ -146,15 +146,16 @@ DataTable kinds_table(const Rows& rows) {
 }
 
 DataTable calls_table(const Rows& rows) {
-  DataTable out{.name = "libraries-calls",
-                .caption =
-                    "How each was called, what its documentation says of exactness, and "
-                    "where it is right to be used",
-                .columns = columns({"contestant", "library", "called", "says", "use"}, {})};
+  DataTable out{
+      .name = "libraries-calls",
+      .caption =
+          "How each was called, what its documentation says of exactness and of "
+          "touching, where it says that, and where it is right to be used",
+      .columns = columns({"contestant", "library", "called", "says", "source", "use"}, {})};
   for (const NamedRows& one : rows_by_contestant(rows)) {
     const Row& row = *one.rows.front();
     out.rows.push_back({row.point.method, text_of(row, "library"), text_of(row, "call"),
-                        text_of(row, "says"), text_of(row, "use")});
+                        text_of(row, "says"), text_of(row, "source"), text_of(row, "use")});
   }
   return out;
 }

@@ -325,6 +325,22 @@ TEST(ContestAdapters, NameTheTrianglesOfMeshes) {
   EXPECT_GE(asked, 4u);
 }
 
+// A quotation stands between quotation marks, and with the place that it is from.
+TEST(ContestAdapters, NameWhereTheirDocumentationSaysIt) {
+  ::setenv("FARCULL_CONTESTANTS", FARCULL_CONTESTANTS_FOLDER, 1);
+  for (const KnownContestant& known : known_contestants()) {
+    const Invitation invitation = invite_known(known);
+    if (!invitation.invited) continue;
+    const ContestantCard& card = invitation.invited->card;
+    SCOPED_TRACE(known.name);
+    EXPECT_NE(card.says, "");
+    EXPECT_NE(card.source, "");
+    EXPECT_NE(card.use, "");
+    for (const std::string& text : {card.says, card.use})
+      EXPECT_EQ(std::count(text.begin(), text.end(), '"') % 2, 0);
+  }
+}
+
 // Written from the papers: on pairs that are far from touching, rounding decides nothing.
 TEST(ContestTextbook, AgreesWithExactPredicatesFarFromContact) {
   const std::vector<Invited> all = invite({FARCULL_TEXTBOOK});
@@ -384,6 +400,23 @@ TEST(ContestScore, MeasuresByTheContestantsOwnWords) {
   EXPECT_EQ(promised_of(SuiteKind::touch_vertex), true);
 }
 
+// Two triangles in planes that are 2^-4 apart.
+TEST(ContestScore, PromisesNothingWithinTheMargin) {
+  ContestantCard card{.name = "x", .library = "x", .means = Means::crossing, .degenerate = false};
+  SuitePair pair = pairs()[0];
+  pair.kind = SuiteKind::apart;
+  pair.a = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+  pair.b = {Vec3(0, 0, 0.0625), Vec3(1, 0, 0.0625), Vec3(0, 1, 0.0625)};
+  EXPECT_EQ(promised(card, pair), false);
+  card.margin = 0.0625;
+  EXPECT_EQ(promised(card, pair), std::nullopt);
+  card.margin = std::nextafter(0.0625, 0);
+  EXPECT_EQ(promised(card, pair), false);
+  card.margin = 1;
+  pair.kind = SuiteKind::crossing;
+  EXPECT_EQ(promised(card, pair), true);
+}
+
 TEST(ContestScore, IsReadBackFromItsText) {
   const std::vector<Score> scores = {
       {.parameter = 1e-300, .kind = "apart", .asked = 12, .wrong = 3, .ns = 1.5, .reason = "a b"},
@@ -399,16 +432,41 @@ TEST(ContestCard, IsReadBackFromItsText) {
                       .means = Means::crossing,
                       .degenerate = false,
                       .neighbours = true,
+                      .margin = 0.1,
                       .pairs = true,
                       .memory_mib = 12,
                       .call = "f()",
                       .says = "nothing\nat all",
+                      .source = "README,\nsection 1",
                       .use = "here"};
   const std::vector<ContestantCard> read = read_cards(card_text(card) + card_text(card), "test");
   ASSERT_EQ(read.size(), 2u);
   card.says = "nothing at all";
+  card.source = "README, section 1";
   EXPECT_EQ(card_text(read[1]), card_text(card));
   EXPECT_EQ(read[0].means, Means::crossing);
+  EXPECT_EQ(read[0].source, "README, section 1");
+  EXPECT_EQ(read[0].margin, 0.1);
+}
+
+TEST(ContestCard, MayLeaveOutItsSourceButNotName) {
+  const ContestantCard card{.name = "x",
+                            .library = "x 1",
+                            .pairs = true,
+                            .call = "f()",
+                            .says = "nothing",
+                            .use = "here"};
+  const std::string text = card_text(card);
+  EXPECT_EQ(text.find("source"), std::string::npos);
+  const std::vector<ContestantCard> read = read_cards(text, "test");
+  ASSERT_EQ(read.size(), 1u);
+  EXPECT_EQ(read[0].source, "");
+  EXPECT_NE(message_of([] { (void)read_cards("name x\nlibrary x\npairs yes\nsource \n", "t"); }),
+            "");
+  EXPECT_NE(message_of([] { (void)read_cards("name x\nlibrary x\npairs yes\nsauce a\n", "t"); }),
+            "");
+  EXPECT_NE(message_of([] { (void)read_cards("name x\nlibrary x\npairs yes\nmargin -1\n", "t"); }),
+            "");
 }
 
 }  // namespace
