@@ -4,9 +4,12 @@
 # program and the contestants, runs the study and prints where the tables are.
 #   bash experiments/libraries.sh --quick [DIR]   the small suite, some minutes; VTK and Open3D only
 #                                                 where they are installed, since they are large
-#   bash experiments/libraries.sh [DIR]           the full suite, many hours; a second run goes on
-# DIR (default build/libraries-COMMIT) gets the store and the report. Exit status: that of the
-# study, 1 if a method of farcull that promises missed a pair.
+#   bash experiments/libraries.sh [DIR]           the full suite, hours; a second run goes on. When it
+#                                                 is whole, the report is copied to docs/libraries, and
+#                                                 the smallest examples to tests/cases/libraries.txt
+# DIR (default build/libraries-COMMIT, with -quick at its end for the small suite) gets the store
+# and the report. Exit status: that of the study, 1 if a method of farcull that promises missed a
+# pair or had no answer.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=setup.sh
@@ -35,11 +38,21 @@ fi
 
 # Each commit has a store of its own, since a store refuses rows of another commit.
 commit=$(build/farcull --version)
-out=${1:-build/libraries-${commit##* }}
+out=${1:-build/libraries-${commit##* }${quick:+-quick}}
 status=0
 build/farcull experiment libraries "${quick[@]}" --resume --out "$out" || status=$?
 build/farcull report "$out" || status=$?
+if ((${#quick[@]} == 0 && status == 0)); then
+  mkdir -p docs/libraries/figures
+  cp "$out"/report/results.md docs/libraries/
+  cp "$out"/report/tables/libraries-families.csv docs/libraries/families.csv
+  cp "$out"/report/figures/*.svg docs/libraries/figures/
+  cp "$out"/report/libraries-examples.txt tests/cases/libraries.txt
+  echo "libraries: made docs/libraries and tests/cases/libraries.txt"
+fi
 echo
-column -s, -t "$out/report/tables/libraries.csv" 2>/dev/null || cat "$out/report/tables/libraries.csv"
+# The first table of the page.
+sed -n '/^| contestant/,/^$/p' "$out/report/results.md" | sed '/^$/q; /^|---/d; s/^| //; s/ |$//' |
+  sed 's/ | /\t/g' | column -t -s $'\t'
 echo "libraries: all tables and figures are in $out/report/; $out/report/results.md begins with what was found"
 exit "$status"

@@ -192,6 +192,8 @@ int StudiesCommand::run_on(StudiesRequest request, const std::string& name) cons
       {"quick", quick_},
       {"seed", seed_},
       {"shard", fmt::format("{}/{}", shard.index, shard.of)},
+      {"suite", suite_.value_or("")},
+      {"contestants", contestants_.value_or("")},
       {"device",
        request.device}}.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   // The device first: without one there is nothing to measure, and no file is made.

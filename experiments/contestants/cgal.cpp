@@ -53,6 +53,8 @@ struct Joined {
   /// more than two triangles would have an edge in common.
   void add_face(Mesh::Vertex_index a, Mesh::Vertex_index b, Mesh::Vertex_index c,
                 std::pair<std::uint32_t, std::uint32_t> of) {
+    if (a == b || b == c || c == a)
+      throw Refusal("Surface_mesh takes no triangle with a vertex twice");
     if (!mesh.add_face(a, b, c).is_valid() && !mesh.add_face(a, c, b).is_valid())
       throw Refusal("Surface_mesh holds no mesh that is not manifold");
     owner.push_back(of);

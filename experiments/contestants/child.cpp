@@ -67,7 +67,9 @@ void limit(int resource, std::uint64_t soft, std::uint64_t hard) {
 constexpr std::uint64_t kMostPrinted = 16 << 20;  // bytes on standard error
 
 /// Between fork and exec: only what a process with threads may do there.
-[[noreturn]] void become(char* const* argv, const ChildLimits& limits, int in, int out, int err) {
+/// `failed` gets the error where there is no such program.
+[[noreturn]] void become(char* const* argv, const ChildLimits& limits, int in, int out, int err,
+                         int failed) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   limit(RLIMIT_CORE, 0, 0);
@@ -80,6 +82,8 @@ constexpr std::uint64_t kMostPrinted = 16 << 20;  // bytes on standard error
   ::dup2(out, STDOUT_FILENO);
   ::dup2(err, STDERR_FILENO);
   ::execvp(argv[0], argv);
+  const int error = errno;
+  [[maybe_unused]] const ssize_t said = ::write(failed, &error, sizeof error);
   ::_exit(127);
 }
 
@@ -124,7 +128,8 @@ class Child {
   Child(const std::vector<std::string>& command, const ChildLimits& limits)
       : limits_(limits), errors_(::memfd_create("errors", MFD_CLOEXEC)) {
     if (errors_.get() < 0) refuse(command.front(), "no file in memory");
-    Descriptor its_in, its_out;
+    Descriptor its_in, its_out, failed, its_failed;
+    make_pipe(command.front(), failed, its_failed);
     make_pipe(command.front(), its_in, in_);
     make_pipe(command.front(), out_, its_out);
     std::vector<char*> argv;
@@ -132,8 +137,11 @@ class Child {
     argv.push_back(nullptr);
     pid_ = ::fork();
     if (pid_ < 0) refuse(command.front(), "no process");
-    if (pid_ == 0) become(argv.data(), limits, its_in.get(), its_out.get(), errors_.get());
+    if (pid_ == 0)
+      become(argv.data(), limits, its_in.get(), its_out.get(), errors_.get(), its_failed.get());
     ::setpgid(pid_, pid_);  // here too, so that the group is there whoever comes first
+    its_failed.close();
+    check_started(command.front(), failed.get());
     for (const Descriptor* end : {&in_, &out_}) ::fcntl(end->get(), F_SETFL, O_NONBLOCK);
     wait_until(limits.start_s);
   }
@@ -156,6 +164,18 @@ class Child {
   }
 
  private:
+  /// The pipe closes when the program begins; before that, it may bring the error.
+  void check_started(const std::string& program, int failed) {
+    int error = 0;
+    ssize_t got = 0;
+    while ((got = ::read(failed, &error, sizeof error)) < 0 && errno == EINTR) {
+    }
+    if (got != static_cast<ssize_t>(sizeof error)) return;
+    end_now();
+    errno = error;
+    refuse(program, "cannot be started");
+  }
+
   void wait_until(double seconds) {
     deadline_ = Clock::now() +
                 std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
@@ -169,7 +189,6 @@ class Child {
         sent_ = 0;
         if (input_.empty()) {
           in_.close();
-          read_all_ = true;
           return;
         }
       }
@@ -242,12 +261,12 @@ class Child {
     const std::string words = last_words(errors_.get());
     const auto end = [&](How how, std::string reason) {
       if (!words.empty() && !late_ && !wrong_) reason += ": " + words;
-      return ChildEnd{how, std::move(reason), read_all_};
+      return ChildEnd{how, std::move(reason)};
     };
     if (wrong_) return end(How::crash, "wrote what is no answer: " + *wrong_);
     if (late_) return end(How::time, "no answer within the limit");
     const int signal = WIFSIGNALED(status_) ? WTERMSIG(status_) : 0;
-    if (signal == 0 && WEXITSTATUS(status_) == 0) return {How::peace, "", read_all_};
+    if (signal == 0 && WEXITSTATUS(status_) == 0) return {How::peace, ""};
     const std::string reason = signal != 0 ? std::string("SIG") + ::sigabbrev_np(signal)
                                            : "exit status " + std::to_string(WEXITSTATUS(status_));
     const double used = static_cast<double>(usage_.ru_utime.tv_sec + usage_.ru_stime.tv_sec);
@@ -282,7 +301,7 @@ class Child {
   Clock::time_point deadline_;
   std::string input_, output_;
   std::size_t sent_ = 0;
-  bool read_all_ = false, late_ = false;
+  bool late_ = false;
   std::optional<std::string> wrong_;
 };
 

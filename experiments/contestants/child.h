@@ -18,8 +18,7 @@ struct ChildLimits {
 
 struct ChildEnd {
   enum class How : std::uint8_t { peace, crash, time, memory } how = How::peace;
-  std::string reason;     // but for peace: the signal or the status, and the last that it printed
-  bool read_all = false;  // it was given all of its input
+  std::string reason;  // but for peace: the signal or the status, and the last that it printed
   /// A limit of the whole process ended it, of CPU time or memory, and not that of one line: what
   /// it did before may have used that up.
   bool used_up = false;
@@ -29,7 +28,8 @@ struct ChildEnd {
 /// own. `more` gives the next part of its input, or nothing at the end of it. `line` is called with
 /// each whole line of its standard output, without the newline; where it returns false, the
 /// line was none that may be there, and the group is killed (crash). All of the group has
-/// ended on return, and also where `line` throws. Throws Error where no process can be made.
+/// ended on return, and also where `line` throws. Throws Error where no process can be
+/// made, or there is no such program.
 ChildEnd run_child(const std::vector<std::string>& command, const ChildLimits& limits,
                    const std::function<std::string()>& more,
                    const std::function<bool(std::string_view)>& line);

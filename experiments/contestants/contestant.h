@@ -1,11 +1,12 @@
-// What a contestant of the study "libraries" is: a library, as its documentation says that it is
-// called, behind a program of its own that reads questions as text and answers them.
+// The protocol of contestants. A contestant of the study "libraries" is a library, called as its
+// documentation says, in a program of its own that reads questions as text and answers them.
 //
 // Each library has a program of its own, and not a command of farcull, for three reasons. It may
 // crash, hang or take all memory. Libraries do not go together in one program: Bullet is there in
 // float and in double under the same names. And a program in any language can take part.
 //
-// The program is called in one of three ways. Fields of a line stand between tabulators.
+// The program is called in one of three ways. Fields of a line stand between tabulators. NUMBER is
+// that of the question, which the answer repeats.
 //   PROGRAM list          prints a card for each of its contestants (card.h)
 //   PROGRAM NAME pairs    reads a pair of triangles a line:
 //                           NUMBER SHARED, then 18 coordinates as decimal numbers that a reader of

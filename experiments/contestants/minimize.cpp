@@ -103,11 +103,7 @@ std::vector<SuitePair> simpler(const SuitePair& from) {
 bool like(const ContestantCard& card, const SuitePair& before, SuitePair& pair) {
   // Corners that came together by rounding would be shared by place and not by index.
   if (!pair.shared.empty() && pair.shared != equal_corners(pair.a, pair.b)) return false;
-  try {
-    pair.kind = decide(pair, "a smaller pair");
-  } catch (const Error&) {
-    return false;
-  }
+  pair.kind = decide(pair, "a smaller pair");
   return collides(pair.kind) == collides(before.kind) &&
          promised(card, pair) == promised(card, before);
 }
@@ -123,21 +119,36 @@ std::string coordinates_text(const SuitePair& pair) {
   return out;
 }
 
-SuitePair minimized(const Invited& invited, const PairFault& fault, const ContestLimits& limits,
-                    int rounds) {
+std::optional<SuitePair> minimized(const Invited& invited, const PairFault& fault,
+                                   const ContestLimits& limits, int rounds) {
+  ContestLimits hasty = limits;
+  if (is_death(fault.outcome)) {  // each costs a process, and a hang its whole limit
+    hasty.start_s = limits.answer_s;
+    rounds = std::min(rounds, 3);
+  }
+  // Twice, each time alone in a new process.
+  const auto errs_alone = [&](const SuitePair& pair) {
+    for (int time = 0; time < 2; ++time) {
+      if (ask_pairs(invited, std::span(&pair, 1), hasty, 0).answers[0].outcome != fault.outcome)
+        return false;
+    }
+    return true;
+  };
+  if (!errs_alone(fault.pair)) return std::nullopt;
   SuitePair best = fault.pair;
   for (int round = 0; round < rounds; ++round) {
     std::vector<SuitePair> tried = simpler(best);
     std::erase_if(tried, [&](SuitePair& pair) { return !like(invited.card, fault.pair, pair); });
     if (tried.empty()) return best;
-    // A process that dies ends at its question, and a hang takes its time: a few are enough.
-    if (is_death(fault.outcome)) tried.resize(std::min<std::size_t>(tried.size(), 12));
-    const PairsAnswer answer = ask_pairs(invited, tried, limits, 0);
-    const auto same =
-        std::find_if(answer.answers.begin(), answer.answers.end(),
-                     [&](const ContestAnswer& one) { return one.outcome == fault.outcome; });
-    if (same == answer.answers.end()) return best;
-    best = tried[static_cast<std::size_t>(same - answer.answers.begin())];
+    if (is_death(fault.outcome)) tried.resize(std::min<std::size_t>(tried.size(), 4));
+    const PairsAnswer answer = ask_pairs(invited, tried, hasty, 0);
+    bool found = false;
+    for (std::size_t i = 0; i < tried.size() && !found; ++i) {
+      if (answer.answers[i].outcome != fault.outcome || !errs_alone(tried[i])) continue;
+      best = tried[i];
+      found = true;
+    }
+    if (!found) return best;
   }
   return best;
 }

@@ -90,10 +90,8 @@ class PairAsker {
       // A process that answered others may have used its limit up with them: this question is asked
       // again, as the first of a new one.
       if (end.used_up && next > first) continue;
-      // Where it had all questions and ended in peace, it has no answer to any of the rest.
-      const bool rest = end.how == ChildEnd::How::peace && end.read_all;
-      const std::size_t until = rest ? order.size() : next + 1;
-      for (; next < until; ++next) answers[next] = {outcome_of(end.how), 0, end.reason};
+      // The others may have been in its pipe, and are asked in a new one.
+      answers[next++] = {outcome_of(end.how), 0, end.reason};
       ++deaths;
     }
     return answers;
@@ -147,6 +145,10 @@ std::optional<TrianglePair> read_found(std::string_view line, const Scene& scene
   return TrianglePair{std::min(out[0], out[1]), std::max(out[0], out[1])};
 }
 
+// A program that reports pairs without end would take all memory.
+constexpr std::size_t kMostFound = 50'000'000;
+constexpr std::size_t kMostCards = 1 << 20;  // bytes
+
 MeshAnswer ask_mesh_once(const Invited& invited, const SuiteMesh& mesh, const std::string& folder,
                          const ContestLimits& limits) {
   std::string input = fmt::format("0\t{}", mesh.self ? 1 : 0);
@@ -161,7 +163,7 @@ MeshAnswer ask_mesh_once(const Invited& invited, const SuiteMesh& mesh, const st
     if (word == "pair") {
       const std::optional<TrianglePair> pair = read_found(text, mesh.scene);
       if (pair && pair->a != pair->b) out.pairs.push_back(*pair);
-      return pair.has_value();
+      return pair.has_value() && out.pairs.size() <= kMostFound;
     }
     const auto ns = parse_number<double>(text);
     done = word == "refused" || (word == "done" && ns);
@@ -231,8 +233,8 @@ PairsAnswer ask_pairs(const Invited& invited, std::span<const SuitePair> pairs,
   std::reverse(again.begin(), again.end());
   const std::vector<ContestAnswer> second = asker.ask(again);
   for (std::size_t i = 0; i < again.size(); ++i) {
-    // A death is no other answer.
-    if (!answered(second[i].outcome)) continue;
+    // No answer, where there was one before, is another one.
+    if (second[i].outcome == ContestOutcome::not_asked) continue;
     ++out.asked_twice;
     if (second[i].outcome != out.answers[again[i]].outcome) out.differing.push_back(again[i]);
   }
@@ -246,9 +248,8 @@ MeshAnswer ask_mesh(const Invited& invited, const SuiteMesh& mesh, const std::st
   MeshAnswer out = ask_mesh_once(invited, mesh, folder, limits);
   if (!twice || !answered(out.outcome)) return out;
   const MeshAnswer second = ask_mesh_once(invited, mesh, folder, limits);
-  out.differs =
-      answered(second.outcome) && (second.outcome != out.outcome || second.pairs != out.pairs);
-  out.ns = std::min(out.ns, second.ns);
+  out.differs = second.outcome != out.outcome || second.pairs != out.pairs;
+  if (second.outcome == out.outcome) out.ns = std::min(out.ns, second.ns);
   return out;
 }
 
@@ -261,7 +262,7 @@ std::vector<Invited> invite(const ContestProgram& program, const ContestLimits& 
       [] { return std::string(); },
       [&text](std::string_view line) {
         text += std::string(line) + "\n";
-        return true;
+        return text.size() <= kMostCards;
       });
   if (end.how != ChildEnd::How::peace)
     throw Error(program.back(), "says not who it is: " + end.reason, "start it with `list`");

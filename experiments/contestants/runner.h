@@ -56,8 +56,9 @@ struct ContestAnswer {
 struct PairsAnswer {
   std::vector<ContestAnswer> answers = {};  // one for each pair
   std::size_t asked_twice = 0;              // pairs of the sample
-  std::vector<std::size_t> differing = {};  // positions of pairs that were answered otherwise then
-  std::size_t processes = 0;                // that were started
+  std::vector<std::size_t> differing =
+      {};                     // positions of pairs that were answered otherwise then, or not
+  std::size_t processes = 0;  // that were started
 };
 
 /// Asks about all pairs, then about every `sample`th of them once more, in a new process and in the
@@ -73,7 +74,7 @@ struct MeshAnswer {
   std::string reason = {};
   std::vector<TrianglePair> pairs = {};  // of the scene, sorted, each once; none of a triangle with
                                          // itself
-  bool differs = false;                  // asked again in a new process, it answered otherwise
+  bool differs = false;  // asked again in a new process, it answered otherwise, or not at all
 };
 
 /// Asks about one mesh, whose OBJ files are in `folder`; `twice`: then once more. Throws Error

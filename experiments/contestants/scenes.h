@@ -1,4 +1,4 @@
-// Between questions to contestants and scenes of farcull.
+// Converts questions to contestants into scenes of farcull, and found pairs back.
 #pragma once
 
 #include "core/scene/scene.h"

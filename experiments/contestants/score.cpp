@@ -61,16 +61,17 @@ void note_reason(const std::string& reason, Score& score) {
 
 void count_pair(const ContestantCard& card, const SuitePair& pair, const ContestAnswer& answer,
                 Score& score) {
-  ++score.asked;
+  score.asked += answer.outcome != ContestOutcome::not_asked;
   score.ns += answer.ns;
   count_outcome(answer.outcome, score);
   note_reason(answer.reason, score);
-  const std::optional<bool> own = promised(card, pair);
-  score.own_asked += own.has_value();
   if (pair.kind == SuiteKind::unlabelled) return;
   const bool label = collides(pair.kind), apart = answer.outcome == ContestOutcome::apart,
              meets = answer.outcome == ContestOutcome::meets;
-  score.answered += apart || meets;
+  if (!apart && !meets) return;
+  const std::optional<bool> own = promised(card, pair);
+  ++score.answered;
+  score.own_asked += own.has_value();
   score.missed += label && apart;
   score.wrong += !label && meets;
   score.own_missed += own == true && apart;
@@ -152,7 +153,7 @@ Score score_mesh(const ContestantCard& card, const SuiteMesh& mesh, const MeshAn
     const bool promised = own(pair, true);
     const bool missed = answer.outcome == ContestOutcome::meets &&
                         !std::binary_search(reported.begin(), reported.end(), pair);
-    out.own_asked += promised;
+    out.own_asked += promised && out.answered > 0;
     out.missed += missed;
     out.own_missed += missed && promised;
   }

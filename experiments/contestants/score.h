@@ -15,12 +15,13 @@ struct Score {
   double parameter = 0;
   std::string kind = {};       // as in a suite; "mesh"
   std::uint64_t asked = 0;     // pairs that were put to it; of a mesh all that collide
-  std::uint64_t answered = 0;  // of them; of a mesh, which is one question, all or none
+  std::uint64_t answered = 0;  // of them, by apart or meets; of a mesh, one question, all or none
   std::uint64_t missed = 0;    // it called a pair apart that meets
   std::uint64_t wrong = 0;     // it called a pair meeting that is apart
-  /// The same of the pairs about which its documentation promises something.
+  /// The same of the pairs that were answered and about which its documentation promises something.
   std::uint64_t own_asked = 0, own_missed = 0, own_wrong = 0;
-  std::uint64_t refused = 0, unanswered = 0, crashed = 0, hung = 0, no_memory = 0, not_asked = 0;
+  std::uint64_t refused = 0, unanswered = 0, crashed = 0, hung = 0, no_memory = 0;
+  std::uint64_t not_asked = 0;             // not among `asked`: too many processes had ended badly
   std::uint64_t twice = 0, differing = 0;  // asked twice, and answered otherwise then
   double ns = 0;                           // of all answers
   std::string reason = {};                 // of the first refusal or death

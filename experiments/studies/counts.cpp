@@ -144,6 +144,8 @@ NamedCounts named(const LibraryCounts& c) {
                      {"crashed", c.crashed},
                      {"hung", c.hung},
                      {"no_memory", c.no_memory},
+                     {"not_asked", c.not_asked},
+                     {"timed", c.timed},
                      {"twice", c.twice},
                      {"differing", c.differing},
                      {"neighbours_left_out", c.neighbours_left_out},
@@ -191,9 +193,12 @@ Measurement stored(const PointResult& result) {
 bool breaks_promise(const Measurement& measurement) {
   const auto& counts = *measurement.counts;
   if (!counts.value("promises", false)) return false;
-  return counts.value("missed", std::uint64_t{0}) > 0 ||
-         counts.value("wrong", std::uint64_t{0}) > 0 ||
-         counts.value("violations", std::uint64_t{0}) > 0;
+  // Of a contestant, silence breaks it as well.
+  for (const char* count : {"missed", "wrong", "violations", "refused", "unanswered", "not_asked",
+                            "crashed", "hung", "no_memory"}) {
+    if (counts.value(count, std::uint64_t{0}) > 0) return true;
+  }
+  return false;
 }
 
 }  // namespace farcull

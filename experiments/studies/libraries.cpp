@@ -129,7 +129,8 @@ LibraryCounts counts_of(const ContestantCard& card, const std::vector<Score>& sc
     out.own_missed += score.own_missed;
     out.own_wrong += score.own_wrong;
     out.refused += score.refused;
-    out.unanswered += score.unanswered + score.not_asked;
+    out.unanswered += score.unanswered;
+    out.not_asked += score.not_asked;
     out.crashed += score.crashed;
     out.hung += score.hung;
     out.no_memory += score.no_memory;
@@ -182,9 +183,10 @@ void add_examples(const Invited& invited, const ContestLimits& limits,
                             : wrong(pairs[i], outcome)  ? &counts.example_wrong
                                                         : nullptr;
     if (to == nullptr || !to->empty()) continue;
-    SuitePair small = minimized(invited, {pairs[i], outcome}, limits);
-    small.id = 0;
-    *to = pair_line(small);
+    std::optional<SuitePair> small = minimized(invited, {pairs[i], outcome}, limits);
+    if (!small) continue;
+    small->id = 0;
+    *to = pair_line(*small);
   }
 }
 
@@ -203,7 +205,10 @@ PointResult ask_about_pairs(const LibraryPoint& point, const Invited& invited,
   LibraryCounts counts = counts_of(invited.card, score_pairs(invited.card, asked, answer));
   counts.neighbours_left_out = left_out;
   double ns = 0;
-  for (const ContestAnswer& one : answer.answers) ns += one.ns;
+  for (const ContestAnswer& one : answer.answers) {
+    ns += one.ns;
+    counts.timed += one.outcome == ContestOutcome::apart || one.outcome == ContestOutcome::meets;
+  }
   add_firsts(asked, answer.answers, counts);
   add_examples(invited, limits, asked, answer.answers, counts);
   return {.counts = counts, .times = {.total = ns / 1e6}, .device = "process"};

@@ -1,6 +1,7 @@
 // Reads a suite of labelled triangle pairs and meshes. docs/suite.md has the format; the writer is
 // experiments/suite/writer.h. What is read is checked as far as it can be without deciding whether
-// triangles meet: experiments/suite/check.h decides that.
+// triangles meet: check_suite() of
+// experiments/suite/writer.h decides that.
 #pragma once
 
 #include <array>

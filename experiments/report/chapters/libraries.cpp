@@ -38,7 +38,8 @@ std::uint64_t deaths(const Rows& rows) {
 
 // Questions without an answer, for whatever reason.
 std::uint64_t without_answer(const Rows& rows) {
-  return total(rows, "refused") + total(rows, "unanswered") + deaths(rows);
+  return total(rows, "refused") + total(rows, "unanswered") + total(rows, "not_asked") +
+         deaths(rows);
 }
 
 // Per million of what was answered; "0" is none at all.
@@ -51,45 +52,63 @@ std::string per_million(std::uint64_t count, std::uint64_t of) {
 std::string ns_per_pair(const Rows& rows) {
   double ms = 0;
   for (const Row* row : rows) ms += time_of(*row, "total").value_or(0);
-  const std::uint64_t pairs = total(rows, "answered");
+  const std::uint64_t pairs = total(rows, "timed");
   return pairs == 0 ? "-" : rounded(1e6 * ms / static_cast<double>(pairs));
 }
 
-DataTable overview(const std::string& name, const std::string& what, const Rows& rows, bool pairs) {
+// "78 of 646": answered otherwise, of those asked twice.
+std::string differing(const Rows& rows) {
+  const std::uint64_t twice = total(rows, "twice"), otherwise = total(rows, "differing");
+  return otherwise == 0 ? "0" : grouped(otherwise) + " of " + grouped(twice);
+}
+
+// Of pairs, what was reported wrongly is a rate as well; of meshes, whose pairs that are apart
+// nobody counts, it is a number of pairs.
+DataTable overview(const std::string& name, const Rows& rows, bool pairs) {
+  const std::string of_pairs =
+      "Pairs of triangles: missed (they meet, and it says apart) and false alarms (they are apart, "
+      "and "
+      "it says that they meet), per million of the pairs that were answered";
+  const std::string of_meshes =
+      "Meshes: of the colliding pairs of those that were answered, missed per million; false "
+      "alarms "
+      "as a number of pairs";
   DataTable out{
       .name = name,
-      .caption = what +
-                 ": missed and reported wrongly per million, first by what the documentation of "
-                 "each promises, then by closed triangles; of the pairs that it answered. Refused, "
-                 "unanswered, crashed (a hang or "
-                 "a lack of memory among them) and answered otherwise the second time are counts.",
-      .columns = columns({"contestant", "library", "promises"},
-                         {"asked", "missed, own", "wrong, own", "missed", "wrong", "refused",
-                          "unanswered", "crashed", "differs", pairs ? "ns" : "ms"})};
+      .caption = (pairs ? of_pairs : of_meshes) +
+                 ", first by what the documentation of each promises, then by closed "
+                 "triangles. Counts: refused; without an answer, or not asked after too "
+                 "many deaths; crashed, a hang or a lack of memory among them; answered "
+                 "otherwise the second time",
+      .columns = columns({"contestant", "library", "measured as"},
+                         {"asked", "missed, own", "false, own", "missed", "false", "refused",
+                          "unanswered", "deaths", "differs", pairs ? "ns a pair" : "ms in all"})};
   for (const NamedRows& one : rows_by_contestant(rows)) {
     const Rows& of = one.rows;
-    const std::uint64_t asked = total(of, "asked"), own = total(of, "own_asked"),
-                        said = total(of, "answered");
+    const std::uint64_t own = total(of, "own_asked"), said = total(of, "answered");
+    const auto wrong = [&](const char* count, std::uint64_t among) {
+      return pairs ? per_million(total(of, count), among) : grouped(total(of, count));
+    };
     double ms = 0;
     for (const Row* row : of) ms += time_of(*row, "total").value_or(0);
     out.rows.push_back(
         {of.front()->point.method, text_of(*of.front(), "library"), text_of(*of.front(), "means"),
-         grouped(asked), per_million(total(of, "own_missed"), own),
-         per_million(total(of, "own_wrong"), own), per_million(total(of, "missed"), said),
-         per_million(total(of, "wrong"), said), grouped(total(of, "refused")),
-         grouped(total(of, "unanswered")), grouped(deaths(of)), grouped(total(of, "differing")),
-         pairs ? ns_per_pair(of) : rounded(ms)});
+         grouped(total(of, "asked")), per_million(total(of, "own_missed"), own),
+         wrong("own_wrong", own), per_million(total(of, "missed"), said), wrong("wrong", said),
+         grouped(total(of, "refused")), grouped(total(of, "unanswered") + total(of, "not_asked")),
+         grouped(deaths(of)), differing(of), pairs ? ns_per_pair(of) : rounded(ms)});
   }
   return out;
 }
 
 // Families against contestants.
 DataTable families_table(const Rows& rows) {
-  DataTable out{.name = "libraries-families",
-                .caption =
-                    "Missed / wrong per million answers and refused / crashed per million pairs "
-                    "of each family, by closed triangles; of meshes the counts",
-                .columns = {text_column("contestant")}};
+  DataTable out{
+      .name = "libraries-families",
+      .caption =
+          "Missed / false alarms per million answers and refused / deaths per million pairs "
+          "that were asked, of each family, by closed triangles; of meshes the counts",
+      .columns = {text_column("contestant")}};
   std::vector<std::string> families;
   for (const Row* row : rows) {
     const std::string family = family_of(*row);
@@ -125,11 +144,12 @@ DataTable kinds_table(const Rows& rows) {
   const std::vector<std::string> kinds = {"apart",      "touch-vertex",    "touch-edge",
                                           "touch-face", "crossing",        "coplanar",
                                           "equal",      "neighbours-meet", "neighbours-apart"};
-  DataTable out{.name = "libraries-kinds",
-                .caption =
-                    "Answers that differ from the label per million pairs of each kind of "
-                    "contact, degenerate triangles among them",
-                .columns = columns({"contestant"}, kinds)};
+  DataTable out{
+      .name = "libraries-kinds",
+      .caption =
+          "Wrong answers (missed or false alarms) per million answers about pairs of each kind of "
+          "contact, degenerate triangles among them; -: none was asked",
+      .columns = columns({"contestant"}, kinds)};
   for (const NamedRows& one : rows_by_contestant(rows)) {
     std::map<std::string, Score> sums;
     for (const Row* row : one.rows) {
@@ -165,12 +185,14 @@ std::vector<LibraryExample> examples_of(const Rows& rows) {
   std::vector<LibraryExample> out;
   for (const NamedRows& one : rows_by_contestant(rows)) {
     if (is_ours(*one.rows.front())) continue;
-    for (const char* fault : {"missed", "wrong", "death"}) {
+    for (const auto& [fault, count] :
+         {std::pair{"missed", "missed"}, {"false", "wrong"}, {"death", "death"}}) {
       LibraryExample best;
       for (const Row* row : one.rows) {
-        const std::string line = text_of(*row, std::string("example_") + fault);
-        if (line.empty() || (!best.line.empty() && line.size() >= best.line.size())) continue;
-        best = {row->point.method, fault, family_of(*row), line};
+        const std::string line = text_of(*row, std::string("example_") + count);
+        const LibraryExample next{row->point.method, fault, family_of(*row), line};
+        if (line.empty() || (!best.line.empty() && digits_of(next) >= digits_of(best))) continue;
+        best = next;
       }
       if (!best.line.empty()) out.push_back(best);
     }
@@ -185,16 +207,16 @@ DataTable all_table(const Rows& rows) {
        {text_column("contestant"), [](const Row& row) { return row.point.method; }},
        count_column("asked", "asked"),
        count_column("missed, own", "own_missed"),
-       count_column("wrong, own", "own_wrong"),
+       count_column("false, own", "own_wrong"),
        count_column("missed", "missed"),
-       count_column("wrong", "wrong"),
+       count_column("false", "wrong"),
        count_column("refused", "refused"),
        count_column("unanswered", "unanswered"),
        count_column("crashed", "crashed"),
        count_column("hung", "hung"),
        count_column("no memory", "no_memory"),
        count_column("first missed", "first_missed"),
-       count_column("first wrong", "first_wrong"),
+       count_column("first false", "first_wrong"),
        count_column("first death", "first_death"),
        {text_column("first reason"), [](const Row& row) { return text_of(row, "reason"); }}});
   out.in_text = false;
@@ -229,12 +251,13 @@ std::size_t group_of(const NamedRows& one) {
 std::optional<Series> time_series(const NamedRows& one) {
   double ms = 0;
   for (const Row* row : one.rows) ms += time_of(*row, "total").value_or(0);
-  const auto said = static_cast<double>(total(one.rows, "answered"));
+  const auto said = static_cast<double>(total(one.rows, "answered")),
+             timed = static_cast<double>(total(one.rows, "timed"));
   if (said == 0 || ms == 0) return std::nullopt;
   const auto errors = static_cast<double>(total(one.rows, "missed") + total(one.rows, "wrong"));
   const Row& row = *one.rows.front();
   return Series{.name = row.point.method,
-                .x = {1e6 * ms / said},
+                .x = {1e6 * ms / timed},
                 .y = {1e6 * errors / said},
                 .style = Series::Style::points,
                 .emphasis = row.point.method == kReference};
@@ -245,14 +268,14 @@ Figure time_figure(const Rows& rows) {
   Figure out{.name = "libraries-time",
              .title = "Wrong answers against time",
              .caption = fmt::format(
-                 "Pairs answered otherwise than the label of closed triangles, over the mean time "
+                 "Wrong answers, missed or false alarms, by closed triangles, over the mean time "
                  "of a question as the contestant's own process measured it. {} stands in every "
                  "panel. Neighbours are asked of those alone that know them.",
                  kReference)};
   for (std::size_t g = 0; g < groups().size(); ++g) {
     Panel panel{.title = groups()[g].title,
                 .x = logarithmic("time of a pair (ns)"),
-                .y = logarithmic("wrong per million", true)};
+                .y = logarithmic("wrong answers per million", true)};
     panel.x.from = 50;
     panel.x.to = 2e6;
     panel.y.to = 1e6;
@@ -274,7 +297,9 @@ Panel parameter_panel(const Rows& rows, std::size_t group, const std::string& fa
                       const std::string& label) {
   Panel out{.title = family + ", " + groups()[group].title,
             .x = logarithmic(label, true),
-            .y = logarithmic("per million", true)};
+            .y = logarithmic("wrong answers per million", true)};
+  out.y.from = 0;
+  out.y.to = 1e6;
   for (const NamedRows& one : rows_by_contestant(rows)) {
     if (group_of(one) != group) continue;
     std::map<double, Score> by_parameter;
@@ -300,12 +325,15 @@ Panel parameter_panel(const Rows& rows, std::size_t group, const std::string& fa
 // A figure for each family; a panel for each group of contestants.
 void add_parameter_figures(const Rows& rows, Chapter& chapter) {
   for (const auto& [family, label] : std::vector<std::pair<const char*, const char*>>{
-           {"slivers", "aspect"}, {"gap-face", "gap"}, {"far-away", "distance from the origin"}}) {
+           {"slivers", "length over width"},
+           {"gap-face", "gap, in sizes"},
+           {"far-away", "distance from the origin, in sizes"}}) {
     Figure out{.name = std::string("libraries-") + family,
                .title = fmt::format("Wrong answers against the parameter of {}", family),
                .caption =
-                   "Pairs answered otherwise than the label, per million of those answered with "
-                   "that parameter; contestants without an error in this family are left out."};
+                   "Wrong answers, missed or false alarms, per million of those to pairs with that "
+                   "parameter, without its sign; contestants without an error in this family are "
+                   "left out."};
     for (std::size_t g = 0; g < groups().size(); ++g) {
       Panel panel = parameter_panel(rows, g, family, label);
       if (!panel.series.empty()) out.panels.push_back(std::move(panel));
@@ -323,7 +351,7 @@ void add_ours(const Rows& rows, Chapter& chapter) {
     }
     if (of.empty()) continue;
     const std::string& name = of.front()->point.method;
-    const std::uint64_t asked = total(of, "asked");
+    const std::uint64_t asked = total(of, "answered");  // those that have a label
     for (const char* count : {"missed", "wrong"}) {
       const std::uint64_t bad = total(of, count);
       if (bad > 0)
@@ -333,53 +361,55 @@ void add_ours(const Rows& rows, Chapter& chapter) {
     const std::uint64_t silent = without_answer(of);
     if (silent > 0)
       chapter.find_broken(fmt::format("{} has no answer to {} questions.", name, grouped(silent)));
-    if (total(of, "missed") + total(of, "wrong") + silent == 0)
+    if (asked > 0 && total(of, "missed") + total(of, "wrong") + silent == 0)
       chapter.find(fmt::format("{} missed none and reported none wrongly of {} pairs.", name,
                                grouped(asked)));
   }
 }
 
-// The contestants that gave no wrong answer by their own words, and the worst of the others.
-void add_others(const Rows& rows, Chapter& chapter) {
-  std::vector<std::string> right, dead, published;
+// Sentences about the contestants that are not ours: those that gave no wrong answer by their own
+// documentation, the others, and those that died. `what`: "pairs of triangles" or "meshes".
+void add_others(const Rows& rows, const std::string& what, Chapter& chapter) {
+  std::vector<std::string> right, dead, published, changing;
   std::vector<std::pair<double, std::string>> worst;
   for (const NamedRows& one : rows_by_contestant(rows)) {
     const Row& row = *one.rows.front();
-    if (promises(row) || total(one.rows, "own_asked") == 0) continue;
+    if (promises(row)) continue;
+    const std::string& name = row.point.method;
     if (is_ours(row)) {
-      const std::uint64_t lost = total(one.rows, "missed") + total(one.rows, "wrong");
-      published.push_back(
-          fmt::format("{} ({})", row.point.method, of_all(lost, total(one.rows, "answered"))));
+      published.push_back(fmt::format(
+          "{} ({})", name, of_all(total(one.rows, "missed"), total(one.rows, "answered"))));
       continue;
     }
+    if (deaths(one.rows) > 0)
+      dead.push_back(fmt::format("{} ({})", name, grouped(deaths(one.rows))));
+    if (total(one.rows, "differing") > 0)
+      changing.push_back(fmt::format("{} ({})", name, differing(one.rows)));
     const std::uint64_t bad = total(one.rows, "own_missed") + total(one.rows, "own_wrong"),
                         own = total(one.rows, "own_asked");
+    if (own == 0) continue;
     if (bad == 0) {
-      right.push_back(row.point.method);
+      right.push_back(name);
     } else {
       worst.emplace_back(static_cast<double>(bad) / static_cast<double>(own),
-                         fmt::format("{} ({})", row.point.method, of_all(bad, own)));
+                         fmt::format("{} ({} in {})", name, grouped(bad), grouped(own)));
     }
-    if (deaths(one.rows) > 0)
-      dead.push_back(fmt::format("{} ({})", row.point.method, grouped(deaths(one.rows))));
   }
-  if (!right.empty())
-    chapter.find("By their own documentation these gave no wrong answer: " + listed(right) + ".");
   std::stable_sort(worst.begin(), worst.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<std::string> names;
   for (const auto& [rate, text] : worst) names.push_back(text);
-  if (!names.empty())
-    chapter.find("Wrong answers about pairs of which their documentation promises the answer: " +
-                 listed(names) + ".");
-  if (!published.empty())
-    chapter.find(
-        "Methods as they were published, which promise nothing below the size of a pixel: "
-        "wrong answers of " +
-        listed(published) + ".");
-  if (!dead.empty())
-    chapter.find(
-        "Questions at which the process crashed, hung or ran out of memory: " + listed(dead) + ".");
+  const auto say = [&](const std::string& start, const std::vector<std::string>& who) {
+    if (!who.empty()) chapter.find(fmt::format("Of {}, {}: {}.", what, start, listed(who)));
+  };
+  say("these gave no wrong answer by their own documentation", right);
+  say("wrong answers to questions of which their documentation promises the answer, in all such "
+      "that were answered",
+      names);
+  say("missed by methods as they were published, which promise nothing below the size of a pixel",
+      published);
+  say("answered otherwise when they were asked again", changing);
+  say("questions at which the process crashed, hung or ran out of memory", dead);
 }
 
 }  // namespace
@@ -389,7 +419,8 @@ Chapter libraries_chapter(const StoredStudy& stored) {
   const Rows all = measured(stored), pairs = rows_of_kind(stored, true),
              meshes = rows_of_kind(stored, false);
   add_ours(all, out);
-  add_others(pairs, out);
+  add_others(pairs, "pairs of triangles", out);
+  add_others(meshes, "meshes", out);
   out.limits = {
       "The families are made to be hard. A rate here is no rate on the scenes of a user: the table "
       "says which questions a contestant gets wrong, not how often they come.",
@@ -401,15 +432,14 @@ Chapter libraries_chapter(const StoredStudy& stored) {
   add_gaps(stored, out);
   if (all.empty()) return out;
   if (!pairs.empty()) {
-    out.tables.push_back(overview("libraries", "Pairs of triangles", pairs, true));
+    out.tables.push_back(overview("libraries", pairs, true));
     out.tables.push_back(kinds_table(pairs));
     add_examples(examples_of(pairs), out);
     const Figure time = time_figure(pairs);
     if (!time.panels.empty()) out.figures.push_back(time);
     add_parameter_figures(pairs, out);
   }
-  if (!meshes.empty())
-    out.tables.push_back(overview("libraries-meshes", "Colliding pairs of meshes", meshes, false));
+  if (!meshes.empty()) out.tables.push_back(overview("libraries-meshes", meshes, false));
   out.tables.push_back(calls_table(all));
   out.tables.push_back(families_table(all));
   out.tables.push_back(all_table(all));

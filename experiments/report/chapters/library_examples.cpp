@@ -110,13 +110,15 @@ Panel panel_of(const LibraryExample& example) {
 
 void add_figure(const std::vector<LibraryExample>& examples, const std::string& fault,
                 const std::string& title, Chapter& chapter) {
-  Figure out{.name = "libraries-examples-" + fault,
-             .title = title,
-             .caption =
-                 "The pairs of the table of examples, one for each contestant. Each is moved and "
-                 "stretched along the axes until its box is a cube, which changes nothing about "
-                 "whether triangles meet, and is seen from where both triangles are broad. "
-                 "Differences in the last place cannot be seen."};
+  Figure out{
+      .name = "libraries-examples-" + fault,
+      .title = title,
+      .caption =
+          "The pairs of the table of examples, one for each contestant. Each is moved and "
+          "stretched along the axes until its box is a cube, which changes nothing about "
+          "whether triangles meet, and is seen from where both triangles are broad. A triangle "
+          "that is equal to the other, or much smaller, cannot be seen, nor can differences in "
+          "the last place."};
   for (const LibraryExample& example : examples) {
     if (example.fault == fault) out.panels.push_back(panel_of(example));
   }
@@ -139,6 +141,10 @@ std::string text_of(const std::vector<LibraryExample>& examples) {
 
 }  // namespace
 
+std::size_t digits_of(const LibraryExample& example) {
+  return coordinates(pair_of(example)).size();
+}
+
 void add_examples(const std::vector<LibraryExample>& examples, Chapter& chapter) {
   if (examples.empty()) return;
   DataTable table{
@@ -156,8 +162,8 @@ void add_examples(const std::vector<LibraryExample>& examples, Chapter& chapter)
   }
   chapter.tables.push_back(std::move(table));
   chapter.files.push_back({"libraries-examples.txt", text_of(examples)});
-  add_figure(examples, "missed", "Pairs that meet and that a library calls apart", chapter);
-  add_figure(examples, "wrong", "Pairs apart that a library calls meeting", chapter);
+  add_figure(examples, "missed", "Missed: pairs that meet and that a library calls apart", chapter);
+  add_figure(examples, "false", "False alarms: pairs apart that a library calls meeting", chapter);
 }
 
 }  // namespace farcull

@@ -156,11 +156,10 @@ TEST(ContestRunner, AnotherAnswerTheSecondTimeIsReported) {
 
 TEST(ContestRunner, AProgramThatLeavesHasNoAnswerToItsPair) {
   const PairsAnswer answer = ask_pairs(liar("leaves"), pairs(), kShort, 0);
-  // All questions fit into the pipe: it had them, so the rest is not answered.
-  const Positions none = with(answer, ContestOutcome::unanswered);
-  ASSERT_FALSE(none.empty());
-  EXPECT_EQ(none.front(), 120u);
+  // The questions that were left in its pipe are asked in a new process.
+  EXPECT_EQ(with(answer, ContestOutcome::unanswered), Positions{120});
   EXPECT_EQ(with(answer, ContestOutcome::crashed), Positions{});
+  EXPECT_EQ(answer.processes, 2u);
 }
 
 TEST(ContestRunner, ARefusalIsHonest) {
@@ -216,7 +215,7 @@ TEST(ContestRunner, AskingEndsAfterManyDeaths) {
 }
 
 TEST(ContestRunner, ProgramsWithoutCardsAreRefused) {
-  EXPECT_NE(message_of([] { (void)invite({"/no/such/program"}); }).find("exit status 127"),
+  EXPECT_NE(message_of([] { (void)invite({"/no/such/program"}); }).find("cannot be started"),
             std::string::npos);
   EXPECT_NE(message_of([] {
               (void)invite({"/bin/sh", "-c", "echo name x"});
@@ -372,12 +371,12 @@ TEST(ContestMinimize, KeepsTheFaultWithFewDigits) {
     return pair.kind == SuiteKind::crossing;
   });
   const PairFault fault{.pair = *crossing, .outcome = ContestOutcome::apart};
-  const SuitePair small = minimized(liar("blind"), fault, kShort);
-  EXPECT_LT(cost_of(small), 60u) << coordinates_text(small);
-  EXPECT_TRUE(intersects(small.a, small.b));
-  // The honest has no such fault, so nothing is changed.
-  EXPECT_EQ(coordinates_text(minimized(liar("honest"), fault, kShort)),
-            coordinates_text(*crossing));
+  const std::optional<SuitePair> small = minimized(liar("blind"), fault, kShort);
+  ASSERT_TRUE(small);
+  EXPECT_LT(cost_of(*small), 60u) << coordinates_text(*small);
+  EXPECT_TRUE(intersects(small->a, small->b));
+  // The honest has no such fault, as a library whose fault depends on what was asked before.
+  EXPECT_FALSE(minimized(liar("honest"), fault, kShort));
 }
 
 TEST(ContestScore, MeasuresByTheContestantsOwnWords) {
@@ -424,6 +423,33 @@ TEST(ContestScore, IsReadBackFromItsText) {
   EXPECT_EQ(parse_scores(scores_text(scores)), scores);
   EXPECT_EQ(parse_scores(""), std::vector<Score>{});
   EXPECT_NE(message_of([] { (void)parse_scores("1 apart 2|x"); }), "");
+}
+
+TEST(ContestScore, CountsWhatWasAnsweredAndWhatWasNotAskedApart) {
+  const ContestantCard card{.name = "x", .library = "x", .means = Means::closed};
+  std::vector<SuitePair> asked(4, pairs()[0]);
+  for (SuitePair& pair : asked) pair.kind = SuiteKind::crossing;
+  PairsAnswer answer;
+  answer.answers = {{.outcome = ContestOutcome::apart},
+                    {.outcome = ContestOutcome::meets},
+                    {.outcome = ContestOutcome::crashed},
+                    {.outcome = ContestOutcome::not_asked}};
+  const std::vector<Score> scores = score_pairs(card, asked, answer);
+  ASSERT_EQ(scores.size(), 1u);
+  EXPECT_EQ(scores[0].asked, 3u);
+  EXPECT_EQ(scores[0].answered, 2u);
+  EXPECT_EQ(scores[0].own_asked, 2u);
+  EXPECT_EQ(scores[0].missed, 1u);
+  EXPECT_EQ(scores[0].crashed, 1u);
+  EXPECT_EQ(scores[0].not_asked, 1u);
+}
+
+TEST(ContestRunner, AProgramThatIsGoneIsNoFaultOfTheLibrary) {
+  Invited gone = liar("honest");
+  gone.program = {"/no/such/program"};
+  EXPECT_NE(
+      message_of([&] { (void)ask_pairs(gone, pairs(), kShort, 0); }).find("cannot be started"),
+      std::string::npos);
 }
 
 TEST(ContestCard, IsReadBackFromItsText) {

@@ -117,6 +117,19 @@ SuitePairs asked_pairs(const PairFamily& family) {
                         : read_pairs(folder + "/pairs/" + family.name + ".txt");
 }
 
+/// The meshes of the same suite.
+std::vector<SuiteMesh> asked_meshes() {
+  std::vector<SuiteMesh> out;
+  const std::string folder = environment("FARCULL_SUITE", "");
+  if (folder.empty()) {
+    for (const std::string& name : mesh_names(SuiteSize::small)) out.push_back(make_mesh(name, {}));
+  } else {
+    for (const std::string& path : read_suite(folder).mesh_folders())
+      out.push_back(read_mesh(folder + "/" + path));
+  }
+  return out;
+}
+
 TEST(SuiteAnswers, TheLibraryIsRightAboutEveryPair) {
   Collider two_objects({.threads = 1});
   Collider one_object({.threads = 1, .self = true});
@@ -161,12 +174,12 @@ TEST(SuiteAnswers, FarAndFarPairsAreRightAboutASampleThatIsDrawn) {
 }
 
 TEST(SuiteAnswers, FarPairsFindsTheListsOfAllMeshes) {
-  Session session("native", 0, {});
-  for (const std::string& name : mesh_names(SuiteSize::small)) {
-    const SuiteMesh mesh = make_mesh(name, {});
+  Session session(asked_device(), 0, {});
+  for (const SuiteMesh& mesh : asked_meshes()) {
+    const std::string& name = mesh.name;
     RunOptions options;
     options.method = Method::far_pairs;
-    options.device = "native";
+    options.device = asked_device();
     options.verify = false;
     const Record record = run(mesh.scene, options, session);
     std::vector<TrianglePair> found = record.collisions.pairs;

@@ -24,10 +24,19 @@ Json counts(bool ours, std::uint64_t missed) {
                     .own_asked = 500,
                     .own_missed = missed,
                     .refused = ours ? 0u : 500u};
-  return {{"asked", 1000},    {"answered", 500},           {"missed", missed},
-          {"wrong", 0},       {"own_asked", 500},          {"own_missed", missed},
-          {"own_wrong", 0},   {"refused", ours ? 0 : 500}, {"promises", ours},
-          {"library", "x 1"}, {"means", "closed"},         {"scores", scores_text({score})}};
+  return {{"asked", 1000},
+          {"answered", 500},
+          {"timed", 500},
+          {"missed", missed},
+          {"wrong", 0},
+          {"own_asked", 500},
+          {"own_missed", missed},
+          {"own_wrong", 0},
+          {"refused", ours ? 0 : 500},
+          {"promises", ours},
+          {"library", "x 1"},
+          {"means", "closed"},
+          {"scores", scores_text({score})}};
 }
 
 void add(StoredStudy& stored, const std::string& contestant, Json of) {
