@@ -35,6 +35,16 @@ inline View random_view(lab::Random& random, const World& world, int n) {
   return view;
 }
 
+/// A triangle for each place: a point of the diagonal.
+inline void add_points(const std::vector<int>& places, Scene& scene) {
+  for (const int place : places) {
+    const auto v = static_cast<std::uint32_t>(scene.vertices.size());
+    scene.vertices.push_back(Vec3::Constant(place));
+    scene.triangles.push_back({v, v, v});
+    scene.source_face.push_back(v);
+  }
+}
+
 /// Objects of points at different places of a diagonal, in any order.
 inline void add_scene(lab::Random& random, int n, bool marks, Case& c) {
   std::vector<int> place(n);
@@ -50,12 +60,7 @@ inline void add_scene(lab::Random& random, int n, bool marks, Case& c) {
                                static_cast<std::uint32_t>(first[o + 1] - first[o]),
                                marks && random.below(2) == 0});
   }
-  for (int t = 0; t < n; ++t) {
-    const auto v = static_cast<std::uint32_t>(t);
-    c.scene.vertices.push_back(Vec3::Constant(place[t]));
-    c.scene.triangles.push_back({v, v, v});
-    c.scene.source_face.push_back(v);
-  }
+  add_points(place, c.scene);
 }
 
 /// The owners of the world, and of the patches.
@@ -147,6 +152,29 @@ inline Case random_case(std::uint64_t seed, int most) {
   s.enough = random.below(3) == 0 ? random.below(6) : 0;
   s.worth = random.below(3) == 0 ? random.below(6) : 0;
   add_levels(random, kind, c);
+  return c;
+}
+
+/// A world of the model, with each of its owners as an object. schedule.coarse: empty, or the
+/// owners as wholes.
+inline Case case_of(const World& world, const Schedule& schedule, const Bits& start) {
+  Case c;
+  c.world = world;
+  c.schedule = schedule;
+  c.start = start;
+  for (const Set owner : world.owners) {
+    c.scene.objects.push_back({"o", static_cast<std::uint32_t>(first_of(owner)),
+                               static_cast<std::uint32_t>(std::popcount(owner))});
+  }
+  const Object& last = c.scene.objects.back();
+  std::vector<int> place(last.first_triangle + last.triangle_count);
+  std::iota(place.begin(), place.end(), 1);
+  add_points(place, c.scene);
+  if (schedule.coarse.empty())
+    c.least_objects = kMost;
+  else
+    c.levels.emplace_back("objects");
+  c.levels.emplace_back("triangles");
   return c;
 }
 

@@ -27,32 +27,6 @@ int trials() {
 
 Case nth_case(int n) { return random_case(static_cast<std::uint64_t>(n), kMostTriangles); }
 
-// The first step after which both have other bits; empty: none.
-std::string difference_of_bits(const Outcome& model, const Outcome& core) {
-  if (!core.complaint.empty()) return core.complaint;
-  for (std::size_t i = 0; i < std::max(model.steps.size(), core.steps.size()); ++i) {
-    if (i >= core.steps.size()) return "core/cull ends before " + model.steps[i].name;
-    if (i >= model.steps.size()) return "the model ends before " + core.steps[i].name;
-    if (model.steps[i].name != core.steps[i].name || model.steps[i].bits != core.steps[i].bits)
-      return core.steps[i].name;
-  }
-  return model.bits == core.bits ? "" : "the end";
-}
-
-// Also of what was drawn, asked, saved and left out.
-std::string difference(const Outcome& model, const Outcome& core) {
-  const std::string bits = difference_of_bits(model, core);
-  if (!bits.empty()) return bits;
-  for (std::size_t i = 0; i < core.steps.size(); ++i) {
-    Seen m = model.steps[i];
-    const Seen& c = core.steps[i];
-    // A visit that is left out reports what it saves in both passes at the first of them.
-    if (i % 2 == 0) m.draws_saved = c.draws_saved, m.queries_saved = c.queries_saved;
-    if (m != c) return c.name + ", cost";
-  }
-  return model.passes == core.passes ? "" : "the number of passes";
-}
-
 // What the random cases contain, so that they cannot agree by being empty.
 struct Contents {
   int steps = 0, left_out = 0, third_rounds = 0, plain = 0, agreements = 0, patches = 0, selves = 0;
@@ -108,6 +82,26 @@ TEST(CullModel, AgreesWithCullStepByStep) {
   }
   std::printf("%d schedules, %d steps\n", count, contents.steps);
   for (const int some : contents.all()) EXPECT_GT(some, count / 50);
+}
+
+// The smallest world of docs/model.md, "Totals": two triangles that meet, along two views. Plain
+// CULLIDE ends after a round that culls nothing. Quick-CULLIDE has set bits, goes on, and culls
+// nothing more.
+TEST(CullModel, QuickMayGoOnInVain) {
+  View view{.shown = 3};
+  view.behind[0] = only(1);
+  view.behind[1] = only(0);
+  view.elements[0] = view.elements[1] = 1;
+  const World world{{only(0), only(1)}, 3, {view, view}};
+  const Schedule quick{.triangles = singles(world.owners)};
+  Schedule plain = quick;
+  plain.quick = false;
+  const Outcome by_quick = by_core(case_of(world, quick, {}));
+  const Outcome by_plain = by_core(case_of(world, plain, {}));
+  EXPECT_EQ(by_quick.steps.back().draws, 10u);
+  EXPECT_EQ(by_plain.steps.back().draws, 8u);
+  EXPECT_EQ(by_quick.bits, (std::vector<std::uint8_t>{kF, kL}));
+  EXPECT_EQ(by_plain.bits, (std::vector<std::uint8_t>{0, 0}));
 }
 
 struct Removed {

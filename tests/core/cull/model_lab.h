@@ -280,4 +280,30 @@ inline Outcome by_core(const Case& c, Fault fault = Fault::none) {
   return out;
 }
 
+/// The first step after which both have other bits; empty: none.
+inline std::string difference_of_bits(const Outcome& model, const Outcome& core) {
+  if (!core.complaint.empty()) return core.complaint;
+  for (std::size_t i = 0; i < std::max(model.steps.size(), core.steps.size()); ++i) {
+    if (i >= core.steps.size()) return "core/cull ends before " + model.steps[i].name;
+    if (i >= model.steps.size()) return "the model ends before " + core.steps[i].name;
+    if (model.steps[i].name != core.steps[i].name || model.steps[i].bits != core.steps[i].bits)
+      return core.steps[i].name;
+  }
+  return model.bits == core.bits ? "" : "the end";
+}
+
+/// The same, also of what was drawn, asked, saved and left out.
+inline std::string difference(const Outcome& model, const Outcome& core) {
+  const std::string bits = difference_of_bits(model, core);
+  if (!bits.empty()) return bits;
+  for (std::size_t i = 0; i < core.steps.size(); ++i) {
+    Seen m = model.steps[i];
+    const Seen& c = core.steps[i];
+    // A visit that is left out reports what it saves in both passes at the first of them.
+    if (i % 2 == 0) m.draws_saved = c.draws_saved, m.queries_saved = c.queries_saved;
+    if (m != c) return c.name + ", cost";
+  }
+  return model.passes == core.passes ? "" : "the number of passes";
+}
+
 }  // namespace farcull::model

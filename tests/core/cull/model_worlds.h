@@ -9,40 +9,54 @@
 
 namespace farcull::model {
 
-/// The triangles that `t` may meet, as far as this view knows (the visibility axiom): two triangles
-/// that meet are seen against each other; one without a point in the window meets none.
-inline Set may_meet(const View& view, int t) {
-  if (view.undrawable & only(t)) return view.undrawable | view.shown;
-  if (!(view.shown & only(t))) return 0;
-  Set out = view.undrawable;
-  for (Set rest = view.shown & view.behind[t]; rest != 0; rest &= rest - 1) {
-    const int u = std::countr_zero(rest);
-    if (view.behind[u] & only(t)) out |= only(u);
+/// What is taken for granted of triangles that meet. Each can be removed alone.
+struct Axioms {
+  bool both_ways = true;   // each is seen against the other, in every view that shows both
+  bool has_point = true;   // each has a point in every window, where it can be drawn
+  bool takes_part = true;  // each is in the region
+};
+
+/// The triangles that `t` may meet, as far as this view knows.
+inline Set may_meet(const View& view, int t, const Axioms& axioms = {}) {
+  const Set undrawn = axioms.has_point ? 0 : ~view.shown;
+  if (view.undrawable & only(t)) return view.undrawable | view.shown | undrawn;
+  if (!(view.shown & only(t))) return axioms.has_point ? 0 : ~Set{0};
+  Set out = view.undrawable | undrawn;
+  for (Set rest = view.shown; rest != 0; rest &= rest - 1) {
+    const int u = first_of(rest);
+    const int ways = ((view.behind[t] & only(u)) != 0) + ((view.behind[u] & only(t)) != 0);
+    if (ways == 2 || (ways == 1 && !axioms.both_ways)) out |= only(u);
   }
   return out;
 }
 
+inline Set all_of(const World& world) {
+  Set all = 0;
+  for (const Set owner : world.owners) all |= owner;
+  return all;
+}
+
 /// The triangles that `t` may meet in a world, itself left out.
-inline Set may_meet(const World& world, int t) {
-  Set out = world.region & only(t) ? world.region & ~only(t) : 0;
+inline Set may_meet(const World& world, int t, const Axioms& axioms = {}) {
+  const Set part = axioms.takes_part ? world.region : all_of(world);
+  Set out = part & only(t) ? part & ~only(t) : 0;
   for (const View& view : world.views) {
-    if (view.drawn) out &= may_meet(view, t);
+    if (view.drawn) out &= may_meet(view, t, axioms);
   }
   return out;
 }
 
 /// The bits that theorem 2 forbids where all triangles meet that may: F of a triangle that meets
 /// one of an earlier owner, L of one that meets one of a later owner.
-inline Bits forbidden(const World& world) {
+inline Bits forbidden(const World& world, const Axioms& axioms = {}) {
   Bits out;
-  Set before = 0, all = 0;
-  for (const Set owner : world.owners) all |= owner;
+  Set before = 0;
+  const Set all = all_of(world);
   for (const Set owner : world.owners) {
     for (Set rest = owner; rest != 0; rest &= rest - 1) {
-      const int t = std::countr_zero(rest);
-      const Set met = may_meet(world, t);
-      if (met & before) out.f |= only(t);
-      if (met & all & ~before & ~owner) out.l |= only(t);
+      const Set met = may_meet(world, first_of(rest), axioms);
+      if (met & before) out.f |= rest & -rest;
+      if (met & all & ~before & ~owner) out.l |= rest & -rest;
     }
     before |= owner;
   }
@@ -51,6 +65,17 @@ inline Bits forbidden(const World& world) {
 
 inline bool breaks(const Bits& bits, const Bits& forbidden) {
   return ((bits.f & forbidden.f) | (bits.l & forbidden.l)) != 0;
+}
+
+/// How much there is to say of a world: pairs that are seen, and, three times, triangles not shown.
+inline int weight(const World& world) {
+  int out = 0;
+  const int n = std::popcount(all_of(world));
+  for (const View& view : world.views) {
+    out += 3 * (n - std::popcount(view.shown));
+    for (const Set behind : view.behind) out += std::popcount(behind);
+  }
+  return out;
 }
 
 /// Ways to divide n triangles among owners, in the order of the triangles: 2^(n-1) of them.
