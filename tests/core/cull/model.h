@@ -244,7 +244,7 @@ Bits run_round(const World& world, const Schedule& s, int round, Bits bits, Memo
     agreed = {agreed.f & bits.f, agreed.l & bits.l};
     bits = start;
   }
-  return s.all_views ? agreed : bits;
+  return s.all_views && !world.views.empty() ? agreed : bits;
 }
 
 /// All rounds, from `bits`, which are facts: found by another run on the same triangles and owners.

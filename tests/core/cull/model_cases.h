@@ -139,7 +139,7 @@ inline Case random_case(std::uint64_t seed, int most) {
   c.places = random.below(40) > 0;
   c.touching = random.below(2) == 0;
   if (random.below(4) == 0) c.start = {random_set(random, n, 0.3), random_set(random, n, 0.3)};
-  const int views = 1 + random.below(4);
+  const int views = random.below(40) == 0 ? 0 : 1 + random.below(4);
   for (int v = 0; v < views; ++v) {
     c.world.views.push_back(random_view(random, c.world, n));
     c.world.views.back().drawn &= c.places;

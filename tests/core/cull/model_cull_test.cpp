@@ -81,7 +81,7 @@ TEST(CullModel, AgreesWithCullStepByStep) {
     }
   }
   std::printf("%d schedules, %d steps\n", count, contents.steps);
-  for (const int some : contents.all()) EXPECT_GT(some, count / 50);
+  for (const int some : contents.all()) EXPECT_GT(some, count / 100);
 }
 
 // The smallest world of docs/model.md, "Totals": two triangles that meet, along two views. Plain
