@@ -184,6 +184,7 @@ class Culling {
   // Sets what all visits of the round agree on.
   void end_round() {
     if (settings_.clear == ClearRule::any || state_.live.empty()) return;
+    if (places_.empty()) return;  // where there is no view, none has cleared anything
     Stage stage = begin({.kind = StageKind::agreement,
                          .round = round_,
                          .depends = round_ > 1,

@@ -22,8 +22,8 @@
 // schedule, Quick-CULLIDE's bits contain plain CULLIDE's, and it has drawn and asked no more. So
 // where plain CULLIDE has reached its fixed point, Quick-CULLIDE keeps no more triangles and has
 // used no more queries and draws. It may go on from there, as bits of different views join: then it
-// culls more, and its total may exceed plain CULLIDE's (tests/core/cull/cull_quick_test.cpp has
-// such a scene).
+// may cull more, and its total may exceed plain CULLIDE's (tests/core/cull/cull_quick_test.cpp has
+// such a scene; docs/model.md has the smallest, where it goes on and culls no more).
 //
 // Bits are facts about the triangles: with a fattener that promises, F(t) means that t meets no
 // triangle of an earlier owner, L(t) none of a later one (theorem 2), whatever view, resolution or
@@ -66,7 +66,7 @@ struct CullStep {
 
 /// How many views have to find a triangle fully visible before it is culled. any: one (CULLIDE).
 /// all: every one of them, each from the triangles with which the round began; a view that cannot
-/// be drawn clears nothing, so nothing is culled then.
+/// be drawn clears nothing, so nothing is culled then, nor where there is no view.
 enum class ClearRule { any, all };
 
 struct CullSettings {
