@@ -23,14 +23,13 @@ struct Bound {
   double twin = 0.5;
 };
 
-std::vector<Bound> arithmetic_bounds();  // the model of rounding itself
-std::vector<Bound> filter_bounds();      // verify/filter_of_planes.h
-std::vector<Bound> distance_bounds();    // verify/filter_of_distance.h
-std::vector<Bound> map_bounds();         // core/view: the map to pixels, clipping, the budget
-std::vector<Bound> fit_bounds();         // offsets/fit.inl
-std::vector<Bound> slab_bounds();        // offsets/slab.glsl
-std::vector<Bound> extent_bounds();      // offsets/minkowski.glsl
-std::vector<Bound> interval_bounds();    // core/pairs/interval.glsl
+std::vector<Bound> filter_bounds();    // verify/filter_of_planes.h
+std::vector<Bound> distance_bounds();  // verify/filter_of_distance.h
+std::vector<Bound> map_bounds();       // core/view: the map to pixels, clipping, the budget
+std::vector<Bound> fit_bounds();       // offsets/fit.inl
+std::vector<Bound> slab_bounds();      // offsets/slab.glsl
+std::vector<Bound> extent_bounds();    // offsets/minkowski.glsl
+std::vector<Bound> interval_bounds();  // core/pairs/interval.glsl
 /// All of them.
 std::vector<Bound> bounds();
 
