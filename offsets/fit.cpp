@@ -2,6 +2,7 @@
 #include "offsets/fit.h"
 
 #include "core/base/glsl_shim.h"
+#include "offsets/fit_rounding.h"
 #include "offsets/round.h"
 
 namespace farcull {

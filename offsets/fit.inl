@@ -1,6 +1,7 @@
 // How offsets fit solids and rectangles to the corners of a primitive, in doubles. One text for scalars, where a primitive may
 // have any number of corners, and for lanes, where each lane is a triangle of its own. FAR_NEAREST rounds to float; dvec3,
-// min, max, abs and sqrt are those of GLSL. Include it as offsets/fit.h and offsets/fit_lanes-inl.h do.
+// min, max, abs and sqrt are those of GLSL, and offsets/fit_rounding.h has the constants. Include it as offsets/fit.h and
+// offsets/fit_lanes-inl.h do.
 
 // ---- vectors ----
 
@@ -27,14 +28,14 @@ FAR_KERNEL dvec3 fit_choose(FAR_BOOL c, dvec3 a, dvec3 b) {
 // A float at or above x, at most two above the smallest. x + |x| 2^-24 is half a unit in the last place above x or more, and
 // rounding to nearest takes at most that back; the second factor pays for the rounding of these doubles, the last term for
 // subnormal floats.
-FAR_KERNEL double fit_up(double x) { return FAR_NEAREST(x + abs(x) * 0x1.00001p-24 + 0x1p-149); }
+FAR_KERNEL double fit_up(double x) { return FAR_NEAREST(x + abs(x) * kFitHalfUlp + kFitSubnormal); }
 FAR_KERNEL double fit_down(double x) { return -fit_up(-x); }
 // Floats beyond z -+ radius, the rounding of these very lines included.
 FAR_KERNEL double fit_below(double z, double radius) {
-  return fit_down(z - radius - 0x1p-50 * (abs(z) + radius));
+  return fit_down(z - radius - kFitDepth * (abs(z) + radius));
 }
 FAR_KERNEL double fit_above(double z, double radius) {
-  return fit_up(z + radius + 0x1p-50 * (abs(z) + radius));
+  return fit_up(z + radius + kFitDepth * (abs(z) + radius));
 }
 
 // ---- the proxy's rectangle ----
@@ -180,13 +181,13 @@ FAR_KERNEL void fit_box(const dvec3* p, int count, double radius, double* solid)
       reach = max(reach, abs(fit_dot(n, d)));
       size = max(size, (abs(n.x) * abs(d.x) + abs(n.y) * abs(d.y)) + abs(n.z) * abs(d.z));
     }
-    // A difference, a product and two sums: under 5 * 2^-53 of `size`. |n| <= (1 + |n|^2) / 2, which needs no root. 2^-48 is
-    // beyond the rounding of either.
-    const double length = (0.5 + 0.5 * fit_dot(n, n)) * (1.0 + 0x1p-48);
+    // A difference, a product and two sums: under 5 * 2^-53 of `size`. |n| <= (1 + |n|^2) / 2, which needs no root. kFitBox
+    // is beyond the rounding of either.
+    const double length = (0.5 + 0.5 * fit_dot(n, n)) * (1.0 + kFitBox);
     solid[4 * i + 4] = n.x;
     solid[4 * i + 5] = n.y;
     solid[4 * i + 6] = n.z;
-    solid[4 * i + 7] = fit_up(reach + 0x1p-48 * size + radius * length);
+    solid[4 * i + 7] = fit_up(reach + kFitBox * size + radius * length);
   }
   solid[16] = fit_above(highest, radius);
   solid[17] = 0.0;
@@ -222,8 +223,8 @@ FAR_KERNEL void fit_minkowski(const dvec3* p, double radius, double* solid) {
   }
   // The subtraction rounds too: 2^-53 of |d| per axis, within the second term. Components below 2^-511 square to less than a
   // normal double: the third.
-  const double displaced = sqrt(lost2) + 0x1p-50 * sqrt(size2) + 0x1p-500;
-  solid[7] = fit_up((radius + displaced) * (1.0 + 0x1p-48));
+  const double displaced = sqrt(lost2) + kFitCorner * sqrt(size2) + kFitUnderflow;
+  solid[7] = fit_up((radius + displaced) * (1.0 + kFitRadius));
   solid[11] = fit_above(hi.z, radius);
   solid[16] = 0.0;
   solid[17] = 0.0;

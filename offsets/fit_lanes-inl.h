@@ -7,6 +7,7 @@
 #endif
 
 #include "core/native/fatten-inl.h"
+#include "offsets/fit_rounding.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace farcull::HWY_NAMESPACE {

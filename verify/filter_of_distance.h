@@ -113,18 +113,18 @@ Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
     offer_face(s[i], t, 1, closest);
     offer_face(t[i], s, -1, closest);
   }
-  constexpr double kLeast = 0x1p-900;  // of a square whose root is accurate
   const Vec3 extent = extent_of(s, t);
-  const double length = std::sqrt(std::max(closest.squared, kLeast));
+  const double length = std::sqrt(std::max(closest.squared, kLeastSquare));
   if (length + Bounds::point * extent.maxCoeff() + Bounds::absolute <= clearance)
     return Triage::yes;
-  if (closest.squared < kLeast) return Triage::unknown;
+  if (closest.squared < kLeastSquare) return Triage::unknown;
   const Vec3& d = closest.difference;
   const double s_most = std::max({d.dot(s[0]), d.dot(s[1]), d.dot(s[2])});
   const double t_least = std::min({d.dot(t[0]), d.dot(t[1]), d.dot(t[2])});
   const double doubt = Bounds::gap * d.cwiseAbs().dot(extent) + Bounds::absolute;
   const double needed = clearance * length;
-  return t_least - s_most - doubt > needed + needed * 0x1p-50 ? Triage::no : Triage::unknown;
+  return t_least - s_most - doubt > needed + needed * kNeededRounding ? Triage::no
+                                                                      : Triage::unknown;
 }
 
 }  // namespace farcull::filters

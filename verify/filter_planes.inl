@@ -62,11 +62,11 @@ struct Sides {
 };
 
 /// The clearance times the length of the normal, rounded up: the computed normal is within
-/// ((1 + u)^4 - 1) (1 - u)^-4 m of the exact one per axis, and 2^-900 stands for squares that
+/// ((1 + u)^4 - 1) (1 - u)^-4 m of the exact one per axis, and kLeastSquare stands for squares that
 /// underflow. 8 roundings follow.
 FAR_FILTER Real at_clearance(const Normal& normal, PlainReal clearance) {
-  const Real length = sqrt(dot(normal.n, normal.n) + 0x1p-900);
-  return clearance * (length + sum(normal.m) * 0x1p-50) * (1 + 0x1p-49) + 0x1p-1000;
+  const Real length = sqrt(dot(normal.n, normal.n) + kLeastSquare);
+  return clearance * (length + sum(normal.m) * kNormalLength) * (1 + kNormalRounding) + 0x1p-1000;
 }
 
 template <class Bounds>

@@ -10,6 +10,7 @@
 
 #include "core/canvas/fatten.h"
 #include "core/native/wide-inl.h"
+#include "core/view/rounding.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace farcull::HWY_NAMESPACE {
@@ -37,7 +38,7 @@ struct WidePixels {
     }
   }
   static HWY_INLINE WideLane pixel_error_bound(WideLane sum) {
-    return WideLane(8 * 0x1p-53) * sum + WideLane(0x1p-1000);
+    return WideLane(kMapRounding) * sum + WideLane(kMapUnderflow);
   }
   /// Which are drawable, and inside the region as they are.
   HWY_INLINE WideBool inside(const Window& window) const {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/view/rounding.h"
+
 namespace farcull {
 namespace {
-
-constexpr double kUnit = 0x1p-53;
 
 // Keeps the part of `in` with sign * p[axis] <= sign * plane. False: `out` has no room for it. A
 // convex polygon gains at most one corner, but rounding leaves a needle's corners on either side of
@@ -68,10 +68,10 @@ Patch clip_to_region(const Window& window, const std::array<Vec3, 3>& corners) {
     }
     if (patch.count == 0) break;
   }
-  // Each cut displaces its new corners by at most 16 * 2^-53 * largest in each axis: t carries
+  // Each cut displaces its new corners by at most kCutRounding * largest in each axis: t carries
   // three roundings, times |to - from| <= 2 * largest, then the difference, the product and the sum
   // round once more (docs/budget.md, "Clipping and the fan").
-  patch.error += patch.cuts * 16 * kUnit * largest;
+  patch.error += patch.cuts * kCutRounding * largest;
   return patch;
 }
 

@@ -6,11 +6,10 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/view/rounding.h"
 
 namespace farcull {
 namespace {
-
-constexpr double kUnit = 0x1p-53;
 
 // Image axes for a depth direction: for a coordinate axis the two others, so that its map
 // multiplies exactly. (A direction may round to length 1 along an axis and still not be that axis.)
@@ -42,7 +41,7 @@ Box image(const Eigen::Matrix3d& map, const Vec3& origin, const Box& box, double
       lo += std::min(map(row, i) * from[i], map(row, i) * to[i]);
       hi += std::max(map(row, i) * from[i], map(row, i) * to[i]);
     }
-    const double e = 8 * kUnit * map.row(row).cwiseAbs().dot(reach.transpose());
+    const double e = kMapRounding * map.row(row).cwiseAbs().dot(reach.transpose());
     error = std::isfinite(e) ? std::max(error, e) : HUGE_VAL;
     out.lo[row] = lo - e;
     out.hi[row] = hi + e;
@@ -111,8 +110,8 @@ std::vector<View> parse_views(const std::string& text) {
 PixelPoint to_pixel(const Window& window, const Vec3& x) {
   // The subtraction is one correctly rounded operation, so its error is relative to |x - origin|
   // and not to |x|: scenes far from the world's origin lose nothing. Three products and two
-  // additions follow; 8 covers the five roundings and the cross terms (docs/budget.md, "double").
-  // Products that underflow err by at most 2^-1075 more, each.
+  // additions follow; kMapRounding covers the roundings and the cross terms (docs/budget.md,
+  // "double"). Products that underflow err by at most 2^-1075 more, each.
   const Vec3 d = x - window.origin;
   // The order of the sums is that of core/native/fatten-inl.h.
   PixelPoint out{{}, 0};
@@ -124,13 +123,13 @@ PixelPoint to_pixel(const Window& window, const Vec3& x) {
     const double sum = (std::abs(a) + std::abs(b)) + std::abs(c);
     if (!(sum <= bound)) bound = sum;  // also where it is not a number
   }
-  bound = 8 * kUnit * bound + 0x1p-1000;
+  bound = kMapRounding * bound + kMapUnderflow;
   out.error = std::isfinite(bound) && out.p.allFinite() ? bound : HUGE_VAL;
   return out;
 }
 
 double pixel_error(const Window& window, const Box& box) {
-  double error = 0x1p-1000;
+  double error = kMapUnderflow;
   image(window.map, window.origin, box, error);
   return error;
 }

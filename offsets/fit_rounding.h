@@ -1,0 +1,24 @@
+// How far doubles err where solids are fitted (offsets/fit.inl). docs/budget.md, "offset", derives
+// the constants; tests/proofs proves them.
+#pragma once
+
+namespace farcull {
+
+/// Half a unit in the last place of a float, relative to it, and a little more for the doubles that
+/// multiply and add it.
+constexpr double kFitHalfUlp = 0x1.00001p-24;
+/// The smallest float above 0.
+constexpr double kFitSubnormal = 0x1p-149;
+/// Of a depth less or plus a radius, relative to the sum of their magnitudes.
+constexpr double kFitDepth = 0x1p-50;
+/// Of a projection onto a direction of the box, relative to the sum of the magnitudes of its terms;
+/// also of an upper bound of a direction's length.
+constexpr double kFitBox = 0x1p-48;
+/// Of the difference of a corner and the centre, relative to its length.
+constexpr double kFitCorner = 0x1p-50;
+/// The same, where squares underflow (px).
+constexpr double kFitUnderflow = 0x1p-500;
+/// Of the radius that grows by the largest displacement of a corner.
+constexpr double kFitRadius = 0x1p-48;
+
+}  // namespace farcull

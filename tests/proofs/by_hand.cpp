@@ -1,0 +1,76 @@
+// What Gappa cannot express, and where it is proved by hand.
+#include "tests/proofs/bounds.h"
+
+namespace farcull::proofs {
+
+std::vector<ByHand> proved_by_hand() {
+  return {
+      {"A rounded result is x (1 + d) + f, with the bounds on d and f that each arithmetic names",
+       "IEEE 754 for doubles and floats to nearest; the GLSL specification 4.50, section 4.7.1",
+       "every row: it is how an operation is written in the scripts"},
+      {"Where products overflow, the bound of a filter is infinite or not a number, and no "
+       "comparison "
+       "with it holds",
+       "the comment of `verify/filter_of_planes.h`, \"Overflow\"",
+       "the rows `filter.*` and `distance.*`, which have no largest number"},
+      {"The length of a vector is at most that of another plus that of their difference",
+       "the triangle inequality",
+       "`filter.component` with `filter.clearance_length`; `fit.corner`"},
+      {"Rounding never decreases with x, so least and largest computed numbers are those of some "
+       "corner",
+       "[reliability.md](reliability.md), \"Depth\"; [budget.md](budget.md), \"Slices\"",
+       "`distance.gap`, `fit.box`, `extent.corner`: they speak of one corner"},
+      {"Signs of determinants decide on which side corners lie, and what two triangles on a line "
+       "share",
+       "the comments of `verify/filter_of_planes.h` and `verify/filter_planes.inl`",
+       "`filter.side`, `filter.normals`, `filter.projection`"},
+      {"Every point of the exact triangle inside the planes has a partner on the fan of the "
+       "computed "
+       "corners (winding numbers)",
+       "[budget.md](budget.md), \"Clipping and the fan\"", "`map.point`, `clip.cut`"},
+      {"A centre inside the exact proxy by more than the displacement of its corners stays inside "
+       "(winding numbers)",
+       "[reliability.md](reliability.md), \"Lemmas\"",
+       "`budget.input`, `budget.vertex`, and the term `snap`"},
+      {"The doubles of a proxy's rectangle err by less than 2^-48 M; turned normals add less than "
+       "2^-20 "
+       "of a corner's displacement",
+       "[budget.md](budget.md), \"input\" and \"The canvas on the CPU\"",
+       "`budget.input`, `budget.input_on_cpu`: both are in the scripts as hypotheses"},
+      {"A halfspace n . p <= max n . v_i + r |n| holds the solid, for any n that is one value",
+       "[budget.md](budget.md), \"The exact offset\" and \"One normal\"",
+       "`extent.*`, then `halfspace.*`"},
+      {"|n| is at most (1 + |n|^2) / 2", "(1 - |n|)^2 is not negative",
+       "`fit.box_radius`, `extent.ball`"},
+      {"A component of n or v below 2^-126 may be read as zero at one use and not at another: at "
+       "most "
+       "2^-85 px",
+       "[budget.md](budget.md), \"Flushing\"",
+       "`extent.ball` leaves 14 u of the ball, where u r is at least 2^-24 px"},
+      {"Of the steps of a slab, a point of the solid has |s| <= h + |a_z| |z - m_z|, and its depth "
+       "is "
+       "between the two quotients",
+       "[budget.md](budget.md), \"The oriented box\"",
+       "`slab.doubt`, `slab.height`, then `slab.parallel`, or `slab.end` and `slab.depth`"},
+      {"A real vertex is within `widen` and half a unit in the last place of its float",
+       "[budget.md](budget.md), \"Interval pairs\", \"The float triangle\"",
+       "`map.point`, then `interval.bounds`, which leaves 1.9 v m for the origin that moves"},
+      {"The boundary of a strip is at most five segments, and its depths are those of their parts",
+       "[budget.md](budget.md), \"Interval pairs\"",
+       "`interval.strip`, `interval.depth`, then `interval.depth_margin`"},
+      {"The bounds that the margin is computed from reach the largest |coordinate| plus `widen`",
+       "they are those before the limits cut them: `core/pairs/rows.h`, "
+       "`core/gl/shaders/pair_source.glsl`",
+       "`interval.depth_margin`, `interval.image_margin`: it pays for the rounding of `widen`"},
+      {"The part of a pixel is exact below and above the pixel too",
+       "[budget.md](budget.md), \"Parts of a pixel\"", "`interval.part`"},
+      {"The depth map and the slices never decrease with depth",
+       "[reliability.md](reliability.md), \"Depth\"; [budget.md](budget.md), \"Slices\"",
+       "none: no error is bounded, an order is kept"},
+      {"Passes, views and rounds keep both triangles of every colliding pair",
+       "[reliability.md](reliability.md), \"Passes, views, rounds\", theorem 2",
+       "none: theorem 1 alone joins it to geometry"},
+  };
+}
+
+}  // namespace farcull::proofs
