@@ -90,7 +90,7 @@ local function Table(element)
   local sum, weights = 0, 0
   for i, length in ipairs(longest) do
     sum = sum + length
-    longest[i] = math.max(7, math.min(length, 60))
+    longest[i] = math.max(9, math.min(length, 60))
     weights = weights + longest[i]
   end
   for i, spec in ipairs(element.colspecs) do
