@@ -67,16 +67,20 @@ void Drawing::begin(const DrawnPanel& panel) {
 }
 
 void Drawing::pixels() {
-  for (int axis = 0; axis < 2; ++axis) {
-    for (double at = std::ceil(panel_.lo[axis]); at <= panel_.hi[axis]; ++at) {
+  const auto first = [this](std::size_t axis, double shift) {
+    return static_cast<int>(std::ceil(panel_.lo[axis] - shift));
+  };
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    for (int i = first(axis, 0); i <= panel_.hi[axis]; ++i) {
+      const double at = i;
       DrawnPoint from = panel_.lo, to = panel_.hi;
       from[axis] = to[axis] = at;
       line({from, to}, R"(stroke="#ccc" stroke-width="1")");
     }
   }
-  for (double y = std::ceil(panel_.lo[1] - 0.5) + 0.5; y <= panel_.hi[1]; ++y)
-    for (double x = std::ceil(panel_.lo[0] - 0.5) + 0.5; x <= panel_.hi[0]; ++x)
-      dot({x, y}, 2, R"(fill="#999")");
+  for (int j = first(1, 0.5); j + 0.5 <= panel_.hi[1]; ++j)
+    for (int i = first(0, 0.5); i + 0.5 <= panel_.hi[0]; ++i)
+      dot({i + 0.5, j + 0.5}, 2, R"(fill="#999")");
 }
 
 void Drawing::line(const std::vector<DrawnPoint>& points, const std::string& style) {

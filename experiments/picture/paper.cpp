@@ -73,6 +73,29 @@ int winding(const std::vector<DrawnPoint>& polygon, const DrawnPoint& p) {
   return out;
 }
 
+// Where lines of sight in the plane y = 0.5 enter and leave a solid, by its kernel.
+struct Followed {
+  std::vector<DrawnPoint> near, far;
+
+  std::vector<DrawnPoint> outline() const {
+    std::vector<DrawnPoint> out = near;
+    out.insert(out.end(), far.rbegin(), far.rend());
+    return out;
+  }
+};
+// The lines at x = i / per_px + shift with -5 <= x <= 4.
+Followed follow(const SolidProgram& by, const Solid& solid, int per_px, float shift) {
+  Followed out;
+  for (int i = -5 * per_px; i <= 4 * per_px; ++i) {
+    const float x = static_cast<float>(i) / static_cast<float>(per_px) + shift;
+    float entry = 0, exit = 0;
+    if (x > 4 || !by.interval(x, 0.5f, solid, entry, exit)) continue;
+    out.near.push_back({x, entry});
+    out.far.push_back({x, exit});
+  }
+  return out;
+}
+
 }  // namespace
 
 PaperFigure ball_figure() {
@@ -129,8 +152,9 @@ PaperFigure coverage_figure() {
   d.outline(exact, kExact);
   d.outline(moved, kProxy);
   d.line({moved[0], moved[2]}, R"(stroke="#b30" stroke-width="1.5" stroke-dasharray="2 4")");
-  for (double y = -2.5; y <= 1.5; ++y) {
-    for (double x = -4.5; x <= 2; ++x) {
+  for (int j = -3; j < 2; ++j) {
+    for (int i = -5; i < 2; ++i) {
+      const double x = i + 0.5, y = j + 0.5;
       const int around = winding(moved, {x, y});
       d.words({x, y}, 6, -5, std::to_string(around), "start",
               around == 0 ? R"(fill="#888")" : R"(fill="#000" font-weight="bold")");
@@ -165,29 +189,16 @@ PaperFigure entry_and_exit_figure() {
     const double x = axis_x;
     d.line({{x, -3.2}, {x, 2.8}}, R"(stroke="#ccc" stroke-width="1")");
   }
-  // The outlines of both solids in the plane y = 0.5, at many lines of sight.
-  for (const bool exact : {false, true}) {
-    std::vector<DrawnPoint> near, far;
-    for (int i = -5 * 64; i <= 4 * 64; ++i) {
-      const float x = static_cast<float>(i) / 64;
-      float entry = 0, exit = 0;
-      const bool hit = exact ? as_round.interval(x, 0.5f, round, entry, exit)
-                             : as_box.interval(x, 0.5f, box, entry, exit);
-      if (!hit) continue;
-      near.push_back({x, entry});
-      far.push_back({x, exit});
-    }
-    near.insert(near.end(), far.rbegin(), far.rend());
-    d.outline(near, exact
-                        ? R"(fill="#9ab" fill-opacity="0.4" stroke="#234" stroke-width="1.5")"
-                        : R"(fill="none" stroke="#07a" stroke-width="1.5" stroke-dasharray="6 4")");
-  }
-  for (double x = -4.5; x < 4; ++x) {
-    float entry = 0, exit = 0;
-    if (!as_round.interval(static_cast<float>(x), 0.5f, round, entry, exit)) continue;
-    d.line({{x, entry}, {x, exit}}, R"(stroke="#b30" stroke-width="4")");
-    d.dot({x, entry}, 4, R"(fill="#b30")");
-    d.dot({x, exit}, 4, R"(fill="#b30")");
+  // The outlines of both solids in the plane y = 0.5, from many lines of sight.
+  const Followed around_box = follow(as_box, box, 64, 0), around = follow(as_round, round, 64, 0);
+  d.outline(around_box.outline(),
+            R"(fill="none" stroke="#07a" stroke-width="1.5" stroke-dasharray="6 4")");
+  d.outline(around.outline(), R"(fill="#9ab" fill-opacity="0.4" stroke="#234" stroke-width="1.5")");
+  const Followed centres = follow(as_round, round, 1, 0.5f);
+  for (std::size_t i = 0; i < centres.near.size(); ++i) {
+    d.line({centres.near[i], centres.far[i]}, R"(stroke="#b30" stroke-width="4")");
+    d.dot(centres.near[i], 4, R"(fill="#b30")");
+    d.dot(centres.far[i], 4, R"(fill="#b30")");
   }
   // The triangle over the row: what its interval kernel finds between y = 0 and y = 1.
   interval::FarStrip strip;
