@@ -36,9 +36,10 @@ farcull_packages=(
 )
 # What only tests need, which skip what is missing and name it: the test of the report opens the page
 # in a browser, prints it, reads the PDF, and compiles its LaTeX (39 MB to fetch, 124 MB on the disk;
-# the browser alone takes 290 MB); another one reads the manual and tries completion; gappa proves
-# the bounds of rounding errors.
-farcull_test_packages=(gappa chromium poppler-utils sqlite3 texlive-latex-base mandoc groff-base man-db zsh fish)
+# the browser alone takes 290 MB); another one makes the paper a PDF (32 MB to fetch, 202 MB on the
+# disk); another one reads the manual and tries completion; gappa proves the bounds of rounding errors.
+farcull_test_packages=(gappa chromium poppler-utils sqlite3 texlive-latex-base pandoc texlive-latex-recommended
+  librsvg2-bin mandoc groff-base man-db zsh fish)
 
 # Prints those of farcull_packages that are not completely installed, one per line.
 farcull_missing() {

@@ -24,7 +24,7 @@ constexpr std::uint32_t kFewTriangles = 256;
 constexpr std::uint32_t kFewObjects = 16;
 /// A further round follows where the last one culled at least one triangle in so many. A round
 /// costs about what the exact tests of as many triangles cost, so it has to cull a good part of
-/// them (docs/methods.md, "What is left out").
+/// them (docs/methods.md, "What a run leaves out").
 constexpr std::uint32_t kWorthARound = 8;
 
 struct RegionRules {

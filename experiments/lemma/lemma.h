@@ -40,7 +40,7 @@ struct LemmaSettings {
   bool displace = false;
   /// The samples are what the depth buffer holds (Canvas::depths), the only ones that
   /// fixed-function depth has. A monotone rounding of both ends costs nothing (docs/reliability.md,
-  /// "Depth"), so what depth_rounding() explains is counted apart.
+  /// lemma 4), so what depth_rounding() explains is counted apart.
   bool stored = false;
   int side = 0;        // px of the window, even, at least 128; 0: the generator's own
   double depth = 128;  // px, half the window's depth, at least 128; where it is more, the triangles

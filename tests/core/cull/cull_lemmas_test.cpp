@@ -1,6 +1,7 @@
 // The two lemmas of CULLIDE and the five of Quick-CULLIDE (docs/reliability.md, "CULLIDE" and
-// "Quick-CULLIDE"), each as a property: on raw triangles in the pixel-exact sense, on fattened ones
-// against exact collisions. Each has a twin that breaks its rule and is caught.
+// "Quick-CULLIDE": lemmas 6 to 12; the names of tests have the numbers of the two papers), each as
+// a property: on raw triangles in the pixel-exact sense, on fattened ones against exact collisions.
+// Each has a twin that breaks its rule and is caught.
 #include <gtest/gtest.h>
 
 #include "tests/core/cull/cull_lab.h"
@@ -305,7 +306,7 @@ std::vector<bool> in_pcs(const PassRule& rule, const Scene& scene, const Drawing
   return out;
 }
 
-// Lemma 2, the half that reliability is: what collides is in the set.
+// Lemma 7 (a), the half that reliability is: what collides is in the set.
 TEST(CullideLemma, L2ObjectsThatCollideStayInThePcs) {
   for_all(822, [](const Question& q, const Scene& scene, const CullSettings& settings,
                   const Pairs& pairs) {
@@ -332,8 +333,8 @@ TEST(CullideLemma, L2RawTrianglesOnACoarseGridLoseObjectsThatCollide) {
   EXPECT_GT(lost, 0);
 }
 
-// Lemma 2, the half that culls: how many objects stay although a view shows them fully visible with
-// respect to all earlier and to all later ones; and how many it shows so.
+// Lemma 7 (b), the half that culls: how many objects stay although a view shows them fully visible
+// with respect to all earlier and to all later ones; and how many it shows so.
 struct Leavers {
   int stayed = 0, shown = 0;
 };
@@ -412,8 +413,8 @@ Scene rings(double lift) {
   return lab::scene_of(objects);
 }
 
-// The converse of lemma 2, "an object that collides with no other is not in the PCS", is false.
-// Linked rings do not touch, and in no view is one of them in front of the other.
+// Lemma 7 (c): "an object that collides with no other is not in the PCS" is false. Linked rings do
+// not touch, and in no view is one of them in front of the other.
 TEST(CullideLemma, L2LinkedRingsAreNeverFullyVisibleAlthoughTheyDoNotCollide) {
   const auto is = [](std::uint32_t o) { return [o](std::uint32_t s) { return s == o; }; };
   for (const Question& q : questions()) {

@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# Draws the figures of the paper (docs/figures/paper-*.svg), and makes the paper, which is
+# docs/reliability.md with docs/budget.md, a PDF: build/paper.pdf.
+#   bash experiments/paper.sh [--figures FARCULL_FIGURES] [--out FILE.pdf]
+#     --figures  the program that draws them; without it, it is built in build/
+#     --out      the PDF; the figures are then drawn beside it and docs/ stays as it is
+# It needs pandoc, texlive-latex-base, texlive-latex-recommended and librsvg2-bin. Without --figures it
+# installs them, as experiments/setup.sh does. Where one is missing the figures are drawn, what is
+# missing is named, and the status is 77.
+set -euo pipefail
+
+root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
+figures='' out=''
+while (($#)); do
+  case $1 in
+    --figures) figures=$(realpath "$2") ;;
+    --out) out=$(realpath -m "$2") ;;
+    *)
+      echo "paper: unknown argument '$1'" >&2
+      exit 2
+      ;;
+  esac
+  shift 2
+done
+if [[ -z $figures ]]; then
+  # shellcheck source=/dev/null
+  source "$root/experiments/setup.sh"
+  farcull_packages+=(pandoc texlive-latex-base texlive-latex-recommended librsvg2-bin)
+  farcull_setup
+  cmake -S "$root" -B "$root/build" -DCMAKE_BUILD_TYPE=Release >/dev/null
+  cmake --build "$root/build" --target farcull_figures -j 2
+  figures=$root/build/farcull_figures
+fi
+
+folder=$root/docs/figures
+if [[ -n $out ]]; then
+  folder=$(dirname "$out")/figures
+  mkdir -p "$folder"
+fi
+"$figures" "$root/tests/cases/crossings-beside-pixel-corners.obj" "$folder"
+for tool in pandoc pdflatex rsvg-convert; do
+  if ! command -v "$tool" >/dev/null; then
+    echo "paper: NOT RUN: $tool is missing (Debian: pandoc texlive-latex-base texlive-latex-recommended librsvg2-bin)"
+    exit 77
+  fi
+done
+
+export SOURCE_DATE_EPOCH=0 FORCE_SOURCE_DATE=1 # the same text gives the same PDF
+work=$(mktemp -d)
+# shellcheck disable=SC2064  # the folder's name as it is now
+trap "rm -rf '$work'" EXIT
+mkdir "$work/figures"
+for figure in "$folder"/paper-*.svg; do
+  rsvg-convert -f pdf -o "$work/figures/$(basename "${figure%.svg}").pdf" "$figure"
+done
+cd "$work"
+# One text; each page begins with its title, which the filter takes as that of the paper or the part.
+{
+  sed 's/(figures\/\(paper-[a-z-]*\)\.svg)/(figures\/\1.pdf){width=70%}/' "$root/docs/reliability.md"
+  echo
+  sed 's/(figures\/\(paper-[a-z-]*\)\.svg)/(figures\/\1.pdf){width=70%}/' "$root/docs/budget.md"
+  printf '\n# References\n\n'
+} >paper.md
+printf '%s\n' '\makeatletter\def\verbatim@font{\ttfamily\footnotesize}\makeatother' >preamble.tex
+pandoc paper.md --fail-if-warnings --from markdown-implicit_figures-superscript-subscript-tex_math_dollars-raw_tex-example_lists-fancy_lists+lists_without_preceding_blankline \
+  --lua-filter "$root/experiments/paper.lua" --citeproc --bibliography "$root/docs/references.bib" \
+  --metadata title="Reliable collision culling with rasterizers" --metadata link-citations=false \
+  -V papersize=a4 -V geometry:margin=25mm -V fontsize=10pt --include-in-header preamble.tex --standalone --to latex --output paper.tex
+for _ in 1 2; do
+  pdflatex -interaction=nonstopmode -halt-on-error -no-shell-escape paper.tex >said 2>&1 </dev/null || {
+    grep -m5 -E '^!|^l\.[0-9]+' said >&2
+    exit 1
+  }
+done
+if grep -E 'Missing character' paper.log >&2; then exit 1; fi
+pdf=${out:-$root/build/paper.pdf}
+mv paper.pdf "$pdf"
+cp paper.log "${pdf%.pdf}.log"
+echo "paper: $pdf"

@@ -1,0 +1,83 @@
+#!/usr/bin/env bash
+# The paper as a PDF: experiments/paper.sh makes it, all numbered statements and figures are in it, and
+# nothing stands off the page. Then papers that must not pass.
+#   paper_test.sh FIGURES    the program farcull_figures
+# Status 77: not run, for want of pandoc or LaTeX (Debian: pandoc texlive-latex-base
+# texlive-latex-recommended librsvg2-bin) or of the tools that read the PDF (poppler-utils).
+# Dollars in single quotes are those of sed.
+# shellcheck disable=SC2016
+set -euo pipefail
+
+figures=$(realpath "$1")
+root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
+for tool in pandoc pdflatex rsvg-convert pdfinfo pdftotext; do
+  if ! command -v "$tool" >/dev/null; then
+    echo "paper: NOT RUN: $tool is missing (Debian: pandoc texlive-latex-base texlive-latex-recommended librsvg2-bin poppler-utils)"
+    exit 77
+  fi
+done
+
+work=$(mktemp -d)
+# shellcheck disable=SC2064  # the folder's name as it is now
+trap "rm -rf '$work'" EXIT
+failures=0
+fail() {
+  echo "FAILED: $*" >&2
+  failures=$((failures + 1))
+}
+
+# paper OF TO: the paper of the checkout OF as TO/paper.pdf; what is said in TO/said.
+paper() {
+  mkdir -p "$2"
+  bash "$1/experiments/paper.sh" --figures "$figures" --out "$2/paper.pdf" >"$2/said" 2>&1
+}
+# off_page LOG: what stands more than 20 pt beyond the margin.
+off_page() { sed -nE 's/^Overfull \\hbox \(([0-9.]+)pt.*/\1/p' "$1" | awk '$1 > 20'; }
+# labels FILE...: the numbered statements of a text, each once.
+labels() { grep -hoE '(Definition|Lemma|Theorem|Corollary) [0-9]+ \(' "$@" | sort -u; }
+
+if ! paper "$root" "$work/good"; then
+  cat "$work/good/said"
+  exit 1
+fi
+pdftotext -layout "$work/good/paper.pdf" "$work/text"
+pages=$(pdfinfo "$work/good/paper.pdf" | awk '/^Pages:/ { print $2 }')
+((pages >= 20)) || fail "the PDF has $pages pages"
+missing=$(comm -23 <(labels "$root/docs/reliability.md" "$root/docs/budget.md") <(tr '\n' ' ' <"$work/text" | tr -s ' ' | labels))
+[[ -z $missing ]] || fail "not in the PDF: $missing"
+for words in 'proxy' 'around c' 'entry' 'After the first pass' 'segments bound the strip' 'falling: miss'; do
+  grep -q "$words" "$work/text" || fail "no figure has the words '$words'"
+done
+grep -q '^References' "$work/text" || fail "it has no references"
+if grep -q '?)\|(@' "$work/text"; then fail "a citation has no entry"; fi
+[[ -z $(off_page "$work/good/paper.log") ]] || fail "off the page: $(off_page "$work/good/paper.log" | tr '\n' ' ')"
+for figure in "$work"/good/figures/*.svg; do
+  cmp -s "$figure" "$root/docs/figures/$(basename "$figure")" || fail "docs/figures/$(basename "$figure") is of another program"
+done
+
+# ---- papers that must not pass ----
+
+bad=$work/bad
+mkdir "$bad"
+(cd "$root" && cp -r --parents docs/reliability.md docs/budget.md docs/references.bib experiments/paper.* tests/cases "$bad")
+# broken WHAT FILE SED: with FILE changed by SED there is no PDF.
+broken() {
+  cp "$bad/$2" "$work/kept"
+  sed -i "$3" "$bad/$2"
+  cmp -s "$bad/$2" "$work/kept" && fail "$1: $2 was not changed, so the case shows nothing"
+  if paper "$bad" "$work/out"; then fail "$1: a PDF is made"; fi
+  cp "$work/kept" "$bad/$2"
+}
+paper "$bad" "$work/again" || fail "the copy itself fails: $(cat "$work/again/said")"
+cmp -s "$work/good/paper.pdf" "$work/again/paper.pdf" || fail "the same text gives another PDF"
+broken "a letter that LaTeX lacks" docs/budget.md 's/^# The error budget/&\n\nA letter: ऄ./'
+broken "a figure that is none" docs/reliability.md 's/paper-ball/paper-bull/'
+broken "a citation without an entry" docs/reliability.md 's/@far2004/@far1904/'
+broken "a case that is none" tests/cases/crossings-beside-pixel-corners.obj '/^o falling/,$d'
+# The twin of the margins: tables at their own width.
+sed -i 's/{ Table = Table }/{}/' "$bad/experiments/paper.lua"
+paper "$bad" "$work/wide" || fail "tables at their own width give no PDF: $(cat "$work/wide/said")"
+[[ -n $(off_page "$work/wide/paper.log") ]] || fail "no table is wider than the page, so the check of margins shows nothing"
+
+((failures == 0)) || exit 1
+echo "paper: $pages pages, $(labels "$root/docs/reliability.md" "$root/docs/budget.md" | wc -l) numbered statements"

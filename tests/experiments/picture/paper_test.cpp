@@ -1,0 +1,74 @@
+// The figures of the paper are those that the program draws today.
+#include "experiments/picture/paper.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "tests/experiments/system/error_of.h"
+
+namespace farcull {
+namespace {
+
+const std::string kCases = std::string(FARCULL_TEST_DIR) + "/cases/";
+
+std::string file_text(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::size_t count_of(const std::string& word, const std::string& text) {
+  std::size_t count = 0;
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
+  return count;
+}
+
+// Where this fails, bash experiments/paper.sh draws them anew; look at them before they are
+// committed.
+TEST(PaperFigures, AreThoseOfThePages) {
+  const std::vector<PaperFigure> figures =
+      paper_figures(kCases + "crossings-beside-pixel-corners.obj");
+  EXPECT_EQ(figures.size(), 6u);
+  for (const PaperFigure& figure : figures) {
+    EXPECT_EQ(figure.svg,
+              file_text(std::string(FARCULL_TEST_DIR) + "/../docs/figures/" + figure.name + ".svg"))
+        << figure.name;
+  }
+}
+
+// Theorem 9, as the figure shows it: after rounding all four centres are on the edges, and each
+// segment misses one of the two on the left.
+TEST(PaperFigures, OfThePublishedRadiusShowsTwoMisses) {
+  const std::string svg = published_figure(kCases + "crossings-beside-pixel-corners.obj").svg;
+  EXPECT_EQ(count_of(": hit", svg), 6u);
+  EXPECT_EQ(count_of(": miss", svg), 2u);
+  EXPECT_NE(svg.find("distance of the four centres from the edges: 0<"), std::string::npos);
+}
+
+TEST(PaperFiguresTwin, OfASymmetricCrossingShowsNone) {
+  // The corner of this case is the origin, and the segments cross there.
+  const std::string svg = published_figure(kCases + "crossing-at-a-pixel-corner.obj").svg;
+  EXPECT_EQ(count_of(": hit", svg), 8u);
+}
+
+TEST(PaperFigures, OfAMissingCaseIsAnError) {
+  const Error error = error_of([] { published_figure(kCases + "none.obj"); });
+  EXPECT_NE(std::string(error.what()).find("none.obj"), std::string::npos);
+}
+
+// Two pairs cross: their four triangles have one bit at the end, and so has the one behind them.
+TEST(PaperFigures, OfThePassesKeepsWhatCrosses) {
+  const std::string svg = passes_figure().svg;
+  const std::string end = svg.substr(svg.find("At the end"));
+  EXPECT_EQ(count_of("stroke=\"#b30\" stroke-width=\"4\"", end), 1u) << "the legend alone";
+  EXPECT_EQ(count_of("stroke=\"#bbb\" stroke-width=\"4\"", end), 7u + 1u);
+  EXPECT_EQ(count_of("stroke=\"#07a\" stroke-width=\"4\"", end) +
+                count_of("stroke=\"#283\" stroke-width=\"4\"", end),
+            5u + 2u);
+}
+
+}  // namespace
+}  // namespace farcull
