@@ -18,7 +18,7 @@ std::vector<ByHand> proved_by_hand() {
        "`filter.component` with `filter.clearance_length`; `fit.corner`"},
       {"Rounding never decreases with x, so least and largest computed numbers are those of some "
        "corner",
-       "[reliability.md](reliability.md), \"Depth\"; [budget.md](budget.md), \"Slices\"",
+       "[reliability.md](reliability.md), \"One view\"; [budget.md](budget.md), \"Parts of a pixel\"",
        "`distance.gap`, `fit.box`, `extent.corner`: they speak of one corner"},
       {"Signs of determinants decide on which side corners lie, and what two triangles on a line "
        "share",
@@ -30,7 +30,7 @@ std::vector<ByHand> proved_by_hand() {
        "[budget.md](budget.md), \"Clipping and the fan\"", "`map.point`, `clip.cut`"},
       {"A centre inside the exact proxy by more than the displacement of its corners stays inside "
        "(winding numbers)",
-       "[reliability.md](reliability.md), \"Lemmas\"",
+       "[reliability.md](reliability.md), \"One view\"",
        "`budget.input`, `budget.vertex`, and the term `snap`"},
       {"The doubles of a proxy's rectangle err by less than 2^-48 M; turned normals add less than "
        "2^-20 "
@@ -45,7 +45,7 @@ std::vector<ByHand> proved_by_hand() {
       {"A component of n or v below 2^-126 may be read as zero at one use and not at another: at "
        "most "
        "2^-85 px",
-       "[budget.md](budget.md), \"Flushing\"",
+       "[budget.md](budget.md), \"One normal\"",
        "`extent.ball` leaves 14 u of the ball, where u r is at least 2^-24 px"},
       {"Of the steps of a slab, a point of the solid has |s| <= h + |a_z| |z - m_z|, and its depth "
        "is "
@@ -65,7 +65,7 @@ std::vector<ByHand> proved_by_hand() {
       {"The part of a pixel is exact below and above the pixel too",
        "[budget.md](budget.md), \"Parts of a pixel\"", "`interval.part`"},
       {"The depth map and the slices never decrease with depth",
-       "[reliability.md](reliability.md), \"Depth\"; [budget.md](budget.md), \"Slices\"",
+       "[reliability.md](reliability.md), \"One view\"; [budget.md](budget.md), \"Parts of a pixel\"",
        "none: no error is bounded, an order is kept"},
       {"Passes, views and rounds keep both triangles of every colliding pair",
        "[reliability.md](reliability.md), \"Passes, views, rounds\", theorem 2",
