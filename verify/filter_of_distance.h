@@ -9,9 +9,9 @@
 // most 1, the third is 1 less the others, or 0 where that is negative by rounding), and q likewise.
 // p is within (1 + 4 u) times u R (the differences) + 3 u R (products and sums) + 4 u R (weights,
 // against those divided by their sum) < 9 u R per axis of a point of the triangle, and so q; their
-// difference has one more rounding, of 2 u R: below 20.1 u R per axis and 35 u R in length. The computed
-// length is below 4 R and off by less than 3 u of itself, and two sums follow: 20 u R. In all 55 u
-// R; `point` is 64 u.
+// difference has one more rounding, of 2 u R: below 20.1 u R per axis and 35 u R in length. The
+// computed length is below 4 R and off by less than 3 u of itself, and two sums follow: 20 u R. In
+// all 55 u R; `point` is 64 u.
 //
 // Far. For any vector d the distance is at least (min d.b_j - max d.a_i) / |d|. A computed d.x is
 // off by less than 5 u |d|.|x| (filter_of_planes.h), their difference by 2 u |d|.|x| more: 12 u M,
