@@ -28,6 +28,7 @@ for kind in figures:svg pictures:png; do
   mkdir -p "docs/$folder" "$out/report/$folder"
   find "$out/report/$folder" -name "*.${kind#*:}" -exec cp -t "docs/$folder" {} +
   for old in "docs/$folder"/*."${kind#*:}"; do
+    if [[ ${old##*/} == paper-* ]]; then continue; fi # experiments/paper.sh makes these
     if [[ -e $old && ! -e $out/report/$folder/${old##*/} ]]; then rm "$old"; fi
   done
 done
