@@ -30,8 +30,8 @@ struct ContestantCard {
   std::string use = {};                // where it is right to be used
 };
 
-/// Lines `KEY VALUE`, and an empty one at the end. The keys are the names above, but `memory` (MiB);
-/// `means` is closed or crossing, and what is true or false is yes or no.
+/// Lines `KEY VALUE`, and an empty one at the end. The keys are the names above, but `memory`
+/// (MiB); `means` is closed or crossing, and what is true or false is yes or no.
 std::string card_text(const ContestantCard& card);
 
 /// Reads what `PROGRAM list` printed. Throws Error naming `where` and the line.

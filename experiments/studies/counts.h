@@ -132,8 +132,8 @@ struct LibraryCounts {
   std::uint64_t asked = 0, answered = 0, missed = 0, wrong = 0;
   std::uint64_t own_asked = 0, own_missed = 0, own_wrong = 0;
   std::uint64_t refused = 0, unanswered = 0, crashed = 0, hung = 0, no_memory = 0;
-  std::uint64_t not_asked = 0;  // not among `asked`: too many processes had ended badly
-  std::uint64_t timed = 0;      // answers of which `total` is the sum of times
+  std::uint64_t not_asked = 0;             // not among `asked`: too many processes had ended badly
+  std::uint64_t timed = 0;                 // answers of which `total` is the sum of times
   std::uint64_t twice = 0, differing = 0;  // asked a second time, and answered otherwise then
   std::uint64_t neighbours_left_out = 0;   // pairs that it is not made for
   bool promises = false;                   // as in RunCounts

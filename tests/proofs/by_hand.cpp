@@ -18,7 +18,8 @@ std::vector<ByHand> proved_by_hand() {
        "`filter.component` with `filter.clearance_length`; `fit.corner`"},
       {"Rounding never decreases with x, so least and largest computed numbers are those of some "
        "corner",
-       "[reliability.md](reliability.md), \"One view\"; [budget.md](budget.md), \"Parts of a pixel\"",
+       "[reliability.md](reliability.md), \"One view\"; [budget.md](budget.md), \"Parts of a "
+       "pixel\"",
        "`distance.gap`, `fit.box`, `extent.corner`: they speak of one corner"},
       {"Signs of determinants decide on which side corners lie, and what two triangles on a line "
        "share",
@@ -65,7 +66,8 @@ std::vector<ByHand> proved_by_hand() {
       {"The part of a pixel is exact below and above the pixel too",
        "[budget.md](budget.md), \"Parts of a pixel\"", "`interval.part`"},
       {"The depth map and the slices never decrease with depth",
-       "[reliability.md](reliability.md), \"One view\"; [budget.md](budget.md), \"Parts of a pixel\"",
+       "[reliability.md](reliability.md), \"One view\"; [budget.md](budget.md), \"Parts of a "
+       "pixel\"",
        "none: no error is bounded, an order is kept"},
       {"Passes, views and rounds keep both triangles of every colliding pair",
        "[reliability.md](reliability.md), \"Passes, views, rounds\", theorem 2",

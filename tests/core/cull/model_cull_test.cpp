@@ -84,9 +84,9 @@ TEST(CullModel, AgreesWithCullStepByStep) {
   for (const int some : contents.all()) EXPECT_GT(some, count / 100);
 }
 
-// The smallest world of this kind, as in docs/model.md: two triangles that meet, along two views. Plain
-// CULLIDE ends after a round that culls nothing. Quick-CULLIDE has set bits, goes on, and culls
-// nothing more.
+// The smallest world of this kind, as in docs/model.md: two triangles that meet, along two views.
+// Plain CULLIDE ends after a round that culls nothing. Quick-CULLIDE has set bits, goes on, and
+// culls nothing more.
 TEST(CullModel, QuickMayGoOnInVain) {
   View view{.shown = 3};
   view.behind[0] = only(1);
