@@ -23,12 +23,12 @@ while (($#)); do
   shift 2
 done
 if [[ -z $figures ]]; then
-  # shellcheck source=/dev/null
+  # shellcheck source-path=SCRIPTDIR source=setup.sh
   source "$root/experiments/setup.sh"
+  cd "$root"
   farcull_packages+=(pandoc texlive-latex-base texlive-latex-recommended librsvg2-bin)
   farcull_setup
-  cmake -S "$root" -B "$root/build" -DCMAKE_BUILD_TYPE=Release >/dev/null
-  cmake --build "$root/build" --target farcull_figures -j 2
+  farcull_build farcull_figures
   figures=$root/build/farcull_figures
 fi
 

@@ -10,21 +10,8 @@ set -euo pipefail
 
 figures=$(realpath "$1")
 root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
-for tool in pandoc pdflatex rsvg-convert pdfinfo pdftotext; do
-  if ! command -v "$tool" >/dev/null; then
-    echo "paper: NOT RUN: $tool is missing (Debian: pandoc texlive-latex-base texlive-latex-recommended librsvg2-bin poppler-utils)"
-    exit 77
-  fi
-done
-
-work=$(mktemp -d)
-# shellcheck disable=SC2064  # the folder's name as it is now
-trap "rm -rf '$work'" EXIT
-failures=0
-fail() {
-  echo "FAILED: $*" >&2
-  failures=$((failures + 1))
-}
+# shellcheck source-path=SCRIPTDIR source=script_lab.sh
+source "$(dirname -- "${BASH_SOURCE[0]}")/script_lab.sh" paper pandoc pdflatex rsvg-convert pdfinfo pdftotext
 
 # paper OF TO: the paper of the checkout OF as TO/paper.pdf; what is said in TO/said.
 paper() {

@@ -15,13 +15,6 @@
 namespace farcull::model {
 namespace {
 
-// Four triangles take the sanitizers minutes.
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kTriangles = 3;
-#else
-constexpr int kTriangles = 4;
-#endif
-
 // What a pass over one level of one view does in every state. A state has two bits for each of at
 // most four triangles: F in the low half, L in the high one.
 constexpr int kHalf = 4;

@@ -9,6 +9,13 @@
 
 namespace farcull::model {
 
+/// Triangles of the largest worlds that are all looked at; four take the sanitizers minutes.
+#ifdef __SANITIZE_ADDRESS__
+constexpr int kTriangles = 3;
+#else
+constexpr int kTriangles = 4;
+#endif
+
 /// What is taken for granted of triangles that meet. Each can be removed alone.
 struct Axioms {
   bool both_ways = true;   // each is seen against the other, in every view that shows both

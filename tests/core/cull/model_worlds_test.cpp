@@ -14,13 +14,6 @@
 namespace farcull::model {
 namespace {
 
-// Four triangles take the sanitizers minutes.
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kTriangles = 3;
-#else
-constexpr int kTriangles = 4;
-#endif
-
 // ---- runs: all worlds of two views ----
 
 // The pairs of triangles of different owners that may meet in a world of this view alone, a bit

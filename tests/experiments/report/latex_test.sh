@@ -9,21 +9,8 @@ set -euo pipefail
 
 farcull=$1
 fixture=$2
-for tool in pdflatex pdfinfo gnuplot; do
-  if ! command -v "$tool" >/dev/null; then
-    echo "report.latex: NOT RUN: $tool is missing (experiments/setup.sh installs it)"
-    exit 77
-  fi
-done
-
-work=$(mktemp -d)
-# shellcheck disable=SC2064  # the folder's name as it is now
-trap "rm -rf '$work'" EXIT
-failures=0
-fail() {
-  echo "FAILED: $*" >&2
-  failures=$((failures + 1))
-}
+# shellcheck source-path=SCRIPTDIR source=../script_lab.sh
+source "$(dirname -- "${BASH_SOURCE[0]}")/../script_lab.sh" report.latex pdflatex pdfinfo gnuplot
 
 # compile FOLDER: report.tex there; what pdflatex says is in FOLDER/said. Twice, for the references.
 compile() {

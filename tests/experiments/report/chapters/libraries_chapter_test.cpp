@@ -94,6 +94,7 @@ TEST(LibrariesChapter, AMissOrASilenceOfOursIsBroken) {
   Json answered = counts(true, 0);
   add(right, "far", answered);
   EXPECT_FALSE(finds_broken(libraries_chapter(right)));
+  EXPECT_FALSE(breaks_promise(right.rows[0].measurement));
   StoredStudy missed;
   add(missed, "far", counts(true, 1));
   EXPECT_TRUE(finds_broken(libraries_chapter(missed)));
@@ -103,6 +104,7 @@ TEST(LibrariesChapter, AMissOrASilenceOfOursIsBroken) {
     answered[silence] = 1;
     add(silent, "far", answered);
     EXPECT_TRUE(finds_broken(libraries_chapter(silent))) << silence;
+    EXPECT_TRUE(breaks_promise(silent.rows[0].measurement)) << silence;
   }
 }
 
