@@ -236,7 +236,7 @@ CLI::App* MergeCommand::add_to(CLI::App& app) {
              "  farcull merge node1/results-1-of-2.sqlite node2/results-2-of-2.sqlite -o "
              "results.sqlite\n\n"
              "Refuses shards that are there twice, points without a row, and shards of different\n"
-             "commits, grids or seeds.");
+             "commits, grids, seeds or versions of a library.");
   return command;
 }
 

@@ -70,7 +70,8 @@ Study culling_study() {
               "How many pairs do boxes, oriented boxes, and far-pairs without views, in one view "
               "and in three leave to exact predicates, for each pair that collides?",
           .grid = grid,
-          .measure = measure};
+          .measure = measure,
+          .library = library_of_peer};
 }
 
 }  // namespace farcull

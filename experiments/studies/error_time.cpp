@@ -99,7 +99,8 @@ Study error_time_study() {
               "What does each method get wrong, and how long does it take, against each other and "
               "against the libraries that one would take instead?",
           .grid = grid,
-          .measure = measure};
+          .measure = measure,
+          .library = library_of_peer};
 }
 
 }  // namespace farcull

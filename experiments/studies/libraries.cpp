@@ -232,6 +232,12 @@ PointResult measure(const Point& at, Lab& lab) {
           .device = "process"};
 }
 
+std::string library(const Point& at) {
+  const KnownContestant& known = known_contestant(std::get<LibraryPoint>(at).contestant);
+  const Invitation invitation = invite_known(known);
+  return invitation.invited ? invitation.invited->card.library : "";
+}
+
 }  // namespace
 
 Study libraries_study() {
@@ -242,6 +248,7 @@ Study libraries_study() {
               "of farcull miss, report wrongly, or refuse, and at which do they crash?",
           .grid = grid,
           .measure = measure,
+          .library = library,
           .campaign = true};
 }
 

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
+#include "experiments/studies/versions.h"
 
 namespace farcull {
 namespace {
@@ -151,6 +152,15 @@ void require_whole(const std::vector<Source>& sources) {
   }
 }
 
+// Refuses rows of two versions of a library.
+void require_one_version_each(const std::vector<Source>& sources) {
+  for (std::size_t i = 0; i < sources.front().studies.size(); ++i) {
+    std::vector<StudyOfFile> files;
+    for (const Source& source : sources) files.push_back({source.path, &source.studies[i]});
+    require_one_version(files);
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> shard_files(const std::string& folder) {
@@ -183,6 +193,7 @@ MergeSummary merge_stores(const std::vector<std::string>& files, const std::stri
     sources.push_back(read(file));
     require_alike(sources.front(), sources.back());
   }
+  require_one_version_each(sources);
   require_whole(sources);
 
   const Uninterrupted uninterrupted;

@@ -19,8 +19,8 @@ struct MergeSummary {
 /// Writes the store `out` with the rows of all files; it appears whole or not at all. Throws Error
 /// naming the file where it is none of ours, where its studies, grids, seeds or commit are not
 /// those of the first file, where two files hold the same shard or the same point, where a shard or
-/// a point has no row in any of them, and where `out` or a journal of it is there
-/// already.
+/// a point has no row in any of them, where rows are of two versions of one library (versions.h),
+/// and where `out` or a journal of it is there already.
 MergeSummary merge_stores(const std::vector<std::string>& files, const std::string& out);
 
 }  // namespace farcull

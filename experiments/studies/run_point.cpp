@@ -218,6 +218,13 @@ PointResult measure_run(const RunPoint& point, Lab& lab, Record* kept) {
   return out;
 }
 
+std::string library_of_peer(const Point& point) {
+  const auto* asked = std::get_if<PeerPoint>(&point);
+  if (asked == nullptr) return "";
+  const Peer peer = peer_named(asked->peer, 1);
+  return peer.missing.empty() ? peer.library : "";
+}
+
 PointResult measure_peer(const PeerPoint& point, Lab& lab, unsigned threads) {
   const Scene& scene = open_scene(point.scene, lab);
   const Peer peer = peer_named(point.peer, threads);

@@ -44,6 +44,10 @@ PointResult measure_run(const RunPoint& point, Lab& lab, Record* record = nullpt
 /// std::logic_error where there is no such peer, and Error as require_same() does.
 PointResult measure_peer(const PeerPoint& point, Lab& lab, unsigned threads);
 
+/// The library of a PeerPoint with its version; empty where this build is without it, and for all
+/// other points (Study::library).
+std::string library_of_peer(const Point& point);
+
 /// One of several runs of the same point, without times.
 struct Outcome {
   std::vector<TrianglePair> pairs;  // sorted

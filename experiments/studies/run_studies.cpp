@@ -15,6 +15,7 @@
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/packaged.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/studies/versions.h"
 #include "experiments/system/interrupt.h"
 #include "experiments/system/text_table.h"
 
@@ -91,6 +92,8 @@ Task open_task(Store& store, const Study& study, const StudiesRequest& request) 
   for (std::size_t i = 0; i < task.points.size(); ++i) {
     if (!done[i] && request.shard.holds(i)) task.open.push_back(i);
   }
+  require_one_version({{store.path(), &stored}});
+  require_same_versions(store.path(), stored, study, task.points, task.open);
   return task;
 }
 

@@ -57,7 +57,8 @@ struct StudiesSummary {
 /// noted and the next point gets a new device; one of the store ends the run. Signals end the
 /// program, with a line that says how many points are kept. Throws Error for a folder that cannot
 /// be made, a store as Store and Store::declare() refuse it, one that has rows of a study where
-/// `resume` is not set, or rows by another commit of farcull, another device or other CPU features.
+/// `resume` is not set, or rows by another commit of farcull, another device, other CPU features,
+/// or another version of a library (versions.h).
 StudiesSummary run_studies(const StudiesRequest& request,
                            const std::function<void(const StudiesProgress&)>& progress = {});
 

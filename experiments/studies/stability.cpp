@@ -103,7 +103,8 @@ Study stability_study() {
               "sheets are stacked, sizes differ by far, or the scene is far away, tiny or "
               "huge, and how much does culling then still remove?",
           .grid = grid,
-          .measure = measure};
+          .measure = measure,
+          .library = library_of_peer};
 }
 
 }  // namespace farcull

@@ -31,6 +31,10 @@ struct Study {
   std::function<std::vector<Point>(const GridChoice&)> grid;
   /// Throws Error for faults of the device or the machine: the run ends there, and can be resumed.
   std::function<PointResult(const Point&, Lab&)> measure;
+  /// The library that would answer the point now, with its version, as in "CGAL 5.5.1": what the
+  /// row of the point will hold as its count `library`. Empty: no library answers it, or the
+  /// library is not here. Null: no point of this study asks a library.
+  std::function<std::string(const Point&)> library = {};
   /// It takes many hours or needs what most machines have not, so it is not among `all`. Its scenes
   /// may take turns: what is measured after an hour is then of all of them.
   bool campaign = false;
