@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "experiments/report/style.h"
 
@@ -28,6 +29,42 @@ std::vector<double> values_along(const Panel& panel, bool horizontal) {
   return out;
 }
 
+constexpr double kDrawingRoom = 10;  // px left of a drawing, and below it
+
+// The scales of a drawing in its box: as many px for a unit of x as for one of y, the corners in
+// the middle, and a tenth of the longer side free around them.
+void fit_drawing(const Panel& panel, PlacedPanel& placed) {
+  struct Range {
+    double from = 0, to = 0;
+  };
+  const auto range = [&](bool horizontal) {
+    std::optional<Range> out;
+    for (const double value : values_along(panel, horizontal)) {
+      if (!std::isfinite(value)) continue;
+      if (!out) out = Range{value, value};
+      out->from = std::min(out->from, value);
+      out->to = std::max(out->to, value);
+    }
+    return out.value_or(Range{});
+  };
+  const Range x = range(true), y = range(false);
+  const double wide = placed.box.right - placed.box.left, high = placed.box.bottom - placed.box.top;
+  const double tight = std::max((x.to - x.from) / wide, (y.to - y.from) / high);
+  // Corners that are all the same, or nearly, still have a range around them.
+  const double size =
+      std::max({std::abs(x.from), std::abs(x.to), std::abs(y.from), std::abs(y.to)});
+  const double unit = std::max(1.1 * tight, size > 0 ? 1e-9 * size : 1);  // of the drawing, a px
+  const auto scale = [unit](const Range& along, double px) {
+    const double middle = along.from + (along.to - along.from) / 2;
+    Scale out;
+    out.from = middle - unit * px / 2;
+    out.to = middle + unit * px / 2;
+    return out;
+  };
+  placed.x = scale(x, wide);
+  placed.y = scale(y, high);
+}
+
 // The scales of all panels, and the room for labels left of each column of panels.
 std::vector<double> scale_panels(const Figure& figure, Layout& out) {
   const std::size_t count = figure.panels.size();
@@ -47,6 +84,12 @@ std::vector<double> scale_panels(const Figure& figure, Layout& out) {
   for (std::size_t i = 0; i < count; ++i) {
     const Panel& panel = figure.panels[i];
     PlacedPanel placed;
+    if (panel.drawing) {
+      placed.x_label = placed.y_label = false;
+      left[i % columns] = std::max(left[i % columns], kDrawingRoom);
+      out.panels.push_back(std::move(placed));
+      continue;
+    }
     const double wide = cell - 70;
     placed.x =
         scale_of(panel.x, values_along(panel, true), static_cast<std::size_t>(wide / kCharacter));
@@ -175,17 +218,19 @@ Layout layout_of(const Figure& figure) {
   for (std::size_t row = 0; row < rows; ++row) {
     top += titled ? kLine + 5 : 4;
     double x = 0;
-    bool labelled = false;
+    bool labelled = false, plots = false;
     for (std::size_t column = 0; column < columns; ++column) {
       const std::size_t i = row * columns + column;
       x += left[column];
       if (i < count) {
         out.panels[i].box = {x, x + wide, top, top + high};
         labelled = labelled || out.panels[i].x_label;
+        plots = plots || !figure.panels[i].drawing;
+        if (figure.panels[i].drawing) fit_drawing(figure.panels[i], out.panels[i]);
       }
       x += wide + kRight;
     }
-    top += high + kLine + 6 + (labelled ? kLine : 0) + 10;
+    top += high + (plots ? kLine + 16 : kDrawingRoom) + (labelled ? kLine : 0);
   }
   place_key(figure, top, out);
   return out;

@@ -22,7 +22,8 @@
 namespace farcull {
 namespace {
 
-constexpr const char* kFont = "farcull-font";  // replaced in the SVG by families
+constexpr const char* kFont = "farcull-font";                     // replaced in the SVG by families
+constexpr const char* kFill = "transparent solid 0.25 noborder";  // of areas
 constexpr const char* kFamilies =
     "Helvetica Neue, Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif";
 
@@ -35,6 +36,10 @@ void check(const Figure& figure) {
           "the name is no name of a file");
   require(!figure.panels.empty(), "no panel");
   for (const Panel& panel : figure.panels) {
+    require(
+        !panel.drawing || (panel.marks.empty() && panel.x.label.empty() && panel.y.label.empty() &&
+                           !panel.x.logarithmic && !panel.y.logarithmic),
+        "a drawing has axes or marks");
     for (const Series& series : panel.series) {
       require(series.x.size() == series.y.size(), "x and y differ in length");
       for (const auto& [low, high] :
@@ -109,12 +114,20 @@ class Script {
     line("  set output '" + name + ".svg'");
     line("}");
     line("set multiplot");
-    line("set border 3 lc rgb '#444444' lw 1");
-    line("set grid xtics ytics back lt 1 lc rgb '#e4e4e4' lw 0.8, lt 0 lw 0");
+    frame_of_plots();
     line("set tics nomirror out scale 0.6,0.3 textcolor rgb '#222222'");
     line("set xtics offset 0,character 0.4");
     line("unset key");
     key();
+  }
+
+  void frame_of_plots() {
+    line("set border 3 lc rgb '#444444' lw 1");
+    line("set grid xtics ytics back lt 1 lc rgb '#e4e4e4' lw 0.8, lt 0 lw 0");
+  }
+  void frame_of_drawings() {
+    line("set border 15 lc rgb '#dddddd' lw 0.8");
+    line("unset grid");
   }
 
   // Names in columns below the panels: a sample of the line, the point, the name.
@@ -145,7 +158,15 @@ class Script {
       }
       const Series* series = first_of(names_[i]);
       const bool lines = series->style != Series::Style::points;
-      const bool dots = series->style != Series::Style::lines;
+      const bool area = series->style == Series::Style::area;
+      const bool dots = !area && series->style != Series::Style::lines;
+      if (area) {
+        line(
+            fmt::format("set object rectangle from screen {},{} to screen {},{} front fillcolor "
+                        "rgb '{}' fillstyle {}",
+                        screen_x(x), screen_y(y - 5), screen_x(x + 30), screen_y(y + 5),
+                        styles_[i].colour, kFill));
+      }
       if (lines) {
         line(fmt::format(
             "set arrow from screen {0},{2} to screen {1},{2} nohead front dt {3} "
@@ -190,6 +211,10 @@ class Script {
     line(fmt::format("unset logscale {0}\nset {0}range [1:10]", name));
     if (scale.logarithmic) line(fmt::format("set logscale {}", name));
     line(fmt::format("set {}range [{:.17g}:{:.17g}]", name, scale.from, scale.to));
+    if (scale.ticks.empty()) {
+      line(fmt::format("unset {}tics", name));
+      return;
+    }
     std::string ticks;
     for (const Tick& tick : scale.ticks) {
       ticks += fmt::format("{}{} {:.17g}{}", ticks.empty() ? "" : ", ", gnuplot_text(tick.label),
@@ -304,8 +329,13 @@ class Script {
       parts.push_back(
           fmt::format("{0} using 1:($5{1}$7):(0):(($6{1}$7)-($5{1}$7)) {2}", data, move, bars));
     }
+    if (series.style == Series::Style::area) {
+      parts.push_back(fmt::format("{} with filledcurves closed fillcolor rgb '{}' fillstyle {}",
+                                  from, look.colour, kFill));
+    }
     if (series.style != Series::Style::points) parts.push_back(from + " with lines " + lines);
-    if (series.style != Series::Style::lines) parts.push_back(from + " with points " + dots);
+    if (series.style == Series::Style::points || series.style == Series::Style::lines_points)
+      parts.push_back(from + " with points " + dots);
     return fmt::format("{}", fmt::join(parts, ", \\\n  "));
   }
 
@@ -318,6 +348,7 @@ class Script {
     line(fmt::format("set rmargin at screen {}", screen_x(box.right)));
     line(fmt::format("set tmargin at screen {}", screen_y(box.top)));
     line(fmt::format("set bmargin at screen {}", screen_y(box.bottom)));
+    if (panel.drawing) frame_of_drawings();
     axis("x", placed.x);
     axis("y", placed.y);
     axis_labels(panel, placed);
@@ -349,6 +380,7 @@ class Script {
     line("unset label");
     line("unset arrow");
     line("unset object");
+    if (panel.drawing) frame_of_plots();
   }
 
   const Figure& figure_;

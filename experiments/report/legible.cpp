@@ -116,7 +116,7 @@ void drop_panels(Figure& figure) {
   std::vector<Panel> kept;
   for (Panel& panel : figure.panels) {
     const Difference difference = difference_in(panel);
-    if (difference.any) {
+    if (difference.any || panel.drawing) {
       kept.push_back(std::move(panel));
     } else if (difference.value) {
       const std::string value = tick_label(*difference.value);

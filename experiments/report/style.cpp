@@ -83,7 +83,7 @@ std::vector<SeriesStyle> styles_of(const std::vector<std::string>& names) {
       out.push_back(
           {.colour = free_colours()[unknown % free_colours().size()],
            .dash = static_cast<int>((unknown + unknown / free_colours().size()) % dashes().size()),
-           .point = points()[unknown % points().size()]});
+           .point = points()[(unknown + unknown / points().size()) % points().size()]});
       ++unknown;
       continue;
     }

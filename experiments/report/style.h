@@ -22,7 +22,8 @@ const std::vector<std::string>& dashes();
 
 /// The style of each name of a figure. Names that begin with the same method (far, cullide,
 /// fcl-...) share its colour, the later ones with other dashes and points; names of no method take
-/// colours that no method has, in their order.
+/// colours that no method has, in their order. Up to ten names of one method, and up to a hundred
+/// of none, all differ in colour or point.
 std::vector<SeriesStyle> styles_of(const std::vector<std::string>& names);
 
 /// The names of a figure's series, each once, in the order of first appearance.

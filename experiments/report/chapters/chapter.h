@@ -12,10 +12,11 @@
 namespace farcull {
 
 /// Points of one line or cloud of a plot. x and y have one length. NaN: a gap in the line.
+/// Style::area is the polygon with these corners, filled lightly within its line.
 struct Series {
   std::string name;  // in the key of the plot; plain text
   std::vector<double> x = {}, y = {};
-  enum class Style { lines_points, lines, points } style = Style::lines_points;
+  enum class Style { lines_points, lines, points, area } style = Style::lines_points;
   bool emphasis = false;  // drawn thick: ours, or the one that the figure is about
   /// Intervals along an axis, drawn as bars: both of the length of x, or both empty. NaN: no bar.
   std::vector<double> x_low = {}, x_high = {}, y_low = {}, y_high = {};
@@ -49,6 +50,9 @@ struct Panel {
   Axis x = {}, y = {};
   std::vector<Series> series = {};
   std::vector<Mark> marks = {};
+  /// A drawing and no plot: without axes, grid and numbers. A unit of x is drawn as long as one of
+  /// y, so that shapes are true. It has no marks, and nothing is set in its axes.
+  bool drawing = false;
 };
 
 struct Figure {

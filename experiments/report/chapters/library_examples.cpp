@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "experiments/suite/reader.h"
 #include "experiments/suite/words.h"
@@ -96,9 +97,10 @@ std::vector<Point2> drawn_corners(const SuitePair& pair) {
 
 Panel panel_of(const LibraryExample& example) {
   const std::vector<Point2> corners = drawn_corners(pair_of(example));
-  Panel out{.title = example.contestant};
-  for (const auto& [name, first] : {std::pair{"first triangle", 0}, {"second triangle", 3}}) {
-    Series series{.name = name, .style = Series::Style::lines};
+  Panel out{.title = example.contestant, .drawing = true};
+  for (const auto& [name, first, style] : {std::tuple{"first triangle", 0, Series::Style::area},
+                                           {"second triangle", 3, Series::Style::lines}}) {
+    Series series{.name = name, .style = style};
     for (const int corner : {0, 1, 2, 0}) {
       series.x.push_back(corners[static_cast<std::size_t>(first + corner)].x);
       series.y.push_back(corners[static_cast<std::size_t>(first + corner)].y);
@@ -114,11 +116,13 @@ void add_figure(const std::vector<LibraryExample>& examples, const std::string& 
       .name = "libraries-examples-" + fault,
       .title = title,
       .caption =
-          "The pairs of the table of examples, one for each contestant. Each is moved and "
-          "stretched along the axes until its box is a cube, which changes nothing about "
-          "whether triangles meet, and is seen from where both triangles are broad. A triangle "
-          "that is equal to the other, or much smaller, cannot be seen, nor can differences in "
-          "the last place."};
+          "The pairs of the table of examples, one for each contestant: the first triangle is "
+          "filled, the second has dashed edges. Each pair is moved and stretched along x, y and z "
+          "until its box is a cube, which changes nothing about whether triangles meet, and is "
+          "seen from where both triangles are broad. So every panel has a scale of its own, and "
+          "says nothing of lengths and angles: the table has the coordinates. A triangle that is "
+          "equal to the other, or much smaller, cannot be seen, nor can differences in the last "
+          "place."};
   for (const LibraryExample& example : examples) {
     if (example.fault == fault) out.panels.push_back(panel_of(example));
   }

@@ -169,6 +169,15 @@ TEST(ReportStyle, TwoOfOneMethodDifferInDashAndPoint) {
   EXPECT_NE(styles[0].point, styles[1].point);
 }
 
+TEST(ReportStyle, ManyNamesDifferInColourOrPoint) {
+  std::vector<std::string> names;
+  for (int i = 0; i < 100; ++i) names.push_back("name " + std::to_string(i));
+  for (int i = 0; i < 10; ++i) names.push_back("cgal " + std::to_string(i));
+  std::set<std::pair<std::string, int>> looks;
+  for (const SeriesStyle& style : styles_of(names)) looks.emplace(style.colour, style.point);
+  EXPECT_EQ(looks.size(), names.size());
+}
+
 TEST(ReportNumbers, ExponentOfAPowerIsThePower) {
   std::vector<double> x, y;
   for (const double v : {2.0, 8.0, 32.0, 128.0}) {
@@ -414,6 +423,72 @@ TEST(ReportFigures, ZerosAtTheSamePlaceStandAboveEachOtherAndNothingElseIsMoved)
   }
 }
 
+// A triangle that is wide and low, and one that is neither.
+Figure drawing() {
+  Panel panel{.title = "drawn", .drawing = true};
+  panel.series = {
+      {.name = "a", .x = {0, 9, 4, 0}, .y = {0, 0, 1, 0}, .style = Series::Style::area},
+      {.name = "b", .x = {3, 4, 4, 3}, .y = {0, 0, 1, 0}, .style = Series::Style::lines}};
+  Figure out = two_panels();
+  out.panels.insert(out.panels.begin(), panel);
+  return out;
+}
+
+double px_per_unit(const Scale& scale, double px) { return px / (scale.to - scale.from); }
+
+TEST(ReportFigures, ADrawingHasOneScaleForBothAxesAndHoldsAll) {
+  for (const double scale : {1.0, 1e-200, 1e200}) {
+    for (const bool high : {false, true}) {
+      Figure figure = drawing();
+      for (Series& series : figure.panels[0].series) {
+        for (double& x : series.x) x *= scale;
+        for (double& y : series.y) y *= scale;
+        if (high) std::swap(series.x, series.y);
+      }
+      const PlacedPanel placed = layout_of(figure).panels[0];
+      const double wide = placed.box.right - placed.box.left,
+                   tall = placed.box.bottom - placed.box.top;
+      // Some roundings of values of the size of the range.
+      EXPECT_NEAR(px_per_unit(placed.x, wide) / px_per_unit(placed.y, tall), 1, 1e-14);
+      for (const Series& series : figure.panels[0].series) {
+        for (std::size_t i = 0; i < series.x.size(); ++i) {
+          EXPECT_TRUE(placed.x.from < series.x[i] && series.x[i] < placed.x.to);
+          EXPECT_TRUE(placed.y.from < series.y[i] && series.y[i] < placed.y.to);
+        }
+      }
+    }
+  }
+  // The twin: in a plot each axis has its own.
+  Figure plot = drawing();
+  plot.panels[0].drawing = false;
+  const PlacedPanel placed = layout_of(plot).panels[0];
+  EXPECT_NE(px_per_unit(placed.x, placed.box.right - placed.box.left),
+            px_per_unit(placed.y, placed.box.bottom - placed.box.top));
+}
+
+TEST(ReportFigures, ADrawingHasNoNumbersAndThePlotAfterItHas) {
+  const std::string script = figure_script(drawing()).script;
+  const std::size_t first = script.find("# panel 1"), second = script.find("# panel 2");
+  const std::string drawn = script.substr(first, second - first), plotted = script.substr(second);
+  for (const char* part : {"unset grid", "unset xtics", "unset ytics", "with filledcurves closed"})
+    EXPECT_NE(drawn.find(part), std::string::npos) << part;
+  EXPECT_EQ(drawn.find("set xtics ("), std::string::npos);
+  EXPECT_LT(drawn.find("unset grid"), drawn.find("set grid"));  // for the next one
+  EXPECT_NE(plotted.find("set xtics ("), std::string::npos);
+  EXPECT_EQ(plotted.find("filledcurves"), std::string::npos);
+  // One corner as high as all others is no reason to leave a drawing out.
+  Figure flat = drawing();
+  for (Series& series : flat.panels[0].series) series.y.assign(4, 0);
+  EXPECT_EQ(legible(flat).panels.size(), 3u);
+  // A drawing with an axis or a mark is a mistake.
+  Figure mistaken = drawing();
+  mistaken.panels[0].marks = {{true, 1, "mark"}};
+  EXPECT_THROW(figure_script(mistaken), std::logic_error);
+  mistaken = drawing();
+  mistaken.panels[0].x.label = "length";
+  EXPECT_THROW(figure_script(mistaken), std::logic_error);
+}
+
 TEST(ReportFigures, OfSeriesThatAgreeTheOneThatTheFigureIsAboutGivesTheStyle) {
   Figure figure = two_panels();
   for (Panel& panel : figure.panels) {
@@ -524,6 +599,15 @@ Figure trap() {
     }
   }
   figure.panels.emplace_back();
+  for (const std::vector<double>& x :
+       {std::vector<double>{0, 1, 2}, std::vector<double>{1, 1, 1},
+        std::vector<double>{1e-300, 0, 0}, std::vector<double>{1e200, 1e200, 1e200},
+        std::vector<double>{kNone, kNone, kNone}}) {
+    Panel drawn{.title = "drawn", .drawing = true};
+    drawn.series = {{.name = "area", .x = x, .y = {0, 0, 0}, .style = Series::Style::area},
+                    {.name = "line", .x = x, .y = x, .style = Series::Style::lines}};
+    figure.panels.push_back(drawn);
+  }
   return figure;
 }
 
