@@ -25,6 +25,7 @@
 #include "experiments/record/output.h"
 #include "experiments/report/chapters/chapters.h"
 #include "experiments/report/chapters/devices.h"
+#include "experiments/report/chapters/numbers.h"
 #include "experiments/report/chapters/rows.h"
 #include "experiments/report/figures.h"
 #include "experiments/report/gnuplot.h"
@@ -275,6 +276,7 @@ class Reporter {
   void add(StoredStudy stored, const std::string& device, const std::vector<DeviceStudy>& others) {
     DrawnChapter drawn;
     drawn.chapter = chapter_of(stored);
+    drawn.chapter.command = command_of(stored, page.runs);
     add_devices(device, stored, others, drawn.chapter);
     put_broken_first(drawn.chapter);
     const std::size_t rows_before = summary_.broken.size();

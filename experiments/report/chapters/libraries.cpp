@@ -8,6 +8,8 @@
 
 #include "experiments/contestants/score.h"
 #include "experiments/report/chapters/library_examples.h"
+#include "experiments/report/chapters/library_findings.h"
+#include "experiments/report/chapters/library_rows.h"
 #include "experiments/report/chapters/numbers.h"
 #include "experiments/report/chapters/rows.h"
 #include "experiments/system/text_table.h"
@@ -17,31 +19,6 @@ namespace {
 
 constexpr const char* kReference = "far-pairs";  // stands beside all others in figures
 
-// "pairs/random" of "small/pairs/random".
-std::string family_of(const Row& row) {
-  return row.point.scene.substr(row.point.scene.find('/') + 1);
-}
-bool is_ours(const Row& row) { return text_of(row, "library") == "farcull"; }
-bool of_pairs(const Row& row) { return family_of(row).starts_with("pairs/"); }
-
-Rows rows_of_kind(const StoredStudy& stored, bool pairs) {
-  Rows out;
-  for (const Row* row : measured(stored)) {
-    if (of_pairs(*row) == pairs) out.push_back(row);
-  }
-  return out;
-}
-
-std::uint64_t deaths(const Rows& rows) {
-  return total(rows, "crashed") + total(rows, "hung") + total(rows, "no_memory");
-}
-
-// Questions without an answer, for whatever reason.
-std::uint64_t without_answer(const Rows& rows) {
-  return total(rows, "refused") + total(rows, "unanswered") + total(rows, "not_asked") +
-         deaths(rows);
-}
-
 // Per million of what was answered; "0" is none at all.
 std::string per_million(std::uint64_t count, std::uint64_t of) {
   if (of == 0) return "-";
@@ -49,54 +26,72 @@ std::string per_million(std::uint64_t count, std::uint64_t of) {
   return rounded(1e6 * static_cast<double>(count) / static_cast<double>(of));
 }
 
-std::string ns_per_pair(const Rows& rows) {
+double ms_in_all(const Rows& rows) {
   double ms = 0;
   for (const Row* row : rows) ms += time_of(*row, "total").value_or(0);
+  return ms;
+}
+
+std::string ns_per_pair(const Rows& rows) {
+  const double ms = ms_in_all(rows);
   const std::uint64_t pairs = total(rows, "timed");
   return pairs == 0 ? "-" : rounded(1e6 * ms / static_cast<double>(pairs));
 }
 
-// "78 of 646": answered otherwise, of those asked twice.
-std::string differing(const Rows& rows) {
-  const std::uint64_t twice = total(rows, "twice"), otherwise = total(rows, "differing");
-  return otherwise == 0 ? "0" : grouped(otherwise) + " of " + grouped(twice);
+// Missed and wrong by each measure, per million.
+std::vector<std::string> rates_of_pairs(const Rows& rows) {
+  const std::uint64_t own = total(rows, "own_asked"), all = total(rows, "answered");
+  return {per_million(total(rows, "own_missed"), own), per_million(total(rows, "own_wrong"), own),
+          per_million(total(rows, "missed"), all), per_million(total(rows, "wrong"), all)};
+}
+std::vector<std::string> rates_of_meshes(const Rows& rows) {
+  std::vector<std::string> out;
+  for (const bool own : {true, false}) {
+    const MeshAnswers of = mesh_answers(rows, own);
+    out.push_back(per_million(of.missed, of.colliding));
+    out.push_back(per_million(of.false_alarms, of.reported));
+  }
+  return out;
 }
 
-// Of pairs, what was reported wrongly is a rate as well; of meshes, whose pairs that are apart
-// nobody counts, it is a number of pairs.
 DataTable overview(const std::string& name, const Rows& rows, bool pairs) {
   const std::string of_pairs =
       "Pairs of triangles: missed (they meet, and it says apart) and false alarms (they are apart, "
-      "and "
-      "it says that they meet), per million of the pairs that were answered";
+      "and it says that they meet), per million of the pairs that were answered";
   const std::string of_meshes =
-      "Meshes: of the colliding pairs of those that were answered, missed per million; false "
-      "alarms "
-      "as a number of pairs";
-  DataTable out{
-      .name = name,
-      .caption = (pairs ? of_pairs : of_meshes) +
-                 ", first by what the documentation of each promises, then by closed "
-                 "triangles. Counts: refused; without an answer, or not asked after too "
-                 "many deaths; crashed, a hang or a lack of memory among them; answered "
-                 "otherwise the second time",
-      .columns = columns({"contestant", "library", "measured as"},
-                         {"asked", "missed, own", "false, own", "missed", "false", "refused",
-                          "unanswered", "deaths", "differs", pairs ? "ns a pair" : "ms in all"})};
+      "Meshes: the colliding pairs of all meshes that were asked, and the pairs that were "
+      "reported; "
+      "missed per million of the colliding pairs of those meshes that were answered, false alarms "
+      "per million of the reported pairs, since nobody counts the pairs of a mesh that are apart. "
+      "Both rates are given";
+  std::vector<std::string> numbers = {
+      "missed, own", "false, own", "missed",
+      "false",       "refused",    "unanswered",
+      "deaths",      "differs",    pairs ? "ns a pair" : "ms in all"};
+  const std::vector<std::string> counts =
+      pairs ? std::vector<std::string>{"asked"} : std::vector<std::string>{"colliding", "reported"};
+  numbers.insert(numbers.begin(), counts.begin(), counts.end());
+  DataTable out{.name = name,
+                .caption = (pairs ? of_pairs : of_meshes) +
+                           ", first by what the documentation of each promises, then by closed "
+                           "triangles. Counts" +
+                           (pairs ? "" : " of meshes") +
+                           ": refused; without an answer, or not asked after too "
+                           "many deaths; crashed, a hang or a lack of memory among them; answered "
+                           "otherwise the second time",
+                .columns = columns({"contestant", "library", "measured as"}, numbers)};
   for (const NamedRows& one : rows_by_contestant(rows)) {
     const Rows& of = one.rows;
-    const std::uint64_t own = total(of, "own_asked"), said = total(of, "answered");
-    const auto wrong = [&](const char* count, std::uint64_t among) {
-      return pairs ? per_million(total(of, count), among) : grouped(total(of, count));
-    };
-    double ms = 0;
-    for (const Row* row : of) ms += time_of(*row, "total").value_or(0);
-    out.rows.push_back(
-        {of.front()->point.method, text_of(*of.front(), "library"), text_of(*of.front(), "means"),
-         grouped(total(of, "asked")), per_million(total(of, "own_missed"), own),
-         wrong("own_wrong", own), per_million(total(of, "missed"), said), wrong("wrong", said),
-         grouped(total(of, "refused")), grouped(total(of, "unanswered") + total(of, "not_asked")),
-         grouped(deaths(of)), differing(of), pairs ? ns_per_pair(of) : rounded(ms)});
+    std::vector<std::string>& cells = out.rows.emplace_back();
+    cells = {of.front()->point.method, text_of(*of.front(), "library"),
+             text_of(*of.front(), "means"), grouped(total(of, "asked"))};
+    if (!pairs) cells.push_back(grouped(mesh_answers(of, false).reported));
+    const std::vector<std::string> rates = pairs ? rates_of_pairs(of) : rates_of_meshes(of);
+    cells.insert(cells.end(), rates.begin(), rates.end());
+    cells.insert(
+        cells.end(),
+        {grouped(total(of, "refused")), grouped(total(of, "unanswered") + total(of, "not_asked")),
+         grouped(deaths(of)), differing(of), pairs ? ns_per_pair(of) : rounded(ms_in_all(of))});
   }
   return out;
 }
@@ -202,7 +197,8 @@ std::vector<LibraryExample> examples_of(const Rows& rows) {
 
 DataTable all_table(const Rows& rows) {
   DataTable out = table_of_rows(
-      "libraries-all", "Every contestant on every family and mesh", rows,
+      "libraries-all",
+      "Every contestant on every family and mesh; of a mesh, asked are its colliding pairs", rows,
       {scene_column(),
        {text_column("contestant"), [](const Row& row) { return row.point.method; }},
        count_column("asked", "asked"),
@@ -249,8 +245,7 @@ std::size_t group_of(const NamedRows& one) {
 
 // The mean time of a pair, and wrong answers: a point. Empty: there is none.
 std::optional<Series> time_series(const NamedRows& one) {
-  double ms = 0;
-  for (const Row* row : one.rows) ms += time_of(*row, "total").value_or(0);
+  const double ms = ms_in_all(one.rows);
   const auto said = static_cast<double>(total(one.rows, "answered")),
              timed = static_cast<double>(total(one.rows, "timed"));
   if (said == 0 || ms == 0) return std::nullopt;
@@ -342,85 +337,12 @@ void add_parameter_figures(const Rows& rows, Chapter& chapter) {
   }
 }
 
-// Our own: a wrong answer of a method that promises breaks the promise.
-void add_ours(const Rows& rows, Chapter& chapter) {
-  for (const NamedRows& one : rows_by_contestant(rows)) {
-    Rows of;
-    for (const Row* row : one.rows) {
-      if (promises(*row)) of.push_back(row);
-    }
-    if (of.empty()) continue;
-    const std::string& name = of.front()->point.method;
-    const std::uint64_t asked = total(of, "answered");  // those that have a label
-    for (const char* count : {"missed", "wrong"}) {
-      const std::uint64_t bad = total(of, count);
-      if (bad > 0)
-        chapter.find_broken(
-            fmt::format("{}: {} {}, and it promises none.", name, of_all(bad, asked), count));
-    }
-    const std::uint64_t silent = without_answer(of);
-    if (silent > 0)
-      chapter.find_broken(fmt::format("{} has no answer to {} questions.", name, grouped(silent)));
-    if (asked > 0 && total(of, "missed") + total(of, "wrong") + silent == 0)
-      chapter.find(fmt::format("{} missed none and reported none wrongly of {} pairs.", name,
-                               grouped(asked)));
-  }
-}
-
-// Sentences about the contestants that are not ours: those that gave no wrong answer by their own
-// documentation, the others, and those that died. `what`: "pairs of triangles" or "meshes".
-void add_others(const Rows& rows, const std::string& what, Chapter& chapter) {
-  std::vector<std::string> right, dead, published, changing;
-  std::vector<std::pair<double, std::string>> worst;
-  for (const NamedRows& one : rows_by_contestant(rows)) {
-    const Row& row = *one.rows.front();
-    if (promises(row)) continue;
-    const std::string& name = row.point.method;
-    if (is_ours(row)) {
-      published.push_back(fmt::format(
-          "{} ({})", name, of_all(total(one.rows, "missed"), total(one.rows, "answered"))));
-      continue;
-    }
-    if (deaths(one.rows) > 0)
-      dead.push_back(fmt::format("{} ({})", name, grouped(deaths(one.rows))));
-    if (total(one.rows, "differing") > 0)
-      changing.push_back(fmt::format("{} ({})", name, differing(one.rows)));
-    const std::uint64_t bad = total(one.rows, "own_missed") + total(one.rows, "own_wrong"),
-                        own = total(one.rows, "own_asked");
-    if (own == 0) continue;
-    if (bad == 0) {
-      right.push_back(name);
-    } else {
-      worst.emplace_back(static_cast<double>(bad) / static_cast<double>(own),
-                         fmt::format("{} ({} in {})", name, grouped(bad), grouped(own)));
-    }
-  }
-  std::stable_sort(worst.begin(), worst.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<std::string> names;
-  for (const auto& [rate, text] : worst) names.push_back(text);
-  const auto say = [&](const std::string& start, const std::vector<std::string>& who) {
-    if (!who.empty()) chapter.find(fmt::format("Of {}, {}: {}.", what, start, listed(who)));
-  };
-  say("these gave no wrong answer by their own documentation", right);
-  say("wrong answers to questions of which their documentation promises the answer, in all such "
-      "that were answered",
-      names);
-  say("missed by methods as they were published, which promise nothing below the size of a pixel",
-      published);
-  say("answered otherwise when they were asked again", changing);
-  say("questions at which the process crashed, hung or ran out of memory", dead);
-}
-
 }  // namespace
 
 Chapter libraries_chapter(const StoredStudy& stored) {
   Chapter out = begin_chapter(stored);
-  const Rows all = measured(stored), pairs = rows_of_kind(stored, true),
-             meshes = rows_of_kind(stored, false);
-  add_ours(all, out);
-  add_others(pairs, "pairs of triangles", out);
-  add_others(meshes, "meshes", out);
+  const Rows all = measured(stored), pairs = rows_about(all, true), meshes = rows_about(all, false);
+  find_in_libraries(all, out);
   out.limits = {
       "The families are made to be hard. A rate here is no rate on the scenes of a user: the table "
       "says which questions a contestant gets wrong, not how often they come.",

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/measure/statistics.h"
+#include "experiments/system/shell_word.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
@@ -204,6 +205,25 @@ std::string command_of(const Declaration& declaration) {
   std::string out = "farcull experiment " + declaration.study;
   if (declaration.choice.quick) out += " --quick";
   if (declaration.choice.seed != 1) out += fmt::format(" --seed {}", declaration.choice.seed);
+  return out;
+}
+
+std::string command_of(const StoredStudy& stored,
+                       const std::vector<std::pair<std::int64_t, Provenance>>& runs) {
+  std::int64_t last = 0;
+  for (const Row& row : stored.rows) last = std::max(last, row.run);
+  std::string out = command_of(stored.declaration);
+  for (const auto& [run, provenance] : runs) {
+    if (run != last) continue;
+    const auto options = nlohmann::json::parse(provenance.options, nullptr, false);
+    for (const char* name : {"suite", "contestants", "device"}) {
+      const std::string value =
+          options.is_object() && options.contains(name) && options[name].is_string()
+              ? options[name].get<std::string>()
+              : "";
+      if (!value.empty()) out += fmt::format(" --{} {}", name, quoted(value));
+    }
+  }
   return out;
 }
 

@@ -81,5 +81,9 @@ std::string listed(const std::vector<std::string>& words);
 
 /// "farcull experiment NAME", with --quick and --seed as the study was declared.
 std::string command_of(const Declaration& declaration);
+/// The same with --suite, --contestants and --device as they were given to the last of the runs
+/// that measured rows of it. A word is quoted where a shell asks for it.
+std::string command_of(const StoredStudy& stored,
+                       const std::vector<std::pair<std::int64_t, Provenance>>& runs);
 
 }  // namespace farcull
