@@ -1,0 +1,33 @@
+# The page with its table anew, from verdicts (tests/mutants.sh): name, file, change, explained, result, seconds; by tabs.
+# begin, end: the lines of the page between which the table stands; page: the page as it is.
+$1 ~ /^control-/ { next }
+{
+  total++
+  part = $2
+  sub(/\/[^\/]*$/, "", part)
+  result = $5
+  spent += $6
+  if (result ~ /^noticed/) {
+    noticed++
+    if (sub(/^noticed by /, "", result)) result = "`" result "`"
+    else sub(/^noticed: /, "", result)
+  } else if (result == "SURVIVED" && $4 != "") {
+    explained++
+    result = "survives. " $4
+  } else {
+    open++
+    result = "**" result "**"
+  }
+  rows = rows "| " part " | `" $1 "`: " $3 " | " result " | " $6 " |\n"
+}
+END {
+  while ((getline line < page) > 0) {
+    if (line == end) inside = 0
+    if (!inside) print line
+    if (line != begin) continue
+    inside = 1
+    printf "\n%d mutants: %d noticed, %d explained, %d open. Building and testing them took %.0f minutes.\n\n", total, noticed,
+           explained, open, spent / 60
+    printf "| part | change | noticed by | s |\n|---|---|---|---|\n%s\n", rows
+  }
+}
