@@ -34,8 +34,11 @@ function finish(   k) {
   split("", part)
 }
 
+# A block ends with its list.
+FNR == 1 { open = 0; inside = "" }
 /^=== / {
   finish()
+  open = 1
   names[++n] = substr($0, 5)
   at[n] = FILENAME
   raw[n] = $0 "\n"
@@ -43,8 +46,8 @@ function finish(   k) {
   blank = ""
   next
 }
-n { raw[n] = raw[n] $0 "\n" }
-/^--- (old|new)$/ && n {
+open { raw[n] = raw[n] $0 "\n" }
+/^--- (old|new)$/ && open {
   inside = $2
   part[inside] = ""
   lines = 0
@@ -58,7 +61,7 @@ inside != "" {
   blank = ""
   next
 }
-n && /^[a-z]+: / {
+open && /^[a-z]+: / {
   key = substr($1, 1, length($1) - 1)
   part[key] = substr($0, length(key) + 3)
   next
