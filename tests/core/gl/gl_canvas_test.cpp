@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/gl/driver_fault.h"
+#include "core/gl/entry_point.h"
 #include "offsets/obb.h"
 #include "tests/core/gl/gl_lab.h"
 #include "tests/core/gl/reversed_depth.h"
@@ -224,6 +225,38 @@ TEST(GlCanvas, CountsFinishedItems) {
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("work items finished"), std::string::npos)
         << error.what();
+  }
+}
+
+// A driver that leaves out the last element of each draw that has more than one.
+class ShortDraws {
+  using Draw = GlEntryPoint<&epoxy_glDrawArrays>;
+  static constexpr GLsizei kVertices = 6;  // of a proxy
+  static void draw(GLenum mode, GLint first, GLsizei count) {
+    Draw::original(mode, first, count > kVertices ? count - kVertices : count);
+  }
+  Draw draw_{draw};
+};
+
+// The first vertex of such a draw runs, and so do the control items. Only the number of primitives
+// is wrong, and an item would not be seen.
+TEST(GlCanvas, CountsPrimitives) {
+  const Layers layers;
+  const Fattener fattener = obb_fattener();
+  for (const QueryMode query : {QueryMode::flags, QueryMode::occlusion}) {
+    GlCanvas canvas(lab::context(), fattener.mode, fattener.solid, {.query = query});
+    const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
+    canvas.begin(layers.window, drawables);
+    const Pass pass = layers.pass(drawables, 0, 1);
+    EXPECT_EQ(canvas.run(pass), std::vector<std::uint8_t>(layers.cells(), 1));
+    const ShortDraws fault;
+    try {
+      canvas.run(pass);
+      FAIL() << "the fault was not noticed";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("primitives were drawn"), std::string::npos)
+          << error.what();
+    }
   }
 }
 

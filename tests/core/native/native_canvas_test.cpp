@@ -9,7 +9,6 @@
 #include <cstring>
 
 #include "core/base/error.h"
-#include "core/native/lanes.h"
 #include "core/native/triangles.h"
 #include "core/view/regions.h"
 #include "offsets/fit.h"
@@ -17,6 +16,7 @@
 #include "offsets/obb.h"
 #include "tests/core/base/trials.h"
 #include "tests/core/canvas/lab.h"
+#include "tests/core/native/every_target.h"
 #include "tests/core/scene/scenes.h"
 #include "verify/box_line.h"
 #include "verify/minkowski_cases.h"
@@ -25,24 +25,6 @@ namespace farcull {
 namespace {
 
 using lab::Random;
-
-/// Uses an instruction set until the end of its scope.
-struct UseLanes {
-  explicit UseLanes(const std::string& name) { use_lane_target(name); }
-  ~UseLanes() { use_lane_target(""); }
-};
-
-template <class Work>
-void on_every_target(const Work& work) {
-  const std::vector<std::string> targets = lane_targets();
-  ASSERT_GE(targets.size(), 1u);
-  for (const std::string& target : targets) {
-    SCOPED_TRACE("lanes of " + target);
-    const UseLanes use(target);
-    EXPECT_EQ(lane_target(), target);
-    work();
-  }
-}
 
 std::vector<Fattener> fatteners() { return {obb_fattener(), minkowski_fattener()}; }
 
