@@ -189,6 +189,39 @@ TEST(Neighbours, ExistOnlyInOneObjectAndAreSkippedOnRequest) {
   EXPECT_TRUE(skipped.pairs.empty());
 }
 
+// Two fans about one vertex, which both objects name by the same index. Pairs of one fan are
+// neighbours. Pairs of both are none, also where so many neighbours came before that they are set
+// aside first.
+TEST(Neighbours, SharedIndicesOfTwoObjectsMakeNone) {
+  constexpr std::uint32_t kFan = 60;
+  Scene scene;
+  scene.vertices.push_back(kO);
+  for (std::uint32_t k = 0; k < 2 * kFan; ++k) {
+    const auto v = static_cast<std::uint32_t>(scene.vertices.size());
+    const double side = k < kFan ? 1 : -1, turn = 2 * k;
+    scene.vertices.emplace_back(std::cos(turn), std::sin(turn), side);
+    scene.vertices.emplace_back(std::cos(turn + 1), std::sin(turn + 1), side);
+    scene.triangles.push_back({0, v, v + 1});
+    scene.source_face.push_back(k);
+  }
+  scene.objects = {{"above", 0, kFan, true}, {"below", kFan, kFan, false}};
+  std::vector<TrianglePair> candidates, of_both;
+  for (std::uint32_t a = 0; a < kFan; ++a) {
+    for (std::uint32_t b = a + 1; b < kFan; ++b) candidates.push_back({a, b});
+  }
+  const std::size_t neighbours = candidates.size();
+  ASSERT_GT(neighbours, 1024u) << "a block of decide()";
+  for (std::uint32_t a = 0; a < kFan; ++a) {
+    for (std::uint32_t b = kFan; b < 2 * kFan; ++b) of_both.push_back({a, b});
+  }
+  candidates.insert(candidates.end(), of_both.begin(), of_both.end());
+  for (const bool asked : {false, true}) {
+    const Collisions found = decide(scene, candidates, {.threads = 1, .neighbours = asked});
+    EXPECT_EQ(found.pairs, of_both);
+    EXPECT_EQ(found.neighbours, neighbours);
+  }
+}
+
 TEST(Neighbours, DecideRefusesATriangleWithItselfAndBadClearances) {
   const Scene scene = reference::scene_of({{kUnit}, {kUnit}});
   EXPECT_THROW(decide(scene, std::vector<TrianglePair>{{1, 1}}), std::logic_error);

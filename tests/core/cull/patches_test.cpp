@@ -272,6 +272,26 @@ TEST(Patches, LeaveToTestWhatTheContractSays) {
   }
 }
 
+// Objects may name the same vertices, as those of one file do. Triangles of two objects that share
+// a vertex are a pair that may collide, and no neighbours.
+TEST(Patches, TrianglesOfTwoObjectsAreNoNeighboursWhateverTheyShare) {
+  Scene scene;
+  scene.vertices = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0),
+                    Vec3(0, 0, 1), Vec3(1, 1, 1), Vec3(1, 0, 1)};
+  scene.triangles = {{0, 1, 2}, {0, 1, 5}, {0, 3, 4}};
+  scene.objects = {{"a", 0, 2, true}, {"b", 2, 1, true}};
+  const std::vector<Box> boxes = triangle_boxes(scene);
+  const std::vector<std::uint32_t> live = {0, 1, 2};
+  for (const std::uint32_t size : {1u, 4u}) {
+    const Patches patches = cut_patches(scene, boxes, size);
+    const auto pairs = [&](bool neighbours) {
+      return join_patches(scene, boxes, patches, live, {}, neighbours);
+    };
+    EXPECT_EQ(pairs(true), (std::vector<TrianglePair>{{0, 1}, {0, 2}, {1, 2}}));
+    EXPECT_EQ(pairs(false), (std::vector<TrianglePair>{{0, 2}, {1, 2}}));
+  }
+}
+
 TEST(Patches, HaveASixteenthOfTheLargestMarkedObjectWithinBounds) {
   const auto size = [](std::uint32_t marked, std::uint32_t other) {
     Scene scene;

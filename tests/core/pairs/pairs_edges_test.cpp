@@ -86,11 +86,60 @@ TEST(PairsEdges, APairThatMeetsBesideACrowdedPixel) {
   fill(objects, 3000, Vec3(3.02, 3.02, 0), Vec3(3.96, 3.96, 1), 0.02, random);
   objects[0].push_back({Vec3(3.2, 3.2, 0), Vec3(4.8, 3.2, 1), Vec3(4.8, 3.8, 1)});
   objects[1].push_back({Vec3(3.2, 3.8, 0.9), Vec3(4.8, 3.8, 0.6), Vec3(4.8, 3.2, 0.6)});
-  const auto backend = cpu_pair_backend(2);
   const Scene scene = scene_of(objects);
   const PairSettings settings{.views = parse_views("z"), .resolution = 8};
-  EXPECT_EQ(missed(scene, settings, *backend), 0u);
-  EXPECT_GT(find_pairs(scene, settings, *backend).views[0].counts.crowded, 0u);
+  // With so little memory each pixel is a tile of its own.
+  for (const std::size_t memory : {std::size_t{256} << 20, std::size_t{1}}) {
+    const auto backend = cpu_pair_backend(2, memory);
+    EXPECT_EQ(missed(scene, settings, *backend), 0u) << memory;
+    EXPECT_GT(find_pairs(scene, settings, *backend).views[0].counts.crowded, 0u);
+  }
+}
+
+// Two whole triangles, one of which begins a row before the other, in a tile with a crowded pixel.
+TEST(PairsEdges, APairOfWhichOneBeginsEarlierBesideACrowdedPixel) {
+  const auto backend = cpu_pair_backend(2);
+  for (const int row : {1, 2, 3, 4, 5}) {
+    for (const int first : {0, 1}) {
+      Random random(3);
+      auto objects = two_objects(Vec3(0, 0, -1), Vec3(8, 8, 2));
+      fill(objects, 3000, Vec3(6.02, row + 0.02, 0), Vec3(6.96, row + 0.96, 1), 0.02, random);
+      objects[first].push_back(
+          {Vec3(3.2, row + 0.2, 0), Vec3(3.8, row + 1.8, 0.5), Vec3(3.2, row + 1.8, 0.5)});
+      objects[1 - first].push_back(
+          {Vec3(3.2, row + 1.5, 0.4), Vec3(3.8, row + 1.5, 0.6), Vec3(3.8, row + 1.7, 0.3)});
+      const Scene scene = scene_of(objects);
+      const PairSettings settings{.views = parse_views("z"), .resolution = 8};
+      EXPECT_EQ(missed(scene, settings, *backend), 0u) << row;
+      EXPECT_GT(find_pairs(scene, settings, *backend).views[0].counts.crowded, 0u);
+      const std::vector<TrianglePair> truth = truth_of(scene);
+      const TrianglePair last{scene.objects[1].first_triangle - 1,
+                              static_cast<std::uint32_t>(scene.triangles.size()) - 1};
+      EXPECT_TRUE(std::binary_search(truth.begin(), truth.end(), last));
+    }
+  }
+}
+
+// A large triangle is compared with small ones by itself, over their rectangles. Those here are a
+// little nearer than the clearance, beside it along the depth.
+TEST(PairsEdges, LargeTrianglesWithinAClearance) {
+  const auto backend = cpu_pair_backend(2);
+  for (const double slope : {0.0, 0.3}) {
+    const Vec3 along(1, 0, slope), up(0, 1, 0);
+    const Vec3 normal = along.cross(up).normalized();
+    std::vector<std::vector<Corners>> objects(2);
+    objects[0].push_back({Vec3(0, 0, 0), 100 * along, 100 * up});
+    for (int n = 0; n < 40; ++n) {
+      const Vec3 p = (2 + n) * along + 20 * up + (n % 2 ? 0.95 : -0.95) * normal;
+      objects[1].push_back({p, p + 0.5 * along, p + 0.5 * up});
+    }
+    const Scene scene = scene_of(objects);
+    const PairSettings settings{
+        .views = parse_views("z"), .resolution = 1024, .clearance = 1, .runs = false};
+    ASSERT_EQ(truth_of(scene, 1).size(), 40u);
+    EXPECT_EQ(missed(scene, settings, *backend), 0u) << slope;
+    EXPECT_EQ(find_pairs(scene, settings, *backend).views[0].counts.large, 1u);
+  }
 }
 
 // Triangles of many sub-pixels that touch in one point, among crumbs that make the pixels crowded.

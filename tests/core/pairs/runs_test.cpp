@@ -261,6 +261,42 @@ TEST(Runs, SplitAlikeWhateverTheThreads) {
   EXPECT_GT(sampled, 0u);
 }
 
+// Two objects of `count` runs each. Along x, run k of the first reaches from k to k + reach, and
+// run k of the second half a unit further; in y and z all reach from 0 to 1. One triangle of each
+// run is in its middle and large enough to meet those of other runs.
+Scene ladders(int count, int reach) {
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+  for (std::size_t o = 0; o < 2; ++o) {
+    for (int k = 0; k < count; ++k) {
+      const Vec3 from(k + 0.5 * static_cast<double>(o), 0, 0), size(reach, 1, 1);
+      for (std::uint32_t i = 0; i < kRun; ++i) {
+        const Vec3 at = from + size * (i / (kRun - 1.0));
+        const Vec3 half = i == kRun / 2 ? Vec3(0.3, 0.3, 0.3) : Vec3::Zero();
+        objects[o].push_back({at - half, at, at + half});
+      }
+    }
+  }
+  return lab::scene_of(objects);
+}
+
+// Runs i and j of the two objects meet iff -reach < i - j <= reach. These are 2 count reach -
+// reach^2 pairs, which is kPairsPerRun for each run where count is 162 and reach 36.
+TEST(Runs, AsManyPairsAsAreAllowedAreAllFound) {
+  const Scene scene = ladders(162, 36);
+  for (const unsigned threads : {1u, 2u}) {
+    const PairParts parts = split_meetings(scene, 0, threads);
+    ASSERT_EQ(parts.runs.between.size(), kPairsPerRun * 2 * 162);
+    EXPECT_TRUE(parts.rest.triangles.empty());
+    const std::vector<TrianglePair> expected = overlapping(scene, 0, true);
+    EXPECT_GT(expected.size(), 162u);
+    EXPECT_EQ(pairs_of_runs(scene, parts.runs, 0, true, threads), expected);
+  }
+  // The twin: beyond it the objects are left to views.
+  const PairParts parts = split_meetings(ladders(162, 37), 0, 1);
+  EXPECT_TRUE(parts.runs.empty());
+  EXPECT_FALSE(parts.rest.triangles.empty());
+}
+
 // Boxes that touch in one point, edge or face, wherever they lie; or with a gap between them.
 Scene touching(double at, double gap = 0) {
   std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
@@ -337,14 +373,14 @@ void expect_boxes_hold(const Scene& scene, const Runs& runs, double clearance) {
 
 TEST(Runs, FollowWhatMoved) {
   for (const double by : {0.001, 1.0, 1e6}) {
-    for (const bool scattered : {false, true}) {
+    for (const auto& [scattered, step] : {std::pair(false, 2), {true, 2}, {false, 1}, {true, 1}}) {
       Scene scene = make_builtin_scene("two-tori");
       if (scattered) scene = shuffled(scene, 7);
       Runs runs = make_ordered_runs(scene, 0.01, 1);
-      // Half of the runs, of which every vertex moves.
+      // Half of the runs, of which every vertex moves; or all of them.
       std::vector<std::uint8_t> moved(runs.runs.size(), 0);
       std::set<std::uint32_t> vertices;
-      for (std::size_t r = 0; r < runs.runs.size(); r += 2) {
+      for (std::size_t r = 0; r < runs.runs.size(); r += step) {
         for (std::uint32_t i = 0; i < runs.runs[r].count; ++i) {
           const auto& corners = scene.triangles[runs.triangle(runs.runs[r].first + i)];
           vertices.insert(corners.begin(), corners.end());
@@ -361,6 +397,8 @@ TEST(Runs, FollowWhatMoved) {
         Runs updated = runs;
         update_boxes(scene, 0.01, moved, threads, updated);
         expect_boxes_hold(scene, updated, 0.01);
+        // Where all move far, the origin goes with them, and all boxes are relative to it.
+        EXPECT_EQ(updated.origin.x() > 1e5, by > 1e5 && step == 1);
       }
     }
   }

@@ -209,6 +209,30 @@ TEST(SweepPrune, AsBoxJoinOnManyBoxesOfEveryShape) {
   }
 }
 
+// The short boxes make columns narrow. The long ones then are in so many columns that these are
+// doubled in width, along both axes.
+TEST(SweepPrune, AFewLongBoxesAmongManyShortOnes) {
+  Random random(611);
+  Moving moving;
+  for (int o = 0; o < 3; ++o) {
+    for (int k = 0; k < 1000; ++k) {
+      const Vec3 at = random.cube(10);
+      moving.boxes.push_back({at, at + Vec3::Constant(0x1p-10)});
+    }
+    moving.sizes.push_back(1000);
+    moving.self.push_back(false);
+  }
+  for (int k = 0; k < 10; ++k) {
+    moving.boxes.push_back(
+        {Vec3::Constant(-9) + random.cube(1), Vec3::Constant(9) + random.cube(1)});
+  }
+  moving.sizes.push_back(10);
+  moving.self.push_back(true);
+  const Scene scene = moving.scene();
+  SweepPrune sweep;
+  for (int again = 0; again < 2; ++again) expect_right(sweep.find(scene), scene);
+}
+
 // Extents whose reciprocal overflows, extents that do so themselves, and a mean length of zero.
 TEST(SweepPrune, TheEndsOfTheDoubles) {
   Random random(610);

@@ -9,6 +9,7 @@
 #include <cfloat>
 #include <cmath>
 
+#include "core/view/rounding.h"
 #include "tests/core/view/clip_cases.h"
 
 namespace farcull {
@@ -187,6 +188,46 @@ TEST(Clip, RoundingNeverOverfillsThePatch) {
     most = std::max(most, patch.count);
   }
   EXPECT_GE(most, 6);  // both ends and a third plane
+}
+
+// What the other tests compare with.
+TEST(Clip, TheExactClippingKeepsWhatLiesInThePlane) {
+  const auto at = [](int x, int y) { return Q3{Q(x), Q(y), Q(0)}; };
+  const std::vector<Q3> triangle = {at(0, 0), at(2, 0), at(0, 2)};
+  const auto clipped = [&](int sign, int bound) {
+    return rational::clipped(triangle, 0, sign, Q(bound));
+  };
+  EXPECT_EQ(clipped(1, 0), (std::vector<Q3>{at(0, 0), at(0, 2)}));  // an edge
+  EXPECT_EQ(clipped(-1, 2), (std::vector<Q3>{at(2, 0)}));           // a corner
+  EXPECT_EQ(clipped(1, 2), triangle);
+  EXPECT_EQ(clipped(1, 1), (std::vector<Q3>{at(0, 0), at(1, 0), at(1, 1), at(0, 2)}));
+  EXPECT_TRUE(clipped(1, -1).empty());
+}
+
+// The error of a patch is that of its corners' images and a charge for each cut, which moves a
+// corner by up to kCutRounding of the largest coordinate (docs/budget.md, "Clipping and the fan").
+TEST(Clip, EachCutIsCharged) {
+  Random random(204);
+  const std::vector<Box> region{{Vec3(-1, -1, -1), Vec3(1, 1, 1)}};
+  const Window window = *fit_window(parse_view("z"), region, 64);
+  std::array<int, 7> with_cuts{};
+  for (int n = 0; n < 2000; ++n) {
+    const double half = n % 4 == 0 ? 0.5 : 3;  // of the region it is 1
+    const Triangle corners = {random.cube(half), random.cube(half), random.cube(half)};
+    const Patch patch = clip_to_region(window, corners);
+    ASSERT_TRUE(patch.drawable());
+    double largest = 0, mapped = 0;
+    for (const Vec3& corner : corners) {
+      const PixelPoint q = to_pixel(window, corner);
+      largest = std::max(largest, q.p.cwiseAbs().maxCoeff());
+      mapped = std::max(mapped, q.error);
+    }
+    EXPECT_GE(Q(patch.error),
+              Q(mapped) + Q(patch.cuts) * Q(kCutRounding) * Q(largest) * Q(1 - 0x1p-50));
+    ++with_cuts.at(static_cast<std::size_t>(patch.cuts));
+  }
+  EXPECT_GT(with_cuts[0], 0) << "the twin: without a cut there is no charge";
+  EXPECT_GT(with_cuts[1] + with_cuts[2] + with_cuts[3], 200);
 }
 
 }  // namespace
