@@ -23,6 +23,7 @@ core/canvas                core/view
 core/cull                  core/canvas
 core/sweep                 core/scene
 core/pairs                 core/view
+core/proximity             core/pairs
 core/native                core/canvas
 core/gl                    core/cull core/sweep core/pairs
 offsets                    core/native
@@ -33,7 +34,7 @@ experiments/scenes/mesh    experiments/system core/gl
 experiments/scenes/cloth   experiments/scenes/mesh
 experiments/scenes/builtin experiments/scenes/mesh experiments/scenes/cloth
 experiments/scenes         experiments/scenes/builtin
-experiments/method         core/gl offsets verify
+experiments/method         core/gl core/proximity offsets verify
 experiments/library        experiments/method
 experiments/record         experiments/method experiments/system
 experiments/measure/peers  experiments/scenes verify

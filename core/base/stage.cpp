@@ -55,6 +55,12 @@ std::string verb_of(StageKind kind) {
       return "join";
     case StageKind::exact:
       return "exact";
+    case StageKind::near:
+      return "near pairs";
+    case StageKind::closest:
+      return "closest points";
+    case StageKind::inside:
+      return "inside";
     case StageKind::verify:
       return "verify";
   }
@@ -198,6 +204,10 @@ std::string reason_of(const Stage& stage) {
       return "every pair; out: those that were missed";
     case Reason::not_asked:
       return "--no-verify";
+    case Reason::near_boxes:
+      return counted(stage.n, "pair of objects", "pairs of objects") + "; boxes compared: " + m;
+    case Reason::not_signed:
+      return "--signed no";
     case Reason::if_more_left:
       return stage.n > 0 ? "if more than " + triangles_left(stage.n) : "if any triangle is left";
     case Reason::if_more_candidates:

@@ -28,6 +28,9 @@ enum class StageKind : std::uint8_t {
   sweep,           // sweep and prune
   join,            // pairs of triangles whose boxes overlap
   exact,           // exact predicates on the candidates
+  near,            // of two objects the triangles that can be nearest
+  closest,         // distances and closest points, exactly
+  inside,          // whether objects lie inside others
   verify,          // accounting for every pair
 };
 
@@ -83,6 +86,8 @@ enum class Reason : std::uint8_t {
   no_candidates,       // there are none
   every_pair,          // every pair is accounted for
   not_asked,           // --no-verify
+  near_boxes,          // of n pairs of objects; m bounds of boxes were compared
+  not_signed,          // --signed no
   // Rules by which pixels decide, in a plan.
   if_more_left,        // if more than n triangles are left (n = 0: any)
   if_more_candidates,  // if more than n candidates are left for each triangle that takes part

@@ -1,0 +1,85 @@
+// Potential neighbours: for two objects, the pairs of triangles that can be nearest.
+//
+// The potential neighbour set (PNS) of Sud, Govindaraju, Gayle, Kabul and Manocha (Fast Proximity
+// Computation Among Deformable Models using Discrete Voronoi Diagrams, SIGGRAPH 2006) rests on a
+// grid, whose error can lose the nearest pair. Here it is every pair whose lower bound is at most a
+// certified upper bound, so no error of a grid enters: what is culled is provably farther apart.
+//
+// Bounds are of the doubles as given, any finite ones. Nothing is decided exactly; that is verify's
+// (verify/closest.h).
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+/// Two objects of a scene, a < b, or one twice: its own triangles, neighbours left out.
+struct ObjectPair {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  auto operator<=>(const ObjectPair&) const = default;
+};
+
+/// What can be nearest of two objects.
+struct NearPairs {
+  ObjectPair objects;
+  /// Some pair of triangles of these objects is at most this far apart (world units); infinite
+  /// where they have none, or none within the limit asked for.
+  double upper = std::numeric_limits<double>::infinity();
+  /// All pairs of their triangles at the least distance are among these, where that distance is at
+  /// most the limit. Sorted, each once.
+  std::vector<TrianglePair> pairs;
+};
+
+/// How many boxes and pairs were looked at: how well culling works.
+struct ProximityCounts {
+  std::uint64_t box_pairs = 0;       // bounds of boxes that were compared with the upper bound
+  std::uint64_t triangle_pairs = 0;  // pairs of triangles whose distance was bounded
+  std::uint64_t kept = 0;            // of these, left to exact arithmetic
+};
+
+/// Trees of boxes over the objects of a scene, and what they answer. Precondition everywhere: the
+/// scene satisfies validate() and does not change before the trees are gone, and the thread rounds
+/// to nearest and keeps subnormals.
+class ProximityTrees {
+ public:
+  /// threads: 0 for as many as there are cores; changes no answer.
+  explicit ProximityTrees(const Scene& scene, unsigned threads = 0);
+  ~ProximityTrees();
+  ProximityTrees(ProximityTrees&&) noexcept;
+  ProximityTrees& operator=(ProximityTrees&&) noexcept;
+
+  /// For each of the questions, in their order. within: world units, >= 0, may be infinite: what is
+  /// farther apart need not be found. hints: empty, or for each question a pair of triangles of
+  /// these objects that is probably near, as the last frame's nearest one; it bounds the answer
+  /// from the start, and changes no nearest pair that is found. Triangles of other objects or in
+  /// the other order, and neighbours, are no hint. Throws std::logic_error for objects that the
+  /// scene does not have or in the other order, hints of another number, and a limit that is none;
+  /// Error where more than 100 million pairs of one question may be nearest.
+  std::vector<NearPairs> near_pairs(std::span<const ObjectPair> questions, double within,
+                                    std::span<const std::optional<TrianglePair>> hints,
+                                    const Progress& progress = {}) const;
+
+  /// The pairs of objects among which each object with triangles has its k nearest others (those of
+  /// its k least distances, all that share the kth least among them): sorted, each once, with what
+  /// can be nearest of them. No object is further away than `within`. Throws as near_pairs().
+  std::vector<NearPairs> nearest_objects(std::size_t k, double within,
+                                         const Progress& progress = {}) const;
+
+  /// Of all calls so far.
+  ProximityCounts counts() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace farcull

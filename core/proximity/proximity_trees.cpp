@@ -1,0 +1,114 @@
+// Each question is a search (core/proximity/search.h). Searches go on side by side; one that takes
+// long is divided.
+#include "core/proximity/near_pairs.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/base/parallel.h"
+#include "core/proximity/nearest.h"
+#include "core/proximity/scene_trees.h"
+#include "core/proximity/search.h"
+#include "core/proximity/split.h"
+
+namespace farcull {
+
+struct ProximityTrees::State {
+  State(const Scene& scene, unsigned thread_count)
+      : trees(scene, thread_count), threads(thread_count) {}
+
+  SceneTrees trees;
+  unsigned threads;
+  mutable std::atomic<std::uint64_t> box_pairs = 0, triangle_pairs = 0, kept = 0;
+
+  void add(const ProximityCounts& counts) const {
+    box_pairs += counts.box_pairs;
+    triangle_pairs += counts.triangle_pairs;
+    kept += counts.kept;
+  }
+};
+
+ProximityTrees::ProximityTrees(const Scene& scene, unsigned threads)
+    : state_(std::make_unique<State>(scene, threads)) {}
+ProximityTrees::~ProximityTrees() = default;
+ProximityTrees::ProximityTrees(ProximityTrees&&) noexcept = default;
+ProximityTrees& ProximityTrees::operator=(ProximityTrees&&) noexcept = default;
+
+namespace {
+
+void check(const Scene& scene, std::span<const ObjectPair> questions, double within,
+           std::size_t hints) {
+  if (!(within >= 0)) throw std::logic_error("near_pairs: within is not a distance");
+  if (hints != 0 && hints != questions.size()) {
+    throw std::logic_error("near_pairs: as many hints as questions, or none");
+  }
+  for (const ObjectPair& q : questions) {
+    if (q.a > q.b || q.b >= scene.objects.size()) {
+      throw std::logic_error("near_pairs: no such pair of objects");
+    }
+  }
+}
+
+bool has(const Object& object, std::uint32_t triangle) {
+  return triangle >= object.first_triangle &&
+         triangle - object.first_triangle < object.triangle_count;
+}
+// The hint, if it is one: the first triangle of objects.a, the second one of objects.b.
+bool fits(const Scene& scene, const ObjectPair& objects, const TrianglePair& hint) {
+  return hint.a < hint.b && has(scene.objects[objects.a], hint.a) &&
+         has(scene.objects[objects.b], hint.b);
+}
+
+}  // namespace
+
+std::vector<NearPairs> ProximityTrees::near_pairs(
+    std::span<const ObjectPair> questions, double within,
+    std::span<const std::optional<TrianglePair>> hints, const Progress& progress) const {
+  const SceneTrees& trees = state_->trees;
+  check(trees.scene(), questions, within, hints.size());
+  if (progress) progress("near pairs");
+  const double limit = scaled_limit(trees, within);
+  std::vector<NearPairs> out(questions.size());
+  std::vector<Search> long_ones(questions.size());
+  for_each_with_memory(questions.size(), state_->threads, [&](std::size_t k, SearchMemory& memory) {
+    const ObjectPair& objects = questions[k];
+    const TrianglePair* hint = hints.empty() || !hints[k] ? nullptr : &*hints[k];
+    if (hint != nullptr && !fits(trees.scene(), objects, *hint)) hint = nullptr;
+    Search search = begin_search(trees, objects, limit, hint, memory);
+    go_on(trees, kShort, search, memory);
+    if (search.open.empty()) {
+      out[k] = answer(trees, search);
+      state_->add(search.counts);
+    } else {
+      long_ones[k] = std::move(search);
+    }
+  });
+  for (std::size_t k = 0; k < questions.size(); ++k) {
+    Search& search = long_ones[k];
+    if (search.open.empty()) continue;
+    go_on_divided(trees, state_->threads, search);
+    out[k] = answer(trees, search);
+    state_->add(search.counts);
+    search = Search();
+  }
+  return out;
+}
+
+std::vector<NearPairs> ProximityTrees::nearest_objects(std::size_t k, double within,
+                                                       const Progress& progress) const {
+  if (!(within >= 0)) throw std::logic_error("nearest_objects: within is not a distance");
+  if (progress) progress("nearest objects");
+  ProximityCounts counts;
+  std::vector<NearPairs> out = farcull::nearest_objects(
+      state_->trees, k, scaled_limit(state_->trees, within), state_->threads, counts);
+  state_->add(counts);
+  return out;
+}
+
+ProximityCounts ProximityTrees::counts() const {
+  return {state_->box_pairs, state_->triangle_pairs, state_->kept};
+}
+
+}  // namespace farcull

@@ -1,0 +1,77 @@
+// Runs come from core/pairs/runs.h; those of an object are put in Morton order, so that sixteen
+// that follow one another lie together as well.
+#include "core/proximity/scene_trees.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+
+namespace farcull {
+
+SceneTrees::SceneTrees(const Scene& scene, unsigned threads)
+    : scene_(&scene), runs_(make_ordered_runs(scene, 0, threads)) {
+  choose_scale();
+  make_trees(threads);
+  make_object_tree();
+}
+
+void SceneTrees::choose_scale() {
+  double most = 0;
+  for (const Box& box : runs_.objects) {
+    if (box.is_empty()) continue;
+    most = std::max({most, box.lo.cwiseAbs().maxCoeff(), box.hi.cwiseAbs().maxCoeff()});
+  }
+  if (most > 0) scale_ = std::ldexp(1.0, std::clamp(-std::ilogb(most), -1022, 1000));
+}
+
+void SceneTrees::make_trees(unsigned threads) {
+  const std::size_t objects = scene_->objects.size();
+  std::vector<std::size_t> first(objects);
+  std::size_t blocks = 0;
+  for (std::size_t o = 0; o < objects; ++o) {
+    first[o] = blocks;
+    blocks += blocks_of_tree(run_count(static_cast<std::uint32_t>(o)));
+  }
+  blocks_.resize(blocks + blocks_of_tree(objects));
+  trees_.resize(objects);
+  place_.resize(runs_.runs.size());
+  const auto make = [&](std::size_t o) {
+    const std::uint32_t from = runs_.first[o], n = run_count(static_cast<std::uint32_t>(o));
+    const auto place = std::span(place_).subspan(from, n);
+    morton_order(std::span(runs_.boxes).subspan(from, n), runs_.objects[o], place);
+    std::vector<Box> leaves(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      const Box& box = runs_.boxes[place[k] += from];
+      leaves[k] = {box.lo * scale_, box.hi * scale_};
+    }
+    trees_[o] = make_tree(leaves, blocks_, first[o]);
+  };
+  for_chunks(objects, chunks_for(objects, 1, threads),
+             [&](std::size_t, std::size_t begin, std::size_t end) {
+               for (std::size_t o = begin; o < end; ++o) make(o);
+             });
+}
+
+void SceneTrees::make_object_tree() {
+  std::vector<std::uint32_t> objects;
+  std::vector<Box> boxes;
+  Box all = Box::empty();
+  for (std::uint32_t o = 0; o < trees_.size(); ++o) {
+    if (trees_[o].levels == 0) continue;
+    objects.push_back(o);
+    boxes.push_back(trees_[o].box);
+    all.add(trees_[o].box);
+  }
+  std::vector<std::uint32_t> order(objects.size());
+  morton_order(boxes, all, order);
+  std::vector<Box> leaves(objects.size());
+  object_of_leaf_.resize(objects.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    leaves[k] = boxes[order[k]];
+    object_of_leaf_[k] = objects[order[k]];
+  }
+  objects_ = make_tree(leaves, blocks_, blocks_.size() - blocks_of_tree(scene_->objects.size()));
+}
+
+}  // namespace farcull

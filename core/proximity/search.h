@@ -1,0 +1,70 @@
+// The search for the nearest triangles of two objects: branch and bound over pairs of nodes of
+// their trees.
+//
+// A search works until it has looked at as many pairs of runs as it may, and can go on then, or be
+// divided into searches that go on side by side. What it finds depends on the scene, the question
+// and the hint alone, since no search looks at what another one finds.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/proximity/near_pairs.h"
+#include "core/proximity/run_corners.h"
+#include "core/proximity/scene_trees.h"
+#include "core/proximity/triangle_pairs.h"
+
+namespace farcull {
+
+/// Two nodes of trees, by height and number; the square of the gap of their boxes.
+struct NodePair {
+  double square;
+  std::uint32_t a, b;
+  std::uint8_t a_height, b_height;
+};
+
+/// A pair of triangles that may be nearest; bounds of its distance in scaled units.
+struct KeptPair {
+  TrianglePair pair;
+  double lower, upper;
+};
+
+/// A search that has begun.
+struct Search {
+  ObjectPair objects;
+  double limit = 0;  // scaled: what is farther apart is not looked for
+  double upper = std::numeric_limits<double>::infinity();  // the least one of a pair so far
+  Vec3 direction = Vec3::Zero();                           // of that pair; 0: none
+  std::vector<NodePair> open;                              // to be looked at, the last one first
+  std::vector<KeptPair> kept;
+  std::size_t kept_most = 1024;  // more than this: those that cannot be nearest are dropped first
+  ProximityCounts counts;
+
+  double bound() const { return std::min(upper, limit); }
+  /// Drops what cannot be nearest.
+  void filter();
+};
+
+/// What a thread uses again in all its searches.
+class SearchMemory {
+ public:
+  static constexpr std::uint32_t kRuns = 64;
+  SearchMemory() : a(kRuns), b(kRuns) {}
+  /// Before searches in another scene.
+  void forget() { *this = SearchMemory(); }
+
+  std::vector<RunCorners> a, b;  // runs of the first and the second object, at number % kRuns
+  std::uint64_t directions = 0;  // so many were used
+  PairBatch batch;
+};
+
+/// Begins a search. hint: null, or a pair of triangles that may be near.
+Search begin_search(const SceneTrees& trees, const ObjectPair& objects, double limit,
+                    const TrianglePair* hint, SearchMemory& memory);
+/// Goes on until nothing is open, or `most` pairs of runs were looked at.
+void go_on(const SceneTrees& trees, std::size_t most, Search& search, SearchMemory& memory);
+
+}  // namespace farcull
