@@ -95,15 +95,19 @@ inline Vec3 extent_of(const Corners& a, const Corners& b) {
   return most;
 }
 
-template <class Bounds>
-Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
-  Corners s;
-  Corners t;
+/// Two points of the triangles, near each other, and the corners relative to a[0].
+struct Near {
+  Corners s, t;
+  Closest closest;
+};
+
+inline Near near_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  Near out;
+  auto& [s, t, closest] = out;
   for (int i = 0; i < 3; ++i) {
     s[i] = a[i] - a[0];
     t[i] = b[i] - a[0];
   }
-  Closest closest;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       offer_segments(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3], closest);
@@ -113,18 +117,57 @@ Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
     offer_face(s[i], t, 1, closest);
     offer_face(t[i], s, -1, closest);
   }
-  const Vec3 extent = extent_of(s, t);
-  const double length = std::sqrt(std::max(closest.squared, kLeastSquare));
-  if (length + Bounds::point * extent.maxCoeff() + Bounds::absolute <= clearance)
-    return Triage::yes;
-  if (closest.squared < kLeastSquare) return Triage::unknown;
+  return out;
+}
+
+/// By how much the projections onto the difference surely leave a gap, times its length.
+template <class Bounds>
+double gap_along(const Near& near, const Vec3& extent) {
+  const auto& [s, t, closest] = near;
   const Vec3& d = closest.difference;
   const double s_most = std::max({d.dot(s[0]), d.dot(s[1]), d.dot(s[2])});
   const double t_least = std::min({d.dot(t[0]), d.dot(t[1]), d.dot(t[2])});
   const double doubt = Bounds::gap * d.cwiseAbs().dot(extent) + Bounds::absolute;
+  return t_least - s_most - doubt;
+}
+
+template <class Bounds>
+Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
+  const Near near = near_points(a, b);
+  const double squared = near.closest.squared;
+  const Vec3 extent = extent_of(near.s, near.t);
+  const double length = std::sqrt(std::max(squared, kLeastSquare));
+  if (length + Bounds::point * extent.maxCoeff() + Bounds::absolute <= clearance)
+    return Triage::yes;
+  if (squared < kLeastSquare) return Triage::unknown;
   const double needed = clearance * length;
-  return t_least - s_most - doubt > needed + needed * kNeededRounding ? Triage::no
-                                                                      : Triage::unknown;
+  return gap_along<Bounds>(near, extent) > needed + needed * kNeededRounding ? Triage::no
+                                                                             : Triage::unknown;
+}
+
+/// The distance is at least `lower` and at most `upper`, which may be infinite.
+struct DistanceBounds {
+  double lower = 0;
+  double upper = std::numeric_limits<double>::infinity();
+};
+
+/// Lower: the distance is at least the gap over |d|. The quotient is one rounding off, the computed
+/// length 3 u, and the factor 1 - 8 u, itself rounded once, covers both. Nothing underflows there:
+/// a gap above 0 is a multiple of the last bit of the doubt, hence above 2^-104 |d|^2 (no |d_k| is
+/// more than twice the extent and a little), and |d| is at least 2^-450.
+template <class Bounds>
+DistanceBounds distance_bounds(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  const Near near = near_points(a, b);
+  const double squared = near.closest.squared;
+  const Vec3 extent = extent_of(near.s, near.t);
+  const double length = std::sqrt(std::max(squared, kLeastSquare));
+  DistanceBounds out;
+  const double upper = length + Bounds::point * extent.maxCoeff() + Bounds::absolute;
+  if (upper >= 0) out.upper = upper;
+  if (squared < kLeastSquare) return out;
+  const double lower = gap_along<Bounds>(near, extent) / length * (1 - kNeededRounding);
+  if (lower > 0) out.lower = lower;
+  return out;
 }
 
 }  // namespace farcull::filters

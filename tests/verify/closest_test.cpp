@@ -1,0 +1,318 @@
+// Exact closest points against a reference in integers and rationals, on pairs of every kind.
+#include "verify/closest.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/core/base/trials.h"
+#include "tests/verify/closest_reference.h"
+#include "tests/verify/hard_pairs.h"
+#include "verify/closest_value.h"
+
+namespace farcull {
+namespace {
+
+using closest_reference::is_rounded;
+using closest_reference::is_rounded_root;
+using reference::Rational;
+using reference::RationalPoint;
+using reference::Triangle;
+
+Triangle whole(PairRandom& random, int most) {
+  Triangle t;
+  for (Vec3& p : t) {
+    for (double& x : p) x = random.whole(0, most);
+  }
+  return t;
+}
+
+/// Whole numbers: touching, parallel, degenerate and equal features by the thousand.
+PairOfTriangles on_a_grid(PairRandom& random) {
+  const int most = random.whole(1, 5);
+  return {whole(random, most), whole(random, most)};
+}
+
+/// Two planes of a grid: parallel faces over each other.
+PairOfTriangles in_parallel_planes(PairRandom& random) {
+  PairOfTriangles pair = {whole(random, 6), whole(random, 6)};
+  const int axis = random.below(3);
+  const double height = random.whole(0, 3);
+  for (Vec3& p : pair.a) p[axis] = 0;
+  for (Vec3& p : pair.b) p[axis] = height;
+  return pair;
+}
+
+/// Any two triangles, apart by about their size, each perhaps far smaller, and far from the origin.
+PairOfTriangles apart(PairRandom& random) {
+  PairOfTriangles pair;
+  const Vec3 at = random.chance(3) ? Vec3(1000 * hard_pairs::point(random)) : Vec3(0, 0, 0);
+  const Vec3 by = 3 * hard_pairs::point(random);
+  const double small = random.chance(4) ? std::ldexp(1, -random.whole(0, 60)) : 1;
+  for (Vec3& p : pair.a) p = at + small * hard_pairs::point(random);
+  for (Vec3& p : pair.b) p = at + by + hard_pairs::point(random);
+  if (random.chance(5)) pair.a[2] = pair.a[random.below(2)];
+  if (random.chance(5)) pair.b[1] = (pair.b[0] + pair.b[2]) / 2;
+  return pair;
+}
+
+/// A triangle moved to touch the other one, nearly: at a corner, an edge or a face.
+PairOfTriangles near_contact(PairRandom& random) {
+  PairOfTriangles pair = apart(random);
+  const auto mean = [&](const Triangle& t) -> Vec3 {
+    const double s = random.chance(3) ? 0 : random.unit();
+    const double r = random.chance(3) ? 0 : random.unit() * (1 - s);
+    return t[0] + s * (t[1] - t[0]) + r * (t[2] - t[0]);
+  };
+  const Vec3 gap =
+      std::ldexp(random.chance(4) ? 0 : 1, -random.whole(10, 60)) * hard_pairs::point(random);
+  const Vec3 by = mean(pair.a) - mean(pair.b) + gap;
+  for (Vec3& p : pair.b) p += by;
+  return pair;
+}
+
+/// Coordinates of all sizes that doubles have.
+PairOfTriangles of_all_sizes(PairRandom& random) {
+  PairOfTriangles pair;
+  const bool alike = random.chance(2);
+  const int common = random.whole(-1070, 1020);
+  for (Triangle* t : {&pair.a, &pair.b}) {
+    for (Vec3& p : *t) {
+      for (double& x : p) {
+        const int exponent = alike ? common : random.whole(-1074, 1023);
+        x = random.chance(6) ? (random.chance(2) ? 0.0 : -0.0)
+                             : std::ldexp(random.between(-1, 1), exponent);
+      }
+    }
+  }
+  return pair;
+}
+
+/// Each triangle of a size of its own.
+PairOfTriangles of_two_sizes(PairRandom& random) {
+  PairOfTriangles pair = random.chance(2) ? on_a_grid(random) : apart(random);
+  for (Triangle* t : {&pair.a, &pair.b}) {
+    const double size = std::ldexp(1, random.whole(-1000, 900));
+    for (Vec3& p : *t) p *= size;
+  }
+  return pair;
+}
+
+std::vector<std::pair<std::string, hard_pairs::Make>> generators() {
+  auto out = hard_pairs::generators();
+  out.emplace_back("grid", on_a_grid);
+  out.emplace_back("smaller grid", on_a_grid);
+  out.emplace_back("parallel planes", in_parallel_planes);
+  out.emplace_back("apart", apart);
+  out.emplace_back("near contact", near_contact);
+  out.emplace_back("all sizes", of_all_sizes);
+  out.emplace_back("two sizes", of_two_sizes);
+  out.emplace_back("shared", [](PairRandom& random) {
+    PairOfTriangles pair = random.chance(2) ? on_a_grid(random) : apart(random);
+    hard_pairs::share(random.chance(2) ? hard_pairs::Sharing::vertex : hard_pairs::Sharing::edge,
+                      pair.a, pair.b);
+    return pair;
+  });
+  return out;
+}
+
+Rational rational(const SquaredDistance& d) { return Rational(d.text()); }
+
+void expect_as_reference(const Triangle& a, const Triangle& b) {
+  const Closest got = closest_points(a, b);
+  const auto want = closest_reference::closest_points(a, b);
+  EXPECT_EQ(rational(got.squared), want.squared);
+  EXPECT_TRUE(is_rounded_root(got.distance, want.squared)) << got.distance;
+  EXPECT_EQ(got.features, want.features);
+  for (int side = 0; side < 2; ++side) {
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_TRUE(is_rounded(got.points[side][k], want.points[side][k]));
+    }
+  }
+}
+
+/// Points p and q are closest iff no corner is beyond the planes through them (verify/closest.h).
+bool optimal(const Triangle& a, const Triangle& b, const RationalPoint& p, const RationalPoint& q) {
+  const auto exact = [](double x) { return Rational(x); };
+  const auto s = reference::converted(a, exact), t = reference::converted(b, exact);
+  const RationalPoint w = reference::minus(q, p);
+  bool held = reference::lies_in(p, s) && reference::lies_in(q, t);
+  for (int i = 0; i < 3; ++i) {
+    held = held && reference::dot(w, reference::minus(s[i], p)) <= 0;
+    held = held && reference::dot(w, reference::minus(t[i], q)) >= 0;
+  }
+  return held;
+}
+
+void expect_sound(const Triangle& a, const Triangle& b) {
+  const Closest got = closest_points(a, b);
+  const auto want = closest_reference::closest_points(a, b);
+  EXPECT_TRUE(optimal(a, b, want.points[0], want.points[1]));
+  EXPECT_EQ(got.squared.is_zero(), reference::intersects(a, b));
+  EXPECT_EQ(got.squared, squared_distance(a, b));
+  EXPECT_EQ(got.squared, squared_distance(b, a));
+  EXPECT_EQ(got.squared.is_zero(), got.squared == SquaredDistance());
+  if (got.squared.is_zero()) {
+    EXPECT_EQ(got.points[0], got.points[1]);
+    EXPECT_EQ(got.distance, 0);
+  }
+}
+
+TEST(ClosestPoints, AsTheReferenceOnPairsOfEveryKind) {
+  const auto all = generators();
+  PairRandom random(19);
+  const int count = trials(100000, 2000);
+  int touching = 0;
+  for (int n = 0; n < count && !::testing::Test::HasFailure(); ++n) {
+    const auto& [name, make] = all[n % all.size()];
+    const PairOfTriangles pair = make(random);
+    SCOPED_TRACE(name + " " + std::to_string(n));
+    if (!hard_pairs::finite(pair)) continue;
+    expect_as_reference(pair.a, pair.b);
+    if (n % 8 == 0) expect_sound(pair.a, pair.b);
+    touching += squared_distance(pair.a, pair.b).is_zero();
+  }
+  EXPECT_GT(touching, count / 20);
+}
+
+// The twin: a reference that leaves out edges against edges differs.
+TEST(ClosestPointsTwin, WithoutEdgesAgainstEdgesItIsNoticed) {
+  PairRandom random(20);
+  int noticed = 0;
+  for (int n = 0; n < trials(200); ++n) {
+    const PairOfTriangles pair = apart(random);
+    noticed += closest_reference::closest_points(pair.a, pair.b, false).squared !=
+               rational(squared_distance(pair.a, pair.b));
+  }
+  EXPECT_GT(noticed, trials(200) / 50);
+}
+
+// The twin: a root that is cut off instead of rounded.
+TEST(ClosestPointsTwin, ARootCutOffIsNoticed) {
+  PairRandom random(21);
+  int noticed = 0;
+  for (int n = 0; n < trials(200); ++n) {
+    const PairOfTriangles pair = apart(random);
+    const Rational square = rational(squared_distance(pair.a, pair.b));
+    mpf_class root(0, 400);
+    mpf_sqrt(root.get_mpf_t(), mpf_class(square, 400).get_mpf_t());
+    noticed += !is_rounded_root(root.get_d(), square);  // get_d() cuts off
+  }
+  EXPECT_GT(noticed, trials(200) / 4);
+  EXPECT_LT(noticed, trials(200));
+}
+
+TEST(ClosestPoints, MovedAndScaledPairsHaveTheSameFeatures) {
+  PairRandom random(22);
+  for (int n = 0; n < trials(2000); ++n) {
+    const PairOfTriangles pair = on_a_grid(random);
+    const Vec3 by(random.whole(-999, 999), random.whole(-999, 999), 0x1p40);
+    const int exponent = random.whole(-900, 900);
+    PairOfTriangles moved = pair, scaled = pair;
+    for (int i = 0; i < 3; ++i) {
+      moved.a[i] += by;
+      moved.b[i] += by;
+      scaled.a[i] *= std::ldexp(1, exponent);
+      scaled.b[i] *= std::ldexp(1, exponent);
+    }
+    const Closest plain = closest_points(pair.a, pair.b);
+    const Closest after = closest_points(moved.a, moved.b);
+    EXPECT_EQ(plain.squared, after.squared);
+    EXPECT_EQ(plain.distance, after.distance);
+    EXPECT_EQ(plain.features, after.features);
+    const Closest larger = closest_points(scaled.a, scaled.b);
+    EXPECT_EQ(plain.features, larger.features);
+    EXPECT_EQ(std::ldexp(plain.distance, exponent), larger.distance);
+    for (int side = 0; side < 2; ++side)
+      EXPECT_EQ(Vec3(plain.points[side] * std::ldexp(1, exponent)), larger.points[side]);
+  }
+}
+
+TEST(ClosestPoints, TheFirstFeaturesOfManyAreTheAnswer) {
+  const Triangle low = {Vec3(0, 0, 0), Vec3(8, 0, 0), Vec3(0, 8, 0)};
+  const auto features = [](const Triangle& a, const Triangle& b) {
+    const Closest c = closest_points(a, b);
+    return to_string(c.features[0]) + ", " + to_string(c.features[1]);
+  };
+  const Triangle above = {Vec3(1, 1, 3), Vec3(3, 1, 3), Vec3(1, 3, 3)};
+  EXPECT_EQ(features(low, above), "face, vertex 0");
+  EXPECT_EQ(features(above, low), "vertex 0, face");
+  EXPECT_EQ(features(low, low), "vertex 0, vertex 0");
+  EXPECT_EQ(features(low, {low[1], low[2], low[0]}), "vertex 0, vertex 2");
+  const Triangle star = {Vec3(5, 5, 3), Vec3(-3, 5, 3), Vec3(2, -4, 3)};
+  EXPECT_EQ(features(low, star), "vertex 0, face");
+  const Triangle through = {Vec3(1, 1, -1), Vec3(1, 1, 1), Vec3(1, 60, 2)};
+  EXPECT_EQ(features(low, through), "edge 1, face");
+  EXPECT_EQ(features(through, low), "edge 0, face");
+  EXPECT_EQ(closest_points(through, low).points[0], Vec3(1, 1, 0));
+  const Triangle point = {Vec3(4, 4, 0), Vec3(4, 4, -0.0), Vec3(4, 4, 0)};
+  EXPECT_EQ(features(low, point), "edge 1, vertex 0");
+}
+
+TEST(ClosestPoints, ZerosHaveNoSign) {
+  const Triangle a = {Vec3(-0.0, -0.0, -0.0), Vec3(1, -0.0, 0), Vec3(0, 1, -0.0)};
+  const Closest c = closest_points(a, {Vec3(-0.0, 0, 2), Vec3(1, 0, 2), Vec3(0, 1, 2)});
+  for (const Vec3& p : c.points) {
+    for (const double x : p) EXPECT_FALSE(std::signbit(x));
+  }
+}
+
+TEST(ClosestPoints, TheEndsOfTheDoubles) {
+  const double most = std::numeric_limits<double>::max();
+  const double least = std::numeric_limits<double>::denorm_min();
+  const auto at = [](double x) { return Triangle{Vec3(x, 0, 0), Vec3(x, 0, 0), Vec3(x, 0, 0)}; };
+  EXPECT_EQ(closest_points(at(0), at(most)).distance, most);
+  EXPECT_EQ(closest_points(at(-most), at(most)).distance, HUGE_VAL);
+  EXPECT_EQ(closest_points(at(0), at(least)).distance, least);
+  EXPECT_EQ(closest_points(at(-least), at(most)).distance, most);
+  EXPECT_LT(closest_points(at(0), at(most)).squared, closest_points(at(-least), at(most)).squared);
+  // Half of the least double is as near to 0, and 0 is even.
+  EXPECT_EQ(closest_points({Vec3(0, 0, 0), Vec3(least, least, 0), Vec3(0, 0, 0)},
+                           {Vec3(0, least, 0), Vec3(0, least, 0), Vec3(0, least, 0)})
+                .points[0],
+            Vec3(0, 0, 0));
+}
+
+TEST(SquaredDistance, RoundsOnceToTheNearestToEven) {
+  const mpz_class one = 1;
+  const auto bits = [](int n) { return mpz_class(mpz_class(1) << n); };
+  EXPECT_EQ(rounded(bits(53) + 1, 0), 0x1p53);
+  EXPECT_EQ(rounded(bits(53) + 3, 0), 0x1p53 + 4);
+  EXPECT_EQ(rounded(-bits(53) - 3, 0), -0x1p53 - 4);
+  EXPECT_EQ(rounded(bits(200) + bits(147), -200), 1);
+  EXPECT_EQ(rounded(bits(200) + bits(147) + 1, -200), 1 + 0x1p-52);
+  EXPECT_EQ(rounded(bits(54) - 1, 970), HUGE_VAL);  // the middle beyond the largest double
+  EXPECT_EQ(rounded(bits(56) - 5, 968), std::numeric_limits<double>::max());
+  EXPECT_EQ(rounded(1, -1075), 0);
+  EXPECT_EQ(rounded(3, -1075), 0x1p-1073);
+  EXPECT_EQ(rounded(1, 100000), HUGE_VAL);
+  EXPECT_EQ(rounded(-1, -100000), 0);
+  EXPECT_FALSE(std::signbit(rounded(-1, -1075)));
+  EXPECT_EQ(rounded_quotient(bits(53) + 1, bits(53), 0), 1);
+  EXPECT_EQ(rounded_quotient(3 * bits(53) + 4, 3 * bits(53), 0), 1 + 0x1p-52);
+  EXPECT_EQ(rounded_root(bits(106) + bits(54) + 1, one, 0), 0x1p53);  // of 2^53 + 1
+  EXPECT_EQ(rounded_root(bits(106) + bits(54) + 2, one, 0), 0x1p53 + 2);
+  EXPECT_EQ(rounded_root(one, one, -2150), 0);  // half of the least double
+  EXPECT_EQ(rounded_root(bits(200) + 1, bits(200), -2150), 0x1p-1074);
+}
+
+TEST(SquaredDistance, ComparesAndPrintsFractions) {
+  const Triangle a = {Vec3(0, 0, 0), Vec3(3, 0, 0), Vec3(0, 3, 0)};
+  const auto point = [](double x, double y) {
+    const Vec3 p(x, y, 0);
+    return Triangle{p, p, p};
+  };
+  EXPECT_EQ(squared_distance(a, point(2, 2)).text(), "1/2");
+  EXPECT_EQ(squared_distance(a, point(-0.25, 1)).text(), "1/16");
+  EXPECT_EQ(SquaredDistance().text(), "0/1");
+  EXPECT_GT(squared_distance(a, point(2, 2)), squared_distance(a, point(-0.25, 1)));
+  EXPECT_EQ(squared_distance(a, point(2, 2)), squared_distance(point(2, 2), a));
+  EXPECT_LT(squared_distance(a, point(2, 2)), squared_distance(a, point(-0x1.7p-1, 1)));
+}
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,245 @@
+// Points inside, outside and on meshes. The truth is that of tetrahedra: each point is inside as
+// many of them as integers say, and a mesh of their faces is crossed once for each, so its inside
+// is where that number is odd. Whole coordinates make rays meet edges and corners.
+#include "verify/inside.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include "tests/core/base/trials.h"
+#include "tests/verify/hard_pairs.h"
+#include "tests/verify/reference.h"
+
+namespace farcull {
+namespace {
+
+using reference::Triangle;
+using Tetrahedron = std::array<Vec3, 4>;
+
+Scene scene_of(const std::vector<Triangle>& triangles) { return reference::scene_of({triangles}); }
+
+std::int64_t orientation(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
+  const auto exact = [&](const Vec3& x) {
+    const Vec3 d = x - p;
+    return reference::Vector<std::int64_t>{std::int64_t(d.x()), std::int64_t(d.y()),
+                                           std::int64_t(d.z())};
+  };
+  return reference::dot(exact(q), reference::cross(exact(r), exact(s)));
+}
+
+void add_faces(const Tetrahedron& t, std::vector<Triangle>& triangles) {
+  for (int left_out = 0; left_out < 4; ++left_out) {
+    Triangle face;
+    for (int i = 0, k = 0; i < 4; ++i) {
+      if (i != left_out) face[k++] = t[i];
+    }
+    triangles.push_back(face);
+  }
+}
+
+/// For whole coordinates. `on` is set where the point is on a face.
+bool in_tetrahedron(const Tetrahedron& t, const Vec3& x, bool& on) {
+  const std::int64_t whole = orientation(t[0], t[1], t[2], t[3]);
+  if (whole == 0) return false;
+  int at_face = 0;
+  for (int i = 0; i < 4; ++i) {
+    Tetrahedron part = t;
+    part[i] = x;
+    const std::int64_t side = orientation(part[0], part[1], part[2], part[3]);
+    if ((side < 0) != (whole < 0) && side != 0) return false;
+    at_face += side == 0;
+  }
+  on = on || at_face > 0;
+  return at_face == 0;
+}
+
+/// The truth about a mesh of the faces of tetrahedra, flat ones left to the reference for `on`.
+Inside by_tetrahedra(const std::vector<Tetrahedron>& all, const std::vector<Triangle>& triangles,
+                     const Vec3& x) {
+  bool on = false, odd = false;
+  for (const Tetrahedron& t : all) odd = odd != in_tetrahedron(t, x, on);
+  for (const Triangle& t : triangles) on = on || reference::intersects({x, x, x}, t);
+  if (on) return Inside::on;
+  return odd ? Inside::yes : Inside::no;
+}
+
+Vec3 whole_point(PairRandom& random, int most) {
+  Vec3 p;
+  for (double& x : p) x = random.whole(0, most);
+  return p;
+}
+
+/// The answer of one ray along the first axis in doubles, which no ray of another direction
+/// replaces where it meets an edge: what the tests must notice.
+bool by_one_ray(const std::vector<Triangle>& triangles, const Vec3& x) {
+  bool odd = false;
+  for (const Triangle& t : triangles) {
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+    if (n.x() == 0) continue;
+    bool hit = n.dot(t[0] - x) / n.x() > 0;
+    for (int i = 0; i < 3; ++i) hit = hit && (t[i] - x).cross(t[(i + 1) % 3] - x).x() * n.x() >= 0;
+    odd = odd != hit;
+  }
+  return odd;
+}
+
+TEST(Inside, AsTetrahedraSayOnAGrid) {
+  PairRandom random(1);
+  int wrong_by_one_ray = 0;
+  std::array<int, 4> seen{};
+  for (int n = 0; n < trials(400, 100); ++n) {
+    std::vector<Tetrahedron> all(1 + random.below(6));
+    std::vector<Triangle> triangles;
+    const int most = 2 * random.whole(1, 5);
+    for (Tetrahedron& t : all) {
+      for (Vec3& p : t) p = whole_point(random, most);
+      add_faces(t, triangles);
+    }
+    const Scene scene = scene_of(triangles);
+    EXPECT_TRUE(is_closed(scene, 0));
+    for (int k = 0; k < 20; ++k) {
+      const Vec3 x = whole_point(random, most);
+      const Inside truth = by_tetrahedra(all, triangles, x);
+      EXPECT_EQ(inside(scene, 0, x), truth);
+      ++seen.at(static_cast<std::size_t>(truth));
+      if (truth != Inside::on)
+        wrong_by_one_ray += by_one_ray(triangles, x) != (truth == Inside::yes);
+    }
+  }
+  for (const Inside kind : {Inside::no, Inside::yes, Inside::on})
+    EXPECT_GT(seen.at(static_cast<std::size_t>(kind)), trials(400, 100) / 4);
+  // The twin: without rays cast again it would be wrong.
+  EXPECT_GT(wrong_by_one_ray, 10);
+}
+
+std::vector<Triangle> cube(const Vec3& lo, const Vec3& hi) {
+  std::vector<Triangle> out;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const Vec3* side : {&lo, &hi}) {
+      std::array<Vec3, 4> p;
+      for (int i = 0; i < 4; ++i) {
+        p[i][axis] = (*side)[axis];
+        p[i][(axis + 1) % 3] = (i & 1 ? hi : lo)[(axis + 1) % 3];
+        p[i][(axis + 2) % 3] = (i & 2 ? hi : lo)[(axis + 2) % 3];
+      }
+      out.push_back({p[0], p[1], p[3]});
+      out.push_back({p[0], p[3], p[2]});
+    }
+  }
+  return out;
+}
+
+TEST(Inside, NestedCubesOfAnySize) {
+  for (const double size : {1.0, 0x1p-1070, 0x1p-500, 0x1p500, 0x1p1020}) {
+    std::vector<Triangle> triangles = cube(size * Vec3(-4, -4, -4), size * Vec3(4, 4, 4));
+    for (const Triangle& t : cube(size * Vec3(-2, -2, -2), size * Vec3(2, 2, 2)))
+      triangles.push_back(t);
+    const Scene scene = scene_of(triangles);
+    const auto at = [&](double x, double y, double z) {
+      return inside(scene, 0, size * Vec3(x, y, z));
+    };
+    EXPECT_EQ(at(0, 0, 0), Inside::no);
+    EXPECT_EQ(at(1, 1, -1), Inside::no);
+    EXPECT_EQ(at(3, 0, 0), Inside::yes);
+    EXPECT_EQ(at(-3, -3, -3), Inside::yes);
+    EXPECT_EQ(at(-3, 2, 2), Inside::yes);
+    EXPECT_EQ(at(-5, -4, 4), Inside::no);
+    EXPECT_EQ(at(-5, 0, 0), Inside::no);
+    EXPECT_EQ(at(2, 0, 0), Inside::on);
+    EXPECT_EQ(at(4, 4, 4), Inside::on);
+    EXPECT_EQ(at(-4, 1, 4), Inside::on);
+  }
+}
+
+TEST(Inside, OneUlpDecides) {
+  const Scene scene = scene_of(cube(Vec3(0, 0, 0), Vec3(1, 1, 1)));
+  const double least = std::numeric_limits<double>::denorm_min();
+  EXPECT_EQ(inside(scene, 0, {least, 0.5, 0.5}), Inside::yes);
+  EXPECT_EQ(inside(scene, 0, {-least, 0.5, 0.5}), Inside::no);
+  EXPECT_EQ(inside(scene, 0, {-0.0, 0.5, 0.5}), Inside::on);
+  EXPECT_EQ(inside(scene, 0, {0.5, std::nextafter(1, 0), 0.5}), Inside::yes);
+  EXPECT_EQ(inside(scene, 0, {0.5, std::nextafter(1, 2), 0.5}), Inside::no);
+  EXPECT_EQ(inside(scene, 0, {least, least, least}), Inside::yes);
+}
+
+TEST(Inside, ATorusAsItsEquationSays) {
+  constexpr int kAround = 40, kTube = 20;
+  const auto corner = [](int i, int j) {
+    const double u = 2 * std::numbers::pi * (i % kAround) / kAround;
+    const double v = 2 * std::numbers::pi * (j % kTube) / kTube;
+    const double r = 3 + std::cos(v);
+    return Vec3(r * std::cos(u), r * std::sin(u), std::sin(v));
+  };
+  std::vector<Triangle> triangles;
+  for (int i = 0; i < kAround; ++i) {
+    for (int j = 0; j < kTube; ++j) {
+      triangles.push_back({corner(i, j), corner(i + 1, j), corner(i + 1, j + 1)});
+      triangles.push_back({corner(i, j), corner(i + 1, j + 1), corner(i, j + 1)});
+    }
+  }
+  const Scene scene = scene_of(triangles);
+  ASSERT_TRUE(is_closed(scene, 0));
+  PairRandom random(2);
+  int asked = 0;
+  for (int n = 0; n < trials(300); ++n) {
+    const Vec3 x = 5 * hard_pairs::point(random);
+    const double off = std::hypot(std::hypot(x.x(), x.y()) - 3, x.z());
+    if (std::abs(off - 1) < 0.05) continue;  // the mesh is not the torus
+    EXPECT_EQ(inside(scene, 0, x), off < 1 ? Inside::yes : Inside::no);
+    ++asked;
+  }
+  EXPECT_GT(asked, trials(300) / 2);
+}
+
+TEST(Inside, AnOpenMeshHasNone) {
+  std::vector<Triangle> triangles = cube(Vec3(0, 0, 0), Vec3(2, 2, 2));
+  const Triangle last = triangles.back();
+  triangles.pop_back();
+  const Scene open = scene_of(triangles);
+  EXPECT_FALSE(is_closed(open, 0));
+  EXPECT_EQ(inside(open, 0, {1, 1, 1}), Inside::not_closed);
+  EXPECT_EQ(inside(open, 0, {9, 9, 9}), Inside::not_closed);
+  EXPECT_EQ(inside(open, 0, {0, 1, 1}), Inside::on);
+  // Triangles with two equal corners do not close it, nor do they open what is closed.
+  triangles.push_back({last[0], last[1], last[0]});
+  EXPECT_FALSE(is_closed(scene_of(triangles), 0));
+  triangles.push_back(last);
+  EXPECT_TRUE(is_closed(scene_of(triangles), 0));
+  EXPECT_EQ(inside(scene_of(triangles), 0, {1, 1, 1}), Inside::yes);
+  // A triangle given twice has each edge twice, and no inside.
+  const Scene twice = scene_of({last, last});
+  EXPECT_TRUE(is_closed(twice, 0));
+  EXPECT_EQ(inside(twice, 0, {1, 1, 1}), Inside::no);
+}
+
+TEST(Inside, ZerosOfEitherSignAreOnePosition) {
+  std::vector<Triangle> triangles = cube(Vec3(0, 0, 0), Vec3(2, 2, 2));
+  for (Vec3& p : triangles[0]) {
+    for (double& x : p) x = x == 0 ? -0.0 : x;
+  }
+  EXPECT_TRUE(is_closed(scene_of(triangles), 0));
+}
+
+TEST(Inside, OfOneObjectOfAScene) {
+  const Scene scene = reference::scene_of(
+      {cube(Vec3(0, 0, 0), Vec3(2, 2, 2)), {}, cube(Vec3(1, 1, 1), Vec3(5, 5, 5))});
+  EXPECT_EQ(inside(scene, 0, {0.5, 0.5, 0.5}), Inside::yes);
+  EXPECT_EQ(inside(scene, 1, {0.5, 0.5, 0.5}), Inside::no);
+  EXPECT_EQ(inside(scene, 2, {0.5, 0.5, 0.5}), Inside::no);
+  EXPECT_EQ(inside(scene, 2, {3, 3, 3}), Inside::yes);
+  EXPECT_TRUE(is_closed(scene, 1));
+  EXPECT_THROW(inside(scene, 3, {3, 3, 3}), std::logic_error);
+  EXPECT_THROW(is_closed(scene, 3), std::logic_error);
+}
+
+}  // namespace
+}  // namespace farcull

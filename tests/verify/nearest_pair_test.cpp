@@ -1,0 +1,175 @@
+// The nearest of many pairs, against all of them one by one; and the bounds that leave pairs out.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "tests/core/base/trials.h"
+#include "tests/verify/closest_reference.h"
+#include "tests/verify/hard_pairs.h"
+#include "verify/closest.h"
+#include "verify/filter_of_distance.h"
+
+namespace farcull {
+namespace {
+
+using reference::Rational;
+using reference::Triangle;
+
+std::vector<TrianglePair> pairs_between(const Scene& scene) {
+  std::vector<TrianglePair> pairs;
+  reference::for_each_pair(scene, [&](const TrianglePair& pair, bool) { pairs.push_back(pair); });
+  return pairs;
+}
+
+/// Two objects of triangles that `corner` gives the corners of, the second moved by a vector.
+template <class Corner>
+Scene two_objects(int count, const Vec3& by, Corner corner) {
+  std::vector<std::vector<Triangle>> objects(2);
+  for (int n = 0; n < 2 * count; ++n) {
+    Triangle t;
+    for (Vec3& p : t) p = n < count ? corner() : Vec3(corner() + by);
+    objects[n / count].push_back(t);
+  }
+  return reference::scene_of(objects);
+}
+
+TrianglePair first_by_all(const Scene& scene, const std::vector<TrianglePair>& pairs) {
+  TrianglePair best = pairs[0];
+  SquaredDistance least;
+  for (const TrianglePair& pair : pairs) {
+    const SquaredDistance d = squared_distance(scene.corners(pair.a), scene.corners(pair.b));
+    if (pair == pairs[0] || d < least) {
+      least = d;
+      best = pair;
+    }
+  }
+  return best;
+}
+
+void expect_nearest(const Scene& scene, std::vector<TrianglePair> pairs) {
+  for (int order = 0; order < 2; ++order) {
+    const auto nearest = nearest_pair(scene, pairs);
+    ASSERT_TRUE(nearest.has_value());
+    EXPECT_EQ(nearest->pair, first_by_all(scene, pairs));
+    const Closest one =
+        closest_points(scene.corners(nearest->pair.a), scene.corners(nearest->pair.b));
+    EXPECT_EQ(nearest->closest.squared, one.squared);
+    EXPECT_EQ(nearest->closest.points, one.points);
+    EXPECT_EQ(nearest->closest.features, one.features);
+    std::reverse(pairs.begin(), pairs.end());
+  }
+}
+
+TEST(NearestPair, TheFirstOfThoseThatAreAsNear) {
+  PairRandom random(1);
+  for (int n = 0; n < trials(200); ++n) {
+    const int most = random.whole(1, 6);
+    const double size = std::ldexp(1, random.chance(3) ? random.whole(-1000, 1000) : 0);
+    const Vec3 by = size * Vec3(random.whole(0, 8), random.whole(0, 8), random.whole(0, 8));
+    const Scene scene = two_objects(random.whole(1, 12), by, [&] {
+      Vec3 p;
+      for (double& x : p) x = size * random.whole(0, most);
+      return p;
+    });
+    expect_nearest(scene, pairs_between(scene));
+  }
+}
+
+TEST(NearestPair, OfTrianglesInGeneralPosition) {
+  PairRandom random(2);
+  for (int n = 0; n < trials(200); ++n) {
+    const Vec3 by = random.whole(0, 4) * hard_pairs::point(random);
+    const Scene scene =
+        two_objects(random.whole(1, 12), by, [&] { return hard_pairs::point(random); });
+    expect_nearest(scene, pairs_between(scene));
+  }
+}
+
+// Distances that differ by less than doubles show: 1 + 2^-100 k, k random.
+TEST(NearestPair, OfDistancesThatDoublesCannotTellApart) {
+  PairRandom random(3);
+  const auto point = [](const Vec3& p) { return Triangle{p, p, p}; };
+  std::vector<Triangle> others;
+  for (int n = 0; n < 500; ++n) others.push_back(point({0x1p-100 * random.whole(1, 300), 1, 0}));
+  const Scene scene = reference::scene_of({{point({0, 0, 0})}, others});
+  expect_nearest(scene, pairs_between(scene));
+}
+
+TEST(NearestPair, ThousandsOfTies) {
+  std::vector<Triangle> low, high;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 p(i % 8, i / 8, 0);
+    low.push_back({p, p + Vec3(1, 0, 0), p + Vec3(0, 1, 0)});
+    high.push_back({p + Vec3(0, 0, 1), p + Vec3(1, 0, 1), p + Vec3(0, 1, 1)});
+  }
+  const Scene scene = reference::scene_of({low, high});
+  expect_nearest(scene, pairs_between(scene));
+  std::vector<TrianglePair> same(5000, TrianglePair{3, 63});
+  same.insert(same.begin(), {0, 119});
+  const auto nearest = nearest_pair(scene, same);
+  EXPECT_EQ(nearest->pair, same[1]);
+  EXPECT_EQ(nearest->closest.distance, 1);
+}
+
+TEST(NearestPair, RefusesWhatTheSceneLacks) {
+  const Scene scene = reference::scene_of({{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}}});
+  EXPECT_FALSE(nearest_pair(scene, {}).has_value());
+  const std::vector<TrianglePair> bad = {{0, 1}};
+  EXPECT_THROW(nearest_pair(scene, bad), std::logic_error);
+}
+
+struct BoundsTally {
+  int wrong = 0;
+  int tight = 0;  // of pairs apart
+  int apart = 0;
+};
+
+template <class Bounds>
+BoundsTally tally(int pairs) {
+  const auto all = hard_pairs::generators();
+  PairRandom random(4);
+  BoundsTally out;
+  for (int n = 0; n < pairs; ++n) {
+    PairOfTriangles pair = all[n % all.size()].second(random);
+    if (!hard_pairs::finite(pair)) continue;
+    if (random.chance(2)) {  // apart by their size, more or less
+      const Vec3 by = 4 * (pair.a[0] - pair.b[1]);
+      for (Vec3& p : pair.b) p -= by;
+    }
+    if (!hard_pairs::finite(pair)) continue;
+    const auto bounds = filters::distance_bounds<Bounds>(pair.a, pair.b);
+    const Rational square(squared_distance(pair.a, pair.b).text());
+    const Rational lower(bounds.lower);
+    const bool held =
+        lower * lower <= square &&
+        (std::isinf(bounds.upper) || Rational(bounds.upper) * Rational(bounds.upper) >= square);
+    out.wrong += !held;
+    out.apart += square > 0;
+    out.tight += bounds.lower > 0 && bounds.upper < bounds.lower * 1.0001;
+  }
+  return out;
+}
+
+TEST(DistanceBounds, EncloseTheDistance) {
+  const BoundsTally t = tally<FilterBounds>(trials(20000, 1000));
+  EXPECT_EQ(t.wrong, 0);
+  EXPECT_GT(t.tight, t.apart / 2);
+}
+
+struct NoPoint : FilterBounds {
+  static constexpr double point = 0;
+};
+struct NoGap : FilterBounds {
+  static constexpr double gap = 0;
+};
+TEST(DistanceBoundsTwin, WithoutTheirErrorsTheyDoNot) {
+  EXPECT_GT(tally<NoPoint>(trials(20000, 4000)).wrong, 0);
+  EXPECT_GT(tally<NoGap>(trials(20000, 4000)).wrong, 0);
+}
+
+}  // namespace
+}  // namespace farcull

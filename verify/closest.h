@@ -1,0 +1,83 @@
+// Distances of triangles and the points that realise them, in exact arithmetic.
+//
+// Semantics and preconditions as in verify/exact.h: closed convex hulls of the three corners with
+// the doubles as given, any finite ones, degenerate triangles included. A distance is the root of a
+// rational number, so it is kept as its square, and rounded once, to the nearest double.
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+/// The square of a distance, a rational number >= 0, nothing rounded. Values are shared and never
+/// change.
+class SquaredDistance {
+ public:
+  SquaredDistance();  // 0
+  struct Value;       // verify/closest_value.h, for verify alone
+  explicit SquaredDistance(std::shared_ptr<const Value> value);
+
+  /// Its root, rounded to the nearest double (to even where two are as near); infinity beyond the
+  /// largest one as IEEE 754 rounds.
+  double root() const;
+  /// "numerator/denominator" in lowest terms, decimal.
+  std::string text() const;
+  bool is_zero() const;
+  const Value& value() const { return *value_; }
+
+  friend std::strong_ordering operator<=>(const SquaredDistance& a, const SquaredDistance& b);
+  friend bool operator==(const SquaredDistance& a, const SquaredDistance& b);
+
+ private:
+  std::shared_ptr<const Value> value_;
+};
+
+/// Where on a triangle a point lies. A point on several lies on the one that comes first: a corner
+/// before an edge before the face, a lower number before a higher one.
+enum class FeatureKind : std::uint8_t { vertex, edge, face };
+struct Feature {
+  FeatureKind kind = FeatureKind::vertex;
+  std::uint8_t index = 0;  // vertex: the corner; edge: from corner `index` to the next; face: 0
+  auto operator<=>(const Feature&) const = default;
+};
+/// "vertex 2", "edge 0" or "face".
+std::string to_string(const Feature& feature);
+
+/// Two closest points of two triangles. Where several pairs of points are as near, as of parallel
+/// edges or of triangles that overlap, it is the pair on the first features: the least feature of a
+/// on which a closest point lies, and of these points' partners the least feature of b. Each of the
+/// two counts with its boundary. This is one pair of points (verify/closest_points.cpp).
+struct Closest {
+  SquaredDistance squared;
+  double distance = 0;              // squared.root()
+  std::array<Vec3, 2> points;       // the point of a and of b, each coordinate rounded once to the
+                                    // nearest double; never -0.0
+  std::array<Feature, 2> features;  // that the exact points lie on
+};
+
+/// Closest points of the closed triangles. Where they share a point: distance 0, and a common point
+/// twice. The answer depends on the corners and their order alone. With a and b exchanged the
+/// distance is the same; the points are, where no others are as near.
+Closest closest_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
+
+/// The square of the distance alone.
+SquaredDistance squared_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
+
+/// The first of the pairs, in their order, that no other of them is nearer than.
+struct NearestPair {
+  TrianglePair pair;
+  Closest closest;
+};
+/// Nearest of the pairs of a scene; empty where there is no pair. Throws std::logic_error if a pair
+/// names a triangle that the scene does not have.
+std::optional<NearestPair> nearest_pair(const Scene& scene, std::span<const TrianglePair> pairs);
+
+}  // namespace farcull

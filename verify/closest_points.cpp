@@ -1,0 +1,284 @@
+// Doubles guess the features, integers prove them; where that fails all features are tried.
+//
+// Scale. Every finite double is an integer times a power of two. All corners are multiplied by one
+// power of two that makes them integers; whatever follows adds, subtracts and multiplies those.
+//
+// Which answer. Triangles are convex, so the difference w = q - p is the same for all pairs (p, q)
+// of closest points, and p runs through P: the part that a has in common with b moved by -w. Here
+// features have their boundary: an edge its ends, a face its edges. The answer is the first pair of
+// a feature F of a and a feature G of b, by F and then by G, such that some p on F and q on G are
+// closest points. These are the only such points on F and G:
+//  - F is a corner: p is that corner.
+//  - F is an edge: no corner of a is in P, or F would be that corner. Suppose that P contains more
+//    than one point of F: a segment that does not reach the ends of F. It ends where b does. At
+//    such an end is a corner of b, and G is a corner: one point. Or an edge of b crosses F there,
+//    and no corner of b is on F: G is an edge that is not parallel to F: one point.
+//  - F is the face: no point of a's edges is in P, so P is as large as b moved, or as the part of b
+//    in the plane of a. G is a corner of b; or b passes through the plane, and G is the first of
+//    its edges that do: one point.
+// Each point is inside its feature: on no corner or edge that comes earlier. The squared distance
+// of a point of the line or plane of F and one of G is a polynomial of degree 2. It has a least
+// value inside F and G at one pair of points only, so it has no other least one at all, and the
+// equations that find() of verify/closest_features.h solves have this one solution. For any other
+// features find() gives points of theirs or nothing, never something nearer. So the answer is the
+// first of the least that find() gives for all pairs of features in order.
+//
+// Proof of a guess. Let p be a point of a, q one of b, and w = q - p not 0. They are closest points
+// iff w.(x - p) <= 0 for all corners x of a and w.(y - q) >= 0 for all corners y of b. If this
+// holds, the triangles lie on both sides of the slab between the planes through p and q that are
+// perpendicular to w, so no points are nearer. If it does not, p moves nearer to q on the way to x,
+// or q to p on the way to y. All closest points of a lie in the hull of the corners x at which that
+// product is 0, those of b likewise. So a guess is the answer if these are just the corners of F
+// and of G, if p and q are inside F and G, and if F or G is a corner or both are edges that are not
+// parallel. Else the features of these corners are tried in order, until some are as near.
+//
+// Doubles only choose what to try, and leave out features that are provably not closest. So no
+// rounding reaches the answer but the last one.
+#include "verify/closest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "verify/closest_features.h"
+#include "verify/closest_guess.h"
+#include "verify/closest_value.h"
+#include "verify/filter.h"
+#include "verify/filter_of_distance.h"
+
+namespace farcull {
+namespace {
+
+using closest::corners_of;
+using closest::dot;
+using closest::find;
+using closest::Found;
+using Integer = mpz_class;
+using Vector = closest::Vector<Integer>;
+using Corners = closest::Corners<Integer>;
+
+constexpr unsigned kAll = 7;
+
+constexpr std::array<Feature, 7> kFeatures = {{{FeatureKind::vertex, 0},
+                                               {FeatureKind::vertex, 1},
+                                               {FeatureKind::vertex, 2},
+                                               {FeatureKind::edge, 0},
+                                               {FeatureKind::edge, 1},
+                                               {FeatureKind::edge, 2},
+                                               {FeatureKind::face, 0}}};
+
+/// The exponent of the lowest bit of x, not 0.
+int lowest_bit(double x) {
+  int exponent = 0;
+  const auto digits = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 53));
+  return exponent - 53 + __builtin_ctzll(static_cast<std::uint64_t>(digits));
+}
+
+/// Two triangles as integers, times 2^exponent.
+struct Scaled {
+  Corners a, b;
+  int exponent = 0;
+
+  Scaled(const std::array<Vec3, 3>& s, const std::array<Vec3, 3>& t) {
+    int least = 2000;
+    double most = 0;
+    for (const auto* corners : {&s, &t}) {
+      for (const Vec3& p : *corners) {
+        for (const double x : p) {
+          if (x != 0) least = std::min(least, lowest_bit(x));
+          most = std::max(most, std::abs(x));
+        }
+      }
+    }
+    if (most == 0) least = 0;
+    exponent = least;
+    const bool in_doubles = std::isfinite(std::ldexp(most, -least));
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        a[i][k] = integer(s[i][k], in_doubles);
+        b[i][k] = integer(t[i][k], in_doubles);
+      }
+    }
+  }
+
+ private:
+  Integer integer(double x, bool in_doubles) const {
+    if (in_doubles) return Integer(std::ldexp(x, -exponent));
+    int of_x = 0;
+    Integer out(std::ldexp(std::frexp(x, &of_x), 53));
+    const int up = of_x - 53 - exponent;
+    if (up >= 0) {
+      out <<= static_cast<mp_bitcnt_t>(up);
+    } else {
+      out >>= static_cast<mp_bitcnt_t>(-up);  // zeros alone are lost
+    }
+    return out;
+  }
+};
+
+/// An answer not yet rounded.
+struct Answer {
+  Feature of_a, of_b;
+  Found<Integer> found;
+};
+
+/// The corners x of t, by bits, for which d.(x - p) is 0; p is a corner of t that belongs to the
+/// feature. 8 where the product is above 0 for some, with d turned round where `back`.
+unsigned touching(const Corners& t, const Feature& feature, const Vector& d, bool back) {
+  constexpr unsigned kBeyond = 8;
+  const unsigned own = corners_of(feature);
+  unsigned out = own;
+  if (own == kAll) return out;
+  const Integer level = dot(d, t[feature.index]);
+  for (unsigned i = 0; i < 3; ++i) {
+    if ((own >> i & 1) != 0) continue;
+    const int side = cmp(dot(d, t[i]), level);
+    if (side == 0) out |= 1u << i;
+    if (back ? side < 0 : side > 0) return kBeyond;
+  }
+  return out;
+}
+
+bool as_near(const Found<Integer>& f, const Found<Integer>& g) {
+  return f.num * g.den == g.num * f.den;
+}
+
+/// The first pair of features of these corners that has points as near as `least`.
+bool first_as_near(const Scaled& pair, unsigned in_a, unsigned in_b, const Found<Integer>& least,
+                   Answer& answer) {
+  for (const Feature& f : kFeatures) {
+    if ((corners_of(f) & ~in_a) != 0) continue;
+    for (const Feature& g : kFeatures) {
+      if ((corners_of(g) & ~in_b) != 0) continue;
+      if (!find(pair.a, f, pair.b, g, answer.found) || !as_near(answer.found, least)) continue;
+      answer.of_a = f;
+      answer.of_b = g;
+      return true;
+    }
+  }
+  return false;
+}
+
+using Boxes = std::array<Box, 7>;
+
+/// Of the features of a triangle, in their order.
+Boxes boxes_of(const std::array<Vec3, 3>& t) {
+  Boxes out;
+  for (std::size_t i = 0; i < kFeatures.size(); ++i) {
+    out[i] = Box::empty();
+    for (unsigned k = 0; k < 3; ++k) {
+      if ((corners_of(kFeatures[i]) >> k & 1) != 0) out[i].add(t[k]);
+    }
+  }
+  return out;
+}
+
+/// Farther along an axis than `most`: rounding a difference does not bring it below a double that
+/// it is above.
+bool farther(const Box& a, const Box& b, double most) {
+  return (b.lo - a.hi).maxCoeff() > most || (a.lo - b.hi).maxCoeff() > most;
+}
+
+/// Not below the distance.
+double upper_bound(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  if (filter_planes(a, b) == Triage::yes) return 0;
+  return filters::distance_bounds<FilterBounds>(a, b).upper;
+}
+
+/// The first least one of all pairs of features.
+Answer search(const Scaled& pair, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  const double most = upper_bound(a, b);
+  const Boxes a_boxes = boxes_of(a), b_boxes = boxes_of(b);
+  Answer best;
+  Found<Integer> found;
+  bool any = false;
+  for (std::size_t i = 0; i < kFeatures.size(); ++i) {
+    for (std::size_t j = 0; j < kFeatures.size(); ++j) {
+      if (farther(a_boxes[i], b_boxes[j], most)) continue;
+      if (!find(pair.a, kFeatures[i], pair.b, kFeatures[j], found)) continue;
+      if (any && found.num * best.found.den >= best.found.num * found.den) continue;
+      any = true;
+      std::swap(best.found, found);
+      best.of_a = kFeatures[i];
+      best.of_b = kFeatures[j];
+      if (best.found.num == 0) return best;
+    }
+  }
+  if (!any) throw std::logic_error("closest_points: no features are closest");
+  return best;
+}
+
+/// True iff the guessed features have closest points; then `answer` is the answer.
+bool proved(const Scaled& pair, const closest::Guess& guess, Answer& answer) {
+  answer.of_a = guess.of_a;
+  answer.of_b = guess.of_b;
+  if (!find(pair.a, guess.of_a, pair.b, guess.of_b, answer.found)) return false;
+  if (answer.found.num == 0) return false;
+  const unsigned in_a = touching(pair.a, guess.of_a, answer.found.direction, false);
+  if (in_a > kAll) return false;
+  const unsigned in_b = touching(pair.b, guess.of_b, answer.found.direction, true);
+  if (in_b > kAll) return false;
+  if (answer.found.inside && in_a == corners_of(guess.of_a) && in_b == corners_of(guess.of_b))
+    return true;
+  const Found<Integer> least = answer.found;
+  return first_as_near(pair, in_a, in_b, least, answer);
+}
+
+Answer solve(const Scaled& pair, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  Answer answer;
+  return proved(pair, closest::guess_features(a, b), answer) ? answer : search(pair, a, b);
+}
+
+SquaredDistance squared(const Scaled& pair, const Found<Integer>& found) {
+  auto value = std::make_shared<SquaredDistance::Value>();
+  value->num = found.num;
+  value->den = found.den;
+  value->exponent = 2L * pair.exponent;
+  return SquaredDistance(std::move(value));
+}
+
+Vec3 rounded_point(const Vector& p, const Integer& below, int exponent) {
+  return {rounded_quotient(p[0], below, exponent), rounded_quotient(p[1], below, exponent),
+          rounded_quotient(p[2], below, exponent)};
+}
+
+}  // namespace
+
+std::string to_string(const Feature& feature) {
+  if (feature.kind == FeatureKind::face) return "face";
+  return (feature.kind == FeatureKind::vertex ? "vertex " : "edge ") +
+         std::to_string(feature.index);
+}
+
+Closest closest_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  const Scaled pair(a, b);
+  const Answer answer = solve(pair, a, b);
+  Closest out;
+  out.squared = squared(pair, answer.found);
+  out.distance = out.squared.root();
+  out.features = {answer.of_a, answer.of_b};
+  const auto point = [&](const std::array<Vec3, 3>& given, const Corners& corners, int side) {
+    const Feature& f = out.features[side];
+    // + 0.0 makes 0.0 of -0.0.
+    if (f.kind == FeatureKind::vertex) return Vec3(given[f.index].array() + 0.0);
+    return rounded_point(point_of(corners, f, answer.found, side), answer.found.below,
+                         pair.exponent);
+  };
+  // A face that an edge passes through has the edge's point.
+  const bool passes = out.features[0].kind != FeatureKind::vertex &&
+                      out.features[1].kind != FeatureKind::vertex &&
+                      out.features[0].kind != out.features[1].kind;
+  const int first = passes && out.features[0].kind == FeatureKind::face ? 1 : 0;
+  out.points[first] = point(first == 0 ? a : b, first == 0 ? pair.a : pair.b, first);
+  out.points[1 - first] = passes
+                              ? out.points[first]
+                              : point(first == 0 ? b : a, first == 0 ? pair.b : pair.a, 1 - first);
+  return out;
+}
+
+SquaredDistance squared_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  const Scaled pair(a, b);
+  return squared(pair, solve(pair, a, b).found);
+}
+
+}  // namespace farcull

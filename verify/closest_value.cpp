@@ -1,0 +1,123 @@
+// Squared distances as fractions of integers, compared by products across, and rounded once.
+//
+// Rounding. A quotient or a root is first cut off to an integer of at least 55 bits, times a power
+// of two. One more bit is appended, which is 1 iff something was cut off. A double has 53 bits, so
+// at least two bits are behind those that are kept, and the last of them says whether the number is
+// beyond them: the longer number lies on the same side of every double, and of every middle between
+// two doubles, as the exact one. Rounding it is rounding the exact one.
+#include "verify/closest_value.h"
+
+#include <cmath>
+#include <utility>
+
+namespace farcull {
+namespace {
+
+constexpr long kDigits = 53;
+constexpr long kLeastExponent = -1074;  // of the last bit of a double
+constexpr long kKept = kDigits + 2;
+
+long bits(const mpz_class& x) { return static_cast<long>(mpz_sizeinbase(x.get_mpz_t(), 2)); }
+
+/// x 2^k, cut off where k < 0.
+mpz_class shifted(const mpz_class& x, long k) {
+  mpz_class out;
+  if (k >= 0) {
+    mpz_mul_2exp(out.get_mpz_t(), x.get_mpz_t(), static_cast<mp_bitcnt_t>(k));
+  } else {
+    mpz_tdiv_q_2exp(out.get_mpz_t(), x.get_mpz_t(), static_cast<mp_bitcnt_t>(-k));
+  }
+  return out;
+}
+
+/// |num| 2^k / den, cut off; `more` is set where something was.
+mpz_class cut_quotient(const mpz_class& num, const mpz_class& den, long k, bool& more) {
+  mpz_class quotient, rest;
+  const mpz_class n = shifted(num, std::max(k, 0L));
+  if (k >= 0) {
+    mpz_tdiv_qr(quotient.get_mpz_t(), rest.get_mpz_t(), n.get_mpz_t(), den.get_mpz_t());
+  } else {
+    const mpz_class d = shifted(den, -k);
+    mpz_tdiv_qr(quotient.get_mpz_t(), rest.get_mpz_t(), n.get_mpz_t(), d.get_mpz_t());
+  }
+  more = rest != 0;
+  return quotient;
+}
+
+/// 2 x + more, away from 0.
+mpz_class with_last_bit(const mpz_class& x, bool more, int sign) {
+  const mpz_class magnitude = 2 * abs(x) + (more ? 1 : 0);
+  return sign < 0 ? mpz_class(-magnitude) : magnitude;
+}
+
+}  // namespace
+
+double rounded(const mpz_class& m, long exponent) {
+  if (m == 0) return 0;
+  mpz_class magnitude = abs(m);
+  const long last = std::max(bits(magnitude) + exponent - kDigits, kLeastExponent);
+  const long drop = last - exponent;
+  if (drop > 0) {
+    // Half of the last bit kept is added, and the sum cut off; of two as near the even one stays.
+    const auto k = static_cast<mp_bitcnt_t>(drop);
+    const bool middle = mpz_scan1(magnitude.get_mpz_t(), 0) == k - 1;
+    mpz_class sum = magnitude + shifted(1, drop - 1);
+    magnitude = shifted(sum, -drop);
+    if (middle && mpz_odd_p(magnitude.get_mpz_t())) magnitude -= 1;
+    exponent = last;
+  }
+  if (magnitude == 0) return 0;
+  // Now at most 53 bits, or 2^53: exact. What is beyond the largest double ldexp makes infinite.
+  const double size =
+      exponent > 2000 ? HUGE_VAL : std::ldexp(magnitude.get_d(), static_cast<int>(exponent));
+  return m < 0 ? -size : size;
+}
+
+double rounded_quotient(const mpz_class& num, const mpz_class& den, long exponent) {
+  if (num == 0) return 0;
+  const long k = kKept + 1 + bits(den) - bits(num);
+  bool more = false;
+  const mpz_class quotient = cut_quotient(num, den, k, more);
+  return rounded(with_last_bit(quotient, more, sgn(num)), exponent - k - 1);
+}
+
+double rounded_root(const mpz_class& num, const mpz_class& den, long exponent) {
+  if (num == 0) return 0;
+  long k = 2 * kKept + 1 + bits(den) - bits(num);
+  if ((exponent - k) % 2 != 0) ++k;
+  bool more = false;
+  const mpz_class square = cut_quotient(num, den, k, more);
+  mpz_class root, rest;
+  mpz_sqrtrem(root.get_mpz_t(), rest.get_mpz_t(), square.get_mpz_t());
+  return rounded(with_last_bit(root, more || rest != 0, 1), (exponent - k) / 2 - 1);
+}
+
+SquaredDistance::SquaredDistance() : value_(std::make_shared<const Value>()) {}
+
+SquaredDistance::SquaredDistance(std::shared_ptr<const Value> value) : value_(std::move(value)) {}
+
+double SquaredDistance::root() const {
+  return rounded_root(value_->num, value_->den, value_->exponent);
+}
+
+std::string SquaredDistance::text() const {
+  const long e = value_->exponent;
+  mpq_class q(shifted(value_->num, std::max(e, 0L)), shifted(value_->den, std::max(-e, 0L)));
+  q.canonicalize();
+  return q.get_num().get_str() + "/" + q.get_den().get_str();
+}
+
+bool SquaredDistance::is_zero() const { return value_->num == 0; }
+
+std::strong_ordering operator<=>(const SquaredDistance& a, const SquaredDistance& b) {
+  const SquaredDistance::Value &x = *a.value_, &y = *b.value_;
+  if (&x == &y) return std::strong_ordering::equal;
+  const long last = std::min(x.exponent, y.exponent);
+  const mpz_class left = shifted(x.num * y.den, x.exponent - last);
+  const mpz_class right = shifted(y.num * x.den, y.exponent - last);
+  return cmp(left, right) <=> 0;
+}
+
+bool operator==(const SquaredDistance& a, const SquaredDistance& b) { return (a <=> b) == 0; }
+
+}  // namespace farcull
