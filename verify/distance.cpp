@@ -9,6 +9,8 @@
 
 #include <algorithm>
 
+#include "verify/distance_rational.h"
+
 namespace farcull {
 namespace {
 
@@ -31,6 +33,17 @@ Vector cross(const Vector& x, const Vector& y) {
   return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
 }
 
+/// Squares of distances that are asked about.
+struct Asked {
+  const mpq_class& squared;
+  Bound bound;
+  /// x / y is one of them. Precondition: y > 0.
+  bool holds(const mpq_class& x, const mpq_class& y = 1) const {
+    const int order = cmp(x, squared * y);
+    return bound == Bound::below ? order < 0 : order <= 0;
+  }
+};
+
 /// |w - [0, 1] u|^2: the point w from the segment 0 to u, which may be a point.
 mpq_class from_segment(const Vector& w, const Vector& u) {
   const mpq_class uu = dot(u, u);
@@ -40,15 +53,15 @@ mpq_class from_segment(const Vector& w, const Vector& u) {
   return dot(w, w) - along * (2 * dot(w, u) - along) / uu;
 }
 
-/// True iff segments p + [0, 1] u and q + [0, 1] v come as near as the square root of d2.
+/// True iff segments p + [0, 1] u and q + [0, 1] v come that near.
 bool segments_within(const Vector& p, const Vector& u, const Vector& q, const Vector& v,
-                     const mpq_class& d2) {
+                     const Asked& asked) {
   const Vector w = minus(p, q);
   const Vector p_end = {w[0] + u[0], w[1] + u[1], w[2] + u[2]};
   const Vector back = {-w[0], -w[1], -w[2]};
   const Vector q_end = {back[0] + v[0], back[1] + v[1], back[2] + v[2]};
-  if (from_segment(w, v) <= d2 || from_segment(p_end, v) <= d2) return true;
-  if (from_segment(back, u) <= d2 || from_segment(q_end, u) <= d2) return true;
+  if (asked.holds(from_segment(w, v)) || asked.holds(from_segment(p_end, v))) return true;
+  if (asked.holds(from_segment(back, u)) || asked.holds(from_segment(q_end, u))) return true;
   // Else both closest points lie inside: where the difference is perpendicular to both lines.
   const mpq_class uu = dot(u, u);
   const mpq_class uv = dot(u, v);
@@ -62,11 +75,11 @@ bool segments_within(const Vector& p, const Vector& u, const Vector& q, const Ve
   if (s < 0 || s > den || t < 0 || t > den) return false;
   const Vector normal = cross(u, v);
   const mpq_class height = dot(normal, w);
-  return height * height <= d2 * den;  // |normal|^2 = den
+  return asked.holds(height * height, den);  // |normal|^2 = den
 }
 
-/// True iff p lies over the face of t, not higher than the square root of d2.
-bool face_within(const Vector& p, const Corners& t, const mpq_class& d2) {
+/// True iff p lies over the face of t, that near.
+bool face_within(const Vector& p, const Corners& t, const Asked& asked) {
   const Vector normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
   const mpq_class nn = dot(normal, normal);
   if (nn == 0) return false;
@@ -74,22 +87,27 @@ bool face_within(const Vector& p, const Corners& t, const mpq_class& d2) {
     if (dot(normal, cross(minus(t[(i + 1) % 3], t[i]), minus(p, t[i]))) < 0) return false;
   }
   const mpq_class height = dot(normal, minus(p, t[0]));
-  return height * height <= d2 * nn;
+  return asked.holds(height * height, nn);
 }
 
 }  // namespace
 
 bool disjoint_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
+  return disjoint_nearer(a, b, mpq_class(clearance) * mpq_class(clearance), Bound::at_most);
+}
+
+bool disjoint_nearer(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                     const mpq_class& squared, Bound bound) {
   const Corners s = rational(a);
   const Corners t = rational(b);
-  const mpq_class d2 = mpq_class(clearance) * mpq_class(clearance);
+  const Asked asked = {squared, bound};
   for (int i = 0; i < 3; ++i) {
-    if (face_within(s[i], t, d2) || face_within(t[i], s, d2)) return true;
+    if (face_within(s[i], t, asked) || face_within(t[i], s, asked)) return true;
   }
   for (int i = 0; i < 3; ++i) {
     const Vector u = minus(s[(i + 1) % 3], s[i]);
     for (int j = 0; j < 3; ++j) {
-      if (segments_within(s[i], u, t[j], minus(t[(j + 1) % 3], t[j]), d2)) return true;
+      if (segments_within(s[i], u, t[j], minus(t[(j + 1) % 3], t[j]), asked)) return true;
     }
   }
   return false;

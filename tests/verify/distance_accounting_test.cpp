@@ -1,0 +1,262 @@
+// The accounting of distances: its bounds against rational numbers, and wrong answers that it has
+// to find.
+#include "verify/distance_accounting.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/core/base/trials.h"
+#include "tests/experiments/method/distance_lab.h"
+#include "verify/distance_claims.h"
+#include "verify/separation.h"
+
+namespace farcull {
+namespace {
+
+using distance_lab::Q;
+using Kind = DistanceQuestion::Kind;
+
+/// Two triangles some way from each other, of a size and at a place of any magnitude.
+std::array<std::array<Vec3, 3>, 2> random_pair(rational::Draws& random) {
+  const double unit = std::exp2(random.below(3) == 0 ? random.uniform(-1060, 1000) : 0);
+  const Vec3 apart = random.cube(std::exp2(random.uniform(-10, 10)) * unit);
+  std::array<std::array<Vec3, 3>, 2> out;
+  for (Vec3& p : out[0]) p = random.cube(unit);
+  for (Vec3& p : out[1]) p = random.cube(unit) + apart;
+  if (random.below(5) == 0) out[1][1] = out[1][0];
+  return out;
+}
+
+double moved_by_ulps(double x, int ulps) {
+  for (; ulps > 0; --ulps) x = std::nextafter(x, HUGE_VAL);
+  for (; ulps < 0; ++ulps) x = std::nextafter(x, 0);
+  return x;
+}
+
+TEST(Separation, IsProvedOnlyWhereTrianglesAreFartherApart) {
+  rational::Draws random(1);
+  int wrong = 0, by_planes = 0, by_boxes = 0, farther = 0, twin_wrong = 0;
+  for (int k = 0; k < trials(4'000); ++k) {
+    const auto [a, b] = random_pair(random);
+    const Q squared = distance_lab::squared_distance(a, b);
+    // Around the distance, by ulps or by a part of it.
+    const double root = root_above(squared);
+    const double limit = random.coin() ? moved_by_ulps(root, random.below(40) - 30)
+                                       : std::min(root * random.uniform(0.8, 1.1), 1e308);
+    const bool is_farther = squared > Q(limit) * Q(limit);
+    farther += is_farther;
+    const auto boxes =
+        separation::farther(separation::bounds_of(a), separation::bounds_of(b), limit);
+    const bool planes = separation::farther_by_planes(a, b, limit);
+    by_boxes += boxes;
+    by_planes += planes;
+    wrong += (boxes || planes) && !is_farther;
+    twin_wrong += separation::farther_by_planes(a, b, limit * (1 - 0x1p-40)) && !is_farther;
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(twin_wrong, 0);
+  EXPECT_GT(by_boxes, trials(50));
+  EXPECT_GT(by_planes, farther / 3);
+}
+
+TEST(Separation, OfBoxesKeepsWhatMayBeAsNear) {
+  const double big = 1.5e308;
+  const separation::Bounds a = {{0, 0, 0}, {1, 1, 1}}, b = {{4, 5, 0}, {6, 6, 6}};
+  EXPECT_TRUE(separation::farther(a, b, 4.999));
+  EXPECT_FALSE(separation::farther(a, b, 5));
+  const separation::Bounds far = {{big, big, 0}, {big, big, 0}};
+  EXPECT_TRUE(separation::farther(a, far, 1e308));
+  EXPECT_FALSE(separation::farther(a, far, 1.7e308));  // whose squares overflow
+  const double tiny = std::numeric_limits<double>::denorm_min();
+  const separation::Bounds near = {{1 + 0x1p-52, 0, 0}, {2, 2, 2}};
+  EXPECT_TRUE(separation::farther(a, near, tiny));
+}
+
+TEST(DistanceClaims, RootsAreRoundedOnce) {
+  rational::Draws random(2);
+  for (int k = 0; k < trials(20'000); ++k) {
+    const double x = std::abs(random.scaled(-1070, 1020));
+    const Q square = Q(x) * Q(x);
+    EXPECT_TRUE(is_rounded_root(x, square));
+    EXPECT_GE(root_above(square), x);
+    EXPECT_LE(root_above(square), moved_by_ulps(x, 8));
+    EXPECT_FALSE(is_rounded_root(moved_by_ulps(x, 1), square));
+    EXPECT_FALSE(is_rounded_root(moved_by_ulps(x, -1), square));
+    // Halfway to the next double: the even one.
+    const Q middle = (Q(x) + Q(std::nextafter(x, HUGE_VAL))) / 2;
+    EXPECT_NE(is_rounded_root(x, middle * middle),
+              is_rounded_root(std::nextafter(x, HUGE_VAL), middle * middle));
+    const Q other = square * Q(random.uniform(0.5, 2));
+    EXPECT_EQ(is_rounded_root(x, other), closest_reference::is_rounded_root(x, other));
+  }
+  EXPECT_TRUE(is_rounded_root(0.0, 0));
+  EXPECT_FALSE(is_rounded_root(std::numeric_limits<double>::denorm_min(), 0));
+  EXPECT_FALSE(is_rounded_root(HUGE_VAL, Q(1e308) * Q(1e308)));
+  EXPECT_TRUE(is_rounded_root(HUGE_VAL, 4 * Q(1e308) * Q(1e308)));
+}
+
+TEST(DistanceClaims, SquaresAreInLowestTerms) {
+  EXPECT_EQ(parse_square("3/4"), Q(3, 4));
+  EXPECT_EQ(parse_square("0/1"), Q(0));
+  for (const char* text : {"", "3", "6/8", "3/0", "-3/4", "3/4 ", "+3/4", "03/4", "0/2", "1/2/3"})
+    EXPECT_FALSE(parse_square(text)) << text;
+}
+
+/// A scene, what was asked and the right answers.
+struct Case {
+  Scene scene;
+  DistanceOptions options;
+  std::vector<ClaimedDistance> claims;
+
+  DistanceAccounting account(const std::vector<ClaimedDistance>& of) const {
+    return account_distances(scene, of,
+                             {.kind = options.pairs, .k = options.k, .within = options.within});
+  }
+};
+
+std::vector<ClaimedDistance> right_answers(const Scene& scene, const DistanceOptions& options) {
+  std::vector<ClaimedDistance> out;
+  for (const auto& [objects, pair, squared] : distance_lab::Truth(scene).answers(options)) {
+    double root = root_above(squared);
+    while (!closest_reference::is_rounded_root(root, squared)) root = std::nextafter(root, 0);
+    out.push_back({objects.a, objects.b, pair, root,
+                   squared.get_num().get_str() + "/" + squared.get_den().get_str()});
+  }
+  return out;
+}
+
+ClaimedDistance claim_of(const Scene& scene, std::uint32_t a, std::uint32_t b,
+                         const TrianglePair& pair) {
+  const Q squared = distance_lab::squared_distance(scene.corners(pair.a), scene.corners(pair.b));
+  double root = root_above(squared);
+  while (!closest_reference::is_rounded_root(root, squared)) root = std::nextafter(root, 0);
+  return {a, b, pair, root, squared.get_num().get_str() + "/" + squared.get_den().get_str()};
+}
+
+std::vector<Case> cases(Kind kind, int count) {
+  rational::Draws random(3 + static_cast<int>(kind));
+  std::vector<Case> out;
+  while (static_cast<int>(out.size()) < count) {
+    Case one{distance_lab::random_scene(random, 3 + random.below(3), 10), {}, {}};
+    double most = 0;
+    for (const Vec3& p : one.scene.vertices) most = std::max(most, p.cwiseAbs().maxCoeff());
+    one.options.pairs = kind;
+    one.options.k = 1 + random.below(2u);
+    if (kind == Kind::all || random.coin()) one.options.within = std::min(most, 1e300) / 8;
+    one.claims = right_answers(one.scene, one.options);
+    if (one.claims.size() > 1) out.push_back(std::move(one));
+  }
+  return out;
+}
+
+TEST(DistanceAccounting, AcceptsRightAnswers) {
+  for (const Kind kind : {Kind::objects, Kind::nearest, Kind::all}) {
+    for (const Case& one : cases(kind, trials(40))) {
+      const DistanceAccounting found = one.account(one.claims);
+      EXPECT_TRUE(found.holds());
+      EXPECT_TRUE(found.adds_up());
+      EXPECT_EQ(found.answers, one.claims.size());
+    }
+  }
+}
+
+TEST(DistanceAccounting, FindsAnAnswerThatIsNotTheNearest) {
+  int tried = 0;
+  for (const Kind kind : {Kind::objects, Kind::nearest}) {
+    for (const Case& one : cases(kind, trials(40))) {
+      // The last pair of these objects in place of the nearest, where it is farther.
+      auto claims = one.claims;
+      ClaimedDistance& claim = claims[claims.size() / 2];
+      if (claim.a == claim.b) continue;
+      const Object &a = one.scene.objects[claim.a], &b = one.scene.objects[claim.b];
+      const ClaimedDistance other = claim_of(
+          one.scene, claim.a, claim.b,
+          {a.first_triangle + a.triangle_count - 1, b.first_triangle + b.triangle_count - 1});
+      if (other.squared == claim.squared) continue;
+      claim = other;
+      ++tried;
+      const DistanceAccounting found = one.account(claims);
+      EXPECT_FALSE(found.holds());
+      EXPECT_GT(found.nearer, 0u);
+      EXPECT_FALSE(found.examples.empty());
+    }
+  }
+  EXPECT_GT(tried, trials(8));
+}
+
+TEST(DistanceAccounting, FindsAnAnswerThatIsMissing) {
+  for (const Kind kind : {Kind::objects, Kind::nearest, Kind::all}) {
+    for (const Case& one : cases(kind, trials(16))) {
+      for (std::size_t k = 0; k < one.claims.size(); k += 1 + one.claims.size() / 8) {
+        auto claims = one.claims;
+        claims.erase(claims.begin() + static_cast<std::ptrdiff_t>(k));
+        const DistanceAccounting found = one.account(claims);
+        EXPECT_GT(found.nearer, 0u) << static_cast<int>(kind);
+        EXPECT_TRUE(std::ranges::binary_search(found.examples, one.claims[k].pair) ||
+                    found.nearer > found.examples.size() || kind != Kind::all);
+      }
+    }
+  }
+}
+
+TEST(DistanceAccounting, FindsADistanceThatIsOneBitOff) {
+  for (const Kind kind : {Kind::objects, Kind::nearest, Kind::all}) {
+    for (const Case& one : cases(kind, trials(16))) {
+      for (const int ulps : {-1, 1}) {
+        auto claims = one.claims;
+        if (claims.back().distance == 0 && ulps < 0) continue;
+        claims.back().distance = moved_by_ulps(claims.back().distance, ulps);
+        EXPECT_EQ(one.account(claims).wrong, 1u);
+      }
+      auto claims = one.claims;
+      claims.front().squared = "1" + claims.front().squared;
+      EXPECT_GE(one.account(claims).wrong, 1u);
+    }
+  }
+}
+
+/// Points on a line, an object each.
+Scene points(std::initializer_list<double> places) {
+  Scene scene;
+  for (const double x : places) {
+    const auto v = static_cast<std::uint32_t>(scene.vertices.size());
+    scene.vertices.push_back({x, 0, 0});
+    scene.objects.push_back({.name = "", .first_triangle = v, .triangle_count = 1});
+    scene.triangles.push_back({v, v, v});
+    scene.source_face.push_back(0);
+  }
+  return scene;
+}
+
+TEST(DistanceAccounting, OfObjectsAsFarTheLowerOneIsTheNeighbour) {
+  const Scene scene = points({0, 1, 2});  // of 1 both others are as near: 0 is its neighbour
+  const DistanceQuestion nearest = {.kind = Kind::nearest};
+  const std::vector<ClaimedDistance> right = {claim_of(scene, 0, 1, {0, 1}),
+                                              claim_of(scene, 1, 2, {1, 2})};
+  EXPECT_TRUE(account_distances(scene, right, nearest).holds());
+  const Scene wide = points({0, 2, 4, 5});  // 2's neighbour is 3, so that 1 and 2 are none
+  const std::vector<ClaimedDistance> first = {claim_of(wide, 0, 1, {0, 1}),
+                                              claim_of(wide, 2, 3, {2, 3})};
+  const std::vector<ClaimedDistance> second = {
+      claim_of(wide, 0, 1, {0, 1}), claim_of(wide, 1, 2, {1, 2}), claim_of(wide, 2, 3, {2, 3})};
+  EXPECT_TRUE(account_distances(wide, first, nearest).holds());
+  EXPECT_EQ(account_distances(wide, second, nearest).wrong, 1u);  // nobody's neighbour
+  const Scene tie = points({2, 0, 4, 5, -1});  // of 0 the neighbour is 1, as far as 2
+  const std::vector<ClaimedDistance> later = {
+      claim_of(tie, 0, 2, {0, 2}), claim_of(tie, 1, 4, {1, 4}), claim_of(tie, 2, 3, {2, 3})};
+  EXPECT_EQ(account_distances(tie, later, nearest).nearer, 1u);
+}
+
+TEST(DistanceAccounting, RefusesAnswersThatNameNothing) {
+  const Scene scene = points({0, 1, 2});
+  const ClaimedDistance good = claim_of(scene, 0, 1, {0, 1});
+  EXPECT_THROW(account_distances(scene, std::array{good, good}, {}), std::logic_error);
+  for (const ClaimedDistance& bad :
+       {ClaimedDistance{1, 0, {0, 1}, 1, "1/1"}, ClaimedDistance{0, 3, {0, 1}, 1, "1/1"},
+        ClaimedDistance{0, 1, {0, 2}, 1, "1/1"}, ClaimedDistance{0, 1, {1, 1}, 1, "1/1"}})
+    EXPECT_THROW(account_distances(scene, std::array{bad}, {}), std::logic_error);
+  EXPECT_THROW(account_distances(scene, {}, {.kind = Kind::all}), std::logic_error);
+  EXPECT_THROW(account_distances(scene, {}, {.within = -1}), std::logic_error);
+}
+
+}  // namespace
+}  // namespace farcull

@@ -1,0 +1,294 @@
+// Each object has a tree of boxes over its triangles. Of every two objects that are asked about the
+// trees are joined: two nodes whose boxes are farther apart than the threshold of these objects
+// settle all their pairs at once, and so does a threshold that nothing can be below. What is left
+// is decided pair by pair: by two parallel planes, then by rational numbers.
+#include "verify/distance_accounting.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <deque>
+#include <stdexcept>
+
+#include "core/base/floating_point.h"
+#include "core/base/parallel.h"
+#include "core/base/stopwatch.h"
+#include "verify/distance_claims.h"
+#include "verify/exact.h"
+#include "verify/separation.h"
+
+namespace farcull {
+namespace {
+
+using separation::Bounds;
+
+constexpr std::uint32_t kLeafSize = 4;
+constexpr std::size_t kExamples = 10;
+// Pairs decided at a time, so that no list of all is ever stored.
+constexpr std::size_t kChunk = 1 << 16;
+constexpr std::uint32_t kNone = 0xffffffff;
+
+struct Node {
+  Bounds bounds = separation::empty_bounds();
+  std::uint32_t first = 0, count = 0;         // into Trees::order
+  std::uint32_t left = kNone, right = kNone;  // kNone: a leaf
+};
+
+/// A tree for each object.
+class Trees {
+ public:
+  explicit Trees(const Scene& scene) : bounds_(scene.triangles.size()) {
+    for (std::uint32_t t = 0; t < bounds_.size(); ++t)
+      bounds_[t] = separation::bounds_of(scene.corners(t));
+    order_.resize(scene.triangles.size());
+    for (std::uint32_t t = 0; t < order_.size(); ++t) order_[t] = t;
+    for (const Object& object : scene.objects) {
+      roots_.push_back(
+          object.triangle_count == 0 ? kNone : build(object.first_triangle, object.triangle_count));
+    }
+  }
+
+  const Node& root(std::uint32_t object) const { return nodes_[roots_[object]]; }
+  const Node& left(const Node& node) const { return nodes_[node.left]; }
+  const Node& right(const Node& node) const { return nodes_[node.right]; }
+  std::uint32_t triangle(std::uint32_t place) const { return order_[place]; }
+  const Bounds& bounds(std::uint32_t triangle) const { return bounds_[triangle]; }
+
+ private:
+  std::uint32_t build(std::uint32_t first, std::uint32_t count) {
+    Node node{.first = first, .count = count};
+    for (std::uint32_t k = first; k < first + count; ++k) include(node.bounds, bounds_[order_[k]]);
+    if (count > kLeafSize) {
+      const std::uint32_t half = count / 2;
+      divide(first, half, count, node.bounds);
+      node.left = build(first, half);
+      node.right = build(first + half, count - half);
+    }
+    nodes_.push_back(node);
+    return static_cast<std::uint32_t>(nodes_.size() - 1);
+  }
+
+  // The half with the smaller centres comes first, along the longest side of the box.
+  void divide(std::uint32_t first, std::uint32_t half, std::uint32_t count, const Bounds& box) {
+    int axis = 0;
+    for (int k = 1; k < 3; ++k) {
+      if (box.hi[k] / 2 - box.lo[k] / 2 > box.hi[axis] / 2 - box.lo[axis] / 2) axis = k;
+    }
+    const auto begin = order_.begin() + first;
+    std::nth_element(begin, begin + half, begin + count, [&](std::uint32_t s, std::uint32_t t) {
+      const Bounds &a = bounds_[s], &b = bounds_[t];
+      return a.lo[axis] / 2 + a.hi[axis] / 2 < b.lo[axis] / 2 + b.hi[axis] / 2;
+    });
+  }
+
+  std::vector<Bounds> bounds_;  // per triangle
+  std::vector<std::uint32_t> order_, roots_;
+  std::vector<Node> nodes_;
+};
+
+/// Decides the pairs that boxes leave, a chunk at a time, and counts them.
+class Undecided {
+ public:
+  Undecided(const Scene& scene, unsigned threads, DistanceAccounting& result)
+      : scene_(scene), threads_(threads), result_(result) {}
+
+  /// What follows is of two objects with this threshold, or of one.
+  void begin(const Threshold& threshold, bool self) {
+    now_ = {threshold, self};
+    stored_ = false;
+  }
+  void add(const TrianglePair& pair) {
+    if (!stored_) thresholds_.push_back(now_);
+    stored_ = true;
+    pairs_.push_back({pair, &thresholds_.back()});
+    if (pairs_.size() == kChunk) decide();
+  }
+  void decide() {
+    std::vector<Class> classes(pairs_.size());
+    const std::size_t chunks = chunks_for(pairs_.size(), 16, threads_);
+    for_chunks(pairs_.size(), chunks, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) classes[k] = class_of(pairs_[k]);
+    });
+    for (std::size_t k = 0; k < pairs_.size(); ++k) count(pairs_[k].pair, classes[k]);
+    pairs_.clear();
+    thresholds_.clear();
+    stored_ = false;
+  }
+
+ private:
+  enum class Class : std::uint8_t { planes, neighbours, exact, nearer };
+  struct Asked {
+    Threshold threshold;
+    bool self = false;
+  };
+  struct Pair {
+    TrianglePair pair;
+    const Asked* asked;  // of thresholds_
+  };
+
+  Class class_of(const Pair& pair) const {
+    const Threshold& threshold = pair.asked->threshold;
+    const std::array<Vec3, 3> s = scene_.corners(pair.pair.a), t = scene_.corners(pair.pair.b);
+    if (std::isfinite(threshold.root) && separation::farther_by_planes(s, t, threshold.root))
+      return Class::planes;
+    if (pair.asked->self && share_position(s, t)) return Class::neighbours;
+    if (threshold.infinite) return Class::nearer;
+    if (intersects(s, t)) {
+      const bool nearer = threshold.squared > 0 || threshold.bound == Bound::at_most;
+      return nearer ? Class::nearer : Class::exact;
+    }
+    return disjoint_nearer(s, t, threshold.squared, threshold.bound) ? Class::nearer : Class::exact;
+  }
+
+  void count(const TrianglePair& pair, Class of) {
+    switch (of) {
+      case Class::planes:
+        ++result_.farther_by_planes;
+        return;
+      case Class::neighbours:
+        ++result_.neighbours;
+        return;
+      case Class::exact:
+        ++result_.farther_by_exact;
+        return;
+      case Class::nearer:
+        ++result_.nearer;
+        std::vector<TrianglePair>& examples = result_.examples;
+        examples.insert(std::ranges::upper_bound(examples, pair), pair);
+        if (examples.size() > kExamples) examples.pop_back();
+        return;
+    }
+  }
+
+  const Scene& scene_;
+  unsigned threads_;
+  DistanceAccounting& result_;
+  Asked now_;
+  bool stored_ = false;           // in thresholds_
+  std::deque<Asked> thresholds_;  // of the pairs
+  std::vector<Pair> pairs_;
+};
+
+/// The pairs of triangles of two objects, or of one.
+class Join {
+ public:
+  Join(const Trees& trees, const Threshold& threshold, std::span<const ClaimedDistance> answers,
+       Undecided& undecided, DistanceAccounting& result)
+      : trees_(trees),
+        threshold_(threshold),
+        answers_(answers),
+        met_(answers.size()),
+        undecided_(undecided),
+        result_(result) {}
+
+  void objects(std::uint32_t a, std::uint32_t b) {
+    if (a == b) {
+      one(trees_.root(a));
+    } else {
+      two(trees_.root(a), trees_.root(b));
+    }
+    // An answer whose boxes are too far apart is wrong, but an answer.
+    const auto passed = static_cast<std::uint64_t>(std::ranges::count(met_, false));
+    result_.answers += answers_.size();
+    result_.farther_by_boxes -= passed;
+  }
+
+ private:
+  bool farther(const Bounds& a, const Bounds& b) const {
+    return std::isfinite(threshold_.root) && separation::farther(a, b, threshold_.root);
+  }
+
+  void one(const Node& node) {
+    if (node.left != kNone) {
+      one(trees_.left(node));
+      one(trees_.right(node));
+      two(trees_.left(node), trees_.right(node));
+      return;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      for (std::uint32_t j = i + 1; j < node.first + node.count; ++j)
+        triangles(trees_.triangle(i), trees_.triangle(j));
+    }
+  }
+
+  void two(const Node& a, const Node& b) {
+    if (farther(a.bounds, b.bounds)) {
+      result_.farther_by_boxes += std::uint64_t{a.count} * b.count;
+      return;
+    }
+    if (a.left != kNone && (b.left == kNone || a.count >= b.count)) {
+      two(trees_.left(a), b);
+      two(trees_.right(a), b);
+    } else if (b.left != kNone) {
+      two(a, trees_.left(b));
+      two(a, trees_.right(b));
+    } else {
+      for (std::uint32_t i = a.first; i < a.first + a.count; ++i) {
+        for (std::uint32_t j = b.first; j < b.first + b.count; ++j)
+          triangles(trees_.triangle(i), trees_.triangle(j));
+      }
+    }
+  }
+
+  void triangles(std::uint32_t s, std::uint32_t t) {
+    if (farther(trees_.bounds(s), trees_.bounds(t))) {
+      ++result_.farther_by_boxes;
+      return;
+    }
+    const TrianglePair pair = {std::min(s, t), std::max(s, t)};
+    const auto found = std::ranges::lower_bound(answers_, pair, {}, &ClaimedDistance::pair);
+    if (found != answers_.end() && found->pair == pair) {
+      met_[static_cast<std::size_t>(found - answers_.begin())] = true;
+      return;
+    }
+    undecided_.add(pair);
+  }
+
+  const Trees& trees_;
+  const Threshold& threshold_;
+  std::span<const ClaimedDistance> answers_;  // of these objects, sorted by their pairs
+  std::vector<bool> met_;                     // by the join
+  Undecided& undecided_;
+  DistanceAccounting& result_;
+};
+
+}  // namespace
+
+bool DistanceAccounting::adds_up() const {
+  return pairs_total ==
+         answers + farther_by_boxes + farther_by_planes + neighbours + farther_by_exact + nearer;
+}
+
+DistanceAccounting account_distances(const Scene& scene, std::span<const ClaimedDistance> answers,
+                                     const DistanceQuestion& question) {
+  const FloatingPointGuard guard;
+  const Stopwatch watch;
+  const DistanceClaims claims(scene, answers, question);
+  DistanceAccounting out;
+  out.wrong = claims.wrong(question.threads);
+  const Trees trees(scene);
+  Undecided undecided(scene, question.threads, out);
+  for (std::uint32_t a = 0; a < scene.objects.size(); ++a) {
+    for (std::uint32_t b = a; b < scene.objects.size(); ++b) {
+      const std::uint64_t m = scene.objects[a].triangle_count, n = scene.objects[b].triangle_count;
+      const std::uint64_t pairs = a == b ? (m > 0 ? m * (m - 1) / 2 : 0) : m * n;
+      if (pairs == 0 || !claims.asked(a, b)) continue;
+      out.pairs_total += pairs;
+      const Threshold threshold = claims.threshold(a, b);
+      const std::span<const ClaimedDistance> of = claims.of(a, b);
+      if (threshold.squared == 0 && threshold.bound == Bound::below && !threshold.infinite) {
+        out.answers += of.size();
+        out.farther_by_boxes += pairs - of.size();  // nothing is nearer than 0
+        continue;
+      }
+      undecided.begin(threshold, a == b);
+      Join(trees, threshold, of, undecided, out).objects(a, b);
+    }
+  }
+  undecided.decide();
+  if (!out.adds_up()) throw std::logic_error("account_distances: the classes do not add up");
+  out.ms = watch.ms();
+  return out;
+}
+
+}  // namespace farcull

@@ -1,0 +1,47 @@
+// Independent accounting for distances: every pair of triangles is proved to be no nearer than the
+// answer allows.
+//
+// It shares no code with what culled, nor with what computed the answers (verify/closest.h): it
+// makes its own boxes, computes the square of each answer's distance by its own formulas, and
+// decides the pairs that are left with rational numbers.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "verify/distance_question.h"
+
+namespace farcull {
+
+/// Of all pairs of triangles that were asked about: each is in one class, the first that fits,
+/// counted where it is decided. A pair is *nearer* if an answer should be nearer because of it, or
+/// if it should be an answer itself.
+struct DistanceAccounting {
+  std::uint64_t pairs_total = 0;       // by combinatorics
+  std::uint64_t answers = 0;           // pairs that the answers name
+  std::uint64_t farther_by_boxes = 0;  // by the gaps between their boxes
+  std::uint64_t farther_by_planes =
+      0;                               // some two parallel planes between them are far enough apart
+  std::uint64_t neighbours = 0;        // of one object, which do not count
+  std::uint64_t farther_by_exact = 0;  // by the squares of distances as rational numbers
+  std::uint64_t nearer = 0;            // missed
+  std::vector<TrianglePair> examples;  // the first missed ones
+  /// Answers whose distance is not that of their triangles, is beyond `within`, or is not what was
+  /// asked for.
+  std::uint64_t wrong = 0;
+  double ms = 0;
+  /// True iff the classes sum to pairs_total. Not so by construction: the total is computed.
+  bool adds_up() const;
+  /// No pair was missed, no answer is wrong.
+  bool holds() const { return nearer == 0 && wrong == 0; }
+};
+
+/// answers: sorted by objects, then by pairs, each once. Throws std::logic_error where they are
+/// not, where one names triangles that are not those of its objects, or where the classes do not
+/// add up. Memory O(triangles + answers).
+DistanceAccounting account_distances(const Scene& scene, std::span<const ClaimedDistance> answers,
+                                     const DistanceQuestion& question);
+
+}  // namespace farcull

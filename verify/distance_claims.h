@@ -1,0 +1,65 @@
+// What account_distances() has to prove of the pairs of triangles of two objects, from what was
+// asked and answered.
+#pragma once
+
+#include <gmpxx.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "verify/distance_question.h"
+#include "verify/distance_rational.h"
+
+namespace farcull {
+
+/// Pairs of triangles that should have been answered: those whose distance the bound holds of.
+struct Threshold {
+  bool infinite = false;  // all of them
+  mpq_class squared = 0;
+  double root = 0;  // at least the root of `squared`; infinity beyond the largest double
+  Bound bound = Bound::below;
+};
+/// A double that is at least the root of the square, and little more.
+double root_above(const mpq_class& squared);
+/// Whether the distance is the root, rounded to the nearest double, of two as near the even one.
+bool is_rounded_root(double distance, const mpq_class& squared);
+/// "numerator/denominator" in lowest terms; nothing for another text.
+std::optional<mpq_class> parse_square(const std::string& text);
+
+class DistanceClaims {
+ public:
+  /// Throws std::logic_error as account_distances().
+  DistanceClaims(const Scene& scene, std::span<const ClaimedDistance> answers,
+                 const DistanceQuestion& question);
+
+  /// What may not be nearer, of the objects a <= b.
+  Threshold threshold(std::uint32_t a, std::uint32_t b) const;
+  /// The answers of the objects a <= b.
+  std::span<const ClaimedDistance> of(std::uint32_t a, std::uint32_t b) const;
+  /// Whether objects a <= b are asked about.
+  bool asked(std::uint32_t a, std::uint32_t b) const;
+  /// Answers that cannot be right, by themselves or among the others; all answers decide.
+  std::uint64_t wrong(unsigned threads) const;
+
+ private:
+  struct Farthest {  // the last neighbour of an object
+    std::size_t answers = 0;
+    mpq_class squared = 0;
+    std::uint32_t other = 0;
+  };
+  void find_farthest();
+  bool wrong(std::size_t answer) const;
+
+  const Scene& scene_;
+  std::span<const ClaimedDistance> answers_;
+  DistanceQuestion question_;
+  Threshold within_;
+  std::vector<std::optional<mpq_class>> squares_;  // of the answers
+  std::vector<Farthest> farthest_;                 // of each object; of `nearest`
+};
+
+}  // namespace farcull

@@ -1,0 +1,111 @@
+// Lower bounds of distances in doubles, for the accounting of distances: each is at most the
+// distance, whatever was rounded.
+//
+// u = 2^-53 is the unit roundoff. Sums and differences of doubles have a relative error of at most
+// u, also where the result is subnormal; so have products and quotients but for an absolute error
+// below 2^-1074 where the result is subnormal.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/scene/scene.h"
+
+namespace farcull::separation {
+
+inline constexpr double kU = 0x1p-53;
+
+struct Bounds {
+  std::array<double, 3> lo;
+  std::array<double, 3> hi;
+};
+
+inline Bounds empty_bounds() {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  return {{kInf, kInf, kInf}, {-kInf, -kInf, -kInf}};
+}
+
+inline void include(Bounds& bounds, const Bounds& other) {
+  for (int axis = 0; axis < 3; ++axis) {
+    bounds.lo[axis] = std::min(bounds.lo[axis], other.lo[axis]);
+    bounds.hi[axis] = std::max(bounds.hi[axis], other.hi[axis]);
+  }
+}
+
+inline Bounds bounds_of(const std::array<Vec3, 3>& corners) {
+  Bounds out = empty_bounds();
+  for (const Vec3& p : corners) {
+    const std::array<double, 3> at = {p.x(), p.y(), p.z()};
+    include(out, {at, at});
+  }
+  return out;
+}
+
+/// True only if all points of the two boxes are farther apart than `limit` (>= 0, finite).
+///
+/// A gap along an axis is one rounded difference. Rounding is monotone, so a gap above the limit is
+/// proved. The sum of squares has three differences (each factor 1 + u, squared), three products
+/// and two sums, and the root one rounding: a relative error below 8 u in all, where squares are
+/// normal numbers. It counts only where it is large enough that what is lost to subnormal squares
+/// is far below u of it, and where nothing overflows.
+inline bool farther(const Bounds& a, const Bounds& b, double limit) {
+  double squares = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double gap = std::max({b.lo[axis] - a.hi[axis], a.lo[axis] - b.hi[axis], 0.0});
+    if (gap > limit) return true;
+    squares += gap * gap;
+  }
+  if (!(squares > 0x1p-900 && squares < std::numeric_limits<double>::infinity())) return false;
+  return std::sqrt(squares) * (1 - 16 * kU) > limit;
+}
+
+/// True only if all points of the two triangles are farther apart than `limit` (>= 0, finite):
+/// between two planes that are perpendicular to some direction there is nothing of either, and the
+/// planes are farther apart than the limit.
+///
+/// Directions come from Gilbert's descent towards the closest points (An Iterative Procedure for
+/// Computing the Minimum of a Quadratic Form on a Convex Set, SIAM J. Control, 1966). A direction
+/// need not be right: for each one the gap is bounded with all that is rounded.
+inline bool farther_by_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                              double limit) {
+  constexpr int kSteps = 24;
+  // Relative to a corner. Each coordinate y is one rounded difference.
+  std::array<Vec3, 3> s, t;
+  for (int i = 0; i < 3; ++i) {
+    s[i] = a[i] - a[0];
+    t[i] = b[i] - a[0];
+  }
+  Vec3 near = (t[0] / 3 + t[1] / 3 + t[2] / 3) - (s[1] / 3 + s[2] / 3);
+  for (int step = 0; step < kSteps; ++step) {
+    const double largest = near.cwiseAbs().maxCoeff();
+    if (!(largest > 0 && largest < std::numeric_limits<double>::infinity())) return false;
+    // The exact direction is n, whose largest component is 1: its length is 1 to 1.8.
+    const Vec3 n = near / largest;
+    double s_most = -std::numeric_limits<double>::infinity(), t_least = -s_most, magnitude = 0;
+    int s_at = 0, t_at = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double of_s = n.dot(s[i]), of_t = n.dot(t[i]);
+      magnitude = std::max(
+          {magnitude, n.cwiseAbs().dot(s[i].cwiseAbs()), n.cwiseAbs().dot(t[i].cwiseAbs())});
+      if (of_s > s_most) s_most = of_s, s_at = i;
+      if (of_t < t_least) t_least = of_t, t_at = i;
+    }
+    // Of n . y each of the three terms has the rounding of y and of the product, then two sums: at
+    // most 4.01 u of `magnitude` and what is lost to subnormal products, for either side; their
+    // difference is rounded once more, 2 u of `magnitude`. The length has 4 u, the quotient 1 u.
+    const double gap = t_least - s_most - 16 * kU * magnitude - 0x1p-1000;
+    if (!std::isfinite(magnitude)) return false;
+    if (gap > 0x1p-900 && gap / n.norm() * (1 - 16 * kU) > limit) return true;
+    const Vec3 step_to = (t[t_at] - s[s_at]) - near;
+    const double length = step_to.squaredNorm();
+    if (!(length > 0)) return false;
+    const double part = std::clamp(-near.dot(step_to) / length, 0.0, 1.0);
+    if (!(part > 0)) return false;  // no direction is better
+    near += part * step_to;
+  }
+  return false;
+}
+
+}  // namespace farcull::separation
