@@ -5,12 +5,12 @@
 // pairs: triangle after triangle, each asked for its partners.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "verify/certificate/bounds_tree.h"
 
 namespace farcull {
 
@@ -29,26 +29,11 @@ class BoxPairs {
   bool next(std::vector<TrianglePair>& pairs, std::size_t enough);
 
  private:
-  struct Bounds {
-    std::array<double, 3> lo, hi;
-  };
-  /// A binary tree over `order_`, its nodes in preorder: the left child follows its parent.
-  struct Node {
-    Bounds bounds;
-    std::uint32_t last_triangle = 0;  // the largest index below it
-    std::uint32_t first = 0;          // into order_
-    std::uint32_t count = 0;
-    std::uint32_t after = 0;  // the first node that is not below it
-  };
-
-  bool meet(const Bounds& x, const Bounds& y) const;
-  void build(std::uint32_t first, std::uint32_t count);
+  bool meet(const BoundsTree::Bounds& x, const BoundsTree::Bounds& y) const;
 
   const Scene& scene_;
   double clearance_;
-  std::vector<Bounds> bounds_;  // per triangle
-  std::vector<std::uint32_t> order_;
-  std::vector<Node> nodes_;
+  BoundsTree tree_;
   std::uint32_t object_ = 0;    // of triangle_
   std::uint32_t triangle_ = 0;  // the next to be asked
 };

@@ -73,24 +73,42 @@ bool has_gap(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integ
   return all_less(s.on_a, s.on_b) || all_less(s.on_b, s.on_a);
 }
 
-/// True iff the gap that has_gap() has found is longer than the clearance, which is > 0: then so is
-/// the distance, since along no direction is the gap longer. Squares are compared: gap / |d| >
-/// clearance.
+/// gap = the length, times |d|, of the gap that has_gap() has found.
 template <class Integer>
-bool gap_exceeds(Scratch<Integer>& s, const Integer& clearance) {
+void gap_length(const Scratch<Integer>& s, Integer& gap) {
   const auto [a_lo, a_hi] = std::minmax_element(s.on_a.begin(), s.on_a.end());
   const auto [b_lo, b_hi] = std::minmax_element(s.on_b.begin(), s.on_b.end());
-  Integer& gap = s.we;
   if (*a_hi < *b_lo) {
     gap = *b_lo - *a_hi;
   } else {
     gap = *a_lo - *b_hi;
   }
-  multiply(s.w[0], gap, gap);
+}
+
+/// True iff the gap that has_gap() has found is longer than the clearance, which is > 0: then so is
+/// the distance, since along no direction is the gap longer. Squares are compared: gap / |d| >
+/// clearance.
+template <class Integer>
+bool gap_exceeds(Scratch<Integer>& s, const Integer& clearance) {
+  gap_length(s, s.we);
+  multiply(s.w[0], s.we, s.we);
   dot(s.ee, s.d, s.d);
   multiply(s.w[1], clearance, clearance);
   multiply(s.w[2], s.w[1], s.ee);
   return s.w[0] > s.w[2];
+}
+
+/// True iff the gap that has_gap() has found is so long that the square of the distance is more
+/// than over / under (over >= 0, under > 0), or with or_as_far at least that: gap^2 / |d|^2 is
+/// compared.
+inline bool gap_reaches(Scratch<mpz_class>& s, const mpz_class& over, const mpz_class& under,
+                        bool or_as_far) {
+  gap_length(s, s.we);
+  multiply(s.w[0], s.we, s.we);
+  multiply(s.w[1], s.w[0], under);
+  dot(s.ee, s.d, s.d);
+  multiply(s.w[2], s.ee, over);
+  return or_as_far ? s.w[1] >= s.w[2] : s.w[1] > s.w[2];
 }
 
 /// True iff the direction s.d proves that a and b share no more than their shared part; shared_a

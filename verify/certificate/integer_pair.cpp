@@ -10,6 +10,7 @@
 
 #include "verify/certificate/integer_direction.h"
 #include "verify/certificate/integer_points.h"
+#include "verify/certificate/integer_scale.h"
 #include "verify/certificate/integer_vector.h"
 
 namespace farcull {
@@ -17,20 +18,6 @@ namespace farcull {
 using namespace integer;
 
 namespace {
-
-/// value = mantissa * 2^exponent, the mantissa odd or 0.
-struct Parts {
-  std::int64_t mantissa = 0;
-  int exponent = 0;
-};
-
-Parts parts(double value) {
-  if (value == 0) return {};
-  int exponent = 0;
-  const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));
-  const int zeros = std::countr_zero(static_cast<std::uint64_t>(mantissa));
-  return {mantissa >> zeros, exponent - 53 + zeros};
-}
 
 int bit_length(Wide magnitude) {
   const auto high = static_cast<std::uint64_t>(magnitude >> 64);
@@ -49,38 +36,12 @@ Corners<Wide> wide(const std::array<std::array<std::int64_t, 3>, 6>& points, int
 
 }  // namespace
 
-struct IntegerPair::Big {
-  Corners<mpz_class> a, b;
+struct IntegerPair::Big : ScaledPair {
   mpz_class clearance;
 
-  Big(const std::array<Vec3, 3>& from_a, const std::array<Vec3, 3>& from_b, double distance) {
-    int least = std::numeric_limits<int>::max();
-    if (distance != 0) least = parts(distance).exponent;
-    for (const auto* t : {&from_a, &from_b}) {
-      for (const Vec3& p : *t) {
-        for (int k = 0; k < 3; ++k) {
-          if (p[k] != 0) least = std::min(least, parts(p[k]).exponent);
-        }
-      }
-    }
-    const auto scale = [least](mpz_class& to, double from) {
-      const Parts x = parts(from);
-      to = static_cast<long>(x.mantissa);
-      if (x.mantissa != 0) to <<= x.exponent - least;
-    };
-    const auto convert = [&](Corners<mpz_class>& to, const std::array<Vec3, 3>& from) {
-      for (int i = 0; i < 3; ++i) {
-        for (int k = 0; k < 3; ++k) scale(to[i][k], from[i][k]);
-      }
-    };
-    scale(clearance, distance);
-    convert(a, from_a);
-    convert(b, from_b);
-    // Every direction and every gap is about differences, and differences are shorter.
-    const Vector<mpz_class> origin = a[0];
-    for (auto* t : {&a, &b}) {
-      for (Vector<mpz_class>& p : *t) minus(p, Vector<mpz_class>(p), origin);
-    }
+  Big(const std::array<Vec3, 3>& from_a, const std::array<Vec3, 3>& from_b, double distance)
+      : ScaledPair(scaled(from_a, from_b, distance)) {
+    scale(clearance, distance, exponent);
   }
 };
 

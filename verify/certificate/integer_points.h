@@ -67,15 +67,44 @@ class PointSearch {
   /// True iff the point constructed last is no farther than `distance` from that of another search:
   /// |p / m - q / n| <= distance, as squares of integers.
   bool is_near(const PointSearch& other, const mpz_class& distance) {
-    for (int k = 0; k < 3; ++k) {
-      multiply(w_[k], point_[k], other.scale_);
-      subtract_product(w_[k], other.point_[k], scale_);
-    }
+    from_to(other);
     dot(value_, w_, w_);
     multiply(numerator_, scale_, other.scale_);
     multiply(side_[0], numerator_, distance);
     multiply(side_[1], side_[0], side_[0]);
     return value_ <= side_[1];
+  }
+
+  /// With p the point constructed last and q that of another search: true iff q - p has no part
+  /// that leads from p into a, nor one that leads from q out of b: (q - p) . (a_i - p) <= 0 and
+  /// (q - p) . (b_j - q) >= 0 for all corners. Where p lies in a and q in b, no two points of a and
+  /// b are then nearer (docs/certificate.md).
+  bool is_nearest(const PointSearch& other, const BigCorners& a, const BigCorners& b) {
+    from_to(other);
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        multiply(side_[k], a[i][k], scale_);
+        side_[k] -= point_[k];
+      }
+      dot(value_, w_, side_);
+      if (value_ > 0) return false;
+      for (int k = 0; k < 3; ++k) {
+        multiply(side_[k], b[i][k], other.scale_);
+        side_[k] -= other.point_[k];
+      }
+      dot(value_, w_, side_);
+      if (value_ < 0) return false;
+    }
+    return true;
+  }
+
+  /// The square of the distance of the point constructed last from that of another search, as
+  /// numerator and denominator > 0, not reduced.
+  void squared_distance(const PointSearch& other, mpz_class& over, mpz_class& under) {
+    from_to(other);
+    dot(over, w_, w_);
+    multiply(value_, scale_, other.scale_);
+    multiply(under, value_, value_);
   }
 
   /// True iff the normal of t is not zero.
@@ -121,6 +150,13 @@ class PointSearch {
   }
 
  private:
+  /// w_ = q - p, times both scales; p the point constructed last, q that of another search.
+  void from_to(const PointSearch& other) {
+    for (int k = 0; k < 3; ++k) {
+      multiply(w_[k], other.point_[k], scale_);
+      subtract_product(w_[k], point_[k], other.scale_);
+    }
+  }
   void make_normal(const BigCorners& t) {
     edge(v_, t, 0);
     edge(w_, t, 1);

@@ -1,16 +1,11 @@
-// A certificate as text and back. The reader trusts nothing: a first pass over the syntax bounds
-// the number of values and the depth before anything is built, so memory stays in proportion to the
-// text.
-#include <array>
+// A certificate as text and back.
 #include <cmath>
-#include <initializer_list>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <stdexcept>
 
 #include "core/base/base64.h"
-#include "core/base/error.h"
 #include "verify/certificate/certificate.h"
+#include "verify/certificate/json_reader.h"
 
 namespace farcull {
 namespace {
@@ -23,132 +18,7 @@ constexpr std::uint64_t kVersion = 3, kVersionWithClearance = 4;
 constexpr const char* kRemedy =
     "give a file that `farcull run ... --certificate` wrote; docs/certificate.md is the format";
 
-// ---- reading ----
-
-/// Printable ASCII, cut short: for a message.
-std::string clean(std::string_view text, std::size_t most) {
-  std::string out;
-  for (const char c : text.substr(0, most)) out += c >= ' ' && c <= '~' ? c : '?';
-  if (text.size() > most) out += "...";
-  return out;
-}
-
-/// Reads the syntax alone and stops where the text is more than a certificate can be.
-class Syntax : public nlohmann::json_sax<Json> {
- public:
-  bool null() override { return count(); }
-  bool boolean(bool) override { return count(); }
-  bool number_integer(number_integer_t) override { return count(); }
-  bool number_unsigned(number_unsigned_t) override { return count(); }
-  bool number_float(number_float_t, const string_t&) override { return count(); }
-  bool string(string_t&) override { return count(); }
-  bool binary(binary_t&) override { return count(); }
-  bool start_array(std::size_t) override { return enter(); }
-  bool end_array() override { return leave(); }
-  bool start_object(std::size_t) override { return enter(); }
-  bool end_object() override { return leave(); }
-  bool key(string_t& name) override {
-    if (keys_.back().insert(name).second) return true;
-    return stop("the key '" + clean(name, 40) + "' occurs twice");
-  }
-  bool parse_error(std::size_t position, const std::string&,
-                   const nlohmann::json::exception& error) override {
-    // The library's text between "...column 2: " and "; last read: '...'", which holds the text.
-    std::string_view what = error.what();
-    for (const std::string_view mark : {"] ", "column "}) {
-      const std::size_t found = what.find(mark);
-      if (found != std::string_view::npos) what.remove_prefix(found + mark.size());
-    }
-    const std::size_t number = what.find_first_not_of("0123456789");
-    if (number != 0 && what.substr(std::min(number, what.size()), 2) == ": ")
-      what.remove_prefix(number + 2);
-    what = what.substr(0, what.find("; last read"));
-    return stop("not JSON at byte " + std::to_string(position) + ": " + clean(what, 120));
-  }
-
-  std::string reason;
-
- private:
-  bool stop(std::string why) {
-    reason = std::move(why);
-    return false;
-  }
-  bool count() {
-    constexpr int kMostValues = 10'000;  // views and assumptions are few; evidence is one string
-    return ++values_ <= kMostValues || stop("more values than any certificate has");
-  }
-  bool enter() {
-    constexpr std::size_t kDeepest = 8;
-    if (keys_.size() == kDeepest) return stop("nested deeper than any certificate is");
-    keys_.emplace_back();
-    return count();
-  }
-  bool leave() {
-    keys_.pop_back();
-    return true;
-  }
-
-  int values_ = 0;
-  std::vector<std::set<std::string>> keys_;  // of the objects (none of arrays) around the place
-};
-
-/// Readers of values; `place` is where they are, as in unattested.views[1].width.
-class Reader {
- public:
-  explicit Reader(std::string name) : name_(std::move(name)) {}
-
-  [[noreturn]] void fail(const std::string& reason) const { throw Error(name_, reason, kRemedy); }
-
-  /// The value is an object with exactly these keys.
-  void object(const Json& value, const std::string& place,
-              std::initializer_list<const char*> keys) const {
-    const std::string of = place.empty() ? "" : place + ".";
-    if (!value.is_object()) fail((place.empty() ? "the certificate" : place) + " is no object");
-    for (const char* key : keys) {
-      if (!value.contains(key)) fail(of + key + " is missing");
-    }
-    if (value.size() == keys.size()) return;
-    for (const auto& item : value.items()) {
-      bool known = false;
-      for (const char* key : keys) known = known || item.key() == key;
-      if (!known) fail("the key '" + of + clean(item.key(), 40) + "' is unknown");
-    }
-  }
-  const Json& array(const Json& value, const std::string& place) const {
-    if (!value.is_array()) fail(place + " is no array");
-    return value;
-  }
-  std::string text(const Json& value, const std::string& place) const {
-    if (!value.is_string()) fail(place + " is no string");
-    return value.get<std::string>();
-  }
-  std::uint64_t count(const Json& value, const std::string& place) const {
-    if (!value.is_number_unsigned()) fail(place + " is no whole number from 0 to 2^64 - 1");
-    return value.get<std::uint64_t>();
-  }
-  void digits(const std::string& text, std::size_t size, const std::string& place) const {
-    if (text.size() != size || text.find_first_not_of("0123456789abcdef") != text.npos)
-      fail(place + " is not " + std::to_string(size) + " lower-case hexadecimal digits");
-  }
-  double length(const Json& value, const std::string& place) const {
-    const double x = value.is_number() ? value.get<double>() : -1;
-    if (!(x >= 0) || !std::isfinite(x)) fail(place + " is no finite number of 0 or more");
-    return x;
-  }
-
- private:
-  std::string name_;
-};
-
-Certificate::SceneKey read_scene(const Reader& reader, const Json& value) {
-  reader.object(value, "scene", {"name", "objects", "triangles", "hash"});
-  Certificate::SceneKey scene{reader.text(value["name"], "scene.name"),
-                              reader.count(value["objects"], "scene.objects"),
-                              reader.count(value["triangles"], "scene.triangles"),
-                              reader.text(value["hash"], "scene.hash")};
-  reader.digits(scene.hash, 16, "scene.hash");
-  return scene;
-}
+using Reader = JsonReader;
 
 Certificate::Unasked read_not_asked(const Reader& reader, const Json& value) {
   reader.object(value, "not_asked", {"objects", "pairs"});
@@ -224,11 +94,7 @@ std::string to_text(const Certificate& certificate) {
   const bool clearance = certificate.clearance > 0;
   Json json = {{"format", kFormat},
                {"version", clearance ? kVersionWithClearance : kVersion},
-               {"scene",
-                {{"name", certificate.scene.name},
-                 {"objects", certificate.scene.objects},
-                 {"triangles", certificate.scene.triangles},
-                 {"hash", certificate.scene.hash}}}};
+               {"scene", scene_key_json(certificate.scene)}};
   if (clearance) json["clearance"] = finite(certificate.clearance);
   json["not_asked"] = {{"objects", certificate.not_asked.objects},
                        {"pairs", certificate.not_asked.pairs}};
@@ -249,10 +115,9 @@ std::string to_text(const Certificate& certificate) {
 }
 
 Certificate parse_certificate(std::string_view text, const std::string& name) {
-  const Reader reader(name);
-  Syntax syntax;
-  if (!Json::sax_parse(text.begin(), text.end(), &syntax)) reader.fail(syntax.reason);
-  const Json root = Json::parse(text.begin(), text.end());
+  constexpr std::uint64_t kMostValues = 10'000;  // views and assumptions are few
+  const Reader reader(name, kRemedy);
+  const Json root = reader.parse(text, kMostValues);
   // Before the keys, which another version has others of.
   if (!root.is_object()) reader.fail("the certificate is no object");
   if (root.value("format", Json()) != kFormat) reader.fail(std::string("format is not ") + kFormat);
@@ -274,7 +139,7 @@ Certificate parse_certificate(std::string_view text, const std::string& name) {
                   {"format", "version", "scene", "not_asked", "claims", "list_sha256", "unattested",
                    "evidence"});
   }
-  certificate.scene = read_scene(reader, root["scene"]);
+  certificate.scene = read_scene_key(reader, root["scene"]);
   certificate.not_asked = read_not_asked(reader, root["not_asked"]);
   certificate.claims = read_claims(reader, root["claims"]);
   certificate.list_sha256 = reader.text(root["list_sha256"], "list_sha256");

@@ -1,0 +1,103 @@
+// A certificate of distances: what `farcull distance` answered about a scene, with what a stranger
+// needs to prove it in integers, without any of the code that found it. docs/certificate.md is the
+// format and the proof.
+//
+// A check that passes proves something about the scene alone: that the question has these answers
+// and no others, that each distance is exactly the one named, and where it is realised.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "verify/certificate/certificate.h"
+
+namespace farcull {
+
+/// The answer about two objects, or about two triangles of them.
+struct DistanceEntry {
+  std::array<std::uint32_t, 2> objects{};
+  std::array<std::uint32_t, 2> triangles{};  // counted within their objects
+  std::string squared;                       // the exact square, world units: decimal "5/4", in
+                                             // lowest terms
+  std::array<std::uint8_t, 2> features{};    // where the nearest points lie, one of each triangle:
+                                           // 0 to 2 corners, 3 to 5 the edge from corner 0 to 2 to
+                                           // the next, 6 the face; the first that hold two
+  bool operator==(const DistanceEntry&) const = default;
+};
+
+struct DistanceCertificate {
+  /// What was asked. An object without triangles has no distance and is never named.
+  /// objects: each two objects, and each object that is `self` with itself, that are at most
+  ///   `within` apart: their distance, and the first of the nearest pairs of triangles.
+  /// nearest: each two objects of which one is among the k nearest of the other, and at most
+  ///   `within` apart; of those as far the lower object is nearer.
+  /// all: each two triangles at most `within` apart, of different objects or of one that is `self`.
+  /// Neighbours (verify/exact.h) of one object never count.
+  enum class Pairs : std::uint8_t { objects, nearest, all };
+
+  Certificate::SceneKey scene;
+  Pairs pairs = Pairs::objects;
+  std::uint64_t k = 0;                                      // >= 1 with `nearest`, else 0
+  double within = std::numeric_limits<double>::infinity();  // world units, >= 0; finite with `all`
+  std::vector<DistanceEntry> distances;  // sorted by objects, then by triangles, each once
+
+  bool operator==(const DistanceCertificate&) const = default;
+};
+std::string to_string(DistanceCertificate::Pairs pairs);
+
+/// The objects and triangles of a pair of global indices a < b, as an entry names them. Throws
+/// std::logic_error where the scene has no such triangle.
+DistanceEntry entry_of(const Scene& scene, const TrianglePair& pair, std::string squared,
+                       std::array<std::uint8_t, 2> features);
+
+/// "vertex 2", "edge 0" or "face".
+std::string feature_text(std::uint8_t feature);
+
+/// JSON, the keys always in the same order, an entry a line, with a final newline. Bytes of strings
+/// that are not UTF-8 become U+FFFD.
+std::string to_text(const DistanceCertificate& certificate);
+
+/// The inverse of to_text(). Throws Error naming `name` and what is wrong where the text is not
+/// JSON of exactly this form: syntax, UTF-8, keys unknown, missing or twice, types, ranges,
+/// fractions that are not as an entry has them, format or version. It does not judge what the
+/// certificate claims. Memory in proportion to the text.
+DistanceCertificate parse_distance_certificate(std::string_view text, const std::string& name);
+
+/// Whether the text says that it is a certificate of distances: its first key is the format. It may
+/// be malformed all the same.
+bool is_distance_certificate(std::string_view text);
+
+struct DistanceCheck {
+  Verdict verdict = Verdict::not_proved;
+  std::string reason;                // empty where proved
+  std::optional<TrianglePair> pair;  // that refutes, or that is wrong
+  std::string squared;               // the exact square of its distance; empty without a pair
+  double distance = 0;               // its root, at most a unit in the last place more; may be
+                                     // infinite
+  std::uint64_t decided = 0;         // pairs of triangles that boxes leave to integers
+  std::uint64_t neighbours = 0;      // of these, with `all`
+  double ms = 0;                     // wall clock
+};
+
+/// Decides in integers whether the answers are right and complete.
+/// - refuted: a distance is not that of its triangles, or a pair of triangles is nearer than the
+///   one that is listed for its objects, or belongs to the answer and is not listed, or does not
+///   belong to it and is listed. The pair is named, with its exact squared distance. Of several
+///   pairs that refute the first one is named: first what is wrong in an entry by itself, then
+///   what is nearer than an entry, then what is not listed; each by objects, then by triangles.
+/// - not_proved: nothing refutes, but entries are not in order or there twice, an entry is of a
+///   pair that does not count, a pair as near comes before the one that is named, or the nearest
+///   points lie on other features.
+/// - proved: neither.
+/// Throws Error naming `name` where the certificate is of another scene, or names an object or a
+/// triangle that the scene does not have. Precondition: validate() accepts the scene.
+DistanceCheck check_distances(const DistanceCertificate& certificate, const Scene& scene,
+                              const std::string& name);
+
+}  // namespace farcull

@@ -1,0 +1,397 @@
+// The checker of distances: fraction, integer_distance, near_boxes, box_pairs and this file, and
+// what they include of this folder, are all that has to be right.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/floating_point.h"
+#include "core/base/parallel.h"
+#include "core/base/stopwatch.h"
+#include "verify/certificate/box_pairs.h"
+#include "verify/certificate/distance_certificate.h"
+#include "verify/certificate/far_proof.h"
+#include "verify/certificate/fraction.h"
+#include "verify/certificate/integer_distance.h"
+#include "verify/certificate/listed_distances.h"
+#include "verify/certificate/near_boxes.h"
+
+namespace farcull {
+namespace {
+
+using Pairs = DistanceCertificate::Pairs;
+
+constexpr std::size_t kBlock = 1 << 16;  // pairs decided at a time
+constexpr std::size_t kPerThread = 256;  // enough of them to pay for a thread
+
+/// What is wrong; the first one that refutes, else the first one.
+class Report {
+ public:
+  void refute(std::string reason, const TrianglePair& pair, const IntegerDistance& exact) {
+    add(Verdict::refuted, std::move(reason), pair, exact);
+  }
+  void leave_unproved(std::string reason, const TrianglePair& pair, const IntegerDistance& exact) {
+    add(Verdict::not_proved, std::move(reason), pair, exact);
+  }
+  bool refuted() const { return out_.verdict == Verdict::refuted; }
+  DistanceCheck& result() { return out_; }
+  void finish() {
+    if (out_.reason.empty()) out_.verdict = Verdict::proved;
+  }
+
+ private:
+  void add(Verdict verdict, std::string reason, const TrianglePair& pair,
+           const IntegerDistance& exact) {
+    if (refuted() || (verdict == Verdict::not_proved && !out_.reason.empty())) return;
+    out_.verdict = verdict;
+    out_.reason = std::move(reason);
+    out_.pair = pair;
+    out_.squared = text_of(exact.squared);
+    out_.distance = root_above(exact.squared);
+  }
+  DistanceCheck out_;
+};
+
+class Checker {
+ public:
+  Checker(const DistanceCertificate& certificate, const Scene& scene, const std::string& name)
+      : certificate_(certificate),
+        scene_(scene),
+        listed_(located(certificate, scene, name)),
+        proof_(scene) {
+    if (std::isfinite(certificate.within)) within_.emplace(square_of(certificate.within));
+  }
+
+  DistanceCheck run() {
+    check_order();
+    check_entries();
+    if (!report_.refuted()) {
+      if (certificate_.pairs == Pairs::all) {
+        check_triangles();
+      } else {
+        check_objects();
+      }
+    }
+    report_.finish();
+    return std::move(report_.result());
+  }
+
+ private:
+  std::array<Vec3, 3> corners(std::uint32_t triangle) const { return scene_.corners(triangle); }
+  IntegerDistance exact(const TrianglePair& pair) const {
+    return integer_distance(corners(pair.a), corners(pair.b));
+  }
+
+  std::string place_of(const Listed& listed) const {
+    return "distances[" + std::to_string(&listed - listed_.data()) + "]";
+  }
+
+  /// Of triangles of one object.
+  bool are_neighbours(const TrianglePair& pair) const {
+    for (const Vec3& p : corners(pair.a)) {
+      for (const Vec3& q : corners(pair.b)) {
+        if (p == q) return true;
+      }
+    }
+    return false;
+  }
+
+  // ---- the entries by themselves ----
+
+  void check_order() {
+    const bool all = certificate_.pairs == Pairs::all;
+    const auto& entries = certificate_.distances;
+    for (std::size_t i = 1; i < entries.size(); ++i) {
+      const auto key = [&](const DistanceEntry& entry) {
+        return std::pair(entry.objects, all ? entry.triangles : std::array<std::uint32_t, 2>{});
+      };
+      if (key(entries[i - 1]) < key(entries[i])) continue;
+      report_.leave_unproved("distances[" + std::to_string(i) + "] is there twice, or not in order",
+                             listed_[i].pair, exact(listed_[i].pair));
+      return;
+    }
+  }
+
+  /// Whether the pair is of those that are asked about.
+  bool counts(std::size_t i) const {
+    const DistanceEntry& entry = certificate_.distances[i];
+    if (entry.objects[0] != entry.objects[1]) return entry.objects[0] < entry.objects[1];
+    return certificate_.pairs != Pairs::nearest && scene_.objects[entry.objects[0]].self &&
+           entry.triangles[0] < entry.triangles[1] && !are_neighbours(listed_[i].pair);
+  }
+
+  void check_entries() {
+    std::vector<IntegerDistance> found(listed_.size());
+    for_chunks(listed_.size(), chunks_for(listed_.size(), kPerThread),
+               [&](std::size_t, std::size_t begin, std::size_t end) {
+                 for (std::size_t i = begin; i < end; ++i) found[i] = exact(listed_[i].pair);
+               });
+    for (std::size_t i = 0; i < listed_.size(); ++i) {
+      const TrianglePair& pair = listed_[i].pair;
+      const std::string place = place_of(listed_[i]);
+      if (found[i].squared != listed_[i].length.squared) {
+        report_.refute("the square of the distance in " + place + " is not that of its triangles",
+                       pair, found[i]);
+      } else if (within_ && found[i].squared > within_->squared) {
+        report_.refute(place + " is farther apart than the distance asked for", pair, found[i]);
+      } else if (!counts(i)) {
+        report_.leave_unproved(
+            place +
+                " is no pair that is asked about: one object, neighbours, or the second "
+                "triangle before the first",
+            pair, found[i]);
+      } else if (found[i].features != certificate_.distances[i].features) {
+        report_.leave_unproved(place + " does not say where the nearest points lie: " +
+                                   feature_text(found[i].features[0]) + " and " +
+                                   feature_text(found[i].features[1]) + " hold the first two",
+                               pair, found[i]);
+      }
+    }
+  }
+
+  // ---- all triangles ----
+
+  void check_triangles() {
+    std::vector<TrianglePair> sorted;
+    for (const Listed& listed : listed_) sorted.push_back(listed.pair);
+    std::ranges::sort(sorted);
+    const std::vector<std::uint32_t> owner = owners(scene_);
+    BoxPairs enumeration(scene_, certificate_.within);
+    std::vector<TrianglePair> pairs;
+    while (enumeration.next(pairs, kBlock) && !report_.refuted()) {
+      for (const TrianglePair& pair : pairs) {
+        ++report_.result().decided;
+        if (std::ranges::binary_search(sorted, pair)) continue;
+        if (owner[pair.a] == owner[pair.b] && are_neighbours(pair)) {
+          ++report_.result().neighbours;
+          continue;
+        }
+        proof_.add({pair, &*within_, false, 0, std::nullopt});
+      }
+      decide();
+    }
+  }
+
+  // ---- objects ----
+
+  using Objects = std::array<std::uint32_t, 2>;
+  /// Each two objects that are listed, sorted, with their entry.
+  using Named = std::vector<std::pair<Objects, const Listed*>>;
+
+  /// Entries that do not count are left out, and of several about the same objects all but the
+  /// first: such a certificate is not proved, and may be refuted for another reason.
+  Named named_objects() const {
+    Named out;
+    for (std::size_t i = 0; i < listed_.size(); ++i) {
+      if (counts(i)) out.emplace_back(certificate_.distances[i].objects, &listed_[i]);
+    }
+    std::ranges::sort(out);
+    const auto same = std::ranges::unique(out, {}, &Named::value_type::first);
+    out.erase(same.begin(), same.end());
+    return out;
+  }
+
+  /// How far the answers of an object reach: its kth nearest one that is listed, or where fewer
+  /// are listed `within`, which all answers reach.
+  struct Reach {
+    const Length* length = nullptr;                                    // null: infinite
+    std::uint32_t object = std::numeric_limits<std::uint32_t>::max();  // of as far ones the last
+  };
+
+  /// Whether an object at this distance is within the reach: of those as far the lower object is.
+  static bool is_in(const Length& length, std::uint32_t object, const Reach& reach) {
+    if (reach.length == nullptr) return true;
+    const auto order = length.squared <=> reach.length->squared;
+    return order < 0 || (order == 0 && object <= reach.object);
+  }
+
+  /// By object.
+  std::vector<Reach> reaches(const Named& named) const {
+    std::vector<Reach> out(scene_.objects.size(), {.length = within_ ? &*within_ : nullptr});
+    if (certificate_.pairs != Pairs::nearest) return out;
+    std::vector<std::vector<Reach>> of(scene_.objects.size());
+    for (const auto& [objects, listed] : named) {
+      of[objects[0]].push_back({&listed->length, objects[1]});
+      of[objects[1]].push_back({&listed->length, objects[0]});
+    }
+    for (std::size_t o = 0; o < of.size(); ++o) {
+      if (of[o].size() < certificate_.k) continue;
+      const auto kth = of[o].begin() + static_cast<std::ptrdiff_t>(certificate_.k - 1);
+      std::ranges::nth_element(of[o], kth, [](const Reach& x, const Reach& y) {
+        return x.object != y.object && is_in(*x.length, x.object, y);
+      });
+      out[o] = *kth;
+    }
+    return out;
+  }
+
+  void check_objects() {
+    const Named named = named_objects();
+    NearBoxes boxes(scene_);
+    // First what is listed: how far answers reach is known only when these distances are proved.
+    for (const auto& [objects, listed] : named) {
+      ask(boxes, objects, &listed->length, false, listed);
+      if (report_.refuted()) return;
+    }
+    decide();
+    if (report_.refuted()) return;
+    const std::vector<Reach> reach = reaches(named);
+    if (certificate_.pairs == Pairs::nearest) check_reaches(named, reach);
+    check_unlisted(boxes, named, reach);
+  }
+
+  void check_unlisted(NearBoxes& boxes, const Named& named, const std::vector<Reach>& reach) {
+    std::vector<std::uint32_t> objects;  // that have triangles
+    for (std::uint32_t o = 0; o < scene_.objects.size(); ++o) {
+      if (scene_.objects[o].triangle_count > 0) objects.push_back(o);
+    }
+    auto next = named.begin();
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      const bool self = certificate_.pairs == Pairs::objects && scene_.objects[objects[i]].self;
+      for (std::size_t j = self ? i : i + 1; j < objects.size(); ++j) {
+        const Objects pair = {objects[i], objects[j]};
+        if (next != named.end() && next->first == pair) {
+          ++next;
+          continue;
+        }
+        ask_unlisted(boxes, pair, reach);
+        if (report_.refuted()) return;
+      }
+    }
+    decide();
+  }
+
+  /// These objects are in the reach of neither.
+  void ask_unlisted(NearBoxes& boxes, const Objects& objects, const std::vector<Reach>& reach) {
+    const Reach& of_a = reach[objects[0]];
+    const Reach& of_b = reach[objects[1]];
+    const Length* far = farther(of_a.length, of_b.length);
+    // Just as far is enough where the reaches that are so long end before the other object.
+    const auto as_far = [&](const Reach& x, std::uint32_t other) {
+      return far != nullptr && (x.object < other || x.length->squared < far->squared);
+    };
+    ask(boxes, objects, far, as_far(of_a, objects[1]) && as_far(of_b, objects[0]), nullptr);
+  }
+
+  static const Length* farther(const Length* x, const Length* y) {
+    if (x == nullptr || y == nullptr || x == y) return x == nullptr ? x : y;
+    return x->squared < y->squared ? y : x;
+  }
+
+  /// Every pair of triangles of the two objects that counts has to be farther apart than the
+  /// length, or as far with or_as_far and after the listed pair.
+  void ask(NearBoxes& boxes, const Objects& objects, const Length* length, bool or_as_far,
+           const Listed* listed) {
+    ++question_;
+    if (length == nullptr) {
+      if (const auto pair = first_counting(objects))
+        proof_.add({*pair, nullptr, false, question_, {}});
+    } else {
+      std::optional<std::size_t> entry;
+      if (listed != nullptr) entry = listed - listed_.data();
+      boxes.ask(objects[0], objects[1], length->above);
+      std::vector<TrianglePair> pairs;
+      for (bool more = true; more;) {
+        pairs.clear();
+        more = boxes.next(pairs, kBlock);
+        report_.result().decided += pairs.size();
+        for (const TrianglePair& pair : pairs) {
+          if (listed != nullptr && pair == listed->pair) continue;
+          if (objects[0] == objects[1] && are_neighbours(pair)) {
+            ++report_.result().neighbours;
+            continue;
+          }
+          const bool after = listed != nullptr && listed->pair < pair;
+          proof_.add({pair, length, or_as_far || after, question_, entry});
+        }
+        if (more) proof_.decide();
+      }
+    }
+    if (proof_.waiting() >= kBlock || proof_.nearer()) decide();
+  }
+
+  /// Of the objects, which have triangles, the first pair of triangles that are no neighbours.
+  std::optional<TrianglePair> first_counting(const Objects& objects) const {
+    const Object& x = scene_.objects[objects[0]];
+    const Object& y = scene_.objects[objects[1]];
+    if (objects[0] != objects[1]) return TrianglePair{x.first_triangle, y.first_triangle};
+    const std::uint32_t end = x.first_triangle + x.triangle_count;
+    for (std::uint32_t a = x.first_triangle; a < end; ++a) {
+      for (std::uint32_t b = a + 1; b < end; ++b) {
+        if (!are_neighbours({a, b})) return TrianglePair{a, b};
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// Each entry has to be in the reach of one of its objects.
+  void check_reaches(const Named& named, const std::vector<Reach>& reach) {
+    for (const auto& [objects, listed] : named) {
+      if (is_in(listed->length, objects[1], reach[objects[0]]) ||
+          is_in(listed->length, objects[0], reach[objects[1]])) {
+        continue;
+      }
+      report_.refute(place_of(*listed) + ": neither object is among the nearest of the other",
+                     listed->pair, exact(listed->pair));
+    }
+  }
+
+  // ---- deciding ----
+
+  /// Reports what the pairs so far find. To be called where no question is half asked.
+  void decide() {
+    proof_.decide();
+    if (const auto& job = proof_.nearer())
+      report_.refute(reason(*job), job->pair, exact(job->pair));
+    if (const auto& job = proof_.as_near()) {
+      report_.leave_unproved(
+          "a pair of triangles is as near as the one that is named, and before it", job->pair,
+          exact(job->pair));
+    }
+  }
+
+  std::string reason(const FarProof::Job& job) const {
+    if (job.entry) {
+      return place_of(listed_[*job.entry]) + ": these triangles of the two objects are nearer";
+    }
+    switch (certificate_.pairs) {
+      case Pairs::objects:
+        return within_ ? "these triangles are within the distance asked for, and their objects are "
+                         "not listed"
+                       : "the objects of these triangles are not listed";
+      case Pairs::nearest:
+        return "the objects of these triangles are not listed, and they are no farther apart than "
+               "the nearest ones that are listed of one of them";
+      case Pairs::all:
+        break;
+    }
+    return "these triangles are within the distance asked for, and are not listed";
+  }
+
+  const DistanceCertificate& certificate_;
+  const Scene& scene_;
+  std::vector<Listed> listed_;
+  std::optional<Length> within_;  // none: infinite
+  std::uint64_t question_ = 0;    // the last that was asked
+  FarProof proof_;
+  Report report_;
+};
+
+}  // namespace
+
+DistanceCheck check_distances(const DistanceCertificate& certificate, const Scene& scene,
+                              const std::string& name) {
+  const FloatingPointGuard guard;
+  const Stopwatch start;
+  const bool all = certificate.pairs == Pairs::all;
+  if (!(certificate.within >= 0) || (all && !std::isfinite(certificate.within)) ||
+      (certificate.pairs == Pairs::nearest) != (certificate.k > 0)) {
+    throw std::logic_error("check_distances: a bad question");
+  }
+  require_scene(certificate, scene, name);
+  DistanceCheck result = Checker(certificate, scene, name).run();
+  result.ms = start.ms();
+  return result;
+}
+
+}  // namespace farcull

@@ -1,0 +1,49 @@
+// Many pairs of triangles of which each has to be farther apart than some length, decided in
+// integers, on all cores. For the checker of distances.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "verify/certificate/fraction.h"
+
+namespace farcull {
+
+class FarProof {
+ public:
+  /// A pair that has to be farther apart than the length, or at least as far.
+  struct Job {
+    TrianglePair pair;
+    const Length* length = nullptr;  // null: infinite, which no pair satisfies
+    bool or_as_far = false;
+    std::uint64_t question = 0;        // numbered by the caller
+    std::optional<std::size_t> entry;  // the pair of this entry is `length` apart
+  };
+
+  /// The scene, and the lengths of the jobs, must outlive the object.
+  explicit FarProof(const Scene& scene) : scene_(scene) {}
+
+  void add(const Job& job) { jobs_.push_back(job); }
+  /// How many have been added and not decided.
+  std::size_t waiting() const { return jobs_.size(); }
+  /// Decides those that wait.
+  void decide();
+
+  /// Of the pairs so far that are not far enough, the first by question, then by pair; without
+  /// those that are exactly as near as the pair of their entry.
+  const std::optional<Job>& nearer() const { return nearer_; }
+  /// The first of those.
+  const std::optional<Job>& as_near() const { return as_near_; }
+
+ private:
+  bool holds(const Job& job) const;
+  bool is_nearer(const Job& job) const;
+
+  const Scene& scene_;
+  std::vector<Job> jobs_;
+  std::optional<Job> nearer_, as_near_;
+};
+
+}  // namespace farcull

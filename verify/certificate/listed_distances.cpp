@@ -1,0 +1,58 @@
+// Every index is compared with the scene before it is used.
+#include "verify/certificate/listed_distances.h"
+
+#include <array>
+#include <optional>
+#include <stdexcept>
+
+#include "core/base/error.h"
+
+namespace farcull {
+namespace {
+
+constexpr const char* kRemedy = "give the scene that the certificate was written for";
+
+}  // namespace
+
+void require_scene(const DistanceCertificate& certificate, const Scene& scene,
+                   const std::string& name) {
+  const Certificate::SceneKey& key = certificate.scene;
+  const auto differ = [&](const std::string& what, const std::string& claimed,
+                          const std::string& found) {
+    if (claimed == found) return;
+    throw Error(name,
+                "the certificate is of another scene: " + what + " " + claimed + ", given " + found,
+                kRemedy);
+  };
+  differ("objects", std::to_string(key.objects), std::to_string(scene.objects.size()));
+  differ("triangles", std::to_string(key.triangles), std::to_string(scene.triangles.size()));
+  differ("hash (coordinates, or which objects are self)", key.hash, scene_hash(scene));
+}
+
+std::vector<Listed> located(const DistanceCertificate& certificate, const Scene& scene,
+                            const std::string& name) {
+  std::vector<Listed> out;
+  for (const DistanceEntry& entry : certificate.distances) {
+    const std::string place = "distances[" + std::to_string(out.size()) + "]";
+    std::array<std::uint32_t, 2> triangles{};
+    for (int side = 0; side < 2; ++side) {
+      const std::uint32_t object = entry.objects[side];
+      const bool known = object < scene.objects.size();
+      if (!known || entry.triangles[side] >= scene.objects[object].triangle_count) {
+        throw Error(name,
+                    place + " names " +
+                        (known ? "triangle " + std::to_string(entry.triangles[side]) + " of object "
+                               : std::string("object ")) +
+                        std::to_string(object) + ", which the scene does not have",
+                    kRemedy);
+      }
+      triangles[side] = scene.objects[object].first_triangle + entry.triangles[side];
+    }
+    const std::optional<Fraction> squared = parse_fraction(entry.squared);
+    if (!squared) throw std::logic_error("check_distances: " + place + " has no square");
+    out.push_back({{triangles[0], triangles[1]}, Length(*squared)});
+  }
+  return out;
+}
+
+}  // namespace farcull
