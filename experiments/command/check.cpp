@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -15,6 +15,8 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
+#include "experiments/command/check_distances.h"
+#include "experiments/command/frame_checks.h"
 #include "experiments/record/check_result.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/cache.h"
@@ -25,6 +27,7 @@
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 #include "verify/certificate/certificate.h"
+#include "verify/certificate/distance_certificate.h"
 #include "verify/certificate/pair_list.h"
 
 namespace farcull {
@@ -33,17 +36,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30;  // of a certificate or a list
-
-// Text that a terminal can show, line by line.
-std::string clean_lines(const std::string& text) {
-  std::string out;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    out += clean_name(std::string_view(text).substr(at, end - at)) + "\n";
-    at = end + 1;
-  }
-  return out;
-}
 
 Certificate read_certificate(const std::string& path) {
   return parse_certificate(read_file(path, kMaxBytes), clean_name(path));
@@ -149,10 +141,25 @@ GivenList read_list(const CheckArguments& arguments) {
   return list;
 }
 
+// A certificate of distances says itself what was asked.
+void require_no_list(const CheckArguments& arguments) {
+  if (arguments.pairs.empty() && !arguments.clearance) return;
+  throw Error(arguments.clearance ? "--clearance" : "--pairs",
+              "does not go with a certificate of distances", "leave it out");
+}
+
 int check_one(const CheckArguments& arguments, const GivenList* list) {
   // Before the scene, which may be large.
   std::optional<Certificate> certificate;
-  if (!arguments.certificate.empty()) certificate = read_certificate(arguments.certificate);
+  if (!arguments.certificate.empty()) {
+    const std::string text = read_file(arguments.certificate, kMaxBytes);
+    if (is_distance_certificate(text)) {
+      require_no_list(arguments);
+      return check_distance_file(
+          {arguments.certificate, arguments.scene, arguments.self, arguments.json}, text);
+    }
+    certificate = parse_certificate(text, clean_name(arguments.certificate));
+  }
   Scene scene = load_scene(arguments.scene);
   if (arguments.self) make_self(scene);
   const SceneCheck done = check_scene_with(
@@ -163,88 +170,26 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
   return done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
 }
 
-// The frames so far.
-struct FrameVerdicts {
-  std::array<std::uint64_t, 3> count{};        // by Verdict
-  std::array<std::optional<long>, 3> first{};  // by Verdict
-  std::uint64_t meeting = 0;
-
-  void add(long frame, const CheckResult& result) {
-    const auto verdict = static_cast<std::size_t>(result.verdict);
-    ++count[verdict];
-    if (!first[verdict]) first[verdict] = frame;
-    meeting += result.meeting.size();
-  }
-  std::uint64_t of(Verdict verdict) const { return count[static_cast<std::size_t>(verdict)]; }
-  Verdict in_all() const {
-    return of(Verdict::refuted) > 0      ? Verdict::refuted
-           : of(Verdict::not_proved) > 0 ? Verdict::not_proved
-                                         : Verdict::proved;
-  }
-  Json json(long wanted) const {
-    const Verdict verdict = in_all();
-    const auto& bad = first[static_cast<std::size_t>(verdict)];
-    return {{"frames", of(Verdict::proved) + of(Verdict::refuted) + of(Verdict::not_proved)},
-            {"wanted", wanted},
-            {"proved", of(Verdict::proved)},
-            {"refuted", of(Verdict::refuted)},
-            {"not_proved", of(Verdict::not_proved)},
-            {"verdict", to_string(verdict)},
-            {"first", verdict == Verdict::proved ? Json(nullptr) : Json(*bad)}};
-  }
-  std::string text(double clearance) const {
-    const Verdict verdict = in_all();
-    const std::uint64_t all = of(Verdict::proved) + of(Verdict::refuted) + of(Verdict::not_proved);
-    if (verdict == Verdict::proved) {
-      return fmt::format(
-          "proved: in {} these pairs {}, and no others: {} in all\n",
-          all == 1 ? "the one frame" : fmt::format("each of {} frames", grouped(all)),
-          clearance == 0 ? "of the scene meet"
-                         : fmt::format("are at distance {} or less", clearance),
-          grouped(meeting));
-    }
-    std::string out =
-        fmt::format("{}: {} of {}, the first is frame {}", to_string(verdict), grouped(of(verdict)),
-                    counted(all, "frame", "frames"), *first[static_cast<std::size_t>(verdict)]);
-    if (verdict == Verdict::refuted && of(Verdict::not_proved) > 0)
-      out += fmt::format("; {} not proved", grouped(of(Verdict::not_proved)));
-    return out + "\n";
-  }
-};
-
-// A record whose frames are added one by one; its text is that of Json::dump(2).
-class FrameChecks {
- public:
-  explicit FrameChecks(std::string path) : output_(std::move(path)) {}
-  void add(const Json& frame, const Json& summary) {
-    const std::string before = std::exchange(begun_, true) ? ",\n    " : "{\n  \"frames\": [\n    ";
-    output_.add(before + indented(frame, "    "),
-                "\n  ],\n  \"summary\": " + indented(summary, "  ") + "\n}\n");
-  }
-  void finish() { output_.finish(); }
-
- private:
-  static std::string indented(const Json& json, const std::string& by) {
-    std::string out;
-    for (const char c : json.dump(2)) {
-      out += c;
-      if (c == '\n') out += by;
-    }
-    return out;
-  }
-
-  GrowingOutput output_;
-  bool begun_ = false;
-};
-
 std::string row_of(long frame, const SceneCheck& check) {
   const CheckResult& result = check.result;
   return fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10.1f}\n", frame, to_string(result.verdict),
                      grouped(result.found.box_pairs), grouped(result.found.meeting), result.ms);
 }
 
+std::string proved_of_frames(double clearance) {
+  return fmt::format(
+      "these pairs {}, and no others",
+      clearance == 0 ? "of the scene meet" : fmt::format("are at distance {} or less", clearance));
+}
+
 int check_frames(const CheckArguments& arguments, const GivenList* list) {
   const FrameRange range = *arguments.frames;
+  if (!arguments.certificate.empty() &&
+      is_of_distances(numbered(arguments.certificate, range.first))) {
+    require_no_list(arguments);
+    return check_distance_frames(
+        {arguments.certificate, arguments.scene, arguments.self, arguments.json}, range);
+  }
   FrameSource source(arguments.scene, range, arguments.self);
   std::optional<FrameChecks> json;
   if (!arguments.json.empty()) json.emplace(arguments.json);
@@ -284,7 +229,7 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
     const Scene& scene = source.at(frame);
     if (!clearance) clearance = clearance_of(arguments, certificate);
     last = check_scene_with(*clearance, file, certificate, scene, list, rows);
-    verdicts.add(frame, last.result);
+    verdicts.add(frame, last.result.verdict, last.result.meeting.size());
     if (table) {
       std::string text = row_of(frame, last);
       if (last.result.verdict != Verdict::proved) text += "         " + verdict_text(scene, last);
@@ -301,7 +246,7 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
   if (table) {
     const std::string rest = unattested_text(last);
     const bool several = range.count() > 1 && !last.result.unattested.empty();
-    write_output("-", "\n" + clean_lines(verdicts.text(*clearance) +
+    write_output("-", "\n" + clean_lines(verdicts.text(proved_of_frames(*clearance)) +
                                          (several ? "of the last frame's run: " : "") + rest));
   }
   return verdicts.in_all() == Verdict::proved ? kExitDone : kExitBroken;
@@ -334,8 +279,8 @@ CLI::App* CheckCommand::add_to(CLI::App& app) {
   CLI::App* command =
       add_command(app, "check", "prove or refute a certificate of a run, or a list of pairs");
   add_option(*command, "CERTIFICATE", arguments_.certificate, "",
-             "as written by run --certificate; may be left out\nbefore SCENE to check --pairs "
-             "alone");
+             "as written by run or distance --certificate; may be\nleft out before SCENE to check "
+             "--pairs alone");
   add_option(*command, "SCENE", arguments_.scene, "", kSceneHelp);
   add_flag(*command, "--self", arguments_.self,
            "every object was tested against itself, as by\nfarcull run --self");
@@ -360,10 +305,13 @@ CLI::App* CheckCommand::add_to(CLI::App& app) {
       "  farcull run two-spheres --method far-pairs --clearance 0.01 --certificate d.json\n"
       "  farcull check d.json two-spheres\n"
       "  farcull run two-spheres --method far-pairs --frames 10 --certificate c_%04d.json\n"
-      "  farcull check c_%04d.json two-spheres --frames 10\n\n"
+      "  farcull check c_%04d.json two-spheres --frames 10\n"
+      "  farcull distance two-tori --certificate e.json\n"
+      "  farcull check e.json two-tori\n\n"
       "Exit status 0: proved: these pairs of the scene meet (or are within the clearance), and\n"
-      "no others; 1: refuted, or not proved; 2: what cannot be read. Nothing is proved about the\n"
-      "run: neither its method nor which pairs it kept. The file of a certificate, and its proof:\n"
+      "no others, or these are the distances that were asked for; 1: refuted, or not proved; 2:\n"
+      "what cannot be read, or distances of another scene. Nothing is proved about the run:\n"
+      "neither its method nor which pairs it kept. The file of a certificate, and its proof:\n"
       "docs/certificate.md.");
   return command;
 }

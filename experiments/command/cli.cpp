@@ -19,6 +19,7 @@
 #include "experiments/command/check.h"
 #include "experiments/command/compare.h"
 #include "experiments/command/completion.h"
+#include "experiments/command/distance.h"
 #include "experiments/command/doctor.h"
 #include "experiments/command/experiment.h"
 #include "experiments/command/help.h"
@@ -122,6 +123,7 @@ int dispatch(int argc, char** argv) {
   RunCommand run(RunCommand::Kind::run), verify(RunCommand::Kind::verify),
       plan(RunCommand::Kind::plan);
   CompareCommand compare;
+  DistanceCommand distance;
   BenchCommand bench;
   DoctorCommand doctor;
   CheckCommand check;
@@ -138,8 +140,8 @@ int dispatch(int argc, char** argv) {
   const auto add = [&](auto&... command) {  // in the order of the help
     (commands.emplace_back(command.add_to(app), [&command] { return command.run(); }), ...);
   };
-  add(run, verify, plan, compare, bench, doctor, check, experiments, merge, picture, report, scenes,
-      suite, help, completion, manual);
+  add(run, verify, plan, compare, distance, bench, doctor, check, experiments, merge, picture,
+      report, scenes, suite, help, completion, manual);
 
   try {
     app.parse(argc, argv);

@@ -133,4 +133,68 @@ class Collider {
   std::unique_ptr<State> state_;
 };
 
+// Distances (docs/proximity.md). They are exact too: each is the root of a rational number, rounded
+// once, and nothing that is nearer is left out.
+
+enum class DistanceKind {
+  objects,  // the nearest triangles of every two objects, and of one that is asked about by itself
+  nearest,  // of each object and its k nearest others; of those as far the lower one comes first
+  all,      // every pair of triangles within a distance
+};
+
+struct DistanceFinderOptions {
+  DistanceKind kind = DistanceKind::objects;
+  std::size_t k = 1;   // with `nearest`, 1 or more
+  double within = -1;  // nothing farther apart is answered; world units; negative: no limit.
+                       // Finite and 0 or more with `all`
+  bool self = false;   // the triangles of one object as well, neighbours left out; not `nearest`
+  std::vector<bool> self_objects = {};  // the same per object; empty, or one for each
+  bool inside = true;                   // whether an object lies inside another; not with `all`
+  unsigned threads = 0;  // up to 1024; 0: as many as there are cores; changes no answer
+};
+
+/// unknown: not asked, or the objects meet. none: neither is inside the other. a, b: this one is,
+/// all of it. not_closed: one may be, but the other has no inside.
+enum class DistanceInside { unknown, none, a, b, not_closed };
+
+/// The distance of two objects, or with `all` of two triangles.
+struct DistanceAnswer {
+  std::uint32_t object_a = 0, object_b = 0;      // a <= b
+  std::uint32_t triangle_a = 0, triangle_b = 0;  // numbered as in ColliderPair; the first of those
+                                                 // that are nearest
+  double distance = 0;  // rounded to nearest; infinity beyond the largest double
+  std::string squared;  // "numerator/denominator" in lowest terms, nothing rounded
+  std::array<double, 3> point_a{}, point_b{};  // nearest points, each coordinate rounded
+  std::string feature_a, feature_b;  // where they lie: "vertex 2", "edge 0" or "face"; an edge goes
+                                     // from the corner of its number to the next
+  DistanceInside inside = DistanceInside::unknown;
+};
+
+/// Finds distances again and again: the nearest triangles of one call are the first guess of the
+/// next, which is about a scene that has moved a little, or any other. An object is used by one
+/// thread at a time.
+class DistanceFinder {
+ public:
+  /// Throws ColliderError naming the option that is bad.
+  explicit DistanceFinder(const DistanceFinderOptions& options);
+  DistanceFinder();  // default options
+  ~DistanceFinder();
+  DistanceFinder(DistanceFinder&&) noexcept;
+  DistanceFinder& operator=(DistanceFinder&&) noexcept;
+
+  /// Sorted by objects, then by triangles. No answer about an object without triangles. Throws
+  /// ColliderError for input that is not as ColliderInput says, for self_objects of another number,
+  /// and where `all` has more than 4,194,304 answers; std::bad_alloc without memory. The
+  /// floating-point environment is treated as by Collider::find().
+  std::vector<DistanceAnswer> find(const ColliderInput& input);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// DistanceFinder::find() for one scene.
+std::vector<DistanceAnswer> distances(const ColliderInput& input,
+                                      const DistanceFinderOptions& options = {});
+
 }  // namespace farcull

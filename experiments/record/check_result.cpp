@@ -37,19 +37,6 @@ Json place_json(const Scene& scene, std::uint32_t triangle) {
           {"face", scene.source_face[triangle]}};
 }
 
-Json pair_json(const Scene& scene, const std::optional<TrianglePair>& pair) {
-  if (!pair) return nullptr;
-  return {{"a", place_json(scene, pair->a)}, {"b", place_json(scene, pair->b)}};
-}
-
-std::string pair_text(const Scene& scene, const TrianglePair& pair) {
-  const auto place = [&](std::uint32_t triangle) {
-    const Place at = place_of(scene, triangle);
-    return fmt::format("{} triangle {}", scene.objects[at.object].name, at.triangle);
-  };
-  return place(pair.a) + " and " + place(pair.b);
-}
-
 Json claims_json(const Certificate::Claims& claims) {
   return {{"box_pairs", claims.box_pairs},   {"kept", claims.kept},
           {"culled", claims.culled},         {"separated", claims.separated},
@@ -103,6 +90,19 @@ std::string list_text(const Scene& scene, const SceneCheck& check) {
 }
 
 }  // namespace
+
+Json pair_json(const Scene& scene, const std::optional<TrianglePair>& pair) {
+  if (!pair) return nullptr;
+  return {{"a", place_json(scene, pair->a)}, {"b", place_json(scene, pair->b)}};
+}
+
+std::string pair_text(const Scene& scene, const TrianglePair& pair) {
+  const auto place = [&](std::uint32_t triangle) {
+    const Place at = place_of(scene, triangle);
+    return fmt::format("{} triangle {}", scene.objects[at.object].name, at.triangle);
+  };
+  return place(pair.a) + " and " + place(pair.b);
+}
 
 // A proof is about the scene, not about the run.
 std::string proved_text(const Scene& scene, const SceneCheck& check) {
@@ -193,6 +193,47 @@ nlohmann::ordered_json check_json(const Scene& scene, const SceneCheck& check) {
           {"ms", result.ms},
           {"decide_ms", result.decide_ms},
           {"ns_per_pair", ns_per_pair(result)}};
+}
+
+void FrameVerdicts::add(long frame, Verdict verdict, std::uint64_t listed) {
+  const auto index = static_cast<std::size_t>(verdict);
+  ++count_[index];
+  if (!first_[index]) first_[index] = frame;
+  listed_ += listed;
+}
+
+Verdict FrameVerdicts::in_all() const {
+  return of(Verdict::refuted) > 0      ? Verdict::refuted
+         : of(Verdict::not_proved) > 0 ? Verdict::not_proved
+                                       : Verdict::proved;
+}
+
+Json FrameVerdicts::json(long wanted) const {
+  const Verdict verdict = in_all();
+  const auto& bad = first_[static_cast<std::size_t>(verdict)];
+  return {{"frames", all()},
+          {"wanted", wanted},
+          {"proved", of(Verdict::proved)},
+          {"refuted", of(Verdict::refuted)},
+          {"not_proved", of(Verdict::not_proved)},
+          {"verdict", to_string(verdict)},
+          {"first", verdict == Verdict::proved ? Json(nullptr) : Json(*bad)}};
+}
+
+std::string FrameVerdicts::text(const std::string& proved) const {
+  const Verdict verdict = in_all();
+  if (verdict == Verdict::proved) {
+    return fmt::format(
+        "proved: in {} {}: {} in all\n",
+        all() == 1 ? "the one frame" : fmt::format("each of {} frames", grouped(all())), proved,
+        grouped(listed_));
+  }
+  std::string out =
+      fmt::format("{}: {} of {}, the first is frame {}", to_string(verdict), grouped(of(verdict)),
+                  counted(all(), "frame", "frames"), *first_[static_cast<std::size_t>(verdict)]);
+  if (verdict == Verdict::refuted && of(Verdict::not_proved) > 0)
+    out += fmt::format("; {} not proved", grouped(of(Verdict::not_proved)));
+  return out + "\n";
 }
 
 }  // namespace farcull

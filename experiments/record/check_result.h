@@ -1,6 +1,8 @@
 // The outcome of `farcull check`, as text for people and as JSON.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -23,6 +25,11 @@ struct SceneCheck {
   std::vector<std::string> not_looked_at;      // columns of the list
 };
 
+/// "bunny triangle 3 and floor triangle 0".
+std::string pair_text(const Scene& scene, const TrianglePair& pair);
+/// null without a pair.
+nlohmann::ordered_json pair_json(const Scene& scene, const std::optional<TrianglePair>& pair);
+
 /// "these 12 pairs of the scene meet, and no others": what is proved where everything is.
 std::string proved_text(const Scene& scene, const SceneCheck& check);
 /// The verdict with its reason, and the pair that it is about: one line or two.
@@ -33,5 +40,26 @@ std::string check_text(const Scene& scene, const SceneCheck& check);
 std::string unattested_text(const SceneCheck& check);
 
 nlohmann::ordered_json check_json(const Scene& scene, const SceneCheck& check);
+
+/// The verdicts of several frames, and the one in all: refuted if one is, else not proved if one
+/// is.
+class FrameVerdicts {
+ public:
+  /// listed: how many pairs it is about.
+  void add(long frame, Verdict verdict, std::uint64_t listed);
+  Verdict in_all() const;
+  /// wanted: how many frames were asked for.
+  nlohmann::ordered_json json(long wanted) const;
+  /// proved: what is proved of each frame where all are.
+  std::string text(const std::string& proved) const;
+
+ private:
+  std::uint64_t of(Verdict verdict) const { return count_[static_cast<std::size_t>(verdict)]; }
+  std::uint64_t all() const { return count_[0] + count_[1] + count_[2]; }
+
+  std::array<std::uint64_t, 3> count_{};        // by Verdict
+  std::array<std::optional<long>, 3> first_{};  // by Verdict
+  std::uint64_t listed_ = 0;
+};
 
 }  // namespace farcull

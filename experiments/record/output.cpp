@@ -98,17 +98,6 @@ std::uint64_t self_objects(const Scene& scene) {
                     [](const Object& object) { return object.self; }));
 }
 
-// A triangle as a person finds it again: its object, its place there and the face of the file it
-// came from.
-Json place_json(const Scene& scene, const std::vector<std::uint32_t>& owner,
-                std::uint32_t triangle) {
-  const Object& object = scene.objects[owner[triangle]];
-  return {{"object", owner[triangle]},
-          {"name", object.name},
-          {"triangle", triangle - object.first_triangle},
-          {"face", scene.source_face[triangle]}};
-}
-
 Json verification_json(const Scene& scene, const Record& record) {
   const std::optional<Accounting>& accounting = record.verification;
   if (!accounting) return nullptr;
@@ -142,18 +131,21 @@ Json not_asked_json(const Scene& scene) {
   return {{"objects", unasked.objects}, {"pairs", unasked.pairs}, {"which", unasked.ranges}};
 }
 
-nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
-  const RunOptions& o = record.options;
-  const bool drawn = draws(o.method);
+Json scene_json(const Scene& scene, std::uint64_t degenerate_triangles, const std::string& hash) {
   const std::string nothing = nothing_to_test(scene).reason;
-  Json resolution = nullptr;
-  if (looks(o.method)) resolution = resolution_of(o) > 0 ? Json(resolution_of(o)) : Json("auto");
-  Json views = Json::array();
-  for (const ViewReport& view : record.found.views()) views.push_back(view_json(view));
-  for (const PairView& view : record.found.pair_views()) views.push_back(view_json(view));
-  const std::optional<std::uint64_t> swept = record.found.swept_triangles();
+  return {{"name", scene.name},
+          {"objects", scene.objects.size()},
+          {"self_objects", self_objects(scene)},
+          {"self_not_asked", not_asked_json(scene)},
+          {"nothing_to_test", nothing.empty() ? Json(nullptr) : Json(nothing)},
+          {"triangles", scene.triangles.size()},
+          {"degenerate_triangles", degenerate_triangles},
+          {"hash", hash}};
+}
+
+Json stages_json(const std::vector<Stage>& trace) {
   Json stages = Json::array();
-  for (const Stage& s : record.trace) {
+  for (const Stage& s : trace) {
     stages.push_back({{"name", name_of(s)},
                       {"ran", s.ran},
                       {"depends", s.depends},
@@ -167,16 +159,29 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
                       {"draws_saved", s.draws_saved},
                       {"queries_saved", s.queries_saved}});
   }
+  return stages;
+}
+
+Json place_json(const Scene& scene, const std::vector<std::uint32_t>& owner,
+                std::uint32_t triangle) {
+  const Object& object = scene.objects[owner[triangle]];
+  return {{"object", owner[triangle]},
+          {"name", object.name},
+          {"triangle", triangle - object.first_triangle},
+          {"face", scene.source_face[triangle]}};
+}
+
+nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
+  const RunOptions& o = record.options;
+  const bool drawn = draws(o.method);
+  Json resolution = nullptr;
+  if (looks(o.method)) resolution = resolution_of(o) > 0 ? Json(resolution_of(o)) : Json("auto");
+  Json views = Json::array();
+  for (const ViewReport& view : record.found.views()) views.push_back(view_json(view));
+  for (const PairView& view : record.found.pair_views()) views.push_back(view_json(view));
+  const std::optional<std::uint64_t> swept = record.found.swept_triangles();
   return {
-      {"scene",
-       {{"name", scene.name},
-        {"objects", scene.objects.size()},
-        {"self_objects", self_objects(scene)},
-        {"self_not_asked", not_asked_json(scene)},
-        {"nothing_to_test", nothing.empty() ? Json(nullptr) : Json(nothing)},
-        {"triangles", scene.triangles.size()},
-        {"degenerate_triangles", record.degenerate_triangles},
-        {"hash", record.scene_hash}}},
+      {"scene", scene_json(scene, record.degenerate_triangles, record.scene_hash)},
       {"method", to_string(o.method)},
       {"method_reason", method_reason(o)},
       {"resolution", resolution},
@@ -204,7 +209,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
       {"budget", budget_json(record.found.views())},
       {"device", device_json(record)},
       {"floating_point", floating_point_json(record.callers, record.used)},
-      {"stages", stages},
+      {"stages", stages_json(record.trace)},
       {"pcs", {{"objects", record.found.object_count}, {"triangles", record.found.triangle_count}}},
       {"object_triangles", swept ? Json(*swept) : Json(nullptr)},
       {"candidate_pairs", record.found.count},

@@ -19,6 +19,15 @@ nlohmann::ordered_json floating_point_json(const FloatingPoint& callers, const F
 /// as the first and the last of each run of them.
 nlohmann::ordered_json not_asked_json(const Scene& scene);
 
+/// Parts of records: the scene; the stages of a trace.
+nlohmann::ordered_json scene_json(const Scene& scene, std::uint64_t degenerate_triangles,
+                                  const std::string& hash);
+nlohmann::ordered_json stages_json(const std::vector<Stage>& trace);
+/// A triangle as a person finds it again: its object, its place there and the face of the file it
+/// came from. owner: owners(scene).
+nlohmann::ordered_json place_json(const Scene& scene, const std::vector<std::uint32_t>& owner,
+                                  std::uint32_t triangle);
+
 /// The colliding pairs as verify/certificate/pair_list.h writes them, sorted, each once; neighbours
 /// among them where an object of the scene is tested against itself. faces: two more columns at the
 /// end, face_a and face_b, 0-based in the files that the objects come from.

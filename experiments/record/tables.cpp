@@ -165,18 +165,6 @@ std::vector<Row> folded(const std::vector<Stage>& stages) {
   return rows;
 }
 
-std::string stage_table(const std::vector<Stage>& stages) {
-  Table table("lrrrll");
-  table.add({"stage", "ms", "in", "out", "", ""});
-  for (const Row& row : folded(stages)) {
-    const Stage& s = row.sum;
-    const bool counts = s.unit != Unit::none && (s.ran || s.in > 0);
-    table.add({row.name, s.ran ? fmt::format("{:.1f}", s.ms) : "-", counts ? grouped(s.in) : "",
-               counts ? grouped(s.out) : "", counts ? to_string(s.unit) : "", row.note});
-  }
-  return table.text();
-}
-
 std::string accounting_lines(const Scene& scene, const Record& record) {
   if (!record.verification) return "accounted  not at all (--no-verify)\n";
   const Accounting& v = *record.verification;
@@ -237,6 +225,18 @@ const ViewReport* widest_budget(const std::vector<ViewReport>& views) {
     if (view.drawn && (!widest || view.budget.radius() > widest->budget.radius())) widest = &view;
   }
   return widest;
+}
+
+std::string stage_table(const std::vector<Stage>& stages) {
+  Table table("lrrrll");
+  table.add({"stage", "ms", "in", "out", "", ""});
+  for (const Row& row : folded(stages)) {
+    const Stage& s = row.sum;
+    const bool counts = s.unit != Unit::none && (s.ran || s.in > 0);
+    table.add({row.name, s.ran ? fmt::format("{:.1f}", s.ms) : "-", counts ? grouped(s.in) : "",
+               counts ? grouped(s.out) : "", counts ? to_string(s.unit) : "", row.note});
+  }
+  return table.text();
 }
 
 NothingToTest nothing_to_test(const Scene& scene) {

@@ -39,6 +39,9 @@ std::string not_asked_line(const Scene& scene, const std::string& options = "--s
 /// The lines that say what was run, on what, and what was not asked.
 std::string run_heading(const Scene& scene, const Record& record);
 
+/// A row for each stage: its time, what entered and what was left, and why.
+std::string stage_table(const std::vector<Stage>& stages);
+
 /// One run. The stages of a view are folded into one row, and so are all rounds after the first.
 /// The accounting is at the end, after `verdict`, lines of the caller.
 std::string run_table(const Scene& scene, const Record& record, const std::string& verdict = "");

@@ -1,0 +1,300 @@
+// Reads the options of `farcull distance`, then asks once or frame by frame.
+#include "experiments/command/distance.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "experiments/measure/frames.h"
+#include "experiments/record/distance_certificate.h"
+#include "experiments/record/distances.h"
+#include "experiments/scenes/mesh/cache.h"
+#include "experiments/scenes/scene_file.h"
+#include "experiments/system/interrupt.h"
+#include "experiments/system/output_file.h"
+
+namespace farcull {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr unsigned kMostThreads = 1024;
+constexpr const char* kDistanceExamples =
+    "Examples:\n"
+    "  farcull distance two-spheres\n"
+    "  farcull distance a.obj b.obj --json - | jq '.pairs[0].distance'\n"
+    "  farcull distance crowd --pairs nearest --k 3\n"
+    "  farcull distance a.obj b.obj --pairs all --within 0.01 --csv near.csv\n"
+    "  farcull distance cloth.obj --self --pairs all --within 0.001\n"
+    "  farcull distance two-tori --verify\n"
+    "  farcull distance two-tori --certificate d.json && farcull check d.json two-tori\n"
+    "  farcull distance 'cloth_%04d.obj' body.obj --frames 1:100 --csv frames.csv\n\n"
+    "A distance is that of the surfaces; it is the root of an exact number, rounded once.\n"
+    "The witness points are rounded too, coordinate by coordinate. 0: the objects meet.\n"
+    "docs/proximity.md has the columns and the proof.\n\n"
+    "Exit status 1: --verify found a nearer pair than an answer, or a wrong answer.";
+
+// The keys of a record that each frame has of its own; the others hold for all frames.
+constexpr const char* kOfFrame[] = {"pairs",  "nearest",      "counts",
+                                    "stages", "verification", "time_ms"};
+
+DistancePairs parse_pairs(const std::string& text) {
+  if (text == "objects") return DistancePairs::objects;
+  if (text == "nearest") return DistancePairs::nearest;
+  if (text == "all") return DistancePairs::all;
+  throw Error("--pairs", "'" + text + "' is no choice", "give objects, nearest or all");
+}
+
+double parse_within(const std::string& text) {
+  const std::optional<double> value = parse_number<double>(text);
+  if (!value || !std::isfinite(*value) || *value < 0) {
+    throw Error("--within", "'" + text + "' is no distance",
+                "give a finite distance in world units, 0 or more");
+  }
+  return *value;
+}
+
+void add_up(const DistanceAccounting& frame, DistanceAccounting& sum) {
+  sum.pairs_total += frame.pairs_total;
+  sum.answers += frame.answers;
+  sum.farther_by_boxes += frame.farther_by_boxes;
+  sum.farther_by_planes += frame.farther_by_planes;
+  sum.neighbours += frame.neighbours;
+  sum.farther_by_exact += frame.farther_by_exact;
+  sum.nearer += frame.nearer;
+  sum.wrong += frame.wrong;
+  sum.ms += frame.ms;
+}
+
+/// Where the frames go, one after the other, and what they add up to.
+class Frames {
+ public:
+  Frames(const Outputs& outputs, const DistanceOptions& options, long wanted)
+      : verify_(options.verify), to_stdout_(outputs.to_stdout()), wanted_(wanted) {
+    if (outputs.json) json_.emplace(*outputs.json);
+    if (outputs.csv) csv_.emplace(*outputs.csv);
+  }
+
+  long count() const { return static_cast<long>(ms_.size()); }
+  const DistanceAccounting& sum() const { return sum_; }
+
+  void add(long frame, const Scene& scene, const DistanceRecord& record, Json of,
+           bool topology_changed) {
+    const bool first = ms_.empty();
+    ms_.push_back(record.ms);
+    if (record.verification) add_up(*record.verification, sum_);
+    Json one = {{"frame", frame},
+                {"hash", of["scene"]["hash"]},
+                {"triangles", scene.triangles.size()},
+                {"topology_changed", topology_changed}};
+    for (const char* key : kOfFrame) {
+      one[key] = of[key];
+      of.erase(key);
+    }
+    if (first) head_ = of;
+    if (json_) json_->add({head_, one, summary(), "", "", frame, ""});
+    if (csv_) {
+      const std::string rows = distances_rows(scene, record, std::to_string(frame) + ",");
+      csv_->add((first ? "frame," + distances_header() : "") + rows, "");
+    }
+    if (!to_stdout_) write_output("-", (first ? names() : "") + row(frame, record));
+  }
+
+  void finish() {
+    if (json_) json_->finish();
+    if (csv_) csv_->finish();
+    if (to_stdout_) return;
+    const FrameTimes times = summary_of(ms_);
+    std::string end =
+        fmt::format("\nper frame  median {:.1f} ms, 95% within {:.1f} ms, at most {:.1f} ms\n",
+                    times.median, times.p95, times.max);
+    if (verify_) end += verdict_text(sum_) + "\n" + accounting_sum(sum_);
+    write_output("-", end);
+  }
+
+ private:
+  Json summary() const {
+    const FrameTimes times = summary_of(ms_);
+    return {{"frames", ms_.size()},
+            {"wanted", wanted_},
+            {"ms", {{"median", times.median}, {"p95", times.p95}, {"max", times.max}}},
+            {"missed", verify_ ? Json(sum_.nearer + sum_.wrong) : Json(nullptr)}};
+  }
+
+  std::string names() const {
+    return fmt::format("{:>8}  {:>10}  {:>24}  {:>9}{}\n", "frame", "pairs", "least distance", "ms",
+                       verify_ ? "  missed" : "");
+  }
+  static std::string row(long frame, const DistanceRecord& record) {
+    const auto least = std::ranges::min_element(
+        record.distances, {}, [](const Distance& d) { return d.closest.distance; });
+    std::string row = fmt::format("{:>8}  {:>10}  ", frame, record.distances.size());
+    row += least == record.distances.end() ? fmt::format("{:>24}", "none")
+                                           : fmt::format("{:>24}", least->closest.distance);
+    row += fmt::format("  {:>9.1f}", record.ms);
+    if (const auto& v = record.verification) row += fmt::format("  {:>6}", v->nearer + v->wrong);
+    return row + "\n";
+  }
+
+  bool verify_, to_stdout_;
+  long wanted_;
+  std::optional<FrameRecord> json_;
+  std::optional<GrowingOutput> csv_;
+  Json head_;
+  std::vector<double> ms_;
+  DistanceAccounting sum_;
+};
+
+}  // namespace
+
+CLI::App* DistanceCommand::add_to(CLI::App& app) {
+  CLI::App* command =
+      add_command(app, "distance", "how far objects are apart, and where they are nearest");
+  add_scene(*command, scene_);
+  const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
+    add_option(*command, name, text, type, help);
+  };
+  add("--pairs", pairs_, "WHICH",
+      "objects: the nearest triangles of every two objects;\n"
+      "nearest: of each object and its K nearest others;\n"
+      "all: all pairs of triangles within D; default objects");
+  add("--k", k_, "K", "with --pairs nearest: how many others; default 1");
+  add("--within", within_, "D",
+      "nothing farther apart is answered, in world units;\n--pairs all needs it");
+  add_flag(*command, "--self", self_,
+           "the triangles of one object as well, those that share\n"
+           "a vertex position left out");
+  add("--signed", signed_, "yes|no",
+      "no: leave out whether an object lies inside another;\ndefault yes");
+  add("--threads", threads_, "N", "of the CPU; default as many as there are cores");
+  add_flag(*command, "--verify", verify_,
+           "prove by other code, pair by pair, that nothing is\nnearer than the answers");
+  add("--frames", frames_, "N|A:B", "as for farcull run: of a scene that moves");
+  add("--json", outputs_.json, "FILE", kJsonHelp);
+  add("--csv", outputs_.csv, "FILE",
+      "write the pairs as CSV to this file; - for standard\noutput, without the table");
+  add("--certificate", outputs_.certificate, "FILE",
+      "write evidence of each distance to this file, for\n"
+      "farcull check; with --frames a number (%d or %04d) in it");
+  add_footer(*command, kDistanceExamples);
+  return command;
+}
+
+DistanceOptions DistanceCommand::parse() const {
+  DistanceOptions out;
+  if (pairs_) out.pairs = parse_pairs(*pairs_);
+  if (k_) {
+    if (out.pairs != DistancePairs::nearest)
+      throw Error("--k", "has no meaning without --pairs nearest", "add that, or leave --k out");
+    const std::optional<std::uint32_t> k = parse_number<std::uint32_t>(*k_);
+    if (!k || *k == 0)
+      throw Error("--k", "'" + *k_ + "' is no number of objects", "give 1 or more");
+    out.k = *k;
+  }
+  if (within_) out.within = parse_within(*within_);
+  if (out.pairs == DistancePairs::all && !within_)
+    throw Error("--within", "is missing, which --pairs all needs",
+                "give a distance in world units, as in --within 0.01");
+  if (self_ && out.pairs == DistancePairs::nearest)
+    throw Error("--self", "has no meaning with --pairs nearest: no object is its own neighbour",
+                "leave it out, or use --pairs objects or all");
+  if (signed_) {
+    if (*signed_ != "yes" && *signed_ != "no")
+      throw Error("--signed", "'" + *signed_ + "' is no choice", "give yes or no");
+    if (*signed_ == "yes" && out.pairs == DistancePairs::all)
+      throw Error("--signed", "yes has no meaning with --pairs all",
+                  "leave it out, or use --pairs objects or nearest");
+    out.inside = *signed_ == "yes";
+  }
+  if (threads_) {
+    const std::optional<unsigned> threads = parse_number<unsigned>(*threads_);
+    if (!threads || *threads == 0 || *threads > kMostThreads)
+      throw Error("--threads", "'" + *threads_ + "' is no number of threads",
+                  fmt::format("give 1 to {}", kMostThreads));
+    out.threads = *threads;
+  }
+  out.verify = verify_;
+  return out;
+}
+
+void DistanceCommand::require_question(const Scene& scene, const DistanceOptions& options) const {
+  const std::string reason = nothing_asked(scene, options);
+  if (reason.empty()) return;
+  std::string remedy = "name two objects or more";
+  if (options.pairs != DistancePairs::nearest && scene.triangles.size() > 1) {
+    remedy += ", or ask for the distances inside one: " + command_with("farcull distance", scene_);
+    if (pairs_) remedy += " --pairs " + *pairs_;
+    if (within_) remedy += " --within " + *within_;
+    remedy += " --self";
+  }
+  throw Error("SCENE", reason, remedy);
+}
+
+int DistanceCommand::run() const {
+  const DistanceOptions options = parse();
+  check_scene(scene_);
+  std::optional<FrameRange> range;
+  if (frames_) range = parse_frames(*frames_);
+  const Outputs outputs = checked(outputs_, scene_files(scene_, range), range);
+  return range ? run_frames(options, outputs, *range) : run_once(options, outputs);
+}
+
+int DistanceCommand::run_once(const DistanceOptions& options, const Outputs& outputs) const {
+  TerminalProgress terminal;
+  const Progress progress = terminal.callback();
+  if (progress) progress("reading the scene");
+  Scene scene = load_scene(scene_);
+  if (self_) make_self(scene);
+  require_question(scene, options);
+  const DistanceRecord record = distances(scene, options, progress);
+  terminal.clear();
+  if (outputs.csv) write_output(*outputs.csv, distances_header() + distances_rows(scene, record));
+  if (outputs.json) write_json(distances_json(scene, record, seed_of(scene_)), *outputs.json);
+  if (outputs.certificate)
+    write_output(*outputs.certificate, to_text(certificate_of(scene, record)));
+  if (!outputs.to_stdout()) write_output("-", distances_table(scene, record));
+  if (!record.verification || record.verification->holds()) return kExitDone;
+  complain_broken(verdict_text(*record.verification));
+  return kExitBroken;
+}
+
+int DistanceCommand::run_frames(const DistanceOptions& options, const Outputs& outputs,
+                                FrameRange range) const {
+  TerminalProgress terminal;
+  const Progress progress = terminal.callback();
+  if (progress) progress("reading the scene");
+  FrameSource source(scene_, range, self_);
+  if (const std::optional<Error> missing = source.missing()) {
+    terminal.clear();
+    complain(missing->where + ": the file does not exist; the frames before it are run");
+  }
+  Frames frames(outputs, options, range.count());
+  Interruptible interruptible(range.count(), "frames", "what they gave is written",
+                              static_cast<bool>(progress));
+  DistanceMemory memory;
+  for (long frame = range.first; frame <= range.last; ++frame) {
+    const Scene& scene = source.at(frame);
+    require_question(scene, options);
+    const DistanceRecord record = distances(scene, options, progress, &memory);
+    terminal.clear();
+    // First: a frame that the record has has its certificate.
+    if (outputs.certificate) {
+      write_output(numbered(*outputs.certificate, frame), to_text(certificate_of(scene, record)));
+    }
+    frames.add(frame, scene, record, distances_json(scene, record, seed_of(scene_)),
+               source.topology_changed());
+    interruptible.done(frames.count());
+  }
+  frames.finish();
+  if (frames.sum().holds()) return kExitDone;
+  complain_broken(verdict_text(frames.sum()));
+  return kExitBroken;
+}
+
+}  // namespace farcull

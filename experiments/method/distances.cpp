@@ -1,0 +1,342 @@
+// Distances: what can be nearest comes from trees of boxes (core/proximity), pairs of triangles
+// within a distance from FAR pairs with that clearance; exact arithmetic decides both.
+#include "experiments/method/distances.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/floating_point.h"
+#include "core/base/parallel.h"
+#include "core/base/stopwatch.h"
+#include "experiments/method/run.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+// Pairs of triangles that one thread decides at a time.
+constexpr std::size_t kTogether = 256;
+
+// work(k) for each k below count, the next one by whichever thread is free.
+template <class Work>
+void for_each_on_all_threads(std::size_t count, unsigned threads, const Work& work) {
+  const std::size_t chunks = chunks_for(count, 1, threads);
+  std::atomic<std::size_t> next = 0;
+  for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
+    for (std::size_t k = next++; k < count; k = next++) work(k);
+  });
+}
+
+void check(const DistanceOptions& options) {
+  if (!(options.within >= 0))
+    throw Error("within", "is no distance", "give a number of world units, 0 or more");
+  if (options.pairs == DistancePairs::all && !std::isfinite(options.within))
+    throw Error("within", "is not finite, which pairs of all triangles need",
+                "give a finite number of world units");
+  if (options.pairs == DistancePairs::nearest && options.k == 0)
+    throw Error("k", "is 0", "give the number of neighbours of each object, 1 or more");
+}
+
+std::vector<ObjectPair> every_two_objects(const Scene& scene) {
+  std::vector<ObjectPair> out;
+  const auto count = static_cast<std::uint32_t>(scene.objects.size());
+  for (std::uint32_t a = 0; a < count; ++a) {
+    if (scene.objects[a].triangle_count == 0) continue;
+    if (scene.objects[a].self) out.push_back({a, a});
+    for (std::uint32_t b = a + 1; b < count; ++b) {
+      if (scene.objects[b].triangle_count > 0) out.push_back({a, b});
+    }
+  }
+  return out;
+}
+
+std::vector<std::optional<TrianglePair>> hints_for(std::span<const ObjectPair> questions,
+                                                   const DistanceMemory* memory) {
+  if (memory == nullptr || memory->objects.empty()) return {};
+  std::vector<std::optional<TrianglePair>> out(questions.size());
+  for (std::size_t k = 0; k < questions.size(); ++k) {
+    const auto found = std::ranges::lower_bound(memory->objects, questions[k]);
+    if (found != memory->objects.end() && *found == questions[k])
+      out[k] = memory->nearest[static_cast<std::size_t>(found - memory->objects.begin())];
+  }
+  return out;
+}
+
+// The nearest pair of each question, where it is not farther than `within`.
+std::vector<Distance> nearest_of(const Scene& scene, std::span<const NearPairs> near,
+                                 const DistanceOptions& options) {
+  struct Part {
+    std::size_t question;
+    std::span<const TrianglePair> pairs;
+  };
+  std::vector<Part> parts;
+  for (std::size_t q = 0; q < near.size(); ++q) {
+    std::span<const TrianglePair> left = near[q].pairs;
+    while (!left.empty()) {
+      const std::size_t count = std::min(left.size(), kTogether);
+      parts.push_back({q, left.first(count)});
+      left = left.subspan(count);
+    }
+  }
+  std::vector<std::optional<NearestPair>> of_part(parts.size());
+  for_each_on_all_threads(parts.size(), options.threads,
+                          [&](std::size_t k) { of_part[k] = nearest_pair(scene, parts[k].pairs); });
+  std::vector<Distance> out;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const ObjectPair& objects = near[parts[k].question].objects;
+    Distance found{.objects = objects,
+                   .triangles = of_part[k]->pair,
+                   .closest = std::move(of_part[k]->closest)};
+    if (k == 0 || parts[k - 1].question != parts[k].question) {
+      out.push_back(std::move(found));
+    } else if (found.closest.squared < out.back().closest.squared) {
+      out.back() = std::move(found);  // of those as near the first part has the first
+    }
+  }
+  if (std::isfinite(options.within)) {
+    std::erase_if(out, [&](const Distance& d) {
+      return !within(scene.corners(d.triangles.a), scene.corners(d.triangles.b), options.within);
+    });
+  }
+  return out;
+}
+
+// Leaves what is among the k nearest of one of its objects.
+void keep_nearest(const Scene& scene, std::size_t k, std::vector<Distance>& distances) {
+  std::vector<bool> wanted(distances.size());
+  for (const NearestOfObject& of : nearest_of_objects(scene, distances, k)) {
+    for (const std::size_t d : of.distances) wanted[d] = true;
+  }
+  std::size_t kept = 0;
+  for (std::size_t d = 0; d < distances.size(); ++d) {
+    if (!wanted[d]) continue;
+    if (kept != d) distances[kept] = std::move(distances[d]);
+    ++kept;
+  }
+  distances.resize(kept);
+}
+
+void between_objects(const Scene& scene, const Progress& progress, DistanceMemory* memory,
+                     DistanceRecord& record) {
+  const DistanceOptions& options = record.options;
+  Stopwatch watch;
+  if (progress) progress("boxes");
+  const ProximityTrees trees(scene, options.threads);
+  std::vector<NearPairs> near;
+  if (options.pairs == DistancePairs::nearest) {
+    near = trees.nearest_objects(options.k, options.within, progress);
+  } else {
+    const std::vector<ObjectPair> questions = every_two_objects(scene);
+    near = trees.near_pairs(questions, options.within, hints_for(questions, memory), progress);
+  }
+  record.counts = trees.counts();
+  std::uint64_t left = 0;
+  for (const NearPairs& of : near) left += of.pairs.size();
+  record.trace.push_back({.kind = StageKind::near,
+                          .ran = true,
+                          .reason = Reason::near_boxes,
+                          .n = near.size(),
+                          .m = record.counts.box_pairs,
+                          .ms = watch.ms(),
+                          .in = record.counts.triangle_pairs,
+                          .out = left,
+                          .unit = Unit::pairs});
+  watch = Stopwatch();
+  if (progress) progress("closest points");
+  record.distances = nearest_of(scene, near, options);
+  if (options.pairs == DistancePairs::nearest) keep_nearest(scene, options.k, record.distances);
+  record.trace.push_back({.kind = StageKind::closest,
+                          .ran = true,
+                          .ms = watch.ms(),
+                          .in = left,
+                          .out = record.distances.size(),
+                          .unit = Unit::pairs});
+}
+
+void find_insides(const Scene& scene, const Progress& progress, DistanceRecord& record) {
+  Stage stage{.kind = StageKind::inside, .unit = Unit::pairs};
+  if (!record.options.inside) {
+    stage.reason = Reason::not_signed;
+    record.trace.push_back(stage);
+    return;
+  }
+  if (progress) progress("inside");
+  const Stopwatch watch;
+  const Insides insides(scene);
+  for_each_on_all_threads(record.distances.size(), record.options.threads, [&](std::size_t k) {
+    Distance& d = record.distances[k];
+    if (d.objects.a != d.objects.b && !d.closest.squared.is_zero())
+      d.inside = insides.which(d.objects.a, d.objects.b);
+  });
+  stage.ran = true;
+  stage.ms = watch.ms();
+  stage.in = record.distances.size();
+  for (const Distance& d : record.distances)
+    stage.out += d.inside == WhichInside::a || d.inside == WhichInside::b;
+  record.trace.push_back(stage);
+}
+
+// All pairs of triangles within the distance that are no neighbours.
+void between_triangles(const Scene& scene, const Progress& progress, DistanceRecord& record) {
+  const DistanceOptions& options = record.options;
+  const RunOptions run{.method = Method::far_pairs,
+                       .device = "native",
+                       .clearance = options.within,
+                       .verify = false,
+                       .neighbours = false};
+  Session session(run.device, options.threads, {});
+  const Plan planned = plan(scene, run, options.threads, progress);
+  Candidates found = find(scene, planned, session, progress);
+  record.trace = planned.trace;
+  record.trace.insert(record.trace.end(), found.trace.begin(), found.trace.end());
+  Stopwatch watch;
+  if (progress) progress("exact tests");
+  const unsigned threads =
+      options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  const std::vector<TrianglePair> pairs =
+      decide(scene, found.pairs,
+             {.clearance = options.within, .threads = threads, .neighbours = false})
+          .pairs;
+  record.trace.push_back({.kind = StageKind::exact,
+                          .ran = true,
+                          .reason = Reason::predicates,
+                          .ms = watch.ms(),
+                          .in = found.count,
+                          .out = pairs.size(),
+                          .unit = Unit::pairs});
+  if (pairs.size() > options.most_pairs) {
+    throw Error(
+        "within",
+        "has " + std::to_string(pairs.size()) + " pairs of triangles, and at most " +
+            std::to_string(options.most_pairs) + " are answered",
+        "give a smaller distance, or ask for the pairs without their distances: farcull run "
+        "--clearance");
+  }
+  watch = Stopwatch();
+  if (progress) progress("closest points");
+  const std::vector<std::uint32_t> owner = owners(scene);
+  record.distances.resize(pairs.size());
+  const std::size_t parts = (pairs.size() + kTogether - 1) / kTogether;
+  for_each_on_all_threads(parts, options.threads, [&](std::size_t part) {
+    const std::size_t end = std::min(pairs.size(), (part + 1) * kTogether);
+    for (std::size_t k = part * kTogether; k < end; ++k) {
+      const TrianglePair& pair = pairs[k];
+      record.distances[k] = {
+          .objects = {owner[pair.a], owner[pair.b]},
+          .triangles = pair,
+          .closest = closest_points(scene.corners(pair.a), scene.corners(pair.b))};
+    }
+  });
+  std::ranges::sort(record.distances, {},
+                    [](const Distance& d) { return std::pair(d.objects, d.triangles); });
+  record.trace.push_back({.kind = StageKind::closest,
+                          .ran = true,
+                          .ms = watch.ms(),
+                          .in = pairs.size(),
+                          .out = pairs.size(),
+                          .unit = Unit::pairs});
+}
+
+void verify(const Scene& scene, const Progress& progress, DistanceRecord& record) {
+  if (!record.options.verify) return;
+  if (progress) progress("accounting for every pair");
+  const DistanceOptions& options = record.options;
+  record.verification = account_distances(scene, claims_of(record),
+                                          {.kind = options.pairs,
+                                           .k = options.k,
+                                           .within = options.within,
+                                           .threads = options.threads});
+  record.trace.push_back({.kind = StageKind::verify,
+                          .ran = true,
+                          .reason = Reason::every_pair,
+                          .ms = record.verification->ms,
+                          .in = record.verification->pairs_total,
+                          .out = record.verification->nearer,
+                          .unit = Unit::pairs});
+}
+
+}  // namespace
+
+std::string nothing_asked(const Scene& scene, const DistanceOptions& options) {
+  std::size_t with_triangles = 0;
+  for (const Object& object : scene.objects) {
+    with_triangles += object.triangle_count > 0;
+    const bool itself = object.self && options.pairs != DistancePairs::nearest;
+    if (itself && object.triangle_count > 1) return "";
+  }
+  if (with_triangles > 1) return "";
+  return with_triangles == 1 ? "only one object has triangles" : "no object has triangles";
+}
+
+std::vector<ClaimedDistance> claims_of(const DistanceRecord& record) {
+  std::vector<ClaimedDistance> out;
+  out.reserve(record.distances.size());
+  for (const Distance& d : record.distances) {
+    out.push_back({.a = d.objects.a,
+                   .b = d.objects.b,
+                   .pair = d.triangles,
+                   .distance = d.closest.distance,
+                   .squared = d.closest.squared.text()});
+  }
+  return out;
+}
+
+std::vector<NearestOfObject> nearest_of_objects(const Scene& scene,
+                                                std::span<const Distance> distances,
+                                                std::size_t k) {
+  std::vector<std::vector<std::size_t>> naming(scene.objects.size());
+  for (std::size_t d = 0; d < distances.size(); ++d) {
+    const auto [a, b] = distances[d].objects;
+    naming[a].push_back(d);
+    if (a != b) naming[b].push_back(d);
+  }
+  std::vector<NearestOfObject> out;
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    if (scene.objects[o].triangle_count == 0) continue;
+    std::vector<std::size_t>& of = naming[o];
+    // They are sorted by the other object as they come.
+    std::ranges::stable_sort(of, [&](std::size_t x, std::size_t y) {
+      return distances[x].closest.squared < distances[y].closest.squared;
+    });
+    of.resize(std::min(of.size(), k));
+    out.push_back({.object = o, .distances = std::move(of)});
+  }
+  return out;
+}
+
+DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
+                         const Progress& progress, DistanceMemory* memory) {
+  check(options);
+  if (const std::string reason = nothing_asked(scene, options); !reason.empty())
+    throw Error("scene", reason, "give two objects or more, or distances inside one");
+  const FloatingPointGuard guard;
+  const Stopwatch watch;
+  DistanceRecord out;
+  out.options = options;
+  if (options.pairs == DistancePairs::all) {
+    between_triangles(scene, progress, out);
+  } else {
+    between_objects(scene, progress, memory, out);
+    find_insides(scene, progress, out);
+  }
+  if (memory != nullptr) {
+    *memory = {};
+    if (options.pairs != DistancePairs::all) {
+      for (const Distance& d : out.distances) {
+        memory->objects.push_back(d.objects);
+        memory->nearest.push_back(d.triangles);
+      }
+    }
+  }
+  out.ms = watch.ms();
+  out.scene_hash = scene_hash(scene);
+  out.degenerate_triangles = degenerate_triangles(scene);
+  verify(scene, progress, out);
+  return out;
+}
+
+}  // namespace farcull

@@ -1,0 +1,89 @@
+// Proximity queries: distances between objects with the points that realise them, as one function
+// from a scene to a record. Potential neighbours (core/proximity) cull, exact arithmetic
+// (verify/closest.h) decides.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/stage.h"
+#include "core/proximity/near_pairs.h"
+#include "core/scene/scene.h"
+#include "experiments/method/which_inside.h"
+#include "verify/closest.h"
+#include "verify/distance_accounting.h"
+
+namespace farcull {
+
+/// objects: every two objects, and one that is `self` with itself. nearest: each object and its k
+/// nearest others. all: every pair of triangles within a distance, of different objects, and of one
+/// that is `self` where they are no neighbours.
+using DistancePairs = DistanceQuestion::Kind;
+
+struct DistanceOptions {
+  DistancePairs pairs = DistancePairs::objects;
+  std::size_t k = 1;                                        // with `nearest`
+  double within = std::numeric_limits<double>::infinity();  // world units, >= 0; finite with `all`
+  bool inside = true;    // tells where an object lies inside another
+  unsigned threads = 0;  // 0: as many as there are cores; changes no answer
+  bool verify = false;   // accounts for every pair that was culled
+  /// With `all`: the most pairs of triangles that are answered; more are an error, since each takes
+  /// some hundreds of bytes.
+  std::size_t most_pairs = std::size_t{1} << 22;
+};
+
+/// The distance of the surfaces of two objects, or of two triangles of them.
+struct Distance {
+  ObjectPair objects;
+  TrianglePair triangles;  // the first of the nearest pairs, of objects.a and objects.b
+  Closest closest;
+  WhichInside inside = WhichInside::unknown;
+};
+
+/// The nearest pairs of an earlier frame, as bounds for this one: they change the time that it
+/// takes, never an answer.
+struct DistanceMemory {
+  std::vector<ObjectPair> objects;    // sorted
+  std::vector<TrianglePair> nearest;  // of each of them
+};
+
+struct DistanceRecord {
+  DistanceOptions options;
+  std::string scene_hash;
+  std::uint64_t degenerate_triangles = 0;
+  std::vector<Stage> trace;
+  std::vector<Distance> distances;  // sorted by objects, then by triangles; `nearest`: each
+                                    // object's neighbours are those that name it
+  ProximityCounts counts;
+  std::optional<DistanceAccounting> verification;
+  double ms = 0;  // of all but the verification
+};
+
+/// What `nearest` answers about one object: its neighbours, the nearest first, of those as far the
+/// lower object first; at most k, fewer where fewer are within the distance asked for.
+struct NearestOfObject {
+  std::uint32_t object = 0;
+  std::vector<std::size_t> distances;  // which of the record's
+};
+/// For each object with triangles, in order.
+std::vector<NearestOfObject> nearest_of_objects(const Scene& scene,
+                                                std::span<const Distance> distances, std::size_t k);
+
+/// Why the scene holds no two triangles that are asked about; empty where it does.
+std::string nothing_asked(const Scene& scene, const DistanceOptions& options);
+
+/// What the record claims, for account_distances().
+std::vector<ClaimedDistance> claims_of(const DistanceRecord& record);
+
+/// Throws Error for options that are bad, for a scene in which nothing is asked, and where `all`
+/// has more than most_pairs answers; std::logic_error where the scene breaks validate(). memory: of
+/// the frame before, and then of this one; may be null.
+DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
+                         const Progress& progress = {}, DistanceMemory* memory = nullptr);
+
+}  // namespace farcull

@@ -1,0 +1,276 @@
+// Turns distances into JSON, CSV and text.
+#include "experiments/record/distances.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "commit.h"
+#include "experiments/record/output.h"
+#include "experiments/record/tables.h"
+#include "experiments/system/text_table.h"
+
+namespace farcull {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kRowsShown = 24;
+
+const char* name_of(DistancePairs pairs) {
+  switch (pairs) {
+    case DistancePairs::objects:
+      return "objects";
+    case DistancePairs::nearest:
+      return "nearest";
+    case DistancePairs::all:
+      return "all";
+  }
+  return "";
+}
+
+/// Triangles as numbers within their objects, from 0.
+std::array<std::uint32_t, 2> within_objects(const Scene& scene, const Distance& d) {
+  return {d.triangles.a - scene.objects[d.objects.a].first_triangle,
+          d.triangles.b - scene.objects[d.objects.b].first_triangle};
+}
+
+Json point_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+// JSON has no infinity.
+Json number_json(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+Json pair_json(const Scene& scene, const Distance& d) {
+  const Closest& c = d.closest;
+  const auto [s, t] = within_objects(scene, d);
+  return {{"a", d.objects.a},
+          {"b", d.objects.b},
+          {"distance", number_json(c.distance)},
+          {"squared", c.squared.text()},
+          {"witness", {point_json(c.points[0]), point_json(c.points[1])}},
+          {"features", {to_string(c.features[0]), to_string(c.features[1])}},
+          {"triangles", {s, t}},
+          {"faces", {scene.source_face[d.triangles.a], scene.source_face[d.triangles.b]}},
+          {"inside", d.inside == WhichInside::unknown ? Json(nullptr) : Json(to_string(d.inside))}};
+}
+
+std::uint32_t other_of(const Distance& d, std::uint32_t object) {
+  return d.objects.a == object ? d.objects.b : d.objects.a;
+}
+
+Json nearest_json(const Scene& scene, const DistanceRecord& record) {
+  if (record.options.pairs != DistancePairs::nearest) return nullptr;
+  Json out = Json::array();
+  for (const NearestOfObject& of : nearest_of_objects(scene, record.distances, record.options.k)) {
+    Json neighbours = Json::array();
+    for (const std::size_t d : of.distances)
+      neighbours.push_back({{"object", other_of(record.distances[d], of.object)}, {"pair", d}});
+    out.push_back({{"object", of.object}, {"neighbours", neighbours}});
+  }
+  return out;
+}
+
+Json verification_json(const Scene& scene, const std::optional<DistanceAccounting>& accounting) {
+  if (!accounting) return nullptr;
+  const std::vector<std::uint32_t> owner = owners(scene);
+  Json examples = Json::array();
+  for (const TrianglePair& pair : accounting->examples) {
+    examples.push_back(
+        {{"a", place_json(scene, owner, pair.a)}, {"b", place_json(scene, owner, pair.b)}});
+  }
+  return {{"pairs_total", accounting->pairs_total},
+          {"answers", accounting->answers},
+          {"farther_by_boxes", accounting->farther_by_boxes},
+          {"farther_by_planes", accounting->farther_by_planes},
+          {"neighbours", accounting->neighbours},
+          {"farther_by_exact", accounting->farther_by_exact},
+          {"nearer", accounting->nearer},
+          {"wrong", accounting->wrong},
+          {"examples", examples},
+          {"ms", accounting->ms}};
+}
+
+std::string object_text(const Scene& scene, std::uint32_t object) {
+  return fmt::format("{} {}", object, scene.objects[object].name);
+}
+
+std::string place_text(const Scene& scene, const Distance& d, int side) {
+  return fmt::format("{} {}", within_objects(scene, d)[side], to_string(d.closest.features[side]));
+}
+
+std::string inside_text(const Distance& d) {
+  switch (d.inside) {
+    case WhichInside::a:
+      return "a in b";
+    case WhichInside::b:
+      return "b in a";
+    case WhichInside::not_closed:
+      return "not closed";
+    case WhichInside::unknown:
+    case WhichInside::none:
+      return "";
+  }
+  return "";
+}
+
+std::string distance_text(const Distance& d) { return fmt::format("{}", d.closest.distance); }
+
+std::string more_line(std::size_t all, std::size_t shown) {
+  if (all <= shown) return "";
+  return fmt::format("and {} more (--json and --csv have all)\n", grouped(all - shown));
+}
+
+std::string pairs_table(const Scene& scene, const std::vector<Distance>& distances) {
+  Table table("llrlll");
+  table.add({"a", "b", "distance", "triangle of a", "triangle of b", "inside"});
+  const std::size_t shown = std::min(distances.size(), kRowsShown);
+  for (std::size_t k = 0; k < shown; ++k) {
+    const Distance& d = distances[k];
+    table.add({object_text(scene, d.objects.a), object_text(scene, d.objects.b), distance_text(d),
+               place_text(scene, d, 0), place_text(scene, d, 1), inside_text(d)});
+  }
+  return table.text() + more_line(distances.size(), shown);
+}
+
+std::string nearest_table(const Scene& scene, const DistanceRecord& record) {
+  Table table("lrlrll");
+  table.add({"object", "", "neighbour", "distance", "triangle", "of the neighbour"});
+  const std::vector<NearestOfObject> all =
+      nearest_of_objects(scene, record.distances, record.options.k);
+  std::size_t rows = 0, shown = 0;
+  for (const NearestOfObject& of : all) {
+    if (rows >= kRowsShown) break;
+    ++shown;
+    if (of.distances.empty()) table.add({object_text(scene, of.object), "", "none", "", "", ""});
+    for (std::size_t k = 0; k < of.distances.size(); ++k, ++rows) {
+      const Distance& d = record.distances[of.distances[k]];
+      const int own = d.objects.a == of.object ? 0 : 1;
+      table.add({object_text(scene, of.object), std::to_string(k + 1),
+                 object_text(scene, other_of(d, of.object)), distance_text(d),
+                 place_text(scene, d, own), place_text(scene, d, 1 - own)});
+    }
+  }
+  return table.text() + more_line(all.size(), shown);
+}
+
+std::string question_text(const DistanceOptions& options) {
+  std::string text;
+  switch (options.pairs) {
+    case DistancePairs::objects:
+      text = "the nearest triangles of every two objects";
+      break;
+    case DistancePairs::nearest:
+      text = options.k == 1 ? "of each object the nearest other one"
+                            : fmt::format("of each object the {} nearest others", options.k);
+      break;
+    case DistancePairs::all:
+      text = "all pairs of triangles";
+  }
+  if (std::isfinite(options.within)) text += fmt::format(" within {}", options.within);
+  return text;
+}
+
+std::string accounting_lines(const Scene& scene, const DistanceRecord& record) {
+  if (!record.verification) return "";
+  const DistanceAccounting& v = *record.verification;
+  std::string out = verdict_text(v) + "\n" + accounting_sum(v);
+  const std::vector<std::uint32_t> owner = owners(scene);
+  const auto place = [&](std::uint32_t triangle) {
+    const Object& object = scene.objects[owner[triangle]];
+    return fmt::format("{} triangle {}", object.name, triangle - object.first_triangle);
+  };
+  for (const TrianglePair& pair : v.examples)
+    out += fmt::format("  missed: {} and {}\n", place(pair.a), place(pair.b));
+  return out;
+}
+
+}  // namespace
+
+Json distances_json(const Scene& scene, const DistanceRecord& record,
+                    std::optional<std::uint64_t> seed) {
+  const DistanceOptions& o = record.options;
+  Json pairs = Json::array();
+  for (const Distance& d : record.distances) pairs.push_back(pair_json(scene, d));
+  Json names = Json::array();
+  for (const Object& object : scene.objects) names.push_back(object.name);
+  return {{"scene", scene_json(scene, record.degenerate_triangles, record.scene_hash)},
+          {"objects", names},
+          {"pairs_asked", name_of(o.pairs)},
+          {"k", o.pairs == DistancePairs::nearest ? Json(o.k) : Json(nullptr)},
+          {"within", number_json(o.within)},
+          {"signed", o.inside},
+          {"pairs", pairs},
+          {"nearest", nearest_json(scene, record)},
+          {"counts",
+           {{"box_pairs", record.counts.box_pairs},
+            {"triangle_pairs", record.counts.triangle_pairs},
+            {"kept", record.counts.kept}}},
+          {"stages", stages_json(record.trace)},
+          {"verification", verification_json(scene, record.verification)},
+          {"time_ms", {{"total", record.ms}}},
+          {"seed", seed ? Json(*seed) : Json(nullptr)},
+          {"commit", FARCULL_COMMIT}};
+}
+
+std::string distances_header() {
+  return "object_a,triangle_a,object_b,triangle_b,distance,squared,x_a,y_a,z_a,x_b,y_b,z_b,"
+         "feature_a,feature_b,inside\n";
+}
+
+std::string distances_rows(const Scene& scene, const DistanceRecord& record,
+                           const std::string& before) {
+  std::string out;
+  for (const Distance& d : record.distances) {
+    const Closest& c = d.closest;
+    const auto [s, t] = within_objects(scene, d);
+    out += fmt::format("{}{},{},{},{},{},{}", before, d.objects.a, s, d.objects.b, t, c.distance,
+                       c.squared.text());
+    for (const Vec3& p : c.points) out += fmt::format(",{},{},{}", p.x(), p.y(), p.z());
+    out += fmt::format(",{},{},{}\n", to_string(c.features[0]), to_string(c.features[1]),
+                       d.inside == WhichInside::unknown ? "" : to_string(d.inside));
+  }
+  return out;
+}
+
+std::string verdict_text(const DistanceAccounting& v) {
+  const std::string all = counted(v.pairs_total, "pair", "pairs") + " accounted for";
+  if (v.holds()) return "verified: no nearer pair was culled, " + all;
+  std::string what;
+  if (v.nearer > 0) what = counted(v.nearer, "nearer pair was", "nearer pairs were") + " culled, ";
+  if (v.wrong > 0) what += counted(v.wrong, "answer is", "answers are") + " wrong, ";
+  return "NOT verified: " + what + all;
+}
+
+std::string accounting_sum(const DistanceAccounting& v) {
+  return fmt::format(
+      "accounted  {} = {} answered + {} farther by boxes\n           + {} by planes + {} by exact "
+      "distances{} + {} missed\n",
+      counted(v.pairs_total, "pair", "pairs"), grouped(v.answers), grouped(v.farther_by_boxes),
+      grouped(v.farther_by_planes), grouped(v.farther_by_exact),
+      v.neighbours > 0 ? " + " + grouped(v.neighbours) + " neighbours" : "", grouped(v.nearer));
+}
+
+std::string distances_table(const Scene& scene, const DistanceRecord& record) {
+  std::string out =
+      fmt::format("{}: {}, {}", scene.name, counted(scene.objects.size(), "object", "objects"),
+                  counted(scene.triangles.size(), "triangle", "triangles"));
+  if (record.degenerate_triangles > 0)
+    out += fmt::format(", {} of them degenerate", grouped(record.degenerate_triangles));
+  out += "\nasked      " + question_text(record.options) + "\n";
+  out += fmt::format("answered   {}\n\n", counted(record.distances.size(), "pair", "pairs"));
+  if (!record.distances.empty()) {
+    out += record.options.pairs == DistancePairs::nearest ? nearest_table(scene, record)
+                                                          : pairs_table(scene, record.distances);
+    out += "\n";
+  }
+  out += stage_table(record.trace) + "\n";
+  out += fmt::format(
+      "time       {:.1f} ms{}\n", record.ms,
+      record.verification ? fmt::format("; accounting {:.1f} more", record.verification->ms) : "");
+  return out + accounting_lines(scene, record);
+}
+
+}  // namespace farcull

@@ -1,0 +1,107 @@
+#!/usr/bin/env bash
+# `farcull distance` from the command line: bad input and good cases, as cli_test.sh does it for the
+# rest.
+#   tests/experiments/command/cli_distance_test.sh FARCULL_BINARY
+# Needs bash and Debian's essential tools.
+set -uo pipefail
+
+if [[ $# -ne 1 || ! -x $1 ]]; then
+  echo "usage: cli_distance_test.sh FARCULL_BINARY" >&2
+  exit 2
+fi
+program=$(realpath -- "$1")
+work=$(mktemp -d) || exit 2
+trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
+
+# shellcheck source-path=SCRIPTDIR source=cli_lab.sh
+source "$(dirname -- "${BASH_SOURCE[0]}")/cli_lab.sh"
+
+echo older >old.json
+obj 'f 1 2 3' 'f 1 2 4' 'f 1 3 4' 'f 2 3 4' >small.obj
+printf '%s\n' 'v -5 -5 -5' 'v 29 -5 -5' 'v -5 29 -5' 'v -5 -5 29' 'f 1 3 2' 'f 1 2 4' 'f 2 3 4' 'f 3 1 4' >large.obj
+printf '%s\n' 'v -5 -5 -5' 'v 29 -5 -5' 'v -5 29 -5' 'v -5 -5 29' 'f 1 3 2' 'f 1 2 4' 'f 2 3 4' >open.obj
+printf 'v 2 0 0\nv 3 0 0\nv 2 1 0\nf 1 2 3\n' >right.obj
+for i in 1 2 3; do printf 'v %d 0 0\nv 9 0 0\nv 9 1 0\nf 1 2 3\n' $((i + 1)) >"moves_$i.obj"; done
+two=(small.obj right.obj)
+
+# --- bad input ---------------------------------------------------------------------------------
+
+bad 'no scene' 'SCENE: none is named' distance
+bad 'one object' 'SCENE: only one object .*farcull distance small\.obj --self' distance small.obj
+bad 'one object, nearest' 'SCENE: only one object' distance small.obj --pairs nearest
+bad 'no such pairs' "--pairs: 'some' is no choice; give objects, nearest or all" distance "${two[@]}" \
+  --pairs some
+bad 'all without a distance' '--within: is missing' distance "${two[@]}" --pairs all
+for within in -1 -1e-300 nan inf 1e999 '' 1x ' 1' 0x1p3; do
+  bad "within '$within'" '--within: ' distance "${two[@]}" --within "$within"
+done
+for k in 0 -1 1.5 '' x 99999999999999999999; do
+  bad "k '$k'" '--k: ' distance "${two[@]}" --pairs nearest --k "$k"
+done
+bad 'k of objects' '--k: has no meaning without --pairs nearest' distance "${two[@]}" --k 2
+bad 'nearest and self' '--self: has no meaning with --pairs nearest' distance "${two[@]}" --pairs nearest \
+  --self
+for threads in 0 -1 1025 x ''; do
+  bad "threads '$threads'" '--threads: ' distance "${two[@]}" --threads "$threads"
+done
+bad 'signed maybe' '--signed: .*give yes or no' distance "${two[@]}" --signed maybe
+bad 'signed triangles' '--signed: ' distance "${two[@]}" --pairs all --within 1 --signed yes
+bad 'no such option' '--clearance: farcull distance has no such option' distance "${two[@]}" --clearance 1
+bad 'no such file' 'none\.obj: ' distance small.obj none.obj --json old.json
+bad 'an output that is read' '--csv: ' distance "${two[@]}" --csv right.obj
+bad 'one file twice' '--csv: .*--json' distance "${two[@]}" --csv a.out --json a.out
+bad 'frames of what stands still' '--frames: nothing .*%d' distance "${two[@]}" --frames 3
+((cases += 1))
+launch distance random-soup --pairs all --within 100 # for longer than bad() lets it
+refused 'more pairs than are answered' 'within: has [0-9]+ pairs .*; give a smaller distance'
+
+# --- good cases --------------------------------------------------------------------------------
+
+good 'two objects' 0 distance "${two[@]}" --verify
+expect 'two objects' "$out" '^0 small +1 right +1 +0 vertex 1 +0 vertex 0'
+expect 'two objects' "$out" '^verified: no nearer pair was culled, 4 pairs accounted for$'
+good 'as JSON' 0 distance "${two[@]}" --json -
+expect 'as JSON' "$out" '^ +"distance": 1\.0,$'
+expect 'as JSON' "$out" '^ +"squared": "1/1",$'
+expect 'as JSON' "$out" '^ +"inside": "none"$'
+expect 'as JSON' "$out" '^ +"hash": "[0-9a-f]{16}"$'
+good 'as CSV' 0 distance "${two[@]}" --csv -
+expect 'as CSV' "$out" '^object_a,triangle_a,object_b,triangle_b,distance,squared,x_a,'
+expect 'as CSV' "$out" '^0,0,1,0,1,1/1,1,0,0,2,0,0,vertex 1,vertex 0,none$'
+good 'inside' 0 distance small.obj large.obj --csv -
+expect 'inside' "$out" ',a$'
+good 'outside in' 0 distance large.obj small.obj --csv -
+expect 'outside in' "$out" ',b$'
+good 'not closed' 0 distance small.obj open.obj --csv -
+expect 'not closed' "$out" ',not closed$'
+good 'not signed' 0 distance small.obj large.obj --signed no --csv -
+expect 'not signed' "$out" ',$'
+good 'within less' 0 distance "${two[@]}" --within 0.999 --csv -
+((cases += 1))
+(($(wc -l <"$out") == 1)) || fail 'within less' 'an answer'
+good 'within as much' 0 distance "${two[@]}" --within 1 --csv -
+expect 'within as much' "$out" '^0,0,1,0,1,'
+good 'that meet' 0 distance small.obj small.obj --csv -
+expect 'that meet' "$out" '^0,0,1,0,0,0/1,'
+good 'nearest' 0 distance small.obj right.obj large.obj --pairs nearest --k 4000000000 --verify
+expect 'nearest' "$out" '^0 small +1  1 right +1 '
+good 'all' 0 distance crowd --pairs all --within 0.01 --verify --csv all.csv --json all.json
+expect 'all' "$out" '^verified: '
+good 'self' 0 distance rope:2000 --self --pairs all --within 0.001 --verify
+expect 'self' "$out" '^verified: .* pairs accounted for$'
+good 'threads' 0 distance crowd --pairs nearest --k 2 --threads 1 --csv one.csv
+good 'threads' 0 distance crowd --pairs nearest --k 2 --threads 3 --csv three.csv
+((cases += 1))
+cmp -s one.csv three.csv || fail 'threads' 'other answers with 3 than with 1'
+good 'frames' 0 distance small.obj moves_%d.obj --frames 1:3 --verify --csv frames.csv --json frames.json
+expect 'frames' "$out" '^ +2 +1 +2 '
+expect 'frames' frames.csv '^frame,object_a,'
+expect 'frames' frames.csv '^3,0,0,1,0,3,9/1,'
+expect 'frames' frames.json '^    "missed": 0$'
+good 'frames of a built-in scene' 0 distance two-spheres --frames 2 --signed no
+
+if ((failed > 0)); then
+  echo "cli_distance_test: $failed of $cases cases failed"
+  exit 1
+fi
+echo "cli_distance_test: $cases cases, none failed"

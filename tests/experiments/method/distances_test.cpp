@@ -1,0 +1,170 @@
+// Distances against comparing all triangles with all in rational numbers, bit for bit.
+#include "experiments/method/distances.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/core/base/trials.h"
+#include "tests/experiments/method/distance_lab.h"
+
+namespace farcull {
+namespace {
+
+using distance_lab::Answer;
+using distance_lab::answers_of;
+using distance_lab::Truth;
+using enum DistancePairs;
+
+std::vector<DistanceOptions> questions(rational::Draws& random, double unit) {
+  const double within = unit * random.below(40);
+  return {{.pairs = objects},
+          {.pairs = objects, .within = within, .threads = 2},
+          {.pairs = nearest, .k = 1u + random.below(3u)},
+          {.pairs = nearest, .k = 1u + random.below(3u), .within = within},
+          {.pairs = all, .within = within / 4}};
+}
+
+TEST(Distances, EqualABruteForceOnRandomScenes) {
+  rational::Draws random(1);
+  int answers = 0, touching = 0, nothing = 0;
+  for (int k = 0; k < trials(60); ++k) {
+    const Scene scene = distance_lab::random_scene(random, 1 + random.below(6), 12);
+    double unit = 1;
+    for (const Vec3& p : scene.vertices) unit = std::max(unit, p.cwiseAbs().maxCoeff());
+    const Truth truth(scene);
+    for (DistanceOptions options : questions(random, std::min(unit / 20, 1e300))) {
+      options.verify = true;
+      if (!nothing_asked(scene, options).empty()) {
+        ++nothing;
+        EXPECT_THROW(distances(scene, options), Error);
+        continue;
+      }
+      const DistanceRecord record = distances(scene, options);
+      ASSERT_EQ(answers_of(record), truth.answers(options)) << k;
+      ASSERT_TRUE(record.verification->holds()) << k;
+      ASSERT_TRUE(record.verification->adds_up()) << k;
+      answers += static_cast<int>(record.distances.size());
+      for (const Distance& d : record.distances) touching += d.closest.squared.is_zero();
+    }
+  }
+  EXPECT_GT(answers, trials(300));
+  EXPECT_GT(touching, trials(20));
+  EXPECT_LT(touching, answers);
+  EXPECT_GT(nothing, 0);
+}
+
+/// The second half of the objects moved away by so many diagonals of the scene.
+Scene moved_apart(Scene scene, double diagonals) {
+  Box box = Box::empty();
+  for (const Vec3& p : scene.vertices) box.add(p);
+  const Vec3 by = Vec3(1, 0.7, 0.3).normalized() * ((box.hi - box.lo).norm() * diagonals);
+  std::vector<bool> moved(scene.vertices.size());
+  for (std::size_t o = scene.objects.size() / 2; o < scene.objects.size(); ++o) {
+    const Object& object = scene.objects[o];
+    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+      for (const std::uint32_t v : scene.triangles[object.first_triangle + t]) {
+        if (!moved[v]) scene.vertices[v] += by;
+        moved[v] = true;
+      }
+    }
+  }
+  return scene;
+}
+
+// Small ones: a brute force takes the product of the numbers of triangles.
+TEST(Distances, EqualABruteForceOnBuiltInScenesMovedApart) {
+  for (const char* name : {"degenerate", "slivers:20", "mixed:4", "gap:12", "needles:8"}) {
+    for (const double diagonals : {0.0, 1e-12, 1e-3, 1.0, 1e3}) {
+      const Scene scene = moved_apart(make_builtin_scene(name), diagonals);
+      const DistanceOptions options = {.verify = true};
+      const DistanceRecord record = distances(scene, options);
+      EXPECT_EQ(answers_of(record), Truth(scene).answers(options)) << name << " " << diagonals;
+      EXPECT_TRUE(record.verification->holds()) << name << " " << diagonals;
+    }
+  }
+}
+
+bool same(const DistanceRecord& x, const DistanceRecord& y) {
+  return std::ranges::equal(x.distances, y.distances, [](const Distance& a, const Distance& b) {
+    return a.objects == b.objects && a.triangles == b.triangles && a.inside == b.inside &&
+           a.closest.distance == b.closest.distance && a.closest.squared == b.closest.squared &&
+           a.closest.points == b.closest.points && a.closest.features == b.closest.features;
+  });
+}
+
+TEST(Distances, DependNeitherOnThreadsNorOnTheFrameBefore) {
+  rational::Draws random(2);
+  DistanceMemory memory;
+  for (int k = 0; k < 20; ++k) {
+    const Scene scene = distance_lab::random_scene(random, 5, 40);
+    for (const DistanceOptions& options : questions(random, 1)) {
+      if (!nothing_asked(scene, options).empty()) continue;
+      DistanceOptions one = options, three = options;
+      one.threads = 1;
+      three.threads = 3;
+      const DistanceRecord record = distances(scene, one);
+      EXPECT_TRUE(same(record, distances(scene, three)));
+      // Hints of another scene: of triangles that are far apart now, or are not there.
+      EXPECT_TRUE(same(record, distances(scene, one, {}, &memory)));
+      EXPECT_TRUE(same(record, distances(scene, one, {}, &memory)));
+    }
+  }
+}
+
+TEST(Distances, OfOneObjectLeaveNeighboursOut) {
+  Scene scene = make_builtin_scene("degenerate");
+  scene.objects.resize(1);
+  scene.objects[0].triangle_count = 60;
+  scene.triangles.resize(60);
+  scene.source_face.resize(60);
+  EXPECT_THROW(distances(scene, {}), Error);
+  scene.objects[0].self = true;
+  const DistanceOptions options = {.verify = true};
+  const DistanceRecord record = distances(scene, options);
+  EXPECT_EQ(answers_of(record), Truth(scene).answers(options));
+  ASSERT_EQ(record.distances.size(), 1u);
+  EXPECT_EQ(record.distances[0].inside, WhichInside::unknown);
+  EXPECT_THROW(distances(scene, {.pairs = nearest}), Error);
+}
+
+TEST(Distances, RefuseBadOptions) {
+  const Scene scene = make_builtin_scene("degenerate");
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(distances(scene, {.within = nan}), Error);
+  EXPECT_THROW(distances(scene, {.within = -1}), Error);
+  EXPECT_THROW(distances(scene, {.pairs = all}), Error);
+  EXPECT_THROW(distances(scene, {.pairs = nearest, .k = 0}), Error);
+  EXPECT_THROW(distances(scene, {.pairs = all, .within = 1, .most_pairs = 10}), Error);
+  EXPECT_NO_THROW(distances(scene, {.pairs = nearest, .k = SIZE_MAX}));
+}
+
+TEST(Distances, AnswerWhatIsNearestOfEachObject) {
+  // Points on a line at 0, 1, 3, 4: of 1 and 3 as seen from 4 the nearest is 3, and so on.
+  Scene scene;
+  for (const double x : {0.0, 1.0, 3.0, 4.0}) {
+    const auto v = static_cast<std::uint32_t>(scene.vertices.size());
+    scene.vertices.push_back({x, 0, 0});
+    scene.objects.push_back({.name = "", .first_triangle = v, .triangle_count = 1});
+    scene.triangles.push_back({v, v, v});
+    scene.source_face.push_back(0);
+  }
+  const DistanceRecord record = distances(scene, {.pairs = nearest, .k = 2});
+  const auto of = nearest_of_objects(scene, record.distances, 2);
+  ASSERT_EQ(of.size(), 4u);
+  const auto neighbours = [&](std::uint32_t object) {
+    std::vector<std::uint32_t> out;
+    for (const std::size_t d : of[object].distances) {
+      const ObjectPair& pair = record.distances[d].objects;
+      out.push_back(pair.a == object ? pair.b : pair.a);
+    }
+    return out;
+  };
+  EXPECT_EQ(neighbours(0), (std::vector<std::uint32_t>{1, 2}));
+  EXPECT_EQ(neighbours(1), (std::vector<std::uint32_t>{0, 2}));
+  EXPECT_EQ(neighbours(2), (std::vector<std::uint32_t>{3, 1}));
+  EXPECT_EQ(neighbours(3), (std::vector<std::uint32_t>{2, 1}));
+}
+
+}  // namespace
+}  // namespace farcull
