@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -65,12 +66,19 @@ CLI::App* BenchCommand::add_to(CLI::App& app) {
   add("--device", device_, "DEVICE",
       "for methods on GL, as for farcull run, or cpu for\nnone of them; default where there is "
       "one");
+  add("--distances", distances_, "PAIRS",
+      "times of distance queries instead: objects, every two\nobjects; or nearest, each with "
+      "the nearest other one.\nPeers are then "
+      "fcl-double,fcl-float,cgal-aabb");
+  add("--within", within_, "DISTANCE",
+      "with --distances: farther ones need not be found;\nin world units, default all");
   add("--json", outputs_.json, "FILE", kJsonHelp);
   add_footer(*command, [] {
     return "Examples:\n"
            "  farcull bench two-bunnies\n"
            "  farcull bench needles-layers --threads 1 --peers fcl-obbrss,embree-low\n"
-           "  farcull bench field:1000000 --peers none --methods far-pairs --json field.json\n\n" +
+           "  farcull bench field:1000000 --peers none --methods far-pairs --json field.json\n"
+           "  farcull bench bunnies-far-apart --distances objects\n\n" +
            peers_text() +
            "farcull help terms explains the columns; docs/bench.md says what is\n"
            "measured. Exit status 1: two of them disagree about a pair.";
@@ -95,7 +103,7 @@ BenchOptions BenchCommand::parse() const {
   options.device = device_of(device_);
   options.self = self_;
   options.seed = scene_.size() == 1 ? builtin_seed(scene_[0]) : std::nullopt;
-  validate(options);
+  if (!distances_) validate(options);  // whose peers are others
   if (!is_cpu(options.device)) {
     RunOptions run;
     run.device = options.device;
@@ -104,8 +112,34 @@ BenchOptions BenchCommand::parse() const {
   return options;
 }
 
+DistanceBenchOptions BenchCommand::parse_distances(const BenchOptions& options) const {
+  DistanceBenchOptions out{.peers = options.peers,
+                           .threads = options.threads,
+                           .repeat = options.repeat,
+                           .limit_s = options.limit_s};
+  if (*distances_ == "nearest") {
+    out.question.task = DistanceTask::nearest;
+  } else if (*distances_ != "objects") {
+    throw Error("--distances", "'" + *distances_ + "' is none", "give objects or nearest");
+  }
+  if (within_) {
+    out.question.within =
+        number_in<double>("--within", *within_, 0, std::numeric_limits<double>::max(),
+                          "give a distance in world units, 0 or more");
+  }
+  const auto refuse = [](bool given, const char* option) {
+    if (given) throw Error(option, "says nothing about distances", "leave it or --distances out");
+  };
+  refuse(self_, "--self");
+  refuse(methods_.has_value(), "--methods");
+  refuse(device_.has_value(), "--device");
+  return out;
+}
+
 int BenchCommand::run() {
   const BenchOptions options = parse();
+  if (within_ && !distances_)
+    throw Error("--within", "is a limit of distances", "add --distances objects, or leave it out");
   if (std::find(scene_.begin(), scene_.end(), "") != scene_.end())
     throw Error("SCENE", "a name is empty", "name mesh files, a scene file or a built-in scene");
   const Outputs outputs = checked(outputs_, scene_files(scene_));
@@ -116,6 +150,14 @@ int BenchCommand::run() {
   Scene scene = load_scene(scene_);
   if (options.self) {
     for (Object& object : scene.objects) object.self = true;
+  }
+  if (distances_) {
+    const DistanceBenchOptions of_distances = parse_distances(options);
+    const DistanceBenchResult result = bench_distances(scene, of_distances, progress);
+    terminal.clear();
+    if (outputs.json) write_json(to_json(scene, of_distances, result), *outputs.json);
+    if (!outputs.to_stdout()) write_output("-", distance_bench_table(scene, of_distances, result));
+    return 0;
   }
   const BenchResult result = bench(scene, contestants(scene, options, progress), options, progress);
   terminal.clear();

@@ -3,6 +3,7 @@
 
 #include "experiments/command/options.h"
 #include "experiments/measure/bench.h"
+#include "experiments/measure/distance_bench.h"
 
 namespace farcull {
 
@@ -15,10 +16,11 @@ class BenchCommand {
 
  private:
   BenchOptions parse() const;
+  DistanceBenchOptions parse_distances(const BenchOptions& options) const;
 
   std::vector<std::string> scene_;
   bool self_ = false;
-  Text peers_, methods_, threads_, repeat_, limit_, device_;
+  Text peers_, methods_, threads_, repeat_, limit_, device_, distances_, within_;
   Outputs outputs_;
 };
 

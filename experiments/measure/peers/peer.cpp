@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include "experiments/measure/peers/distance_peers.h"
+
 namespace farcull {
 namespace {
 
@@ -25,6 +27,12 @@ std::vector<Peer> fcl_peers() {
 
 std::vector<Peer> fcl_narrow_peers() {
   return {missing("fcl-float", "FCL", "libfcl-dev"), missing("fcl-double", "FCL", "libfcl-dev")};
+}
+
+std::vector<DistancePeer> fcl_distance_peers() {
+  const std::string missing = "built without FCL (Debian: libfcl-dev)";
+  return {{.name = "fcl-double", .library = "FCL", .missing = missing},
+          {.name = "fcl-float", .library = "FCL", .missing = missing}};
 }
 #endif
 
@@ -48,6 +56,12 @@ std::vector<Peer> ode_narrow_peers() { return {missing("ode-trimesh", "ODE", "li
 std::vector<Peer> narrow_peers() {
   std::vector<Peer> all = fcl_narrow_peers();
   for (Peer& peer : ode_narrow_peers()) all.push_back(std::move(peer));
+  return all;
+}
+
+std::vector<DistancePeer> distance_peers() {
+  std::vector<DistancePeer> all = fcl_distance_peers();
+  for (DistancePeer& peer : cgal_distance_peers()) all.push_back(std::move(peer));
   return all;
 }
 

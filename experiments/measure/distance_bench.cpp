@@ -1,0 +1,273 @@
+// Ours and the peers in turn; the first answer of each is compared with ours.
+#include "experiments/measure/distance_bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <tuple>
+#include <utility>
+
+#include "commit.h"
+#include "core/base/error.h"
+#include "core/base/stopwatch.h"
+#include "core/view/view.h"
+#include "experiments/measure/statistics.h"
+#include "experiments/method/distances.h"
+#include "experiments/record/tables.h"
+#include "experiments/system/machine.h"
+#include "experiments/system/text_table.h"
+
+namespace farcull {
+namespace {
+
+constexpr const char* kOurs = "farcull";
+
+PeerDistances ask_ours(const Scene& scene, const PeerQuestion& question, unsigned threads) {
+  const bool nearest = question.task == DistanceTask::nearest;
+  const DistanceOptions options{.pairs = nearest ? DistancePairs::nearest : DistancePairs::objects,
+                                .within = question.within,
+                                .inside = false,
+                                .threads = threads};
+  const Stopwatch watch;
+  const DistanceRecord record = distances(scene, options);
+  PeerDistances answer;
+  for (const Distance& distance : record.distances) {
+    const auto [a, b] = distance.objects;
+    answer.distances.push_back({a, b, distance.closest.distance});
+    if (nearest) answer.distances.push_back({b, a, distance.closest.distance});
+  }
+  std::sort(answer.distances.begin(), answer.distances.end(),
+            [](const PeerDistance& x, const PeerDistance& y) {
+              return std::tie(x.a, x.distance, x.b) < std::tie(y.a, y.distance, y.b);
+            });
+  if (nearest) {  // the pairs are those in which one is the nearest of the other
+    const auto same = [](const PeerDistance& x, const PeerDistance& y) { return x.a == y.a; };
+    answer.distances.erase(std::unique(answer.distances.begin(), answer.distances.end(), same),
+                           answer.distances.end());
+  } else {
+    std::sort(answer.distances.begin(), answer.distances.end(),
+              [](const PeerDistance& x, const PeerDistance& y) {
+                return std::tie(x.a, x.b) < std::tie(y.a, y.b);
+              });
+  }
+  answer.query_ms = watch.ms();
+  return answer;
+}
+
+std::vector<DistancePeer> chosen_peers(const std::string& text) {
+  std::vector<DistancePeer> known = distance_peers();
+  if (text == "all") return known;
+  if (text == "none") return {};
+  std::vector<std::string> names;
+  for (const DistancePeer& peer : known) names.push_back(peer.name);
+  const std::vector<std::string> asked = split_list(text);
+  for (const std::string& name : asked) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    throw Error("--peers", "'" + name + "' is none of them",
+                fmt::format("give all, none, or some of {}", fmt::join(names, ",")));
+  }
+  std::erase_if(known, [&asked](const DistancePeer& peer) {
+    return std::find(asked.begin(), asked.end(), peer.name) == asked.end();
+  });
+  return known;
+}
+
+std::string ms(double value) {
+  return value < 100 ? fmt::format("{:.2f}", value) : fmt::format("{:.0f}", value);
+}
+
+std::optional<double> ratio(const DistanceBenchResult& result, const DistanceBenchRow& row) {
+  if (!result.fastest_peer) return std::nullopt;
+  return row.total_ms.median / result.rows[*result.fastest_peer].total_ms.median;
+}
+
+std::string task_name(const PeerQuestion& question) {
+  return question.task == DistanceTask::objects ? "objects" : "nearest";
+}
+
+}  // namespace
+
+DistanceErrors errors_of(const std::vector<PeerDistance>& answer,
+                         const std::vector<PeerDistance>& exact) {
+  DistanceErrors out{.answers = answer.size()};
+  const auto nearest_by = [](const PeerDistance& x, const PeerDistance& y) {
+    return std::tie(x.a, x.b) < std::tie(y.a, y.b);
+  };
+  // With `nearest` there is one for each object, and the other object may differ.
+  bool one_each = true;
+  for (std::size_t i = 1; i < exact.size(); ++i) one_each &= exact[i].a != exact[i - 1].a;
+  auto at = answer.begin();
+  for (const PeerDistance& truth : exact) {
+    const auto before = [&](const PeerDistance& x) {
+      return one_each ? x.a < truth.a : nearest_by(x, truth);
+    };
+    for (; at != answer.end() && before(*at); ++at) ++out.beyond_it;
+    if (at == answer.end() || at->a != truth.a || (!one_each && at->b != truth.b)) {
+      ++out.lacking;
+      continue;
+    }
+    const double found = at->distance;
+    if (one_each && at->b != truth.b && found != truth.distance) ++out.other_object;
+    if (found == truth.distance) {
+      ++out.exact;
+    } else if (found == 0 || truth.distance == 0) {
+      ++out.other_zero;
+    } else {
+      out.largest_relative =
+          std::max(out.largest_relative, std::abs(found - truth.distance) / truth.distance);
+    }
+    ++at;
+  }
+  out.beyond_it += static_cast<std::uint64_t>(answer.end() - at);
+  return out;
+}
+
+DistanceBenchResult bench_distances(const Scene& given, const DistanceBenchOptions& options,
+                                    const Progress& progress) {
+  // No peer measures an object against itself.
+  Scene scene = given;
+  for (Object& object : scene.objects) object.self = false;
+  if (options.repeat < 1) throw Error("--repeat", "is below 1", "give 1 or more");
+  DistanceBenchResult result;
+  std::vector<DistancePeer> running = {
+      {.name = kOurs, .library = "farcull", .missing = "", .run = ask_ours}};
+  for (DistancePeer& peer : chosen_peers(options.peers)) {
+    std::string reason = peer.missing;
+    if (reason.empty() && peer.refuses) reason = peer.refuses(scene);
+    if (reason.empty()) {
+      running.push_back(std::move(peer));
+    } else {
+      result.left_out.emplace_back(peer.name, reason);
+    }
+  }
+
+  const Rounds rounds{
+      .warm_up = 1, .counted = options.repeat, .limit_ms = 1000 * options.limit_s, .memory = true};
+  std::vector<std::vector<double>> build(running.size()), query(running.size());
+  std::vector<PeerDistance> exact;
+  const std::vector<Timed> timed =
+      measure_in_turns(running.size(), rounds, [&](std::size_t i, int round) {
+        const DistancePeer& one = running[i];
+        if (progress) {
+          progress(round < 0 ? one.name + ", cold"
+                             : fmt::format("{}, {} of {}", one.name, round + 1, options.repeat));
+        }
+        const Stopwatch watch;
+        PeerDistances answer = one.run(scene, options.question, options.threads);
+        const double took = watch.ms();
+        if (round < 0) {
+          if (i == 0) exact = answer.distances;
+          result.rows.push_back({.name = one.name,
+                                 .library = one.library,
+                                 .peer = i > 0,
+                                 .errors = errors_of(answer.distances, exact)});
+        }
+        if (round >= 0 || took > rounds.limit_ms) {
+          build[i].push_back(answer.build_ms);
+          query[i].push_back(answer.query_ms);
+        }
+        return took;
+      });
+
+  for (std::size_t i = 0; i < running.size(); ++i) {
+    DistanceBenchRow& row = result.rows[i];
+    const bool once = timed[i].over_limit(rounds);
+    row.total_ms = spread_of(once ? std::vector{timed[i].warm_up_ms} : timed[i].ms);
+    row.cold_ms = timed[i].warm_up_ms;
+    row.peak_mib = timed[i].peak_mib;
+    row.repeats = static_cast<int>(timed[i].ms.size());
+    row.build_ms = middle(build[i]);
+    row.query_ms = middle(query[i]);
+    // Floats are no peer of what answers in doubles.
+    if (!row.peer || row.name == "fcl-float") continue;
+    if (!result.fastest_peer ||
+        row.total_ms.median < result.rows[*result.fastest_peer].total_ms.median) {
+      result.fastest_peer = i;
+    }
+  }
+  return result;
+}
+
+nlohmann::ordered_json to_json(const Scene& scene, const DistanceBenchOptions& options,
+                               const DistanceBenchResult& result) {
+  using Json = nlohmann::ordered_json;
+  Json rows = Json::array();
+  for (const DistanceBenchRow& row : result.rows) {
+    const auto times = ratio(result, row);
+    rows.push_back({{"name", row.name},
+                    {"library", row.library},
+                    {"peer", row.peer},
+                    {"total_ms", to_json(row.total_ms)},
+                    {"build_ms", row.build_ms},
+                    {"query_ms", row.query_ms},
+                    {"cold_ms", row.cold_ms},
+                    {"repeats", row.repeats},
+                    {"peak_mib", row.peak_mib ? Json(*row.peak_mib) : Json(nullptr)},
+                    {"ratio_to_fastest_peer", times ? Json(*times) : Json(nullptr)},
+                    {"answers", row.errors.answers},
+                    {"lacking", row.errors.lacking},
+                    {"beyond", row.errors.beyond_it},
+                    {"exact", row.errors.exact},
+                    {"other_zero", row.errors.other_zero},
+                    {"other_object", row.errors.other_object},
+                    {"largest_relative_error", row.errors.largest_relative}});
+  }
+  Json left_out = Json::array();
+  for (const auto& [name, reason] : result.left_out)
+    left_out.push_back({{"name", name}, {"reason", reason}});
+  const double within = options.question.within;
+  return {{"scene", scene.name},
+          {"distances", task_name(options.question)},
+          {"within", std::isinf(within) ? Json(nullptr) : Json(within)},
+          {"threads", options.threads},
+          {"rows", rows},
+          {"fastest_peer",
+           result.fastest_peer ? Json(result.rows[*result.fastest_peer].name) : Json(nullptr)},
+          {"left_out", left_out},
+          {"objects", scene.objects.size()},
+          {"triangles", scene.triangles.size()},
+          {"hash", scene_hash(scene)},
+          {"options",
+           {{"peers", options.peers}, {"repeat", options.repeat}, {"limit_s", options.limit_s}}},
+          {"cpu", cpu_model()},
+          {"commit", FARCULL_COMMIT}};
+}
+
+std::string distance_bench_table(const Scene& scene, const DistanceBenchOptions& options,
+                                 const DistanceBenchResult& result) {
+  std::string out = fmt::format("{}: {}, {}; {}, {}\n\n", scene.name,
+                                counted(scene.objects.size(), "object", "objects"),
+                                counted(scene.triangles.size(), "triangle", "triangles"),
+                                counted(options.threads, "thread", "threads"), cpu_model());
+  Table table("lrrrrrrrrrrrrrr");
+  table.add({"", "ms", "low", "high", "n", "cold", "build", "query", "MiB", "distances", "exact",
+             "lacking", "other 0", "rel. error", result.fastest_peer ? "x fastest" : ""});
+  for (const DistanceBenchRow& row : result.rows) {
+    const auto times = ratio(result, row);
+    table.add({row.name + (row.repeats == 0 ? " (once)" : ""), ms(row.total_ms.median),
+               ms(row.total_ms.low), ms(row.total_ms.high), std::to_string(row.total_ms.n),
+               ms(row.cold_ms), ms(row.build_ms), ms(row.query_ms),
+               row.peak_mib ? fmt::format("{:.1f}", *row.peak_mib) : "-",
+               grouped(row.errors.answers), grouped(row.errors.exact), grouped(row.errors.lacking),
+               grouped(row.errors.other_zero), fmt::format("{:.1e}", row.errors.largest_relative),
+               times ? fmt::format("{:.3f}", *times) : ""});
+  }
+  out += table.text();
+  for (const auto& [name, reason] : result.left_out)
+    out += fmt::format("left out: {}: {}\n", name, reason);
+  out +=
+      "\nms: from the triangles to the distances, median of n runs; low, high: its 95 % interval\n"
+      "by the bootstrap, which fewer than 6 runs make too narrow; cold: the first run; MiB: "
+      "resident\nat the peak of the cold run, beyond before. exact: the correctly rounded "
+      "distance; lacking:\ndistances that were not found; other 0: objects that meet called apart, "
+      "or the reverse;\nrel. error: the largest one of the others.\n";
+  if (result.fastest_peer) {
+    out += fmt::format("x fastest: of the fastest peer in doubles, {}, in this run.\n",
+                       result.rows[*result.fastest_peer].name);
+  }
+  return out;
+}
+
+}  // namespace farcull
