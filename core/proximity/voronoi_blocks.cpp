@@ -1,0 +1,23 @@
+// What both forms of the diagram share, beside the walk.
+#include "core/proximity/voronoi_blocks.h"
+
+#include "core/base/error.h"
+
+namespace farcull::voronoi {
+
+void require(const VoronoiOptions& options) {
+  if (options.resolution < 1 || options.resolution > kVoronoiLargest) {
+    throw Error("resolution", "is " + std::to_string(options.resolution),
+                "give 1 to " + std::to_string(kVoronoiLargest));
+  }
+  if (!(options.widening >= 0 && options.widening <= 1)) {
+    throw Error("widening", "is not in 0 to 1", "leave it at 1, which the proof asks for");
+  }
+}
+
+void sort_each_once(std::vector<ObjectPair>& pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+}
+
+}  // namespace farcull::voronoi

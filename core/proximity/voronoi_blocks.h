@@ -1,0 +1,160 @@
+// The walk down the blocks of cells, level by level: each block has the triangles that can matter
+// to a cell in it, and passes on to its parts those that still can. A level reads what the levels
+// above it found, and nothing of itself, so the answer does not depend on the number of threads.
+// For the two forms of the diagram (voronoi.h) alone.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/proximity/voronoi.h"
+#include "core/proximity/voronoi_distance.h"
+#include "core/proximity/voronoi_grid.h"
+
+namespace farcull::voronoi {
+
+inline constexpr float kInfinite = std::numeric_limits<float>::infinity();
+inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+// Cells from.. to - 1 along each axis, and where its triangles lie in the list of its level.
+struct Block {
+  std::array<int, 3> from, to;
+  std::size_t first, count;
+
+  bool is_cell() const {
+    return to[0] - from[0] == 1 && to[1] - from[1] == 1 && to[2] - from[2] == 1;
+  }
+};
+
+struct Level {
+  std::vector<Block> blocks;
+  std::vector<std::uint32_t> triangles;
+
+  void append(const Level& other) {
+    for (Block block : other.blocks) {
+      block.first += triangles.size();
+      blocks.push_back(block);
+    }
+    triangles.insert(triangles.end(), other.triangles.begin(), other.triangles.end());
+  }
+};
+
+// Adds the halves of the block along each axis that has any. All have the triangles `kept`.
+inline void add_parts(const Block& block, std::span<const std::uint32_t> kept, Level& below) {
+  std::array<std::vector<std::pair<int, int>>, 3> parts;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int from = block.from[k], to = block.to[k], middle = from + (to - from) / 2;
+    if (to - from > 1)
+      parts[k] = {{from, middle}, {middle, to}};
+    else
+      parts[k] = {{from, to}};
+  }
+  const std::size_t first = below.triangles.size();
+  below.triangles.insert(below.triangles.end(), kept.begin(), kept.end());
+  for (const auto& x : parts[0]) {
+    for (const auto& y : parts[1]) {
+      for (const auto& z : parts[2]) {
+        below.blocks.push_back(
+            {{x.first, y.first, z.first}, {x.second, y.second, z.second}, first, kept.size()});
+      }
+    }
+  }
+}
+
+// An object near a point: the least bounds of its triangles, and its least computed distance.
+struct Near {
+  std::uint32_t object;
+  float computed, lower, upper;
+};
+
+// The distances of a point from triangles that are sorted by object.
+class Distances {
+ public:
+  void compute(const GridPoint& point, std::span<const std::uint32_t> ids,
+               const std::vector<GridTriangle>& triangles, float error) {
+    of_.clear();
+    objects_.clear();
+    for (const std::uint32_t id : ids) {
+      const GridTriangle& triangle = triangles[id];
+      const GridDistance d = distance_of(point, triangle, error);
+      of_.push_back(d);
+      if (objects_.empty() || objects_.back().object != triangle.object) {
+        objects_.push_back({triangle.object, d.computed, d.lower, d.upper});
+      } else {
+        Near& near = objects_.back();
+        near.computed = std::min(near.computed, d.computed);
+        near.lower = std::min(near.lower, d.lower);
+        near.upper = std::min(near.upper, d.upper);
+      }
+    }
+  }
+  const std::vector<GridDistance>& of() const { return of_; }  // in the order of the triangles
+  const std::vector<Near>& objects() const { return objects_; }
+  // The K least upper bounds with their objects, ascending.
+  template <std::size_t K>
+  std::array<std::pair<float, std::uint32_t>, K> least_upper() const {
+    std::array<std::pair<float, std::uint32_t>, K> out;
+    out.fill({kInfinite, kNone});
+    for (const Near& near : objects_) {
+      std::pair<float, std::uint32_t> carried{near.upper, near.object};
+      for (auto& kept : out) {
+        if (carried.first < kept.first) std::swap(carried, kept);
+      }
+    }
+    return out;
+  }
+
+ private:
+  std::vector<GridDistance> of_;
+  std::vector<Near> objects_;
+};
+
+/// Throws Error naming the option that is out of range.
+void require(const VoronoiOptions& options);
+/// Sorts them and leaves each once.
+void sort_each_once(std::vector<ObjectPair>& pairs);
+inline ObjectPair pair_of(std::uint32_t a, std::uint32_t b) {
+  return {std::min(a, b), std::max(a, b)};
+}
+
+/// Calls form.look() for each block that matters, level by level, and form.add() with what the
+/// chunks of a level found, in order, before it looks at the next level. Form::Found: what a chunk
+/// finds.
+template <class Form>
+void descend(Form& form, const VoronoiGrid& grid, std::size_t triangles,
+             const VoronoiOptions& options, const Progress& progress, VoronoiCounts& counts) {
+  counts.cells = grid.cells;
+  Level level;
+  level.blocks.push_back({{0, 0, 0}, grid.cells, 0, triangles});
+  for (std::uint32_t t = 0; t < triangles; ++t) level.triangles.push_back(t);
+  while (!level.blocks.empty()) {
+    if (progress) progress("voronoi: " + std::to_string(level.blocks.size()) + " blocks");
+    const std::size_t chunks = chunks_for(level.blocks.size(), 16, options.threads);
+    std::vector<Level> below(chunks);
+    std::vector<typename Form::Found> found(chunks, form.nothing());
+    for_chunks(level.blocks.size(), chunks, [&](std::size_t k, std::size_t begin, std::size_t end) {
+      Distances distances;
+      for (std::size_t i = begin; i < end; ++i) {
+        const Block& block = level.blocks[i];
+        form.look(block, std::span(level.triangles).subspan(block.first, block.count), distances,
+                  found[k], below[k]);
+      }
+    });
+    for (const Block& block : level.blocks) counts.distances += block.count;
+    counts.blocks += level.blocks.size();
+    level = {};
+    for (std::size_t k = 0; k < chunks; ++k) {
+      form.add(found[k]);
+      level.append(below[k]);
+    }
+  }
+}
+
+}  // namespace farcull::voronoi

@@ -1,0 +1,168 @@
+// Distances in rationals, for tests: the least over all pairs of features, each by its formula.
+// Written apart from all other code that computes distances.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "verify/rational.h"
+
+namespace farcull::exact_distance {
+
+// Number: rational::Q, or double for a first estimate.
+template <class Number>
+using Point = std::array<Number, 3>;
+template <class Number>
+using Corners = std::array<Point<Number>, 3>;
+
+template <class Number>
+Corners<Number> converted(const std::array<Vec3, 3>& corners) {
+  Corners<Number> out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) out[i][k] = Number(corners[i][static_cast<int>(k)]);
+  }
+  return out;
+}
+
+template <class Number>
+Point<Number> minus(const Point<Number>& a, const Point<Number>& b) {
+  return {Number(a[0] - b[0]), Number(a[1] - b[1]), Number(a[2] - b[2])};
+}
+template <class Number>
+Number dot(const Point<Number>& a, const Point<Number>& b) {
+  return Number(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+}
+template <class Number>
+Point<Number> cross(const Point<Number>& a, const Point<Number>& b) {
+  return {Number(a[1] * b[2] - a[2] * b[1]), Number(a[2] * b[0] - a[0] * b[2]),
+          Number(a[0] * b[1] - a[1] * b[0])};
+}
+
+/// The square of the distance of a point from a segment, which may be a point.
+template <class Number>
+Number to_segment(const Point<Number>& p, const Point<Number>& a, const Point<Number>& b) {
+  const Point<Number> e = minus(b, a), from = minus(p, a);
+  const Number ee = dot(e, e), along = dot(from, e);
+  if (ee == 0 || along <= 0) return dot(from, from);
+  const Point<Number> to = minus(p, b);
+  if (along >= ee) return dot(to, to);
+  return Number(dot(from, from) - along * along / ee);
+}
+
+// Where a line through p along d meets the plane of the triangle is inside: by the two weights.
+template <class Number>
+bool inside(const Point<Number>& x, const Corners<Number>& t, const Point<Number>& normal) {
+  const Point<Number> e = minus(t[1], t[0]), f = minus(t[2], t[0]), from = minus(x, t[0]);
+  const Number nn = dot(normal, normal), s = dot(cross(from, f), normal),
+               w = dot(cross(e, from), normal);
+  return s >= 0 && w >= 0 && s + w <= nn;
+}
+
+/// The square of the distance of a point from a triangle, which may be a segment or a point.
+template <class Number>
+Number to_triangle(const Point<Number>& p, const Corners<Number>& t) {
+  Number out = to_segment(p, t[0], t[1]);
+  out = std::min(out, to_segment(p, t[1], t[2]));
+  out = std::min(out, to_segment(p, t[2], t[0]));
+  const Point<Number> normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
+  const Number nn = dot(normal, normal);
+  if (nn == 0 || !inside(p, t, normal)) return out;
+  const Number height = dot(minus(p, t[0]), normal);
+  return std::min(out, Number(height * height / nn));
+}
+
+// The square of the distance of two lines where both are nearest inside the segments.
+template <class Number>
+std::optional<Number> across(const Point<Number>& a, const Point<Number>& b, const Point<Number>& c,
+                             const Point<Number>& d) {
+  const Point<Number> e = minus(b, a), f = minus(d, c), from = minus(c, a), n = cross(e, f);
+  const Number nn = dot(n, n);
+  if (nn == 0) return std::nullopt;
+  const Number s = dot(cross(from, f), n), t = dot(cross(from, e), n);
+  if (s < 0 || s > nn || t < 0 || t > nn) return std::nullopt;
+  const Number height = dot(from, n);
+  return Number(height * height / nn);
+}
+
+// Whether the segment passes through the triangle from one side to the other.
+template <class Number>
+bool pierces(const Point<Number>& p, const Point<Number>& q, const Corners<Number>& t) {
+  const Point<Number> normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
+  const Number from = dot(normal, minus(p, t[0])), to = dot(normal, minus(q, t[0]));
+  if (!((from < 0 && to > 0) || (from > 0 && to < 0))) return false;
+  Point<Number> x;
+  for (std::size_t k = 0; k < 3; ++k) x[k] = p[k] + from / Number(from - to) * (q[k] - p[k]);
+  return inside(x, t, normal);
+}
+
+/// The square of the distance of two triangles.
+template <class Number>
+Number between(const Corners<Number>& a, const Corners<Number>& b) {
+  Number out = to_triangle(a[0], b);
+  for (std::size_t i = 0; i < 3; ++i) {
+    out = std::min(out, to_triangle(a[i], b));
+    out = std::min(out, to_triangle(b[i], a));
+    const std::size_t next = (i + 1) % 3;
+    if (pierces(a[i], a[next], b) || pierces(b[i], b[next], a)) return Number(0);
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (const auto of_edges = across(a[i], a[next], b[j], b[(j + 1) % 3]))
+        out = std::min(out, *of_edges);
+    }
+  }
+  return out;
+}
+
+/// The nearest neighbours of an object.
+struct Nearest {
+  rational::Q squared = -1;         // of the distance; negative: there is no other object
+  std::vector<TrianglePair> pairs;  // all at that distance, sorted
+};
+
+/// Of each object. Precondition: coordinates of at most about 2, multiples of 2^-10 or of 2^-10 of
+/// their size. A first estimate in double leaves out what is far from the least distance: of such
+/// numbers all comparisons in it are right, and its squares are less than 1e-12 off.
+inline std::vector<Nearest> nearest_neighbours(const Scene& scene) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  const auto count = static_cast<std::uint32_t>(scene.triangles.size());
+  std::vector<Corners<double>> rough;
+  std::vector<Corners<rational::Q>> exact;
+  for (std::uint32_t t = 0; t < count; ++t) {
+    rough.push_back(converted<double>(scene.corners(t)));
+    exact.push_back(converted<rational::Q>(scene.corners(t)));
+  }
+  struct Estimate {
+    TrianglePair pair;
+    double squared;
+  };
+  std::vector<Estimate> estimates;
+  std::vector<double> least(scene.objects.size(), HUGE_VAL);
+  for (std::uint32_t a = 0; a < count; ++a) {
+    for (std::uint32_t b = a + 1; b < count; ++b) {
+      if (owner[a] == owner[b]) continue;
+      const double squared = between(rough[a], rough[b]);
+      estimates.push_back({{a, b}, squared});
+      for (const std::uint32_t t : {a, b}) least[owner[t]] = std::min(least[owner[t]], squared);
+    }
+  }
+  std::vector<Nearest> out(scene.objects.size());
+  for (const auto& [pair, squared] : estimates) {
+    std::optional<rational::Q> decided;
+    for (const std::uint32_t object : {owner[pair.a], owner[pair.b]}) {
+      if (squared > 1.001 * least[object] + 1e-12) continue;
+      if (!decided) decided = between(exact[pair.a], exact[pair.b]);
+      Nearest& nearest = out[object];
+      if (nearest.squared < 0 || *decided < nearest.squared) {
+        nearest.squared = *decided;
+        nearest.pairs.clear();
+      }
+      if (*decided == nearest.squared) nearest.pairs.push_back(pair);
+    }
+  }
+  return out;
+}
+
+}  // namespace farcull::exact_distance
