@@ -329,9 +329,14 @@ for device in cpu software; do
   expect "coincident triangles, $device" "$out" '^colliding  1,440,000 pairs$'
 done
 
-# Where memory is the cause, the message says so. A limit too small for the program's own libraries is
-# the loader's to report (status 127), and a driver may crash under it (docs/reliability.md).
+# Where memory is the cause, the message says so. A limit too small for the libraries that the program
+# is linked with is theirs to report: the loader's (status 127), or that of a library which takes memory
+# before main(), as octomap under FCL does. Then not even --version works. And a driver may crash under
+# it (docs/reliability.md).
+least_started=0
 for limit in 75000 80000 100000 150000 200000 300000 350000 400000; do
+  (ulimit -v $limit && exec "$program" --version) >"$out" 2>"$err" || continue
+  ((least_started > 0)) || least_started=$limit
   for method in 'far-pairs --device software' 'far-pairs --device cpu' far exact; do
     ((cases += 1))
     # shellcheck disable=SC2086  # the method and its device are words
@@ -342,6 +347,9 @@ for limit in 75000 80000 100000 150000 200000 300000 350000 400000; do
     expect "$method in $limit KiB" "$err" '^farcull: .*memory.*; .*memory'
   done
 done
+((cases += 1))
+((least_started > 0 && least_started <= 150000)) ||
+  fail "limits on memory" "the least limit at which the program starts is $least_started KiB (0: none)"
 
 if ((failed)); then
   echo "cli_pairs_test: $failed of $cases cases failed"
