@@ -102,7 +102,7 @@ class Searcher {
 
   // Pairs of children that are not too far apart. The higher node is divided, or both.
   HWY_INLINE void expand(const NodePair& at, double limit, std::vector<NodePair>& out) {
-    Gaps squares;
+    alignas(64) Gaps squares;
     const auto a_height = static_cast<std::uint8_t>(at.a_height - (at.a_height >= at.b_height));
     const auto b_height = static_cast<std::uint8_t>(at.b_height - (at.b_height >= at.a_height));
     if (at.a_height < at.b_height) {
@@ -162,7 +162,7 @@ class Searcher {
       if (b.direction != direction_) project(b, false);
       if (b.most_extreme - a.most_extreme > gap_limit) return;
     }
-    Gaps squares;
+    alignas(64) Gaps squares;
     std::uint32_t rows = near_boxes(a.boxes, box_of(b_, 0, at.b), square_limit_, squares);
     const std::uint32_t columns = near_boxes(b.boxes, box_of(a_, 0, at.a), square_limit_, squares);
     count_boxes(2 + static_cast<std::size_t>(std::popcount(rows)));

@@ -44,9 +44,9 @@ TEST(NearBounds, BoxesBeyondTheSquareLimitAreFartherApart) {
     twin_wrong += square > limit * limit && !is_beyond;
   }
   EXPECT_EQ(wrong, 0);
-  EXPECT_GT(twin_wrong, 100);
-  EXPECT_GT(beyond, 1000);
-  EXPECT_GT(within, 1000);
+  EXPECT_GT(twin_wrong, trials(100));
+  EXPECT_GT(beyond, trials(1000));
+  EXPECT_GT(within, trials(1000));
   EXPECT_LT(near::square_limit(HUGE_VAL), HUGE_VAL);
   EXPECT_GT(near::square_limit(HUGE_VAL), 3 * 8.0 * 8.0);
   EXPECT_GT(near::square_limit(0), 0);
@@ -78,8 +78,8 @@ TEST(NearBounds, PointsBeyondTheGapLimitAreFartherApartAlongTheDirection) {
     twin_wrong += gap > limit * d.norm() && !is_beyond;
   }
   EXPECT_EQ(wrong, 0);
-  EXPECT_GT(twin_wrong, 100);
-  EXPECT_GT(beyond, 1000);
+  EXPECT_GT(twin_wrong, trials(100));
+  EXPECT_GT(beyond, trials(1000));
 }
 
 using Triangle = std::array<Vec3, 3>;
