@@ -75,12 +75,6 @@ Json nearest_json(const Scene& scene, const DistanceRecord& record) {
 
 Json verification_json(const Scene& scene, const std::optional<DistanceAccounting>& accounting) {
   if (!accounting) return nullptr;
-  const std::vector<std::uint32_t> owner = owners(scene);
-  Json examples = Json::array();
-  for (const TrianglePair& pair : accounting->examples) {
-    examples.push_back(
-        {{"a", place_json(scene, owner, pair.a)}, {"b", place_json(scene, owner, pair.b)}});
-  }
   return {{"pairs_total", accounting->pairs_total},
           {"answers", accounting->answers},
           {"farther_by_boxes", accounting->farther_by_boxes},
@@ -89,7 +83,7 @@ Json verification_json(const Scene& scene, const std::optional<DistanceAccountin
           {"farther_by_exact", accounting->farther_by_exact},
           {"nearer", accounting->nearer},
           {"wrong", accounting->wrong},
-          {"examples", examples},
+          {"examples", pairs_json(scene, accounting->examples)},
           {"ms", accounting->ms}};
 }
 

@@ -101,12 +101,6 @@ std::uint64_t self_objects(const Scene& scene) {
 Json verification_json(const Scene& scene, const Record& record) {
   const std::optional<Accounting>& accounting = record.verification;
   if (!accounting) return nullptr;
-  const std::vector<std::uint32_t> owner = owners(scene);
-  Json examples = Json::array();
-  for (const TrianglePair& pair : accounting->examples) {
-    examples.push_back(
-        {{"a", place_json(scene, owner, pair.a)}, {"b", place_json(scene, owner, pair.b)}});
-  }
   return {{"pairs_total", accounting->pairs_total},
           {"pairs_kept", accounting->pairs_kept},
           {"certified_by_boxes", accounting->certified_by_boxes},
@@ -115,11 +109,21 @@ Json verification_json(const Scene& scene, const Record& record) {
           {"false_negatives", accounting->false_negatives},
           {"touching", record.missed ? Json(record.missed->touching) : Json(nullptr)},
           {"penetrating", record.missed ? Json(record.missed->penetrating) : Json(nullptr)},
-          {"examples", examples},
+          {"examples", pairs_json(scene, accounting->examples)},
           {"ms", accounting->ms}};
 }
 
 }  // namespace
+
+nlohmann::ordered_json pairs_json(const Scene& scene, const std::vector<TrianglePair>& pairs) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  Json out = Json::array();
+  for (const TrianglePair& pair : pairs) {
+    out.push_back(
+        {{"a", place_json(scene, owner, pair.a)}, {"b", place_json(scene, owner, pair.b)}});
+  }
+  return out;
+}
 
 nlohmann::ordered_json floating_point_json(const FloatingPoint& callers,
                                            const FloatingPoint& used) {

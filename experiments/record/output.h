@@ -27,6 +27,8 @@ nlohmann::ordered_json stages_json(const std::vector<Stage>& trace);
 /// came from. owner: owners(scene).
 nlohmann::ordered_json place_json(const Scene& scene, const std::vector<std::uint32_t>& owner,
                                   std::uint32_t triangle);
+/// Pairs of triangles, each as {"a": place, "b": place}.
+nlohmann::ordered_json pairs_json(const Scene& scene, const std::vector<TrianglePair>& pairs);
 
 /// The colliding pairs as verify/certificate/pair_list.h writes them, sorted, each once; neighbours
 /// among them where an object of the scene is tested against itself. faces: two more columns at the

@@ -8,6 +8,7 @@
 
 #include "experiments/command/check.h"
 #include "experiments/scenes/scene_file.h"
+#include "tests/experiments/command/check_lab.h"
 #include "tests/experiments/system/error_of.h"
 #include "tests/verify/certificate/distance_case.h"
 
@@ -18,25 +19,6 @@ using distance_case::Distances;
 using Pairs = DistanceCertificate::Pairs;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-struct Answer {
-  int status = -1;
-  std::string text;
-  std::string line() const { return text.substr(0, text.find('\n')); }
-};
-
-Answer check(const CheckArguments& arguments) {
-  testing::internal::CaptureStdout();
-  Answer answer;
-  try {
-    answer.status = run_check(arguments);
-  } catch (...) {
-    testing::internal::GetCapturedStdout();
-    throw;
-  }
-  answer.text = testing::internal::GetCapturedStdout();
-  return answer;
-}
 
 /// Two triangles 2 apart, and a third one that is 3 above them.
 class CheckDistances : public testing::Test {

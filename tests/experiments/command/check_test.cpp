@@ -15,31 +15,13 @@
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
+#include "tests/experiments/command/check_lab.h"
 #include "tests/experiments/system/error_of.h"
 #include "verify/certificate/pair_list.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
-
-/// The command's status and what it printed.
-struct Answer {
-  int status = -1;
-  std::string text;
-};
-
-Answer check(const CheckArguments& arguments) {
-  testing::internal::CaptureStdout();
-  Answer answer;
-  try {
-    answer.status = run_check(arguments);
-  } catch (...) {
-    testing::internal::GetCapturedStdout();
-    throw;
-  }
-  answer.text = testing::internal::GetCapturedStdout();
-  return answer;
-}
 
 class Check : public testing::Test {
  protected:

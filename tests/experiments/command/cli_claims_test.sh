@@ -16,18 +16,6 @@ trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
 # shellcheck source-path=SCRIPTDIR source=cli_lab.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/cli_lab.sh"
 
-# answers CASE STATUS PATTERN ARGUMENTS...: an answer of that status on stdout, its first line
-# matching.
-answers() {
-  ((cases += 1))
-  launch "${@:4}"
-  if ((status != $2)); then
-    fail "$1" "status $status instead of $2: $(head -n 1 "$out")"
-  elif ! grep -qE -- "$3" <<<"$(head -n 1 "$out")"; then
-    fail "$1" "says: $(head -n 1 "$out")"
-  fi
-}
-
 # --- certificates ------------------------------------------------------------------------------
 
 # A run that misses pairs, and the truth.

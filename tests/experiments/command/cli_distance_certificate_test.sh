@@ -15,17 +15,6 @@ trap 'rm -rf -- "$work"' EXIT
 # shellcheck source-path=SCRIPTDIR source=cli_lab.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/cli_lab.sh"
 
-# answers CASE STATUS PATTERN ARGUMENTS...: the launch ends with STATUS and its first line matches.
-answers() {
-  ((cases += 1))
-  launch "${@:4}"
-  if ((status != $2)); then
-    fail "$1" "status $status instead of $2: $(head -n 1 "$out")"
-  elif ! grep -qE -- "$3" <<<"$(head -n 1 "$out")"; then
-    fail "$1" "says: $(head -n 1 "$out")"
-  fi
-}
-
 # Two squares of two triangles each, 2 apart; a third one 3 above.
 square() { printf 'v 0 0 %s\nv 1 0 %s\nv 0 1 %s\nv 1 1 %s\nf 1 2 3\nf 2 3 4\n' "$1" "$1" "$1" "$1"; }
 square 0 >low.obj

@@ -169,3 +169,15 @@ garbage() { # 4 KiB of every byte, the same each time
     printf "$hex"
   done
 }
+
+# answers CASE STATUS PATTERN ARGUMENTS...: an answer of that status on stdout, its first line
+# matching.
+answers() {
+  ((cases += 1))
+  launch "${@:4}"
+  if ((status != $2)); then
+    fail "$1" "status $status instead of $2: $(head -n 1 "$out")"
+  elif ! grep -qE -- "$3" <<<"$(head -n 1 "$out")"; then
+    fail "$1" "says: $(head -n 1 "$out")"
+  fi
+}

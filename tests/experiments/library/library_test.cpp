@@ -6,23 +6,11 @@
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "tests/experiments/library/flat.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
-
-/// A scene as flat arrays.
-struct Flat {
-  std::vector<double> vertices;
-  std::vector<std::uint32_t> triangles, starts;
-
-  explicit Flat(const Scene& scene) {
-    for (const Vec3& p : scene.vertices) vertices.insert(vertices.end(), p.data(), p.data() + 3);
-    for (const auto& t : scene.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
-    for (const Object& object : scene.objects) starts.push_back(object.first_triangle);
-  }
-  ColliderInput input() const { return {vertices, triangles, starts}; }
-};
 
 std::vector<TrianglePair> pairs_of(const std::vector<ColliderPair>& pairs) {
   std::vector<TrianglePair> out;

@@ -1,0 +1,32 @@
+// `farcull check` as a function, for its tests.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "experiments/command/check.h"
+
+namespace farcull {
+
+/// The command's status and what it printed.
+struct Answer {
+  int status = -1;
+  std::string text;
+  std::string line() const { return text.substr(0, text.find('\n')); }
+};
+
+inline Answer check(const CheckArguments& arguments) {
+  testing::internal::CaptureStdout();
+  Answer answer;
+  try {
+    answer.status = run_check(arguments);
+  } catch (...) {
+    testing::internal::GetCapturedStdout();
+    throw;
+  }
+  answer.text = testing::internal::GetCapturedStdout();
+  return answer;
+}
+
+}  // namespace farcull
