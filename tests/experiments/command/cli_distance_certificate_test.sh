@@ -4,14 +4,6 @@
 #   tests/experiments/command/cli_distance_certificate_test.sh FARCULL_BINARY
 set -uo pipefail
 
-if [[ $# -ne 1 || ! -x $1 ]]; then
-  echo "usage: cli_distance_certificate_test.sh FARCULL_BINARY" >&2
-  exit 2
-fi
-program=$(realpath -- "$1")
-work=$(mktemp -d) || exit 2
-trap 'rm -rf -- "$work"' EXIT
-
 # shellcheck source-path=SCRIPTDIR source=cli_lab.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/cli_lab.sh"
 

@@ -1,7 +1,17 @@
 # shellcheck shell=bash disable=SC2034 # what is set here is used by cli_test.sh
-# What cli_test.sh is made of: how the program is launched and judged, and files in every format.
-# Sourced with `program` set to its path and `work` to a folder of our own; leaves the caller in
-# $work/here.
+# What the scripts cli_*_test.sh share: how the program is launched and judged, and files in every
+# format. Sourced without arguments, so that $1 is that of the script. A script that takes more than
+# the path of the program has set `program` to it, and `work` to a folder of its own; for the others
+# that is done here. Leaves the caller in $work/here.
+if [[ -z ${program-} ]]; then
+  if [[ $# -ne 1 || ! -x $1 ]]; then
+    echo "usage: ${0##*/} FARCULL_BINARY" >&2
+    exit 2
+  fi
+  program=$(realpath -- "$1")
+  work=$(mktemp -d) || exit 2
+  trap 'chmod -R u+w "$work"; rm -rf -- "$work"' EXIT
+fi
 : "${program:?}" "${work:?}"
 
 # What the caller has set must not decide; few malloc arenas, since each thread's takes address

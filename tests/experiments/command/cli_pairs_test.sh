@@ -5,14 +5,6 @@
 # Needs bash, Debian's essential tools and a software device of Mesa.
 set -uo pipefail
 
-if [[ $# -ne 1 || ! -x $1 ]]; then
-  echo "usage: cli_pairs_test.sh FARCULL_BINARY" >&2
-  exit 2
-fi
-program=$(realpath -- "$1")
-work=$(mktemp -d) || exit 2
-trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
-
 # shellcheck source-path=SCRIPTDIR source=cli_lab.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/cli_lab.sh"
 
