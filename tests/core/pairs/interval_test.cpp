@@ -13,6 +13,7 @@
 #include "core/canvas/kernel_case.h"
 #include "tests/core/base/chance.h"
 #include "tests/core/base/rational.h"
+#include "tests/core/base/trials.h"
 #include "verify/interval_cases.h"
 
 namespace farcull::lab {
@@ -121,15 +122,15 @@ Tally compare(Evaluate evaluate, int triangles, float shrink = 0) {
 }
 
 TEST(Interval, ContainsTheRealTrianglePixelByPixel) {
-  const Tally tally = compare(interval::evaluate, 60000);
+  const Tally tally = compare(interval::evaluate, trials(60000));
   EXPECT_EQ(tally.failed, 0u) << tally.first;
-  EXPECT_GT(tally.checked, 1000000u);
+  EXPECT_GT(tally.checked, static_cast<std::uint64_t>(trials(1000000)));
 }
 
 TEST(Interval, ContainsItHoweverTheDeviceRounds) {
-  const Tally tally = compare(interval_chance::evaluate, 60000);
+  const Tally tally = compare(interval_chance::evaluate, trials(60000));
   EXPECT_EQ(tally.failed, 0u) << tally.first;
-  EXPECT_GT(tally.checked, 1000000u);
+  EXPECT_GT(tally.checked, static_cast<std::uint64_t>(trials(1000000)));
 }
 
 TEST(Interval, LosesPointsWithoutTheAllowanceForRounding) {
@@ -145,7 +146,7 @@ TEST(Interval, LosesPointsWhereThePixelIsTooSmall) {
 // names, so that a test of soundness alone cannot be passed by giving up.
 TEST(Interval, IsTight) {
   Random random(12);
-  for (int n = 0; n < 3000; ++n) {
+  for (int n = 0; n < trials(3000); ++n) {
     const FloatTriangle t = interval_cases::random_triangle(random);
     float most = 0;
     for (const auto& p : t) {
@@ -214,7 +215,7 @@ TEST(Interval, PartsOfAPixelAreExactHoweverTheDeviceRounds) {
   using glsl_chance::Rounding;
   Random random(14);
   int seen[8] = {};
-  for (int n = 0; n < 300'000; ++n) {
+  for (int n = 0; n < trials(300'000); ++n) {
     const CutCell cell = random_cut(random);
     glsl_chance::rounding() = std::array{Rounding::random, Rounding::up, Rounding::down}[n % 3];
     const int part =
@@ -225,7 +226,7 @@ TEST(Interval, PartsOfAPixelAreExactHoweverTheDeviceRounds) {
     ++seen[part];
   }
   glsl_chance::rounding() = Rounding::random;
-  for (const int count : seen) EXPECT_GT(count, 1000);
+  for (const int count : seen) EXPECT_GT(count, trials(1000));
 }
 
 // With a division by the part's side, which GLSL lets err by 2.5 u, a coordinate falls into the
@@ -234,7 +235,7 @@ TEST(Interval, ADivisionWouldMoveTheBorderOfAPart) {
   using glsl_chance::Chance;
   Random random(14);
   double most = 0;
-  for (int n = 0; n < 300'000; ++n) {
+  for (int n = 0; n < trials(300'000); ++n) {
     const CutCell cell = random_cut(random);
     const Chance quotient = (Chance(cell.p) - cell.from) / Chance(cell.side / 8);
     const int part = static_cast<int>(clamp(quotient, 0.0f, 7.0f)), truth = cell.exact_part();
