@@ -27,18 +27,19 @@ using Json = nlohmann::ordered_json;
 constexpr unsigned kMostThreads = 1024;
 constexpr const char* kDistanceExamples =
     "Examples:\n"
-    "  farcull distance two-spheres\n"
+    "  farcull distance far-apart\n"
     "  farcull distance a.obj b.obj --json - | jq '.pairs[0].distance'\n"
     "  farcull distance crowd --pairs nearest --k 3\n"
     "  farcull distance a.obj b.obj --pairs all --within 0.01 --csv near.csv\n"
     "  farcull distance cloth.obj --self --pairs all --within 0.001\n"
-    "  farcull distance two-tori --verify\n"
-    "  farcull distance two-tori --certificate d.json && farcull check d.json two-tori\n"
+    "  farcull distance far-apart --verify\n"
+    "  farcull distance far-apart --certificate d.json && farcull check d.json far-apart\n"
     "  farcull distance 'cloth_%04d.obj' body.obj --frames 1:100 --csv frames.csv\n\n"
     "A distance is that of the surfaces; it is the root of an exact number, rounded once.\n"
     "The witness points are rounded too, coordinate by coordinate. 0: the objects meet.\n"
     "docs/proximity.md has the columns and the proof.\n\n"
-    "Exit status 1: --verify found a nearer pair than an answer, or a wrong answer.";
+    "Exit status 0: answered, also where objects meet. 1: --verify found a nearer pair than an\n"
+    "answer, or a wrong answer. 2: the input or an option is wrong.";
 
 // The keys of a record that each frame has of its own; the others hold for all frames.
 constexpr const char* kOfFrame[] = {"pairs",  "nearest",      "counts",

@@ -65,10 +65,10 @@ Json nearest_json(const Scene& scene, const DistanceRecord& record) {
   if (record.options.pairs != DistancePairs::nearest) return nullptr;
   Json out = Json::array();
   for (const NearestOfObject& of : nearest_of_objects(scene, record.distances, record.options.k)) {
-    Json neighbours = Json::array();
+    Json others = Json::array();
     for (const std::size_t d : of.distances)
-      neighbours.push_back({{"object", other_of(record.distances[d], of.object)}, {"pair", d}});
-    out.push_back({{"object", of.object}, {"neighbours", neighbours}});
+      others.push_back({{"object", other_of(record.distances[d], of.object)}, {"pair", d}});
+    out.push_back({{"object", of.object}, {"others", others}});
   }
   return out;
 }
@@ -103,35 +103,53 @@ std::string inside_text(const Distance& d) {
       return "b in a";
     case WhichInside::not_closed:
       return "not closed";
-    case WhichInside::unknown:
     case WhichInside::none:
-      return "";
+      return "no";
+    case WhichInside::unknown:
+      return "-";  // they meet
   }
   return "";
 }
 
 std::string distance_text(const Distance& d) { return fmt::format("{}", d.closest.distance); }
 
+/// The least distance of all answers, and between what it is; nothing for an answer that the first
+/// row of the table has.
+std::string least_line(const Scene& scene, const std::vector<Distance>& distances) {
+  if (distances.size() < 2) return "";
+  const auto least = std::min_element(
+      distances.begin(), distances.end(),
+      [](const Distance& a, const Distance& b) { return a.closest.squared < b.closest.squared; });
+  return fmt::format("least      {}, of {} and {}{}\n", distance_text(*least),
+                     object_text(scene, least->objects.a), object_text(scene, least->objects.b),
+                     least->closest.squared.is_zero() ? ", which meet" : "");
+}
+
 std::string more_line(std::size_t all, std::size_t shown) {
   if (all <= shown) return "";
   return fmt::format("and {} more (--json and --csv have all)\n", grouped(all - shown));
 }
 
-std::string pairs_table(const Scene& scene, const std::vector<Distance>& distances) {
-  Table table("llrlll");
-  table.add({"a", "b", "distance", "triangle of a", "triangle of b", "inside"});
+std::string pairs_table(const Scene& scene, const std::vector<Distance>& distances, bool inside) {
+  Table table(inside ? "llrlll" : "llrll");
+  std::vector<std::string> header{"a", "b", "distance", "triangle of a", "triangle of b"};
+  if (inside) header.push_back("inside");
+  table.add(header);
   const std::size_t shown = std::min(distances.size(), kRowsShown);
   for (std::size_t k = 0; k < shown; ++k) {
     const Distance& d = distances[k];
-    table.add({object_text(scene, d.objects.a), object_text(scene, d.objects.b), distance_text(d),
-               place_text(scene, d, 0), place_text(scene, d, 1), inside_text(d)});
+    std::vector<std::string> row{object_text(scene, d.objects.a), object_text(scene, d.objects.b),
+                                 distance_text(d), place_text(scene, d, 0),
+                                 place_text(scene, d, 1)};
+    if (inside) row.push_back(inside_text(d));
+    table.add(row);
   }
   return table.text() + more_line(distances.size(), shown);
 }
 
 std::string nearest_table(const Scene& scene, const DistanceRecord& record) {
   Table table("lrlrll");
-  table.add({"object", "", "neighbour", "distance", "triangle", "of the neighbour"});
+  table.add({"object", "", "nearest other", "distance", "triangle", "of the other"});
   const std::vector<NearestOfObject> all =
       nearest_of_objects(scene, record.distances, record.options.k);
   std::size_t rows = 0, shown = 0;
@@ -231,7 +249,7 @@ std::string distances_rows(const Scene& scene, const DistanceRecord& record,
 
 std::string verdict_text(const DistanceAccounting& v) {
   const std::string all = counted(v.pairs_total, "pair", "pairs") + " accounted for";
-  if (v.holds()) return "verified: no nearer pair was culled, " + all;
+  if (v.holds()) return "verified: no nearer pair was culled, and the distances are right; " + all;
   std::string what;
   if (v.nearer > 0) what = counted(v.nearer, "nearer pair was", "nearer pairs were") + " culled, ";
   if (v.wrong > 0) what += counted(v.wrong, "answer is", "answers are") + " wrong, ";
@@ -254,11 +272,14 @@ std::string distances_table(const Scene& scene, const DistanceRecord& record) {
   if (record.degenerate_triangles > 0)
     out += fmt::format(", {} of them degenerate", grouped(record.degenerate_triangles));
   out += "\nasked      " + question_text(record.options) + "\n";
-  out += fmt::format("answered   {}\n\n", counted(record.distances.size(), "pair", "pairs"));
+  out += fmt::format("answered   {}\n", counted(record.distances.size(), "pair", "pairs"));
+  out += least_line(scene, record.distances) + "\n";
   if (!record.distances.empty()) {
-    out += record.options.pairs == DistancePairs::nearest ? nearest_table(scene, record)
-                                                          : pairs_table(scene, record.distances);
-    out += "\n";
+    out += record.options.pairs == DistancePairs::nearest
+               ? nearest_table(scene, record)
+               : pairs_table(scene, record.distances,
+                             record.options.inside && record.options.pairs != DistancePairs::all);
+    out += "nearest points and exact squares: with --csv or --json\n\n";
   }
   out += stage_table(record.trace) + "\n";
   out += fmt::format(

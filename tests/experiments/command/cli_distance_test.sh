@@ -51,7 +51,11 @@ refused 'more pairs than are answered' 'within: has [0-9]+ pairs .*; give a smal
 
 good 'two objects' 0 distance "${two[@]}" --verify
 expect 'two objects' "$out" '^0 small +1 right +1 +0 vertex 1 +0 vertex 0'
-expect 'two objects' "$out" '^verified: no nearer pair was culled, 4 pairs accounted for$'
+expect 'two objects' "$out" '^verified: no nearer pair was culled, and the distances are right; 4 pairs accounted for$'
+expect 'two objects' "$out" '^nearest points and exact squares: with --csv or --json$'
+good 'the least' 0 distance small.obj right.obj large.obj small.obj
+expect 'the least' "$out" '^least +0, of 0 small and 3 small.*, which meet$'
+expect 'the least' "$out" '^0 small +2 large .* a in b$'
 good 'as JSON' 0 distance "${two[@]}" --json -
 expect 'as JSON' "$out" '^ +"distance": 1\.0,$'
 expect 'as JSON' "$out" '^ +"squared": "1/1",$'
