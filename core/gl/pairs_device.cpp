@@ -221,7 +221,7 @@ const PairQueue::Program& PairQueue::program(std::size_t which) {
 }
 
 void PairQueue::start(bool fresh) {
-  if (fresh) dispatches_ = 0;
+  if (fresh) dispatches_ = readbacks_ = 0;
   expected_.clear();
   expected_sum_ = 0;
   std::fill(words_.begin(), words_.end(), 0);
@@ -331,6 +331,7 @@ void PairQueue::scan(const GlStore& numbers, const GlStore& before, std::size_t 
 
 void PairQueue::check_finished(const std::string& stage) {
   gl_wait(stage);
+  ++readbacks_;
   const std::size_t words = kTotals + 2 * expected_.size();
   // Where nothing is read, no serial number is found.
   std::fill(words_.begin(), words_.end(), 0xffffffff);

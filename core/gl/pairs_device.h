@@ -153,8 +153,12 @@ class PairQueue {
   /// what was sent and what was set to 0 has arrived, and GL has no error.
   std::array<std::uint32_t, kTotals> read(const std::string& stage);
 
-  /// Dispatches since start(true).
+  /// Counts a wait for results that read() does not make.
+  void add_readback() { ++readbacks_; }
+
+  /// Since start(true).
   std::size_t dispatches() const { return dispatches_; }
+  std::size_t readbacks() const { return readbacks_; }
 
  private:
   struct Program {
@@ -170,7 +174,7 @@ class PairQueue {
 
   const GlContext& context_;
   std::size_t block_;
-  std::size_t dispatches_ = 0;
+  std::size_t dispatches_ = 0, readbacks_ = 0;
   std::array<Program, kPairPrograms> programs_;  // compiled when first used
   GlStore counters_;
   GlStore sums_;

@@ -39,6 +39,7 @@ void PairEmission::read_pairs(std::size_t emitted) {
   constexpr std::uint32_t kUnread = 0xffffffff;
   const std::span<TrianglePair> read = found_->append(0, emitted, {kUnread, kUnread});
   pairs_.read(0, read.data(), read.size_bytes());
+  run_.device.add_readback();
   if (emitted > 0 && read.back().a == kUnread) {
     throw Error("GL pairs", "the pairs were not read",
                 "a command was lost: run again, or with another --device");

@@ -13,6 +13,8 @@ std::vector<TrianglePair> PairFinder::find(const PairTask& task, PairCounts& cou
   emission_.begin();
   run_.counts.mark_ms = start.ms();
   if (!task.active.empty()) split({0, task.width - 1, 0, task.height - 1});
+  run_.counts.dispatches = run_.device.dispatches();
+  run_.counts.readbacks = run_.device.readbacks();
   counts = run_.counts;
   return emission_.take();
 }

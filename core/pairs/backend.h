@@ -64,7 +64,9 @@ struct PairCounts {
   std::uint64_t tests = 0;       // pairs of intervals compared
   std::uint64_t bands = 1;       // parts the window was split into
   std::uint64_t undrawable = 0;  // triangles that the view could not show: joined by boxes
-  double prepare_ms = 0;         // to pixel space
+  // On a GL device, else 0: kernels that were started, and waits for results to be read.
+  std::uint64_t dispatches = 0, readbacks = 0;
+  double prepare_ms = 0;                         // to pixel space
   double mark_ms = 0, list_ms = 0, pair_ms = 0;  // CPU: summed over threads
 };
 

@@ -42,7 +42,9 @@ Json view_json(const PairView& view) {
           {"large", c.large},
           {"tests", c.tests},
           {"bands", c.bands},
-          {"undrawable", c.undrawable}};
+          {"undrawable", c.undrawable},
+          {"dispatches", c.dispatches},
+          {"readbacks", c.readbacks}};
 }
 
 Json budget_json(const std::vector<ViewReport>& views) {
