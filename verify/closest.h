@@ -22,7 +22,7 @@ namespace farcull {
 class SquaredDistance {
  public:
   SquaredDistance();  // 0
-  struct Value;       // verify/closest_value.h, for verify alone
+  struct Value;       // verify/squared_distance.h, for verify alone
   explicit SquaredDistance(std::shared_ptr<const Value> value);
 
   /// Its root, rounded to the nearest double (to even where two are as near); infinity beyond the

@@ -42,9 +42,9 @@
 
 #include "verify/closest_features.h"
 #include "verify/closest_guess.h"
-#include "verify/closest_value.h"
 #include "verify/filter.h"
 #include "verify/filter_of_distance.h"
+#include "verify/squared_distance.h"
 
 namespace farcull {
 namespace {

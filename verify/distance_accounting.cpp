@@ -1,18 +1,19 @@
 // Each object has a tree of boxes over its triangles. Of every two objects that are asked about the
 // trees are joined: two nodes whose boxes are farther apart than the threshold of these objects
 // settle all their pairs at once, and so does a threshold that nothing can be below. What is left
-// is decided pair by pair: by two parallel planes, then by rational numbers.
+// is decided pair by pair: by two parallel planes in doubles, then in integers, as the checker of
+// certificates does it (verify/certificate/integer_distance.h).
 #include "verify/distance_accounting.h"
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <deque>
 #include <stdexcept>
 
 #include "core/base/floating_point.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
+#include "verify/certificate/integer_distance.h"
 #include "verify/distance_claims.h"
 #include "verify/exact.h"
 #include "verify/separation.h"
@@ -127,17 +128,23 @@ class Undecided {
   };
 
   Class class_of(const Pair& pair) const {
-    const Threshold& threshold = pair.asked->threshold;
+    const auto& [length, bound] = pair.asked->threshold;
     const std::array<Vec3, 3> s = scene_.corners(pair.pair.a), t = scene_.corners(pair.pair.b);
-    if (std::isfinite(threshold.root) && separation::farther_by_planes(s, t, threshold.root))
+    if (length && std::isfinite(length->above) &&
+        separation::farther_by_planes(s, t, length->above))
       return Class::planes;
     if (pair.asked->self && share_position(s, t)) return Class::neighbours;
-    if (threshold.infinite) return Class::nearer;
-    if (intersects(s, t)) {
-      const bool nearer = threshold.squared > 0 || threshold.bound == Bound::at_most;
-      return nearer ? Class::nearer : Class::exact;
+    if (!length) return Class::nearer;
+    if (is_beyond(s, t, *length, bound == Bound::below)) return Class::exact;
+    // No direction shows that the pair is far enough: its nearest points have to show that it is
+    // not.
+    const auto order = integer_distance(s, t).squared <=> length->squared;
+    if (order > 0 || (order == 0 && bound == Bound::below)) {
+      throw std::logic_error(
+          "account_distances: neither does a direction show that two triangles are far apart, nor "
+          "are their nearest points near");
     }
-    return disjoint_nearer(s, t, threshold.squared, threshold.bound) ? Class::nearer : Class::exact;
+    return Class::nearer;
   }
 
   void count(const TrianglePair& pair, Class of) {
@@ -195,7 +202,8 @@ class Join {
 
  private:
   bool farther(const Bounds& a, const Bounds& b) const {
-    return std::isfinite(threshold_.root) && separation::farther(a, b, threshold_.root);
+    return threshold_.length && std::isfinite(threshold_.length->above) &&
+           separation::farther(a, b, threshold_.length->above);
   }
 
   void one(const Node& node) {
@@ -276,7 +284,8 @@ DistanceAccounting account_distances(const Scene& scene, std::span<const Claimed
       out.pairs_total += pairs;
       const Threshold threshold = claims.threshold(a, b);
       const std::span<const ClaimedDistance> of = claims.of(a, b);
-      if (threshold.squared == 0 && threshold.bound == Bound::below && !threshold.infinite) {
+      if (threshold.length && threshold.length->squared.over == 0 &&
+          threshold.bound == Bound::below) {
         out.answers += of.size();
         out.farther_by_boxes += pairs - of.size();  // nothing is nearer than 0
         continue;

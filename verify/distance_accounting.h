@@ -2,8 +2,8 @@
 // answer allows.
 //
 // It shares no code with what culled, nor with what computed the answers (verify/closest.h): it
-// makes its own boxes, computes the square of each answer's distance by its own formulas, and
-// decides the pairs that are left with rational numbers.
+// makes its own boxes, and decides what they leave, and each answer, in the integers that
+// certificates are checked with (verify/certificate/integer_distance.h).
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct DistanceAccounting {
   std::uint64_t farther_by_planes =
       0;                               // some two parallel planes between them are far enough apart
   std::uint64_t neighbours = 0;        // of one object, which do not count
-  std::uint64_t farther_by_exact = 0;  // by the squares of distances as rational numbers
+  std::uint64_t farther_by_exact = 0;  // by the squares of distances, in integers
   std::uint64_t nearer = 0;            // missed
   std::vector<TrianglePair> examples;  // the first missed ones
   /// Answers whose distance is not that of their triangles, is beyond `within`, or is not what was

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "verify/certificate/integer_distance.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -39,29 +40,10 @@ auto objects_of(const ClaimedDistance& answer) { return std::pair(answer.a, answ
 
 }  // namespace
 
-// With k bits to spare: floor(2^k root) + 1 is above 2^k root.
-double root_above(const mpq_class& squared) {
-  if (squared == 0) return 0;
-  const auto bits = [](const mpz_class& x) {
-    return static_cast<long>(mpz_sizeinbase(x.get_mpz_t(), 2));
-  };
-  // The root has about 64 bits before the point when it is multiplied by 2^k.
-  const long k = 64 - (bits(squared.get_num()) - bits(squared.get_den())) / 2;
-  mpq_class scaled = squared;
-  if (k >= 0) {
-    mpq_mul_2exp(scaled.get_mpq_t(), scaled.get_mpq_t(), static_cast<mp_bitcnt_t>(2 * k));
-  } else {
-    mpq_div_2exp(scaled.get_mpq_t(), scaled.get_mpq_t(), static_cast<mp_bitcnt_t>(-2 * k));
-  }
-  const mpz_class whole = scaled.get_num() / scaled.get_den();
-  const mpz_class above = sqrt(whole) + 1;
-  // get_d() cuts off, and ldexp rounds where the result is subnormal or too large.
-  const double root = std::ldexp(std::nextafter(above.get_d(), kInfinity), static_cast<int>(-k));
-  return std::nextafter(root, kInfinity);
-}
-
-bool is_rounded_root(double distance, const mpq_class& squared) {
+bool is_rounded_root(double distance, const Fraction& square) {
   if (!(distance >= 0)) return false;
+  mpq_class squared(square.over, square.under);
+  squared.canonicalize();
   const bool even = (std::bit_cast<std::uint64_t>(distance) & 1) == 0;
   // How the root compares with the middle of the double and the next one.
   const auto beside = [&](double next) {
@@ -75,20 +57,6 @@ bool is_rounded_root(double distance, const mpq_class& squared) {
   if (distance == 0) return true;
   const int below = beside(std::nextafter(distance, 0.0));
   return below > 0 || (below == 0 && even);
-}
-
-std::optional<mpq_class> parse_square(const std::string& text) {
-  const std::size_t slash = text.find('/');
-  if (slash == std::string::npos) return std::nullopt;
-  const auto digits = [](const std::string& part) {
-    return !part.empty() && part.find_first_not_of("0123456789") == std::string::npos &&
-           (part.size() == 1 || part[0] != '0');
-  };
-  const std::string above = text.substr(0, slash), below = text.substr(slash + 1);
-  if (!digits(above) || !digits(below) || below == "0") return std::nullopt;
-  mpq_class out{mpz_class(above), mpz_class(below)};
-  if (gcd(out.get_num(), out.get_den()) != 1) return std::nullopt;
-  return out;
 }
 
 DistanceClaims::DistanceClaims(const Scene& scene, std::span<const ClaimedDistance> answers,
@@ -108,17 +76,15 @@ DistanceClaims::DistanceClaims(const Scene& scene, std::span<const ClaimedDistan
                                                    : objects_of(answers[k - 1]) < objects_of(x);
     if (!before) throw std::logic_error("account_distances: answers unsorted or repeated");
   }
-  within_.infinite = !std::isfinite(question.within);
   within_.bound = Bound::at_most;
-  within_.root = question.within;
-  if (!within_.infinite) within_.squared = mpq_class(question.within) * mpq_class(question.within);
-  for (std::size_t k = 0; k < answers.size(); ++k) squares_[k] = parse_square(answers[k].squared);
+  if (std::isfinite(question.within)) within_.length.emplace(square_of(question.within));
+  for (std::size_t k = 0; k < answers.size(); ++k) squares_[k] = parse_fraction(answers[k].squared);
   if (question.kind == Kind::nearest) find_farthest();
 }
 
 void DistanceClaims::find_farthest() {
   // Of each object its answers, by distance and then by the other object.
-  std::vector<std::vector<std::pair<mpq_class, std::uint32_t>>> neighbours(scene_.objects.size());
+  std::vector<std::vector<std::pair<Fraction, std::uint32_t>>> neighbours(scene_.objects.size());
   for (std::size_t k = 0; k < answers_.size(); ++k) {
     if (!squares_[k]) continue;
     neighbours[answers_[k].a].emplace_back(*squares_[k], answers_[k].b);
@@ -148,36 +114,29 @@ Threshold DistanceClaims::threshold(std::uint32_t a, std::uint32_t b) const {
   using Kind = DistanceQuestion::Kind;
   if (question_.kind == Kind::all) return within_;
   const std::span<const ClaimedDistance> answers = of(a, b);
-  Threshold out;
   if (!answers.empty()) {
     const auto k = static_cast<std::size_t>(answers.data() - answers_.data());
-    if (squares_[k]) out.squared = *squares_[k];
-  } else if (question_.kind == Kind::objects || farthest_[a].answers < question_.k ||
-             farthest_[b].answers < question_.k) {
-    return within_;
-  } else {
-    const auto& [a_count, a_squared, a_other] = farthest_[a];
-    const auto& [b_count, b_squared, b_other] = farthest_[b];
-    out.squared = std::max(a_squared, b_squared);
-    const bool before =
-        (a_squared == out.squared && b < a_other) || (b_squared == out.squared && a < b_other);
-    out.bound = before ? Bound::at_most : Bound::below;
+    return {Length(squares_[k].value_or(Fraction())), Bound::below};
   }
-  out.root = root_above(out.squared);
-  return out;
+  if (question_.kind == Kind::objects || farthest_[a].answers < question_.k ||
+      farthest_[b].answers < question_.k) {
+    return within_;
+  }
+  const auto& [a_count, a_squared, a_other] = farthest_[a];
+  const auto& [b_count, b_squared, b_other] = farthest_[b];
+  const Fraction& most = std::max(a_squared, b_squared);
+  const bool before = (a_squared == most && b < a_other) || (b_squared == most && a < b_other);
+  return {Length(most), before ? Bound::at_most : Bound::below};
 }
 
 bool DistanceClaims::wrong(std::size_t answer) const {
   const ClaimedDistance& x = answers_[answer];
-  const std::optional<mpq_class>& squared = squares_[answer];
+  const std::optional<Fraction>& squared = squares_[answer];
   if (!squared || !asked(x.a, x.b) || !is_rounded_root(x.distance, *squared)) return true;
-  if (!within_.infinite && *squared > within_.squared) return true;
+  if (within_.length && *squared > within_.length->squared) return true;
   const std::array<Vec3, 3> s = scene_.corners(x.pair.a), t = scene_.corners(x.pair.b);
   if (x.a == x.b && share_position(s, t)) return true;
-  if (intersects(s, t) != (*squared == 0)) return true;
-  if (*squared != 0 && (disjoint_nearer(s, t, *squared, Bound::below) ||
-                        !disjoint_nearer(s, t, *squared, Bound::at_most)))
-    return true;
+  if (integer_distance(s, t).squared != *squared) return true;
   if (question_.kind != DistanceQuestion::Kind::nearest) return false;
   // Neither object has it among its k nearest.
   const auto beyond = [&](const Farthest& of, std::uint32_t other) {

@@ -2,33 +2,27 @@
 // asked and answered.
 #pragma once
 
-#include <gmpxx.h>
-
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "verify/certificate/fraction.h"
 #include "verify/distance_question.h"
-#include "verify/distance_rational.h"
 
 namespace farcull {
 
+/// Which distances are asked about: below a bound, or the bound as well.
+enum class Bound : std::uint8_t { below, at_most };
+
 /// Pairs of triangles that should have been answered: those whose distance the bound holds of.
 struct Threshold {
-  bool infinite = false;  // all of them
-  mpq_class squared = 0;
-  double root = 0;  // at least the root of `squared`; infinity beyond the largest double
+  std::optional<Length> length;  // none: infinite, all of them
   Bound bound = Bound::below;
 };
-/// A double that is at least the root of the square, and little more.
-double root_above(const mpq_class& squared);
 /// Whether the distance is the root, rounded to the nearest double, of two as near the even one.
-bool is_rounded_root(double distance, const mpq_class& squared);
-/// "numerator/denominator" in lowest terms; nothing for another text.
-std::optional<mpq_class> parse_square(const std::string& text);
+bool is_rounded_root(double distance, const Fraction& squared);
 
 class DistanceClaims {
  public:
@@ -48,7 +42,7 @@ class DistanceClaims {
  private:
   struct Farthest {  // the last neighbour of an object
     std::size_t answers = 0;
-    mpq_class squared = 0;
+    Fraction squared;
     std::uint32_t other = 0;
   };
   void find_farthest();
@@ -58,8 +52,8 @@ class DistanceClaims {
   std::span<const ClaimedDistance> answers_;
   DistanceQuestion question_;
   Threshold within_;
-  std::vector<std::optional<mpq_class>> squares_;  // of the answers
-  std::vector<Farthest> farthest_;                 // of each object; of `nearest`
+  std::vector<std::optional<Fraction>> squares_;  // of the answers
+  std::vector<Farthest> farthest_;                // of each object; of `nearest`
 };
 
 }  // namespace farcull

@@ -26,7 +26,7 @@
 
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
-#include "verify/distance.h"
+#include "verify/disjoint_distance.h"
 #include "verify/within.h"
 
 namespace farcull {

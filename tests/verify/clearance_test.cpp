@@ -7,7 +7,7 @@
 
 #include "experiments/lemma/pair_generators.h"
 #include "tests/verify/reference.h"
-#include "verify/distance.h"
+#include "verify/disjoint_distance.h"
 #include "verify/exact.h"
 #include "verify/filter.h"
 #include "verify/filter_of_distance.h"

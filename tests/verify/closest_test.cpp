@@ -12,7 +12,7 @@
 #include "tests/core/base/trials.h"
 #include "tests/verify/closest_reference.h"
 #include "tests/verify/hard_pairs.h"
-#include "verify/closest_value.h"
+#include "verify/squared_distance.h"
 
 namespace farcull {
 namespace {

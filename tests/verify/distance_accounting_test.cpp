@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "experiments/lemma/pair_generators.h"
 #include "tests/core/base/trials.h"
 #include "tests/experiments/method/distance_lab.h"
+#include "tests/verify/hard_pairs.h"
 #include "verify/distance_claims.h"
+#include "verify/exact.h"
 #include "verify/separation.h"
 
 namespace farcull {
@@ -14,6 +17,9 @@ namespace {
 
 using distance_lab::Q;
 using Kind = DistanceQuestion::Kind;
+
+Fraction fraction(const Q& x) { return {x.get_num(), x.get_den()}; }
+double root_above(const Q& squared) { return root_above(fraction(squared)); }
 
 /// Two triangles some way from each other, of a size and at a place of any magnitude.
 std::array<std::array<Vec3, 3>, 2> random_pair(rational::Draws& random) {
@@ -76,29 +82,20 @@ TEST(DistanceClaims, RootsAreRoundedOnce) {
   for (int k = 0; k < trials(20'000); ++k) {
     const double x = std::abs(random.scaled(-1070, 1020));
     const Q square = Q(x) * Q(x);
-    EXPECT_TRUE(is_rounded_root(x, square));
-    EXPECT_GE(root_above(square), x);
-    EXPECT_LE(root_above(square), moved_by_ulps(x, 8));
-    EXPECT_FALSE(is_rounded_root(moved_by_ulps(x, 1), square));
-    EXPECT_FALSE(is_rounded_root(moved_by_ulps(x, -1), square));
+    EXPECT_TRUE(is_rounded_root(x, fraction(square)));
+    EXPECT_FALSE(is_rounded_root(moved_by_ulps(x, 1), fraction(square)));
+    EXPECT_FALSE(is_rounded_root(moved_by_ulps(x, -1), fraction(square)));
     // Halfway to the next double: the even one.
     const Q middle = (Q(x) + Q(std::nextafter(x, HUGE_VAL))) / 2;
-    EXPECT_NE(is_rounded_root(x, middle * middle),
-              is_rounded_root(std::nextafter(x, HUGE_VAL), middle * middle));
+    const Fraction tie = fraction(middle * middle);
+    EXPECT_NE(is_rounded_root(x, tie), is_rounded_root(std::nextafter(x, HUGE_VAL), tie));
     const Q other = square * Q(random.uniform(0.5, 2));
-    EXPECT_EQ(is_rounded_root(x, other), closest_reference::is_rounded_root(x, other));
+    EXPECT_EQ(is_rounded_root(x, fraction(other)), closest_reference::is_rounded_root(x, other));
   }
-  EXPECT_TRUE(is_rounded_root(0.0, 0));
-  EXPECT_FALSE(is_rounded_root(std::numeric_limits<double>::denorm_min(), 0));
-  EXPECT_FALSE(is_rounded_root(HUGE_VAL, Q(1e308) * Q(1e308)));
-  EXPECT_TRUE(is_rounded_root(HUGE_VAL, 4 * Q(1e308) * Q(1e308)));
-}
-
-TEST(DistanceClaims, SquaresAreInLowestTerms) {
-  EXPECT_EQ(parse_square("3/4"), Q(3, 4));
-  EXPECT_EQ(parse_square("0/1"), Q(0));
-  for (const char* text : {"", "3", "6/8", "3/0", "-3/4", "3/4 ", "+3/4", "03/4", "0/2", "1/2/3"})
-    EXPECT_FALSE(parse_square(text)) << text;
+  EXPECT_TRUE(is_rounded_root(0.0, {}));
+  EXPECT_FALSE(is_rounded_root(std::numeric_limits<double>::denorm_min(), {}));
+  EXPECT_FALSE(is_rounded_root(HUGE_VAL, square_of(1e308)));
+  EXPECT_TRUE(is_rounded_root(HUGE_VAL, fraction(4 * Q(1e308) * Q(1e308))));
 }
 
 /// A scene, what was asked and the right answers.
@@ -181,6 +178,106 @@ TEST(DistanceAccounting, FindsAnAnswerThatIsNotTheNearest) {
     }
   }
   EXPECT_GT(tried, trials(8));
+}
+
+/// Pairs of triangles of the objects that are nearer than the square, by rational numbers; or as
+/// near. Neighbours do not count.
+struct Counted {
+  std::uint64_t nearer = 0, as_near = 0;
+};
+Counted counted(const Scene& scene, std::uint32_t a, std::uint32_t b, const Q& squared) {
+  Counted out;
+  const Object &x = scene.objects[a], &y = scene.objects[b];
+  for (std::uint32_t i = x.first_triangle; i < x.first_triangle + x.triangle_count; ++i) {
+    const std::uint32_t first = a == b ? i + 1 : y.first_triangle;
+    for (std::uint32_t j = first; j < y.first_triangle + y.triangle_count; ++j) {
+      const std::array<Vec3, 3> s = scene.corners(i), t = scene.corners(j);
+      if (a == b && share_position(s, t)) continue;
+      const Q of = distance_lab::squared_distance(s, t);
+      out.nearer += of < squared;
+      out.as_near += of == squared;
+    }
+  }
+  return out;
+}
+
+// Scenes on a grid of any scale: pairs that tie, that touch and that are degenerate.
+TEST(DistanceAccounting, MissedPairsAreThoseOfRationalNumbers) {
+  rational::Draws random(17);
+  std::uint64_t nearer = 0, ties = 0;
+  for (const Case& one : cases(Kind::objects, trials(16))) {
+    // Each answer names any pair of its objects, with its own distance.
+    std::vector<ClaimedDistance> claims = right_answers(one.scene, {.pairs = Kind::objects});
+    std::uint64_t expected = 0;
+    for (ClaimedDistance& claim : claims) {
+      const Object &a = one.scene.objects[claim.a], &b = one.scene.objects[claim.b];
+      if (claim.a != claim.b) {
+        claim = claim_of(one.scene, claim.a, claim.b,
+                         {a.first_triangle + random.below(a.triangle_count),
+                          b.first_triangle + random.below(b.triangle_count)});
+      }
+      const Counted found = counted(one.scene, claim.a, claim.b, Q(claim.squared));
+      expected += found.nearer;
+      ties += found.as_near - 1;  // without the claim itself
+    }
+    const DistanceAccounting found = account_distances(one.scene, claims, {});
+    ASSERT_EQ(found.nearer, expected);
+    ASSERT_EQ(found.wrong, 0u);
+    nearer += expected;
+  }
+  EXPECT_GT(nearer, static_cast<std::uint64_t>(trials(50)));
+  // The twin: to count pairs as near as well would be noticed.
+  EXPECT_GT(ties, static_cast<std::uint64_t>(trials(20)));
+}
+
+Scene three_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                      const std::array<Vec3, 3>& other) {
+  Scene scene;
+  for (const auto* t : {&a, &b, &other}) {
+    const auto v = static_cast<std::uint32_t>(scene.vertices.size());
+    scene.vertices.insert(scene.vertices.end(), t->begin(), t->end());
+    scene.triangles.push_back({v, v + 1, v + 2});
+    scene.source_face.push_back(static_cast<std::uint32_t>(scene.source_face.size()));
+  }
+  scene.objects = {{.name = "a", .first_triangle = 0, .triangle_count = 1},
+                   {.name = "b", .first_triangle = 1, .triangle_count = 2}};
+  return scene;
+}
+
+// Slivers, points, huge and tiny ones: a triangle, one that is all but as near, and one that ties.
+TEST(DistanceAccounting, HardPairsAreDecidedAsByRationalNumbers) {
+  std::uint64_t nearer = 0, farther = 0, ties = 0;
+  PairRandom random(21);
+  rational::Draws draws(22);
+  const auto expect_decided = [&](const PairOfTriangles& pair) {
+    std::array<Vec3, 3> other = {pair.b[1], pair.b[2], pair.b[0]};
+    if (draws.coin()) {
+      double& x = other[draws.below(3u)][draws.below(3u)];
+      x = std::nextafter(x, draws.coin() ? 1e300 : -1e300);
+    }
+    const Scene scene = three_triangles(pair.a, pair.b, other);
+    const ClaimedDistance claim = claim_of(scene, 0, 1, {0, 1});
+    const Q beside = distance_lab::squared_distance(pair.a, other);
+    const int order = cmp(beside, Q(claim.squared));
+    (order < 0 ? nearer : order > 0 ? farther : ties) += 1;
+    const DistanceAccounting found = account_distances(scene, std::array{claim}, {.threads = 1});
+    ASSERT_EQ(found.nearer, order < 0 ? 1u : 0u);
+    ASSERT_EQ(found.wrong, 0u);
+  };
+  for (const auto& [name, make] : hard_pairs::generators()) {
+    SCOPED_TRACE(name);
+    for (int k = 0; k < trials(60); ++k) {
+      const PairOfTriangles pair = make(random);
+      if (hard_pairs::finite(pair)) expect_decided(pair);
+    }
+  }
+  for (const PairGenerator& generator : pair_generators()) {
+    SCOPED_TRACE(generator.name);
+    for (int k = 0; k < trials(60); ++k) expect_decided(generator.make(random));
+  }
+  EXPECT_GT(nearer, static_cast<std::uint64_t>(trials(30)));
+  EXPECT_GT(farther, static_cast<std::uint64_t>(trials(30)));
+  EXPECT_GT(ties, static_cast<std::uint64_t>(trials(30)));
 }
 
 TEST(DistanceAccounting, FindsAnAnswerThatIsMissing) {

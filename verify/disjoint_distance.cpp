@@ -3,13 +3,11 @@
 // edge, that edge or face is parallel to the first face, and both points can be moved along it,
 // keeping their difference, until one of them reaches an edge or a corner (Ericson, Real-Time
 // Collision Detection, 2005, section 5.1.10). A degenerate triangle is the union of its edges.
-#include "verify/distance.h"
+#include "verify/disjoint_distance.h"
 
 #include <gmpxx.h>
 
 #include <algorithm>
-
-#include "verify/distance_rational.h"
 
 namespace farcull {
 namespace {
@@ -33,15 +31,11 @@ Vector cross(const Vector& x, const Vector& y) {
   return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
 }
 
-/// Squares of distances that are asked about.
+/// The square of the clearance.
 struct Asked {
   const mpq_class& squared;
-  Bound bound;
-  /// x / y is one of them. Precondition: y > 0.
-  bool holds(const mpq_class& x, const mpq_class& y = 1) const {
-    const int order = cmp(x, squared * y);
-    return bound == Bound::below ? order < 0 : order <= 0;
-  }
+  /// x / y is at most that. Precondition: y > 0.
+  bool holds(const mpq_class& x, const mpq_class& y = 1) const { return x <= squared * y; }
 };
 
 /// |w - [0, 1] u|^2: the point w from the segment 0 to u, which may be a point.
@@ -93,14 +87,10 @@ bool face_within(const Vector& p, const Corners& t, const Asked& asked) {
 }  // namespace
 
 bool disjoint_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
-  return disjoint_nearer(a, b, mpq_class(clearance) * mpq_class(clearance), Bound::at_most);
-}
-
-bool disjoint_nearer(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
-                     const mpq_class& squared, Bound bound) {
+  const mpq_class squared = mpq_class(clearance) * mpq_class(clearance);
   const Corners s = rational(a);
   const Corners t = rational(b);
-  const Asked asked = {squared, bound};
+  const Asked asked = {squared};
   for (int i = 0; i < 3; ++i) {
     if (face_within(s[i], t, asked) || face_within(t[i], s, asked)) return true;
   }

@@ -5,7 +5,7 @@
 // at least two bits are behind those that are kept, and the last of them says whether the number is
 // beyond them: the longer number lies on the same side of every double, and of every middle between
 // two doubles, as the exact one. Rounding it is rounding the exact one.
-#include "verify/closest_value.h"
+#include "verify/squared_distance.h"
 
 #include <cmath>
 #include <utility>
