@@ -198,4 +198,22 @@ inline Scene random_scene(rational::Draws& random, int objects, int most) {
   return grid.scene;
 }
 
+/// The second half of the objects moved away by so many diagonals of the scene.
+inline Scene moved_apart(Scene scene, double diagonals) {
+  Box box = Box::empty();
+  for (const Vec3& p : scene.vertices) box.add(p);
+  const Vec3 by = Vec3(1, 0.7, 0.3).normalized() * ((box.hi - box.lo).norm() * diagonals);
+  std::vector<bool> moved(scene.vertices.size());
+  for (std::size_t o = scene.objects.size() / 2; o < scene.objects.size(); ++o) {
+    const Object& object = scene.objects[o];
+    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+      for (const std::uint32_t v : scene.triangles[object.first_triangle + t]) {
+        if (!moved[v]) scene.vertices[v] += by;
+        moved[v] = true;
+      }
+    }
+  }
+  return scene;
+}
+
 }  // namespace farcull::distance_lab
