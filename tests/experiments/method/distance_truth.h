@@ -4,13 +4,15 @@
 // Every pair of triangles is compared, or left out by a proof in integers. All coordinates are
 // rounded outwards to a grid, and each triangle, and each group of triangles, has a box of grid
 // cells. Two boxes whose gap is longer than the distance of some pair hold no nearest pair. Of
-// pairs that are left, the projections of both triangles onto their two normals may be farther
-// apart than that: this is decided in integers of any length, from the coordinates as given. For
-// the rest the distance is computed, as a quotient of integers (tests/core/proximity/near_lab.h).
+// pairs that are left, the projections of both triangles onto some direction may be farther apart
+// than that. This is decided for three directions in cells, then for both normals in integers of
+// any length, from the coordinates as given. For the rest the distance is computed, as a quotient
+// of integers (tests/core/proximity/near_lab.h).
 // tests/experiments/method/distance_truth_test.cpp compares all this with code that leaves out
 // nothing but triangles with boxes too far apart.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -81,6 +83,13 @@ class Truth {
       points_.push_back(std::move(x));
     }
     if (most > 0) shift_ = 39 - std::ilogb(most);
+    for (const Vec3& p : scene.vertices) {
+      std::array<Cell, 3> cell{};
+      for (std::size_t k = 0; k < 3; ++k)
+        cell[k] =
+            static_cast<Cell>(std::floor(std::ldexp(p[static_cast<Eigen::Index>(k)], shift_)));
+      cells_.push_back(cell);
+    }
     for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) boxes_.push_back(cells_of(t));
     std::vector<std::uint32_t> roots;
     for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
@@ -136,16 +145,16 @@ class Truth {
     std::uint32_t object = kNone;
   };
 
+  // A power of two changes no digit, except far below 1: so a point lies in its cell or beside it,
+  // less than two from the cell's lower corner.
   CellBox cells_of(std::uint32_t triangle) const {
     CellBox out;
     out.lo.fill(INT64_MAX);
     out.hi.fill(INT64_MIN);
-    for (const Vec3& p : scene_.corners(triangle)) {
+    for (const std::uint32_t v : scene_.triangles[triangle]) {
       for (std::size_t k = 0; k < 3; ++k) {
-        // A power of two changes no digit, except far below 1: a cell more on either side.
-        const double x = std::ldexp(p[static_cast<Eigen::Index>(k)], shift_);
-        out.lo[k] = std::min(out.lo[k], static_cast<Cell>(std::floor(x)) - 1);
-        out.hi[k] = std::max(out.hi[k], static_cast<Cell>(std::ceil(x)) + 1);
+        out.lo[k] = std::min(out.lo[k], cells_[v][k] - 1);
+        out.hi[k] = std::max(out.hi[k], cells_[v][k] + 2);
       }
     }
     return out;
@@ -300,7 +309,8 @@ class Truth {
           });
       std::ranges::sort(others);
       for (const std::uint32_t j : others) {
-        if (farther(i, j, squared) || !(squared_distance(i, j) == squared)) continue;
+        if (farther_in_cells(i, j, limit) || farther(i, j, squared)) continue;
+        if (!(squared_distance(i, j) == squared)) continue;
         out.push_back({i, j});
         if (squared.numerator == 0) return out;
       }
@@ -315,6 +325,56 @@ class Truth {
   Squared squared_distance(std::uint32_t i, std::uint32_t j) {
     ++computed_;
     return near_lab::squared_distance(corners(i), corners(j));
+  }
+  // Proves that the pair is farther than the limit, in square cells: the gap of the projections
+  // onto a direction is. Any direction proves it; these are the normals and what is perpendicular
+  // to the longest edges, as far as integers up to 2^20 can say.
+  bool farther_in_cells(std::uint32_t i, std::uint32_t j, Integer limit) const {
+    if (limit >= Integer{1} << 80) return false;
+    const Vec3 a = cell_edge(i, 0), b = cell_edge(j, 0);
+    for (const Vec3& d : {a.cross(cell_edge(i, 1)).eval(), b.cross(cell_edge(j, 1)).eval(),
+                          longest_edge(i).cross(longest_edge(j)).eval()}) {
+      const double most = d.cwiseAbs().maxCoeff();
+      if (!(most > 0)) continue;
+      std::array<Cell, 3> n{};
+      for (std::size_t k = 0; k < 3; ++k)
+        n[k] = std::llround(d[static_cast<Eigen::Index>(k)] / most * 0x1p20);
+      const auto along = [&](std::uint32_t t) {
+        std::array<Integer, 3> out{};
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+          const auto& cell = cells_[scene_.triangles[t][corner]];
+          for (std::size_t k = 0; k < 3; ++k) out[corner] += Integer{n[k]} * cell[k];
+        }
+        return std::minmax({out[0], out[1], out[2]});
+      };
+      const auto [s_lo, s_hi] = along(i);
+      const auto [t_lo, t_hi] = along(j);
+      Integer gap = std::max(t_lo - s_hi, s_lo - t_hi), squared = 0;
+      for (const Cell x : n) {
+        gap -= 4 * (x < 0 ? -x : x);  // two for each of the points
+        squared += Integer{x} * x;
+      }
+      // Below 2^63, so the square is below 2^126.
+      if (gap > 0 && gap * gap > limit * squared) return true;
+    }
+    return false;
+  }
+  Vec3 cell_edge(std::uint32_t t, std::size_t k) const {
+    const auto& v = scene_.triangles[t];
+    Vec3 out;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      out[static_cast<Eigen::Index>(axis)] =
+          static_cast<double>(cells_[v[(k + 1) % 3]][axis] - cells_[v[k]][axis]);
+    }
+    return out;
+  }
+  Vec3 longest_edge(std::uint32_t t) const {
+    Vec3 out = cell_edge(t, 0);
+    for (const std::size_t k : {1u, 2u}) {
+      const Vec3 other = cell_edge(t, k);
+      if (other.squaredNorm() > out.squaredNorm()) out = other;
+    }
+    return out;
   }
   // Proves that the pair is farther than `squared`: the gap of the projections onto the normal of
   // one of them is.
@@ -340,7 +400,8 @@ class Truth {
   Z scale_;                                  // of all coordinates: they are integers then
   std::vector<near_lab::Triple<Z>> points_;  // of vertices, times the scale
   int shift_ = 0;
-  std::vector<CellBox> boxes_;  // of triangles
+  std::vector<std::array<Cell, 3>> cells_;  // of vertices
+  std::vector<CellBox> boxes_;              // of triangles
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> root_;  // of each object
   std::uint32_t all_ = kNone;
