@@ -1,0 +1,306 @@
+// Kinds of contact and common segments: examples of each kind, CGAL's intersection of triangles in
+// rational numbers, and what other functions say of the same pairs.
+#include "verify/contact_kind.h"
+
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/intersections.h>
+#include <CGAL/mpq_class.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/core/base/rational.h"
+#include "tests/verify/hard_pairs.h"
+#include "tests/verify/reference.h"
+#include "verify/contact.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+using rational::Random;
+using reference::Triangle;
+
+constexpr double kTiny = std::numeric_limits<double>::denorm_min();
+constexpr double kMax = std::numeric_limits<double>::max();
+constexpr std::array<std::array<int, 3>, 6> kPermutations = {
+    {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+
+Triangle reordered(const Triangle& t, const std::array<int, 3>& order) {
+  return {t[order[0]], t[order[1]], t[order[2]]};
+}
+
+/// The kind and the shape under every order of arguments and corners; the shape of the first.
+ContactShape expect_kind(const std::string& expected, int dimension, const Triangle& a,
+                         const Triangle& b) {
+  const ContactShape first = contact_shape(a, b);
+  EXPECT_EQ(name_of(first.kind), expected);
+  EXPECT_EQ(first.dimension, dimension) << expected;
+  for (const auto& i : kPermutations) {
+    for (const auto& j : kPermutations) {
+      EXPECT_EQ(contact_shape(reordered(a, i), reordered(b, j)), first);
+      EXPECT_EQ(contact_shape(reordered(b, j), reordered(a, i)), first);
+      EXPECT_EQ(contact_kind(reordered(a, i), reordered(b, j)), first.kind);
+      EXPECT_EQ(contact_kind(reordered(b, j), reordered(a, i)), first.kind);
+    }
+  }
+  return first;
+}
+
+Triangle segment(const Vec3& p, const Vec3& q) { return {p, (p + q) / 2, q}; }
+
+const Triangle kPlate = {Vec3(0, 0, 0), Vec3(8, 0, 0), Vec3(0, 8, 0)};
+const Triangle kPoint = {Vec3(2, 2, 0), Vec3(2, 2, -0.0), Vec3(2, 2, 0)};
+
+TEST(ContactKind, OnePointInCommon) {
+  expect_kind("touch-vertex", 0, kPlate, {Vec3(2, 2, 0), Vec3(2, 3, 4), Vec3(3, 2, 4)});
+  expect_kind("touch-vertex", 0, kPlate, {Vec3(4, 4, 0), Vec3(9, 9, 4), Vec3(9, 9, 5)});
+  expect_kind("touch-vertex", 0, kPlate, {Vec3(0, 0, 0), Vec3(-1, 0, 4), Vec3(0, -1, 4)});
+  expect_kind("touch-vertex", 0, kPlate, {Vec3(8, 0, 0), Vec3(9, 0, 0), Vec3(9, 1, 0)});
+  const Triangle across = {Vec3(2, 0, -3), Vec3(2, 0, 3), Vec3(2, -4, 1)};
+  const ContactShape edges = expect_kind("touch-edge", 0, kPlate, across);
+  EXPECT_EQ(edges.ends[0], Vec3(2, 0, 0));
+  EXPECT_EQ(edges.ends[1], Vec3(2, 0, 0));
+}
+
+TEST(ContactKind, MoreThanOnePointInCommon) {
+  expect_kind("touch-face", 1, kPlate, {Vec3(1, 1, 0), Vec3(3, 3, 0), Vec3(2, 2, 5)});
+  expect_kind("touch-face", 1, kPlate, {Vec3(0, 0, 0), Vec3(8, 0, 0), Vec3(4, 0, 5)});
+  expect_kind("coplanar", 2, kPlate, {Vec3(1, 1, 0), Vec3(2, 1, 0), Vec3(1, 2, 0)});
+  expect_kind("coplanar", 1, kPlate, {Vec3(2, 0, 0), Vec3(6, 0, 0), Vec3(4, -4, 0)});
+  expect_kind("equal", 2, kPlate, kPlate);
+  const ContactShape through =
+      expect_kind("crossing", 1, kPlate, {Vec3(2, 1, -1), Vec3(2, 1, 1), Vec3(2, 3, 0)});
+  EXPECT_EQ(through.ends[0], Vec3(2, 1, 0));
+  EXPECT_EQ(through.ends[1], Vec3(2, 3, 0));
+  expect_kind("crossing", 1, kPlate, {Vec3(0, 0, 0), Vec3(5, 5, 2), Vec3(5, 5, -2)});
+}
+
+TEST(ContactKind, OneUlpDecides) {
+  const auto spike = [](double z) { return Triangle{Vec3(2, 2, z), Vec3(2, 3, 4), Vec3(3, 2, 4)}; };
+  expect_kind("touch-vertex", 0, kPlate, spike(0));
+  expect_kind("crossing", 1, kPlate, spike(-kTiny));
+  expect_kind("apart", -1, kPlate, spike(kTiny));
+}
+
+TEST(ContactKind, DegenerateTrianglesAreSegmentsAndPoints) {
+  expect_kind("crossing", 0, kPlate, segment({2, 2, -1}, {2, 2, 1}));
+  expect_kind("touch-vertex", 0, kPlate, segment({2, 2, 0}, {2, 2, 2}));
+  expect_kind("touch-edge", 0, kPlate, segment({2, 0, -1}, {2, 0, 1}));
+  expect_kind("touch-vertex", 0, kPlate, segment({0, 0, -1}, {0, 0, 1}));
+  expect_kind("coplanar", 1, kPlate, segment({1, 1, 0}, {3, 2, 0}));
+  expect_kind("touch-edge", 0, segment({-1, 0, 0}, {1, 0, 0}), segment({0, -1, 0}, {0, 1, 0}));
+  expect_kind("touch-vertex", 0, segment({-1, 0, 0}, {1, 0, 0}), segment({1, 0, 0}, {2, 1, 0}));
+  expect_kind("coplanar", 1, segment({-1, 0, 0}, {1, 0, 0}), segment({0, 0, 0}, {4, 0, 0}));
+  expect_kind("equal", 1, segment({-1, 2, 0}, {1, 4, 2}), segment({1, 4, 2}, {-1, 2, 0}));
+  expect_kind("apart", -1, segment({-1, 0, 0}, {1, 0, 0}), segment({2, 0, 0}, {4, 0, 0}));
+  expect_kind("touch-vertex", 0, kPlate, kPoint);
+  expect_kind("touch-vertex", 0, segment({2, 2, -2}, {2, 2, 2}), kPoint);
+  expect_kind("equal", 0, kPoint, kPoint);
+  const Triangle beside = {Vec3(2, 2, kTiny), Vec3(2, 2, kTiny), Vec3(2, 2, kTiny)};
+  expect_kind("apart", -1, kPoint, beside);
+}
+
+TEST(ContactKind, TheEndsOfTheDoubles) {
+  const Triangle wide = {Vec3(-kMax, -kMax, 0), Vec3(kMax, -kMax, 0), Vec3(0, kMax, 0)};
+  expect_kind("crossing", 1, wide, {Vec3(0, 0, -kTiny), Vec3(kTiny, 0, kTiny), Vec3(0, 0, kTiny)});
+  const ContactShape tall =
+      expect_kind("crossing", 1, wide, {Vec3(0, 0, -kMax), Vec3(kMax, 1, kMax), Vec3(0, 3, kMax)});
+  EXPECT_EQ(tall.ends[1], Vec3(kMax / 2, 0.5, 0));
+}
+
+TEST(ContactShape, EndsAreRoundedOnceToTheNearestDouble) {
+  // The plane z = 0 is met a third of the way from the first corner to each of the others.
+  const Triangle tilted = {Vec3(1, 1, -1), Vec3(2, 1, 2), Vec3(1, 2, 2)};
+  const ContactShape shape = contact_shape(kPlate, tilted);
+  EXPECT_EQ(shape.ends[0], Vec3(1, 1 + 1.0 / 3, 0));
+  EXPECT_EQ(shape.ends[1], Vec3(1 + 1.0 / 3, 1, 0));
+  // Halfway between two subnormal numbers: to the even one, and never -0.0.
+  const Triangle flat = {Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(0, 2, 0)};
+  const Triangle small = {Vec3(0, 0, -1), Vec3(-kTiny, 0, 1), Vec3(3 * kTiny, 0, 1)};
+  const ContactShape tiny = contact_shape(flat, small);
+  EXPECT_EQ(tiny.ends[0].x(), 0.0);
+  EXPECT_FALSE(std::signbit(tiny.ends[0].x()));
+  EXPECT_EQ(tiny.ends[1].x(), 2 * kTiny);
+}
+
+using Kernel = CGAL::Simple_cartesian<mpq_class>;
+using Rational = mpq_class;
+
+Kernel::Triangle_3 in_cgal(const Triangle& t) {
+  const auto point = [](const Vec3& p) {
+    return Kernel::Point_3(Rational(p.x()), Rational(p.y()), Rational(p.z()));
+  };
+  return {point(t[0]), point(t[1]), point(t[2])};
+}
+
+/// The double nearest to q, by comparing: none of the two beside it is nearer.
+bool is_nearest(double x, const Rational& q) {
+  const auto away = [&](double y) { return Rational(abs(Rational(y) - q)); };
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  return away(x) <= away(std::nextafter(x, kInf)) && away(x) <= away(std::nextafter(x, -kInf));
+}
+
+/// Whether CGAL finds the same common points. Precondition: no degenerate triangle.
+bool as_cgal_says(const ContactShape& shape, const Triangle& a, const Triangle& b) {
+  const auto near = [](const Vec3& end, const Kernel::Point_3& p) {
+    return is_nearest(end.x(), p.x()) && is_nearest(end.y(), p.y()) && is_nearest(end.z(), p.z());
+  };
+  const auto found = CGAL::intersection(in_cgal(a), in_cgal(b));
+  if (!found) return shape.dimension == -1;
+  if (const auto* p = boost::get<Kernel::Point_3>(&*found))
+    return shape.dimension == 0 && near(shape.ends[0], *p) && near(shape.ends[1], *p);
+  if (const auto* s = boost::get<Kernel::Segment_3>(&*found))
+    return shape.dimension == 1 && near(shape.ends[0], s->min()) && near(shape.ends[1], s->max());
+  return shape.dimension == 2;
+}
+
+/// Triangles with corners of few values, so that corners, edges and planes often coincide.
+struct Drawn {
+  Triangle a, b;
+};
+Drawn draw(Random& random, int n) {
+  std::array<double, 5> values{};
+  for (double& value : values) {
+    value = n % 3 == 0   ? random.below(4)
+            : n % 3 == 1 ? random.uniform(-1, 1)
+                         : random.scaled(-40, 40);
+  }
+  const auto triangle = [&] {
+    Triangle t;
+    for (Vec3& p : t) {
+      for (int axis = 0; axis < 3; ++axis) p[axis] = values[random.below(5)];
+    }
+    return t;
+  };
+  Drawn out = {triangle(), triangle()};
+  if (n % 4 == 0) {  // in one plane
+    for (Triangle* t : {&out.a, &out.b}) {
+      for (Vec3& p : *t) p.z() = values[0];
+    }
+  }
+  return out;
+}
+
+TEST(ContactShape, AsCgalsIntersectionInRationalNumbers) {
+  Random random(601);
+  std::array<int, 4> of_dimension{};
+  int noticed = 0;
+  for (int n = 0; n < 3000; ++n) {
+    const auto [a, b] = draw(random, n);
+    if (shape(a) != Shape::triangle || shape(b) != Shape::triangle) continue;
+    ContactShape found = contact_shape(a, b);
+    ASSERT_TRUE(as_cgal_says(found, a, b)) << "pair " << n;
+    ++of_dimension[found.dimension + 1];
+    if (found.dimension != 1) continue;
+    // The twin: an end that is moved by two units in the last place is noticed.
+    double& x = found.ends[1].y();
+    for (int step = 0; step < 2; ++step) x = std::nextafter(x, kMax);
+    noticed += !as_cgal_says(found, a, b);
+  }
+  for (const int count : of_dimension) EXPECT_GT(count, 30);
+  EXPECT_EQ(noticed, of_dimension[2]);
+}
+
+/// Pairs of which the kind does not fit what verify/exact and verify/contact say of them. `kind` is
+/// replaced by the twin.
+template <class Kind>
+int misfits(const Triangle& a, const Triangle& b, const Kind& kind) {
+  const ContactKind found = kind(a, b);
+  return (found == ContactKind::apart) == intersects(a, b) ||
+         (found == ContactKind::crossing) != (contact_of(a, b) == Contact::penetrating);
+}
+
+TEST(ContactKind, FitsTheOtherPredicatesAmongPairsThatAreHard) {
+  const auto by_shape = [](const Triangle& a, const Triangle& b) {
+    return contact_shape(a, b).kind;
+  };
+  // The twin: coordinates that are rounded to float first.
+  const auto rounded = [](const Triangle& a, const Triangle& b) {
+    const auto cut = [](Triangle t) {
+      for (Vec3& p : t) p = p.cast<float>().cast<double>();
+      return t;
+    };
+    return contact_shape(cut(a), cut(b)).kind;
+  };
+  int wrong = 0;
+  int caught = 0;
+  PairRandom random(602);
+  for (const auto& [name, make] : hard_pairs::generators()) {
+    for (int n = 0; n < 60; ++n) {
+      PairOfTriangles pair = make(random);
+      if (!hard_pairs::finite(pair)) continue;
+      hard_pairs::share(static_cast<hard_pairs::Sharing>(n % 3), pair.a, pair.b);
+      wrong += misfits(pair.a, pair.b, by_shape);
+      wrong += contact_kind(pair.a, pair.b) != by_shape(pair.a, pair.b);
+      const bool small = std::max(pair.a[0].cwiseAbs().maxCoeff(), pair.b[0].norm()) < 1e30;
+      if (small) caught += misfits(pair.a, pair.b, rounded);
+    }
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(caught, 0);
+}
+
+TEST(ContactKind, EveryPairOnAGridHasOneKind) {
+  std::vector<Triangle> all;
+  const auto corner = [](int i) { return Vec3(i % 2, i / 2 % 2, i / 4); };
+  for (int i = 0; i < 8; ++i) {
+    for (int j = i; j < 8; ++j) {
+      for (int k = j; k < 8; ++k) all.push_back({corner(i), corner(j), corner(k)});
+    }
+  }
+  std::array<int, kContactKinds.size()> of_kind{};
+  int wrong = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = i; j < all.size(); ++j) {
+      const ContactKind kind = contact_shape(all[i], all[j]).kind;
+      ++of_kind[static_cast<std::size_t>(kind)];
+      wrong += kind != contact_kind(all[j], all[i]);
+      wrong += misfits(all[i], all[j], contact_kind);
+    }
+  }
+  EXPECT_EQ(wrong, 0);
+  for (const ContactKind kind : kContactKinds)
+    EXPECT_GT(of_kind[static_cast<std::size_t>(kind)], 0) << name_of(kind);
+}
+
+TEST(ContactKinds, AnswerEachPairWhateverTheThreads) {
+  Random random(603);
+  Scene scene;
+  for (std::uint32_t t = 0; t < 40; ++t) {
+    for (int k = 0; k < 3; ++k)
+      scene.vertices.emplace_back(random.below(4), random.below(4), random.below(4));
+    scene.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+    scene.source_face.push_back(t);
+  }
+  scene.objects.push_back({"soup", 0, 40, true});
+  std::vector<TrianglePair> pairs;
+  std::vector<ContactKind> kinds;
+  std::vector<ContactShape> shapes;
+  for (std::uint32_t a = 0; a < 40; ++a) {
+    for (std::uint32_t b = a + 1; b < 40; ++b) {
+      pairs.push_back({a, b});
+      shapes.push_back(contact_shape(scene.corners(a), scene.corners(b)));
+      kinds.push_back(shapes.back().kind);
+    }
+  }
+  for (const unsigned threads : {0u, 1u, 3u}) {
+    EXPECT_EQ(contact_kinds(scene, pairs, threads), kinds);
+    EXPECT_EQ(contact_shapes(scene, pairs, threads), shapes);
+  }
+  EXPECT_TRUE(contact_kinds(scene, {}).empty());
+  EXPECT_THROW(contact_kinds(scene, std::vector<TrianglePair>{{0, 40}}), std::logic_error);
+}
+
+TEST(ContactKinds, HaveNamesThatAreReadBack) {
+  for (const ContactKind kind : kContactKinds) EXPECT_EQ(parse_contact_kind(name_of(kind)), kind);
+  EXPECT_FALSE(parse_contact_kind("touch"));
+  EXPECT_FALSE(parse_contact_kind(""));
+}
+
+}  // namespace
+}  // namespace farcull
