@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "verify/closest_value.h"
+#include "verify/squared_distance.h"
 #include "verify/contact.h"
 #include "verify/exact.h"
 #include "verify/rational.h"
