@@ -309,9 +309,9 @@ CLI::App* CheckCommand::add_to(CLI::App& app) {
       "  farcull distance two-tori --certificate e.json\n"
       "  farcull check e.json two-tori\n\n"
       "Exit status 0: proved: these pairs of the scene meet (or are within the clearance), and\n"
-      "no others, or these are the distances that were asked for; 1: refuted, or not proved; 2:\n"
-      "what cannot be read, or distances of another scene. Nothing is proved about the run:\n"
-      "neither its method nor which pairs it kept. The file of a certificate, and its proof:\n"
+      "no others, or these are the distances that were asked for; 1: refuted, or not proved, as\n"
+      "for another scene; 2: what cannot be read. Nothing is proved about the run: neither its\n"
+      "method nor which pairs it kept. The file of a certificate, and its proof:\n"
       "docs/certificate.md.");
   return command;
 }

@@ -23,7 +23,7 @@ struct DistanceCheckArguments {
 bool is_of_distances(const std::string& file);
 
 /// Prints the verdict and returns the exit status, as run_check(). text: of the certificate. Throws
-/// Error where the text or the scene cannot be read, or is of another scene.
+/// Error where the text or the scene cannot be read.
 int check_distance_file(const DistanceCheckArguments& arguments, const std::string& text);
 
 /// The same for each frame, and in all.

@@ -67,8 +67,10 @@ std::string check_text(const Scene& scene, const CheckedDistances& check) {
   const bool all = check.certificate.pairs == Pairs::all;
   std::string out = verdict_text(scene, check);
   if (all) out += not_asked_line(scene);
-  out += fmt::format("decided    {} in integers; boxes prove the others far enough apart\n",
-                     counted(result.decided, "pair of triangles", "pairs of triangles"));
+  if (result.decided > 0 || result.verdict == Verdict::proved) {
+    out += fmt::format("decided    {} in integers; boxes prove the others far enough apart\n",
+                       counted(result.decided, "pair of triangles", "pairs of triangles"));
+  }
   if (result.neighbours > 0) {
     out += fmt::format("neighbours {} near each other, which do not count\n",
                        counted(result.neighbours, "pair", "pairs"));

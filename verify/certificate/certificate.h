@@ -155,4 +155,8 @@ struct CheckResult {
 /// accepts the scene.
 CheckResult check_certificate(const Certificate& certificate, const Scene& scene);
 
+/// "the certificate is of another scene: ..." with what differs; empty where the key is the
+/// scene's.
+std::string other_scene(const Certificate::SceneKey& key, const Scene& scene);
+
 }  // namespace farcull

@@ -119,22 +119,6 @@ std::vector<std::string> unattested_of(const Certificate::Run& run) {
   return out;
 }
 
-std::string other_scene(const Certificate::SceneKey& key, const Scene& scene) {
-  const auto differ = [](const char* what, const std::string& claimed, const std::string& found) {
-    return std::string("the certificate is of another scene: ") + what + " " + claimed +
-           ", given " + found;
-  };
-  if (key.objects != scene.objects.size())
-    return differ("objects", std::to_string(key.objects), std::to_string(scene.objects.size()));
-  if (key.triangles != scene.triangles.size()) {
-    return differ("triangles", std::to_string(key.triangles),
-                  std::to_string(scene.triangles.size()));
-  }
-  const std::string hash = scene_hash(scene);
-  return key.hash == hash ? ""
-                          : differ("hash (coordinates, or which objects are self)", key.hash, hash);
-}
-
 std::string wrong_count(const Certificate& certificate, const Scene& scene,
                         const Certificate::Claims& found) {
   using Claims = Certificate::Claims;
@@ -249,6 +233,22 @@ CheckResult decide_all(const Certificate& certificate, const Scene& scene) {
 }
 
 }  // namespace
+
+std::string other_scene(const Certificate::SceneKey& key, const Scene& scene) {
+  const auto differ = [](const char* what, const std::string& claimed, const std::string& found) {
+    return std::string("the certificate is of another scene: ") + what + " " + claimed +
+           ", given " + found;
+  };
+  if (key.objects != scene.objects.size())
+    return differ("objects", std::to_string(key.objects), std::to_string(scene.objects.size()));
+  if (key.triangles != scene.triangles.size()) {
+    return differ("triangles", std::to_string(key.triangles),
+                  std::to_string(scene.triangles.size()));
+  }
+  const std::string hash = scene_hash(scene);
+  return key.hash == hash ? ""
+                          : differ("hash (coordinates, or which objects are self)", key.hash, hash);
+}
 
 std::string to_string(Verdict verdict) {
   switch (verdict) {

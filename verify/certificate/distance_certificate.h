@@ -91,12 +91,13 @@ struct DistanceCheck {
 ///   belong to it and is listed. The pair is named, with its exact squared distance. Of several
 ///   pairs that refute the first one is named: first what is wrong in an entry by itself, then
 ///   what is nearer than an entry, then what is not listed; each by objects, then by triangles.
-/// - not_proved: nothing refutes, but entries are not in order or there twice, an entry is of a
+/// - not_proved: the certificate is of another scene, and nothing was decided; or nothing refutes,
+///   but entries are not in order or there twice, an entry is of a
 ///   pair that does not count, a pair as near comes before the one that is named, or the nearest
 ///   points lie on other features.
 /// - proved: neither.
-/// Throws Error naming `name` where the certificate is of another scene, or names an object or a
-/// triangle that the scene does not have. Precondition: validate() accepts the scene.
+/// Throws Error naming `name` where the certificate names an object or a triangle that the scene
+/// does not have. Precondition: validate() accepts the scene.
 DistanceCheck check_distances(const DistanceCertificate& certificate, const Scene& scene,
                               const std::string& name);
 

@@ -14,21 +14,6 @@ constexpr const char* kRemedy = "give the scene that the certificate was written
 
 }  // namespace
 
-void require_scene(const DistanceCertificate& certificate, const Scene& scene,
-                   const std::string& name) {
-  const Certificate::SceneKey& key = certificate.scene;
-  const auto differ = [&](const std::string& what, const std::string& claimed,
-                          const std::string& found) {
-    if (claimed == found) return;
-    throw Error(name,
-                "the certificate is of another scene: " + what + " " + claimed + ", given " + found,
-                kRemedy);
-  };
-  differ("objects", std::to_string(key.objects), std::to_string(scene.objects.size()));
-  differ("triangles", std::to_string(key.triangles), std::to_string(scene.triangles.size()));
-  differ("hash (coordinates, or which objects are self)", key.hash, scene_hash(scene));
-}
-
 std::vector<Listed> located(const DistanceCertificate& certificate, const Scene& scene,
                             const std::string& name) {
   std::vector<Listed> out;

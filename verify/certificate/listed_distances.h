@@ -10,10 +10,6 @@
 
 namespace farcull {
 
-/// Throws Error naming `name` where the certificate is of another scene.
-void require_scene(const DistanceCertificate& certificate, const Scene& scene,
-                   const std::string& name);
-
 /// An entry with its triangles as the scene numbers them.
 struct Listed {
   TrianglePair pair;

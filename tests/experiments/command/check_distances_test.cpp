@@ -103,16 +103,24 @@ TEST_F(CheckDistances, NotProvedIsStatus1) {
   EXPECT_EQ(nlohmann::json::parse(answer(c, "-").text)["verdict"], "not proved");
 }
 
+// As a certificate of pairs.
+TEST_F(CheckDistances, AnotherSceneIsNotProved) {
+  const std::string file = folder.write("d.json", to_text(certificate(Pairs::objects)));
+  const Answer other = check({file, {files[0], files[1]}, ""});
+  EXPECT_EQ(other.status, 1);
+  EXPECT_EQ(other.line(), "not proved: the certificate is of another scene: objects 3, given 2");
+  EXPECT_EQ(other.text.find("decided"), std::string::npos) << other.text;
+  // `self` is part of the scene.
+  const Answer self = check({file, files, "", true});
+  EXPECT_EQ(self.status, 1);
+  EXPECT_NE(self.line().find("which objects are self"), std::string::npos);
+}
+
 TEST_F(CheckDistances, BadInputIsAnError) {
   const std::string file = folder.write("d.json", to_text(certificate(Pairs::objects)));
   CheckArguments arguments{file, files, ""};
   arguments.clearance = 1;
   EXPECT_EQ(error_of([&] { check(arguments); }).where, "--clearance");
-  const Error other = error_of([&] { check({file, {files[0], files[1]}, ""}); });
-  EXPECT_EQ(other.reason, "the certificate is of another scene: objects 3, given 2");
-  // `self` is part of the scene.
-  const Error self = error_of([&] { check({file, files, "", true}); });
-  EXPECT_NE(self.reason.find("which objects are self"), std::string::npos);
   const std::string half =
       folder.write("half.json", to_text(certificate(Pairs::objects)).substr(0, 200));
   EXPECT_NE(error_of([&] { check({half, files, ""}); }).reason.find("not JSON"), std::string::npos);
