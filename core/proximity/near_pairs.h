@@ -28,6 +28,13 @@ struct ObjectPair {
   auto operator<=>(const ObjectPair&) const = default;
 };
 
+/// Two triangles, of objects.a and of objects.b, that are probably near, as the nearest ones of the
+/// frame before.
+struct NearHint {
+  ObjectPair objects;
+  TrianglePair triangles;
+};
+
 /// What can be nearest of two objects.
 struct NearPairs {
   ObjectPair objects;
@@ -72,6 +79,12 @@ class ProximityTrees {
   /// its k least distances, all that share the kth least among them): sorted, each once, with what
   /// can be nearest of them. No object is further away than `within`. Throws as near_pairs().
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
+                                         const Progress& progress = {}) const;
+  /// The same with hints, in any order; of those for the same two objects the first one counts.
+  /// Where k others are named with an object, these bound it from the start. No answer that exact
+  /// arithmetic gives changes. What is no hint for near_pairs() is none here.
+  std::vector<NearPairs> nearest_objects(std::size_t k, double within,
+                                         std::span<const NearHint> hints,
                                          const Progress& progress = {}) const;
 
   /// Of all calls so far.

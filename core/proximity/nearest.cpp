@@ -1,8 +1,9 @@
 // Each object asks about the others in the order of the gaps of their boxes, and stops where the
-// gap is above the k-th least upper bound so far.
+// gap is above the k-th least upper bound so far. Hints give such a bound before.
 #include "core/proximity/nearest.h"
 
 #include <algorithm>
+#include <limits>
 #include <queue>
 
 #include "core/proximity/bounds.h"
@@ -65,10 +66,35 @@ class Approach {
   std::priority_queue<Node> queue_;
 };
 
-// The others that may be among the k nearest of an object.
+// The searches that hints begin, sorted by objects.
+std::vector<Search> begun_by_hints(const SceneTrees& trees, std::span<const NearHint> hints,
+                                   double limit, SearchMemory& memory) {
+  std::vector<Search> out;
+  out.reserve(hints.size());
+  for (const NearHint& hint : hints)
+    out.push_back(begin_search(trees, hint.objects, limit, &hint.triangles, memory));
+  return out;
+}
+
+// The k-th least bound: k other objects are at most so far.
+double kth_least_upper(std::span<const Search> searches, std::size_t k) {
+  if (searches.size() < k) return std::numeric_limits<double>::infinity();
+  std::vector<double> upper;
+  for (const Search& search : searches) upper.push_back(search.upper);
+  const auto kth = upper.begin() + static_cast<std::ptrdiff_t>(k - 1);
+  std::ranges::nth_element(upper, kth);
+  return *kth;
+}
+
+// The others that may be among the k nearest of an object. hints: those that name it,
+// sorted.
 std::vector<Found> found_by(const SceneTrees& trees, std::uint32_t object, std::size_t k,
-                            double limit, SearchMemory& memory, ProximityCounts& counts) {
+                            double limit, std::span<const NearHint> hints, SearchMemory& memory,
+                            ProximityCounts& counts) {
   std::vector<Found> out;
+  std::vector<Search> begun = begun_by_hints(trees, hints, limit, memory);
+  for (const Search& search : begun) counts.triangle_pairs += search.counts.triangle_pairs;
+  limit = std::min(limit, kth_least_upper(begun, k));
   std::vector<double> least;  // the k least upper bounds, as a heap
   const auto bound = [&] { return least.size() < k ? limit : std::min(limit, least.front()); };
   Approach approach(trees, trees.box(object));
@@ -77,7 +103,15 @@ std::vector<Found> found_by(const SceneTrees& trees, std::uint32_t object, std::
     if (other == object) continue;
     const ObjectPair objects = {std::min(object, other), std::max(object, other)};
     const double most = bound();
-    Search search = begin_search(trees, objects, most, nullptr, memory);
+    const auto hinted = std::ranges::lower_bound(begun, objects, {}, &Search::objects);
+    Search search;
+    if (hinted != begun.end() && hinted->objects == objects) {
+      search = std::move(*hinted);
+      search.limit = most;
+      search.counts = {};  // they were added
+    } else {
+      search = begin_search(trees, objects, most, nullptr, memory);
+    }
     while (!search.open.empty()) {
       go_on(trees, kShort, search, memory);
       require_room(trees, search);
@@ -103,15 +137,21 @@ std::vector<Found> found_by(const SceneTrees& trees, std::uint32_t object, std::
 }  // namespace
 
 std::vector<NearPairs> nearest_objects(const SceneTrees& trees, std::size_t k, double limit,
-                                       unsigned threads, ProximityCounts& counts) {
+                                       std::span<const NearHint> hints, unsigned threads,
+                                       ProximityCounts& counts) {
   if (k == 0) return {};
   const std::size_t objects = trees.scene().objects.size();
+  std::vector<std::vector<NearHint>> hints_of(objects);
+  for (const NearHint& hint : hints) {
+    hints_of[hint.objects.a].push_back(hint);
+    hints_of[hint.objects.b].push_back(hint);
+  }
   std::vector<std::vector<Found>> found(objects);
   std::vector<ProximityCounts> parts(objects);
   for_each_with_memory(objects, threads, [&](std::size_t o, SearchMemory& memory) {
     const auto object = static_cast<std::uint32_t>(o);
     if (trees.tree(object).levels == 0) return;
-    found[o] = found_by(trees, object, k, limit, memory, parts[o]);
+    found[o] = found_by(trees, object, k, limit, hints_of[o], memory, parts[o]);
   });
   std::vector<Found> all;
   for (std::size_t o = 0; o < objects; ++o) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "core/proximity/near_pairs.h"
@@ -9,8 +10,10 @@
 
 namespace farcull {
 
-/// As ProximityTrees::nearest_objects(). limit: scaled. Adds to counts.
+/// As ProximityTrees::nearest_objects(). limit: scaled; hints: triangles of the objects that they
+/// name, sorted by objects, for two objects at most one. Adds to counts.
 std::vector<NearPairs> nearest_objects(const SceneTrees& trees, std::size_t k, double limit,
-                                       unsigned threads, ProximityCounts& counts);
+                                       std::span<const NearHint> hints, unsigned threads,
+                                       ProximityCounts& counts);
 
 }  // namespace farcull

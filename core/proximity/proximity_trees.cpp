@@ -98,11 +98,26 @@ std::vector<NearPairs> ProximityTrees::near_pairs(
 
 std::vector<NearPairs> ProximityTrees::nearest_objects(std::size_t k, double within,
                                                        const Progress& progress) const {
+  return nearest_objects(k, within, {}, progress);
+}
+
+std::vector<NearPairs> ProximityTrees::nearest_objects(std::size_t k, double within,
+                                                       std::span<const NearHint> hints,
+                                                       const Progress& progress) const {
   if (!(within >= 0)) throw std::logic_error("nearest_objects: within is not a distance");
   if (progress) progress("nearest objects");
+  const Scene& scene = state_->trees.scene();
+  std::vector<NearHint> good;
+  for (const NearHint& hint : hints) {
+    const ObjectPair& objects = hint.objects;
+    const bool two = objects.a < objects.b && objects.b < scene.objects.size();
+    if (two && fits(scene, objects, hint.triangles)) good.push_back(hint);
+  }
+  std::ranges::stable_sort(good, {}, &NearHint::objects);
+  good.erase(std::ranges::unique(good, {}, &NearHint::objects).begin(), good.end());
   ProximityCounts counts;
   std::vector<NearPairs> out = farcull::nearest_objects(
-      state_->trees, k, scaled_limit(state_->trees, within), state_->threads, counts);
+      state_->trees, k, scaled_limit(state_->trees, within), good, state_->threads, counts);
   state_->add(counts);
   return out;
 }

@@ -66,6 +66,15 @@ std::vector<std::optional<TrianglePair>> hints_for(std::span<const ObjectPair> q
   return out;
 }
 
+// All of the frame before.
+std::vector<NearHint> hints_of(const DistanceMemory* memory) {
+  std::vector<NearHint> out;
+  if (memory == nullptr) return out;
+  for (std::size_t k = 0; k < memory->objects.size(); ++k)
+    out.push_back({memory->objects[k], memory->nearest[k]});
+  return out;
+}
+
 // The nearest pair of each question, where it is not farther than `within`.
 std::vector<Distance> nearest_of(const Scene& scene, std::span<const NearPairs> near,
                                  const DistanceOptions& options) {
@@ -128,7 +137,7 @@ void between_objects(const Scene& scene, const Progress& progress, DistanceMemor
   const ProximityTrees trees(scene, options.threads);
   std::vector<NearPairs> near;
   if (options.pairs == DistancePairs::nearest) {
-    near = trees.nearest_objects(options.k, options.within, progress);
+    near = trees.nearest_objects(options.k, options.within, hints_of(memory), progress);
   } else {
     const std::vector<ObjectPair> questions = every_two_objects(scene);
     near = trees.near_pairs(questions, options.within, hints_for(questions, memory), progress);

@@ -212,6 +212,45 @@ TEST(NearestObjects, AreFoundWithAllThatAreAsNear) {
   EXPECT_GT(caught, scenes / 2);
 }
 
+// Hints of all kinds: the nearest pairs, any others, of one object, of objects and triangles that
+// are not there, twice.
+TEST(NearestObjects, HintsChangeNoAnswerAndSaveWork) {
+  Random random(9);
+  ProximityCounts without, with;
+  for (int k = 0; k < trials(200); ++k) {
+    const GridScene grid = crowd(random, 2 + random.below(40));
+    const auto n = static_cast<std::uint32_t>(grid.scene.objects.size());
+    const auto most = static_cast<std::size_t>(1 + random.below(3));
+    const double within = random.coin() ? kInfinite : random.below(20) * grid.unit;
+    std::vector<NearHint> hints;
+    for (int h = random.below(100); h > 0; --h) {
+      const ObjectPair objects = {static_cast<std::uint32_t>(random.below(static_cast<int>(n))),
+                                  static_cast<std::uint32_t>(random.below(static_cast<int>(n)))};
+      const auto hint = random_hint(random, grid.scene, objects);
+      hints.push_back({objects, hint ? *hint : TrianglePair{1, 10'000}});
+    }
+    hints.push_back({{0, n}, {0, 1}});
+    const ProximityTrees any(grid.scene, 1);
+    EXPECT_EQ(fault_of_nearest(grid, most, within, any.nearest_objects(most, within, hints)), "")
+        << "scene " << k;
+    // Good ones: all triangles of each object are moved a little, and were nearest before.
+    const ProximityTrees first(grid.scene, 1), second(grid.scene, 1);
+    hints.clear();
+    for (const NearPairs& near : first.nearest_objects(most, kInfinite)) {
+      if (!near.pairs.empty()) hints.push_back({near.objects, near.pairs.front()});
+    }
+    without.box_pairs += first.counts().box_pairs;
+    without.triangle_pairs += first.counts().triangle_pairs;
+    EXPECT_EQ(
+        fault_of_nearest(grid, most, kInfinite, second.nearest_objects(most, kInfinite, hints)), "")
+        << "scene " << k;
+    with.box_pairs += second.counts().box_pairs;
+    with.triangle_pairs += second.counts().triangle_pairs;
+  }
+  EXPECT_LT(with.box_pairs, without.box_pairs);
+  EXPECT_LT(with.triangle_pairs, without.triangle_pairs);
+}
+
 TEST(NearestObjects, OfAScatteredCrowdFewPairsOfObjectsAreSearched) {
   GridScene grid;
   Random random(4);

@@ -95,6 +95,38 @@ TEST(Distances, DependNeitherOnThreadsNorOnTheFrameBefore) {
   }
 }
 
+// Blobs that drift: the nearest ones of a frame bound those of the next from the start.
+TEST(Distances, OfTheFrameBeforeSaveWork) {
+  for (const DistancePairs pairs : {objects, nearest}) {
+    Scene scene = make_builtin_scene("field:2000");
+    const DistanceOptions options = {.pairs = pairs, .inside = false, .threads = 1};
+    DistanceMemory memory;
+    ProximityCounts with, without;
+    for (int frame = 0; frame < 5; ++frame) {
+      const DistanceRecord alone = distances(scene, options);
+      const DistanceRecord record = distances(scene, options, {}, &memory);
+      EXPECT_TRUE(same(record, alone)) << frame;
+      if (frame > 0) {
+        with.triangle_pairs += record.counts.triangle_pairs;
+        with.box_pairs += record.counts.box_pairs;
+        without.triangle_pairs += alone.counts.triangle_pairs;
+        without.box_pairs += alone.counts.box_pairs;
+      }
+      const Vec3 by = Vec3(0.004, -0.003, 0.002) * (frame + 1);
+      const Object& object = scene.objects[static_cast<std::size_t>(frame)];
+      std::vector<bool> moved(scene.vertices.size());
+      for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+        for (const std::uint32_t v : scene.triangles[object.first_triangle + t]) {
+          if (!moved[v]) scene.vertices[v] += by;
+          moved[v] = true;
+        }
+      }
+    }
+    EXPECT_LT(with.triangle_pairs, without.triangle_pairs);
+    EXPECT_LT(with.box_pairs, without.box_pairs);
+  }
+}
+
 TEST(Distances, OfOneObjectLeaveNeighboursOut) {
   Scene scene = make_builtin_scene("degenerate");
   scene.objects.resize(1);
