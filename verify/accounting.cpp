@@ -19,6 +19,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -233,18 +234,48 @@ class Tree {
   std::uint32_t root_ = kNone;
 };
 
+/// Pairs of objects that are ignored. Written anew here: what culled uses core/scene/ignored.
+class Ignored {
+ public:
+  Ignored(const Scene& scene, std::span<const ObjectPair> pairs)
+      : pairs_(pairs.begin(), pairs.end()) {
+    for (const ObjectPair& pair : pairs) {
+      if (pair.a >= pair.b || pair.b >= scene.objects.size())
+        throw std::logic_error("account: an ignored pair is not two objects, a < b");
+      const Object& a = scene.objects[pair.a];
+      triangles_ += std::uint64_t{a.triangle_count} * scene.objects[pair.b].triangle_count;
+    }
+    if (pairs_.size() != pairs.size())
+      throw std::logic_error("account: a pair of objects is ignored twice");
+  }
+
+  bool has(std::uint32_t object, std::uint32_t other) const {
+    return !pairs_.empty() && pairs_.contains({std::min(object, other), std::max(object, other)});
+  }
+  std::uint64_t triangle_pairs() const { return triangles_; }
+
+ private:
+  std::set<ObjectPair> pairs_;
+  std::uint64_t triangles_ = 0;  // pairs of them
+};
+
+std::vector<std::uint32_t> owners_of(const Scene& scene) {
+  std::vector<std::uint32_t> owner(scene.triangles.size(), kNone);
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    const Object& object = scene.objects[o];
+    for (std::uint64_t i = 0; i < object.triangle_count; ++i) {
+      owner.at(object.first_triangle + i) = o;
+    }
+  }
+  return owner;
+}
+
 /// The kept pairs with a lookup: those of triangle a lie in [starts[a], starts[a + 1]).
 class Kept {
  public:
-  Kept(const Scene& scene, std::span<const TrianglePair> pairs)
+  Kept(const Scene& scene, const std::vector<std::uint32_t>& owner, const Ignored& ignored,
+       std::span<const TrianglePair> pairs)
       : pairs_(pairs), starts_(scene.triangles.size() + 1) {
-    std::vector<std::uint32_t> owner(scene.triangles.size(), kNone);
-    for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
-      const Object& object = scene.objects[o];
-      for (std::uint64_t i = 0; i < object.triangle_count; ++i) {
-        owner.at(object.first_triangle + i) = o;
-      }
-    }
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const TrianglePair& pair = pairs[i];
       if (pair.b >= scene.triangles.size())
@@ -252,6 +283,8 @@ class Kept {
       if (pair.a >= pair.b) throw std::logic_error("account: kept pair without a < b");
       if (owner[pair.a] == owner[pair.b] && !scene.objects[owner[pair.a]].self)
         throw std::logic_error("account: kept pair of one object that is not self");
+      if (ignored.has(owner[pair.a], owner[pair.b]))
+        throw std::logic_error("account: kept pair of objects that are ignored");
       if (i > 0 && !(pairs[i - 1] < pair)) {
         throw std::logic_error("account: kept pairs unsorted or repeated");
       }
@@ -325,8 +358,8 @@ class UnkeptPairs {
 }  // namespace
 
 bool Accounting::adds_up() const {
-  return pairs_total ==
-         pairs_kept + certified_by_boxes + neighbours + certified_by_predicates + false_negatives;
+  return pairs_total == ignored + pairs_kept + certified_by_boxes + neighbours +
+                            certified_by_predicates + false_negatives;
 }
 
 Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
@@ -344,13 +377,21 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
   }
   Accounting result;
   result.pairs_total = pairs_that_count(scene);
-  const Kept kept_pairs(scene, kept);
+  const std::vector<std::uint32_t> owner = owners_of(scene);
+  const Ignored ignored(scene, options.ignored);
+  result.ignored = ignored.triangle_pairs();
+  const Kept kept_pairs(scene, owner, ignored, kept);
 
   UnkeptPairs unkept(scene, options, steps, result);
   PairSet overlapping;
+  std::uint64_t ignored_overlapping = 0;
   const auto visit = [&](std::uint32_t s, std::uint32_t t) {
     const TrianglePair pair = {std::min(s, t), std::max(s, t)};
     overlapping.add(pair);
+    if (ignored.has(owner[s], owner[t])) {
+      ++ignored_overlapping;
+      return;
+    }
     if (kept_pairs.contains(pair)) {
       ++result.pairs_kept;
       return;
@@ -370,7 +411,9 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
   if (result.pairs_kept != kept.size()) {
     throw std::logic_error("account: the tree passed over a kept pair whose boxes overlap");
   }
-  result.certified_by_boxes = disjoint - kept_disjoint;
+  // The tree counts pairs of whole nodes, ignored ones among them.
+  const std::uint64_t ignored_disjoint = result.ignored - ignored_overlapping;
+  result.certified_by_boxes = disjoint - kept_disjoint - ignored_disjoint;
   if (!result.adds_up()) throw std::logic_error("account: the classes do not add up");
   if (const PairSet again = steps.overlapping(scene, clearance); again != overlapping) {
     throw std::logic_error("account: " + std::to_string(overlapping.count) +

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "core/scene/object_pair.h"
 #include "core/scene/scene.h"
 #include "verify/exact.h"
 #include "verify/pair_set.h"
@@ -23,6 +24,7 @@ namespace farcull {
 /// verify/exact.h.
 struct Accounting {
   std::uint64_t pairs_total = 0;         // by combinatorics from the sizes of the objects
+  std::uint64_t ignored = 0;             // of two objects that nobody asks about
   std::uint64_t pairs_kept = 0;          // among the kept, whatever its boxes
   std::uint64_t certified_by_boxes = 0;  // closed boxes farther than D apart along an axis, by
                                          // differences in double; for D = 0 by comparisons
@@ -38,17 +40,18 @@ struct Accounting {
 };
 
 struct AccountOptions {
-  double clearance = 0;           // world units, finite, >= 0
-  std::size_t max_examples = 10;  // missed pairs that are returned, at most
+  double clearance = 0;                  // world units, finite, >= 0
+  std::size_t max_examples = 10;         // missed pairs that are returned, at most
+  std::vector<ObjectPair> ignored = {};  // sorted, a < b; none of the kept pairs is of such two
 };
 
 /// kept: the pairs that culling left to the exact tests; sorted, each pair once, a < b, pairs of
-/// the scene that count. Breaking that is a programmer's mistake that would be miscounted in
-/// silence, hence std::logic_error; so is a scene whose ranges are not those of validate(), and a
-/// clearance that is negative or not finite. std::logic_error as well where the accounting itself
-/// fails: a pair is left undecided, the classes do not sum to pairs_total, or the pairs whose boxes
-/// overlap are not those that the certificate's own enumeration (verify/pair_set.h) finds. Memory
-/// O(triangles + kept).
+/// the scene that count and are not ignored. Breaking that is a programmer's mistake that would be
+/// miscounted in silence, hence std::logic_error; so is a scene whose ranges are not those of
+/// validate(), and a clearance that is negative or not finite. std::logic_error as well where the
+/// accounting itself fails: a pair is left undecided, the classes do not sum to pairs_total, or the
+/// pairs whose boxes overlap are not those that the certificate's own enumeration
+/// (verify/pair_set.h) finds. Memory O(triangles + kept).
 Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
                    const AccountOptions& options = {});
 

@@ -233,8 +233,6 @@ ContactShape contact_shape(const Corners& a, const Corners& b) {
   ContactShape out{.kind = kind_of(s, t, common), .dimension = dimension_of(common)};
   if (out.dimension == 0 || out.dimension == 1)
     out.ends = {rounded_point(common.front()), rounded_point(common.back())};
-  else
-    out.ends = {Vec3::Zero(), Vec3::Zero()};
   return out;
 }
 

@@ -44,10 +44,10 @@ std::optional<ContactKind> parse_contact_kind(std::string_view name);
 /// The kind, and the points in common. These are a convex set.
 struct ContactShape {
   ContactKind kind = ContactKind::apart;
-  int dimension = -1;          // of the common points: 0 a point, 1 a segment, 2 a polygon; -1 none
-  std::array<Vec3, 2> ends{};  // world units. Dimension 1: the ends of the segment, the
-                               // lexicographically lower one first, each coordinate rounded once to
-                               // the nearest double; 0: the point, twice; else zeros
+  int dimension = -1;  // of the common points: 0 a point, 1 a segment, 2 a polygon; -1 none
+  /// World units. Dimension 1: the ends of the segment, the lexicographically lower one first, each
+  /// coordinate rounded once to the nearest double; 0: the point, twice; else zeros.
+  std::array<Vec3, 2> ends = {Vec3::Zero(), Vec3::Zero()};
   bool operator==(const ContactShape&) const = default;
 };
 

@@ -236,6 +236,43 @@ Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
   return count_answers(candidates, answers_about(scene, candidates, question));
 }
 
+FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> candidates,
+                             std::uint64_t limit, const ExactQuestion& question) {
+  const FloatingPointGuard guard;
+  require_clearance("decide_first", question.clearance);
+  require_pairs(scene, candidates);
+  if (limit == 0) throw std::logic_error("decide_first: the limit is 0");
+  // As many candidates more each time: where few of them collide, threads have enough to do.
+  std::size_t step = kBlock * std::max(question.threads, 1u);
+  FirstCollisions out;
+  Collisions& all = out.collisions;
+  while (out.decided < candidates.size() && all.pairs.size() + all.neighbour_pairs.size() < limit) {
+    const std::span<const TrianglePair> part =
+        candidates.subspan(out.decided, std::min(step, candidates.size() - out.decided));
+    const Collisions found = count_answers(part, answers_about(scene, part, question));
+    all.pairs.insert(all.pairs.end(), found.pairs.begin(), found.pairs.end());
+    all.neighbour_pairs.insert(all.neighbour_pairs.end(), found.neighbour_pairs.begin(),
+                               found.neighbour_pairs.end());
+    all.neighbours += found.neighbours;
+    all.apart += found.apart;
+    all.neighbours_apart += found.neighbours_apart;
+    out.decided += part.size();
+    step *= 2;
+  }
+  keep_first(limit, all);
+  return out;
+}
+
+void keep_first(std::uint64_t limit, Collisions& collisions) {
+  std::vector<TrianglePair>& pairs = collisions.pairs;
+  std::vector<TrianglePair>& neighbours = collisions.neighbour_pairs;
+  while (pairs.size() + neighbours.size() > limit) {
+    const bool last_is_neighbour =
+        pairs.empty() || (!neighbours.empty() && pairs.back() < neighbours.back());
+    (last_is_neighbour ? neighbours : pairs).pop_back();
+  }
+}
+
 Collisions FrameDecider::decide(const Scene& scene, std::span<const TrianglePair> candidates,
                                 const ExactQuestion& question) {
   const FloatingPointGuard guard;

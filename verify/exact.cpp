@@ -26,6 +26,7 @@
 
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
+#include "core/scene/ignored.h"
 #include "verify/disjoint_distance.h"
 #include "verify/within.h"
 
@@ -256,13 +257,15 @@ std::uint64_t degenerate_triangles(const Scene& scene) {
   return count;
 }
 
-ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& question) {
+ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& question,
+                                std::span<const ObjectPair> ignored) {
   const FloatingPointGuard guard;
   require_clearance("all_colliding_pairs", question.clearance);
   constexpr std::size_t kChunk =
       1 << 18;  // pairs decided at a time: tens of millions of candidates are never stored
   ExactResult result;
   std::vector<TrianglePair> chunk;
+  const IgnoredObjects is_ignored(scene, ignored);
   const auto decide_chunk = [&] {
     const Stopwatch start;
     const Collisions found = decide(scene, chunk, question);
@@ -289,7 +292,10 @@ ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& questio
         farther_along_an_axis(boxes[a->triangle], boxes[b->triangle], question.clearance)) {
       return;
     }
-    chunk.push_back({std::min(a->triangle, b->triangle), std::max(a->triangle, b->triangle)});
+    const TrianglePair pair = {std::min(a->triangle, b->triangle),
+                               std::max(a->triangle, b->triangle)};
+    if (is_ignored(pair)) return;
+    chunk.push_back(pair);
     if (chunk.size() == kChunk) decide_chunk();
   });
   decide_chunk();

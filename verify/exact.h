@@ -28,6 +28,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/scene/object_pair.h"
 #include "core/scene/moved.h"
 #include "core/scene/scene.h"
 #include "verify/answers.h"
@@ -72,6 +73,21 @@ struct ExactQuestion {
 Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
                   const ExactQuestion& question = {});
 
+struct FirstCollisions {
+  Collisions collisions;      // the counts are of the candidates that were decided
+  std::uint64_t decided = 0;  // the first so many candidates; not all where the limit was reached
+};
+
+/// The first `limit` candidates that collide, neighbours among them. Decides a block of candidates
+/// after the other and stops when it has as many; the others stay undecided. Preconditions: the
+/// candidates are sorted, limit > 0. Throws as decide().
+FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> candidates,
+                             std::uint64_t limit, const ExactQuestion& question = {});
+
+/// Removes the last pairs, until `limit` are left, neighbours among them. Precondition: both lists
+/// are sorted. The counts stay.
+void keep_first(std::uint64_t limit, Collisions& collisions);
+
 /// decide() for one frame of a scene after the other. The answer about a pair depends on the
 /// corners of its triangles alone, so the answers about pairs of which neither triangle moved are
 /// those of the last frame.
@@ -115,6 +131,8 @@ struct ExactResult {
 /// software for box intersections, 2002) with cutoff 2000, then decide(). Where exactly two objects
 /// have triangles and neither is `self` the join is bipartite, else the join of all with all,
 /// filtered by owner. Memory O(triangles + colliding pairs): candidates are not kept.
-ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& question = {});
+/// ignored: pairs of objects, as in_order() gives them, that do not count.
+ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& question = {},
+                                std::span<const ObjectPair> ignored = {});
 
 }  // namespace farcull

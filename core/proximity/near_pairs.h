@@ -17,16 +17,10 @@
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/scene/object_pair.h"
 #include "core/scene/scene.h"
 
 namespace farcull {
-
-/// Two objects of a scene, a < b, or one twice: its own triangles, neighbours left out.
-struct ObjectPair {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
-  auto operator<=>(const ObjectPair&) const = default;
-};
 
 /// Two triangles, of objects.a and of objects.b, that are probably near, as the nearest ones of the
 /// frame before.
@@ -35,7 +29,7 @@ struct NearHint {
   TrianglePair triangles;
 };
 
-/// What can be nearest of two objects.
+/// What can be nearest of two objects, or of one twice: of its own triangles, neighbours left out.
 struct NearPairs {
   ObjectPair objects;
   /// Some pair of triangles of these objects is at most this far apart (world units); infinite

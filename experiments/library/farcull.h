@@ -38,6 +38,13 @@ enum class ColliderDevice {
          // report says which, and why
 };
 
+/// What is said of how the triangles of a pair meet.
+enum class ColliderContacts {
+  none,      // nothing, at no cost
+  kinds,     // ColliderContact::kind
+  segments,  // the points that they have in common as well
+};
+
 struct ColliderOptions {
   ColliderDevice device = ColliderDevice::cpu;
   unsigned threads = 0;  // up to 1024, for the exact tests as well; 0: as many as there are cores
@@ -45,6 +52,11 @@ struct ColliderOptions {
   std::vector<bool> self_objects = {};  // the same per object; empty, or one for each
   double clearance = 0;    // pairs at this distance or less collide too; world units, finite, >= 0
   bool neighbours = true;  // false: neighbours are counted, not decided
+  ColliderContacts contacts = ColliderContacts::none;
+  /// Pairs of different objects, by their numbers from 0, that are not tested against each other.
+  std::vector<std::array<std::uint32_t, 2>> ignore = {};
+  std::uint64_t limit = 0;  // only the first so many pairs, neighbours among them, in the order of
+                            // ColliderPair; 0: all
   std::string views = "auto";  // directions to look along, as in "x,-y,1:1:0.5"; or by the scene
   int resolution = 0;          // px along a view's larger side, 1 to 16384; 0: by the scene
 };
@@ -62,6 +74,31 @@ struct ColliderPair {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
   auto operator<=>(const ColliderPair&) const = default;
+};
+
+/// How two triangles A and B meet: the first that is true (docs/methods.md, "Kinds of contact").
+enum class ColliderContactKind {
+  apart,         // no point in common, and within the clearance
+  equal,         // the same set of points
+  touch_vertex,  // one point in common, which is a corner of A or of B
+  touch_edge,    // one point in common, which is on an edge of A and on an edge of B
+  coplanar,      // in one plane, and more than one point in common
+  crossing,      // a point in common that is on no edge of A and on no edge of B
+  touch_face,    // a segment in common that is on an edge of A or of B
+};
+
+/// "touch-vertex" and so on.
+const char* to_string(ColliderContactKind kind);
+
+struct ColliderContact {
+  ColliderContactKind kind = ColliderContactKind::apart;
+  /// With ColliderContacts::segments: of the points in common. 0 a point, 1 a segment, 2 a polygon;
+  /// -1 none, or not asked.
+  int dimension = -1;
+  /// Where the dimension is 1 the ends of the segment, the lexicographically lower one first; where
+  /// it is 0 the point, twice; else zeros. World units, each coordinate rounded once.
+  std::array<std::array<double, 3>, 2> ends{};
+  bool operator==(const ColliderContact&) const = default;
 };
 
 struct ColliderReport {
@@ -87,8 +124,11 @@ struct ColliderReport {
   std::string promises_reason;  // why, or why not
   double candidates_ms = 0;     // wall clock, from the input to the candidates
   double exact_ms = 0;          // wall clock of the exact tests
-  std::uint64_t candidates = 0;
-  std::uint64_t neighbours = 0;  // candidates that are neighbours, colliding or not
+  std::uint64_t candidates = 0;  // without those of ignored objects
+  std::uint64_t decided = 0;  // candidates that exact tests decided; fewer than `candidates` where
+                              // the limit was reached before
+  std::uint64_t neighbours = 0;  // of those decided, neighbours, colliding or not
+  double contacts_ms = 0;        // wall clock of the kinds of contact
   std::vector<View> views;
   std::vector<Stage> stages;
 
@@ -105,6 +145,12 @@ struct ColliderResult {
   /// than the shared positions and the edge between them. Sorted; empty without
   /// ColliderOptions::neighbours.
   std::vector<ColliderPair> neighbour_pairs;
+  std::vector<ColliderContact> contacts;            // one for each of `pairs`, and
+  std::vector<ColliderContact> neighbour_contacts;  // of `neighbour_pairs`; empty without
+                                                    // ColliderOptions::contacts
+  /// Whether all candidates were decided. If not, ColliderOptions::limit was reached first: there
+  /// may be more pairs behind the last one, and none that is missing before it.
+  bool complete = true;
   ColliderReport report;
 };
 
@@ -123,9 +169,10 @@ class Collider {
   Collider& operator=(Collider&&) noexcept;
 
   /// Throws ColliderError for input that is not as ColliderInput says, for self_objects of another
-  /// number, and for any fault of the device; std::bad_alloc without memory. The object can be used
-  /// again after each. The calling thread may round in any direction and flush subnormals: the call
-  /// sets its floating-point environment (rounding, flushing, traps) and restores it at the end.
+  /// number, for ignored objects that the input does not have, and for any fault of the device;
+  /// std::bad_alloc without memory. The object can be used again after each. The calling thread may
+  /// round in any direction and flush subnormals: the call sets its floating-point environment
+  /// (rounding, flushing, traps) and restores it at the end.
   ColliderResult find(const ColliderInput& input);
 
  private:

@@ -1,12 +1,14 @@
 // The collider: input is checked and copied into a scene, then planned, found and decided.
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
+#include "core/scene/ignored.h"
 #include "core/view/view.h"
 #include "experiments/library/farcull.h"
 #include "experiments/library/input.h"
@@ -53,6 +55,71 @@ RunOptions run_options(const ColliderOptions& options) {
   return out;
 }
 
+ContactDetail detail_of(ColliderContacts contacts) {
+  switch (contacts) {
+    case ColliderContacts::none:
+      return ContactDetail::none;
+    case ColliderContacts::kinds:
+      return ContactDetail::kinds;
+    case ColliderContacts::segments:
+      return ContactDetail::segments;
+  }
+  return ContactDetail::none;
+}
+
+ColliderContactKind given_out(ContactKind kind) {
+  switch (kind) {
+    case ContactKind::apart:
+      return ColliderContactKind::apart;
+    case ContactKind::equal:
+      return ColliderContactKind::equal;
+    case ContactKind::touch_vertex:
+      return ColliderContactKind::touch_vertex;
+    case ContactKind::touch_edge:
+      return ColliderContactKind::touch_edge;
+    case ContactKind::coplanar:
+      return ColliderContactKind::coplanar;
+    case ContactKind::crossing:
+      return ColliderContactKind::crossing;
+    case ContactKind::touch_face:
+      return ColliderContactKind::touch_face;
+  }
+  throw std::logic_error("library: a kind of contact that there is not");
+}
+
+ColliderContact given_out(const ContactShape& shape) {
+  const auto point = [](const Vec3& p) { return std::array{p.x(), p.y(), p.z()}; };
+  return {.kind = given_out(shape.kind),
+          .dimension = shape.dimension,
+          .ends = {point(shape.ends[0]), point(shape.ends[1])}};
+}
+
+std::vector<ColliderContact> given_out(const std::vector<ContactShape>& shapes) {
+  std::vector<ColliderContact> out;
+  out.reserve(shapes.size());
+  for (const ContactShape& shape : shapes) out.push_back(given_out(shape));
+  return out;
+}
+
+/// The ignored pairs of a scene with so many objects.
+std::vector<ObjectPair> ignored_of(const ColliderOptions& options, std::size_t objects) {
+  std::vector<ObjectPair> out;
+  for (const auto& [a, b] : options.ignore) {
+    const std::string text = "names objects " + std::to_string(a) + " and " + std::to_string(b);
+    if (std::max(a, b) >= objects) {
+      throw Error("ignore", text + " of " + std::to_string(objects) + ", numbered from 0",
+                  "give two objects of the input in each pair");
+    }
+    if (a == b) {
+      throw Error("ignore", text + ", which are one",
+                  "give two different objects; self_objects says which are tested against "
+                  "themselves");
+    }
+    out.push_back({a, b});
+  }
+  return in_order(std::move(out));
+}
+
 std::vector<ColliderPair> given_out(const std::vector<TrianglePair>& pairs) {
   std::vector<ColliderPair> out(pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) out[k] = {pairs[k].a, pairs[k].b};
@@ -60,6 +127,13 @@ std::vector<ColliderPair> given_out(const std::vector<TrianglePair>& pairs) {
 }
 
 }  // namespace
+
+const char* to_string(ColliderContactKind kind) {
+  for (const ContactKind own : kContactKinds) {
+    if (given_out(own) == kind) return name_of(own).data();  // of a literal, so it ends with a 0
+  }
+  throw std::logic_error("library: a kind of contact that there is not");
+}
 
 ColliderError::ColliderError(const std::string& what, std::string where, std::string reason,
                              std::string remedy)
@@ -117,6 +191,7 @@ ColliderResult Collider::State::find(const Stopwatch& start) {
   device();
   const unsigned threads =
       options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
+  run.ignored = ignored_of(options, scene.objects.size());
   const Plan planned = plan(scene, run, options.threads, {}, session.pair_memory());
   const Candidates found = farcull::find(scene, planned, session);
   ColliderResult out;
@@ -125,13 +200,28 @@ ColliderResult Collider::State::find(const Stopwatch& start) {
   report.candidates = found.count;
 
   const Stopwatch deciding;
-  const Collisions decided = session.frame_decider()->decide(
-      scene, found.pairs,
-      {.clearance = options.clearance, .threads = threads, .neighbours = options.neighbours});
+  const ExactQuestion question{
+      .clearance = options.clearance, .threads = threads, .neighbours = options.neighbours};
+  Collisions decided;
+  report.decided = found.pairs.size();
+  if (options.limit > 0) {
+    FirstCollisions first = decide_first(scene, found.pairs, options.limit, question);
+    decided = std::move(first.collisions);
+    report.decided = first.decided;
+  } else {
+    decided = session.frame_decider()->decide(scene, found.pairs, question);
+  }
+  out.complete = report.decided == found.pairs.size();
   out.pairs = given_out(decided.pairs);
   out.neighbour_pairs = given_out(decided.neighbour_pairs);
   report.neighbours = decided.neighbours;
   report.exact_ms = deciding.ms();
+
+  const Stopwatch contacts;
+  const ContactDetail detail = detail_of(options.contacts);
+  out.contacts = given_out(contacts_of(scene, decided.pairs, detail, threads));
+  out.neighbour_contacts = given_out(contacts_of(scene, decided.neighbour_pairs, detail, threads));
+  report.contacts_ms = contacts.ms();
 
   require_proved("arithmetic");  // the driver's code ran in this thread too
   const FloatingPoint callers = callers_floating_point();
@@ -143,7 +233,7 @@ ColliderResult Collider::State::find(const Stopwatch& start) {
                     .ran = true,
                     .reason = Reason::predicates,
                     .ms = report.exact_ms,
-                    .in = report.candidates,
+                    .in = report.decided,
                     .out = out.pairs.size() + out.neighbour_pairs.size(),
                     .unit = Unit::pairs});
   for (const Stage& s : stages)

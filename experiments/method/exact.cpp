@@ -17,7 +17,7 @@ Candidates find_exact(const Scene& scene, const Plan& plan, Session& session,
   ExactQuestion question{.clearance = plan.options.clearance,
                          .neighbours = plan.options.neighbours};
   if (session.threads() > 0) question.threads = session.threads();
-  ExactResult result = all_colliding_pairs(scene, question);
+  ExactResult result = all_colliding_pairs(scene, question, plan.options.ignored);
   Candidates out;
   out.device.note = "the method draws nothing";
   out.triangle_count = scene.triangles.size();

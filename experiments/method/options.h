@@ -8,6 +8,7 @@
 
 #include "core/cull/cull.h"
 #include "core/gl/canvas.h"
+#include "core/scene/object_pair.h"
 #include "experiments/method/method.h"
 
 namespace farcull {
@@ -36,6 +37,10 @@ int parse_repeat(const std::string& text);
 /// fastest (docs/bench.md).
 inline constexpr Method kDefaultMethod = Method::far_pairs;
 
+/// What a run says of how colliding triangles meet (verify/contact_kind.h). segments: with the
+/// points that they have in common.
+enum class ContactDetail : std::uint8_t { none, kinds, segments };
+
 struct RunOptions {
   Method method = kDefaultMethod;
   bool method_is_default = false;  // nobody named it, so the record says why it is this one
@@ -60,7 +65,11 @@ struct RunOptions {
   bool verify = true;
   bool neighbours = true;  // false: pairs of one object that share a vertex index are neither
                            // candidates of far and far-pairs nor decided
-  bool full = false;       // leave nothing out that the scene does not need (docs/methods.md)
+  std::vector<ObjectPair> ignored = {};  // objects that are not tested against each other; as
+                                         // in_order() gives them
+  std::uint64_t limit = 0;  // only the first so many colliding pairs, neighbours among them; 0: all
+  ContactDetail contacts = ContactDetail::none;
+  bool full = false;  // leave nothing out that the scene does not need (docs/methods.md)
   std::optional<std::uint64_t> seed = {};  // what the scene was drawn with; empty: it is not random
 };
 

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <thread>
 
 #include "core/base/stopwatch.h"
+#include "core/scene/ignored.h"
 #include "core/scene/members.h"
 
 namespace farcull {
@@ -27,6 +29,7 @@ void decide_stage(const Scene& scene, Session& session, const Progress& progress
     record.collisions = *std::move(record.found.decided);
     record.found.decided.reset();
     record.ms.exact = record.found.decided_ms;
+    record.decided = record.found.count;
     return;
   }
   if (!record.found.pairs.empty() || record.options.full) {
@@ -34,13 +37,21 @@ void decide_stage(const Scene& scene, Session& session, const Progress& progress
     const Stopwatch watch;
     const ExactQuestion question{.clearance = record.options.clearance,
                                  .neighbours = record.options.neighbours};
-    FrameDecider* frames = record.found.decided ? nullptr : session.frame_decider();
-    record.collisions = frames ? frames->decide(scene, record.found.pairs, question)
-                               : decide(scene, record.found, question);
+    FrameDecider* frames = session.frame_decider();
+    if (record.options.limit > 0) {
+      FirstCollisions first =
+          decide_first(scene, record.found.pairs, record.options.limit, question);
+      record.collisions = std::move(first.collisions);
+      record.decided = first.decided;
+    } else {
+      record.collisions = frames ? frames->decide(scene, record.found.pairs, question)
+                                 : decide(scene, record.found, question);
+      record.decided = record.found.pairs.size();
+    }
     stage.ran = true;
     stage.reason = Reason::predicates;
     stage.ms = record.ms.exact = watch.ms();
-    stage.in = record.found.pairs.size();
+    stage.in = record.decided;
     stage.out = record.collisions.pairs.size() + record.collisions.neighbour_pairs.size();
   }
   record.trace.push_back(stage);
@@ -55,7 +66,8 @@ void verify_stage(const Scene& scene, const Progress& progress, Record& record) 
         culls(record.options.method) ? std::vector<TrianglePair>() : pairs_left(record);
     record.verification = account(scene, decided.empty() ? record.found.pairs : decided,
                                   {.clearance = record.options.clearance,
-                                   .max_examples = std::numeric_limits<std::size_t>::max()});
+                                   .max_examples = std::numeric_limits<std::size_t>::max(),
+                                   .ignored = record.options.ignored});
     Accounting& accounting = *record.verification;
     if (record.options.clearance == 0) record.missed = count_contacts(scene, accounting.examples);
     accounting.examples.resize(std::min(accounting.examples.size(), kExamples));
@@ -68,12 +80,27 @@ void verify_stage(const Scene& scene, const Progress& progress, Record& record) 
   record.trace.push_back(stage);
 }
 
+void contact_stage(const Scene& scene, Session& session, const Progress& progress, Record& record) {
+  if (record.options.contacts == ContactDetail::none) return;
+  if (progress) progress("kinds of contact");
+  const Stopwatch watch;
+  const unsigned threads =
+      session.threads() > 0 ? session.threads() : std::thread::hardware_concurrency();
+  const ContactDetail asked = record.options.contacts;
+  record.contacts = contacts_of(scene, record.collisions.pairs, asked, threads);
+  record.neighbour_contacts = contacts_of(scene, record.collisions.neighbour_pairs, asked, threads);
+  record.ms.contacts = watch.ms();
+}
+
 }  // namespace
 
 Candidates find(const Scene& scene, const Plan& plan, Session& session, const Progress& progress) {
   const FloatingPointGuard guard;
   try {
-    return traits(plan.options.method).find(scene, plan, session, progress);
+    Candidates found = traits(plan.options.method).find(scene, plan, session, progress);
+    found.ignored = remove_ignored(scene, plan.options.ignored, found.pairs);
+    found.count -= found.ignored;
+    return found;
   } catch (...) {
     session.forget_device();
     throw;
@@ -94,6 +121,15 @@ Promise promise_of(const RunOptions& options, const UsedDevice& device, Session&
 
 Collisions decide(const Scene& scene, const Candidates& candidates, const ExactQuestion& question) {
   return candidates.decided ? *candidates.decided : decide(scene, candidates.pairs, question);
+}
+
+std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<TrianglePair>& pairs,
+                                      ContactDetail contacts, unsigned threads) {
+  if (contacts == ContactDetail::segments) return contact_shapes(scene, pairs, threads);
+  std::vector<ContactShape> out;
+  if (contacts == ContactDetail::none) return out;
+  for (const ContactKind kind : contact_kinds(scene, pairs, threads)) out.push_back({.kind = kind});
+  return out;
 }
 
 Record run(const Scene& scene, const RunOptions& options, Session& session,
@@ -122,6 +158,8 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   decide_stage(scene, session, progress, record);
   record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
   verify_stage(scene, progress, record);
+  if (options.limit > 0) keep_first(options.limit, record.collisions);  // of a method that decides
+  contact_stage(scene, session, progress, record);
   require_proved("arithmetic");  // a driver's code ran in this thread too
   record.used = floating_point();
   return record;

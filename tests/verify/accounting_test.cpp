@@ -23,6 +23,18 @@ namespace {
 using reference::Triangle;
 using Pairs = std::vector<TrianglePair>;
 
+/// Whether the objects of a pair are an ignored pair.
+bool is_ignored(const Scene& scene, const TrianglePair& pair,
+                const std::vector<ObjectPair>& ignored) {
+  const auto owner = [&](std::uint32_t triangle) {
+    std::uint32_t o = 0;
+    while (triangle - scene.objects[o].first_triangle >= scene.objects[o].triangle_count) ++o;
+    return o;
+  };
+  const ObjectPair objects{owner(pair.a), owner(pair.b)};
+  return std::find(ignored.begin(), ignored.end(), objects) != ignored.end();
+}
+
 /// Every class recounted over all pairs, by the reference.
 Accounting recount(const Scene& scene, const Pairs& kept, const AccountOptions& options) {
   Accounting result;
@@ -30,7 +42,9 @@ Accounting recount(const Scene& scene, const Pairs& kept, const AccountOptions& 
       scene,
       [&](const TrianglePair& pair, bool overlapping) {
         ++result.pairs_total;
-        if (std::binary_search(kept.begin(), kept.end(), pair)) {
+        if (is_ignored(scene, pair, options.ignored)) {
+          ++result.ignored;
+        } else if (std::binary_search(kept.begin(), kept.end(), pair)) {
           ++result.pairs_kept;
         } else if (!overlapping) {
           ++result.certified_by_boxes;
@@ -49,6 +63,7 @@ Accounting recount(const Scene& scene, const Pairs& kept, const AccountOptions& 
 
 void expect_equal(const Accounting& a, const Accounting& b) {
   EXPECT_EQ(a.pairs_total, b.pairs_total);
+  EXPECT_EQ(a.ignored, b.ignored);
   EXPECT_EQ(a.pairs_kept, b.pairs_kept);
   EXPECT_EQ(a.certified_by_boxes, b.certified_by_boxes);
   EXPECT_EQ(a.neighbours, b.neighbours);
@@ -99,6 +114,21 @@ TEST(Accounting, ADroppedHarmlessPairIsCertifiedByPredicates) {
   EXPECT_EQ(without.certified_by_predicates, 1u);
   EXPECT_EQ(with.pairs_kept, 2u);
   EXPECT_EQ(with.false_negatives + without.false_negatives, 0u);
+}
+
+TEST(Accounting, IgnoredObjectsAreAClassOfTheirOwn) {
+  const Accounting first = account(example(), {}, {.ignored = {{0, 1}}});
+  EXPECT_EQ(first.pairs_total, 8u);
+  EXPECT_EQ(first.ignored, 4u);
+  EXPECT_EQ(first.certified_by_boxes, 4u);
+  EXPECT_EQ(first.false_negatives, 0u);
+  EXPECT_TRUE(first.adds_up());
+  // The twin: what collides is missed where other objects are ignored.
+  EXPECT_EQ(account(example(), {}, {.ignored = {{0, 3}, {1, 3}}}).false_negatives, 1u);
+  EXPECT_THROW(account(example(), Pairs{{0, 2}}, {.ignored = {{0, 1}}}), std::logic_error);
+  EXPECT_THROW(account(example(), {}, {.ignored = {{1, 0}}}), std::logic_error);
+  EXPECT_THROW(account(example(), {}, {.ignored = {{0, 4}}}), std::logic_error);
+  EXPECT_THROW(account(example(), {}, {.ignored = {{0, 1}, {0, 1}}}), std::logic_error);
 }
 
 TEST(Accounting, AKeptPairIsKeptWhateverItsBoxes) {
@@ -208,13 +238,20 @@ RC_GTEST_PROP(AccountingProperty, EachClassAsRecountedOverAllPairs, ()) {
   std::mt19937 random(*rc::gen::arbitrary<unsigned>());
   const Scene scene = random_scene(random, object_count, extent, *rc::gen::inRange(1, 4));
   const unsigned keep_one_in = *rc::gen::inRange(1, 6);
-  Pairs kept;  // of all pairs, so that some have disjoint boxes
+  std::vector<ObjectPair> ignored;
+  for (std::uint32_t a = 0; a < scene.objects.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < scene.objects.size(); ++b) {
+      if (random() % 4 == 0) ignored.push_back({a, b});
+    }
+  }
+  Pairs kept;  // of all pairs that are not ignored, so that some have disjoint boxes
   reference::for_each_pair(scene, [&](const TrianglePair& pair, bool) {
-    if (random() % keep_one_in == 0) kept.push_back(pair);
+    if (random() % keep_one_in == 0 && !is_ignored(scene, pair, ignored)) kept.push_back(pair);
   });
   const AccountOptions options = {
       .clearance = *rc::gen::element(0.0, 0.0, 0.5, 0.57735026918962573, 1.0, 3.0),
-      .max_examples = *rc::gen::inRange<std::size_t>(0, 12)};
+      .max_examples = *rc::gen::inRange<std::size_t>(0, 12),
+      .ignored = ignored};
   expect_equal(account(scene, kept, options), recount(scene, kept, options));
   RC_ASSERT(!::testing::Test::HasFailure());
 }

@@ -1,0 +1,165 @@
+// What the library says of contacts, and what it leaves out when it is told to: ignored objects,
+// and pairs beyond a limit. Each is held against the answer without that option.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/base/random.h"
+#include "experiments/library/farcull.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/experiments/library/flat.h"
+#include "verify/contact_kind.h"
+
+namespace farcull {
+namespace {
+
+/// Two crossing triangles, one that stands on the first with a corner, one far away.
+const std::vector<double> kPoints = {0, 0, 0, 8, 0, 0, 0, 8, 0, 1,  1, -1, 1,  1, 1, 1,  3, 0,
+                                     4, 2, 0, 4, 2, 3, 5, 2, 3, 90, 0, 0,  91, 0, 0, 90, 1, 0};
+const std::vector<std::uint32_t> kTriangles = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+const std::vector<std::uint32_t> kStarts = {0, 1, 2, 3};
+const ColliderInput kFour = {kPoints, kTriangles, kStarts};
+
+/// Four objects of triangles between the points of a grid: many touch, are neighbours, lie in one
+/// plane, or are degenerate.
+Scene tangled(std::uint64_t seed) {
+  RandomNumbers random(seed);
+  Scene scene;
+  for (int i = 0; i < 64; ++i) scene.vertices.emplace_back(i % 4, i / 4 % 4, i / 16);
+  for (std::uint32_t o = 0; o < 4; ++o) scene.objects.push_back({"", 40 * o, 40, true});
+  for (int t = 0; t < 160; ++t) {
+    const auto corner = [&] { return static_cast<std::uint32_t>(random.below(64)); };
+    const std::uint32_t i = corner(), j = corner();
+    scene.triangles.push_back({i, j, corner()});
+    scene.source_face.push_back(0);
+  }
+  return scene;
+}
+
+/// All pairs of a result in order, neighbours among them.
+std::vector<ColliderPair> in_order(const ColliderResult& result) {
+  std::vector<ColliderPair> out;
+  std::merge(result.pairs.begin(), result.pairs.end(), result.neighbour_pairs.begin(),
+             result.neighbour_pairs.end(), std::back_inserter(out));
+  return out;
+}
+
+TEST(LibraryContacts, AreSaidOfEachPair) {
+  const ColliderResult silent = Collider().find(kFour);
+  EXPECT_TRUE(silent.contacts.empty());
+  const ColliderResult kinds = Collider({.contacts = ColliderContacts::kinds}).find(kFour);
+  ASSERT_EQ(kinds.pairs, (std::vector<ColliderPair>{{0, 1}, {0, 2}}));
+  EXPECT_EQ(kinds.pairs, silent.pairs);
+  EXPECT_EQ(kinds.contacts[0].kind, ColliderContactKind::crossing);
+  EXPECT_EQ(kinds.contacts[1].kind, ColliderContactKind::touch_vertex);
+  EXPECT_EQ(kinds.contacts[0].dimension, -1);
+  const ColliderResult all = Collider({.contacts = ColliderContacts::segments}).find(kFour);
+  EXPECT_EQ(all.contacts[0],
+            (ColliderContact{ColliderContactKind::crossing, 1, {{{1, 1, 0}, {1, 3, 0}}}}));
+  EXPECT_EQ(all.contacts[1],
+            (ColliderContact{ColliderContactKind::touch_vertex, 0, {{{4, 2, 0}, {4, 2, 0}}}}));
+}
+
+TEST(LibraryContacts, OfAClearanceAreApart) {
+  const ColliderOptions options{.clearance = 1000, .contacts = ColliderContacts::kinds};
+  const ColliderResult found = Collider(options).find(kFour);
+  ASSERT_EQ(found.pairs.size(), 6u);
+  EXPECT_EQ(found.contacts[0].kind, ColliderContactKind::crossing);
+  EXPECT_EQ(found.contacts[2].kind, ColliderContactKind::apart);
+}
+
+TEST(LibraryContacts, AreThoseOfTheTrianglesNeighboursToo) {
+  const Scene scene = tangled(1);
+  const ColliderOptions options{.self = true, .contacts = ColliderContacts::segments};
+  const ColliderResult found = Collider(options).find(Flat(scene).input());
+  ASSERT_EQ(found.contacts.size(), found.pairs.size());
+  ASSERT_EQ(found.neighbour_contacts.size(), found.neighbour_pairs.size());
+  EXPECT_FALSE(found.neighbour_pairs.empty());
+  const auto expect = [&](const std::vector<ColliderPair>& pairs,
+                          const std::vector<ColliderContact>& contacts) {
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const ContactShape shape =
+          contact_shape(scene.corners(pairs[k].a), scene.corners(pairs[k].b));
+      EXPECT_EQ(to_string(contacts[k].kind), name_of(shape.kind));
+      EXPECT_EQ(contacts[k].dimension, shape.dimension);
+      for (int end = 0; end < 2; ++end) {
+        for (int axis = 0; axis < 3; ++axis)
+          EXPECT_EQ(contacts[k].ends[end][axis], shape.ends[end][axis]);
+      }
+    }
+  };
+  expect(found.pairs, found.contacts);
+  expect(found.neighbour_pairs, found.neighbour_contacts);
+}
+
+/// The pairs whose objects are not these two.
+std::vector<ColliderPair> without(const Scene& scene, std::vector<ColliderPair> pairs,
+                                  const std::vector<std::array<std::uint32_t, 2>>& ignored) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  std::erase_if(pairs, [&](const ColliderPair& pair) {
+    return std::any_of(ignored.begin(), ignored.end(), [&](const auto& two) {
+      return std::minmax(owner[pair.a], owner[pair.b]) == std::minmax(two[0], two[1]);
+    });
+  });
+  return pairs;
+}
+
+TEST(LibraryIgnore, AnswersAsIfItWereFilteredAfterwards) {
+  const Scene scene = tangled(2);
+  const Flat flat(scene);
+  const ColliderResult all = Collider({.self = true}).find(flat.input());
+  const std::vector<std::array<std::uint32_t, 2>> ignored = {{3, 1}, {0, 1}, {1, 3}};
+  const ColliderResult found = Collider({.self = true, .ignore = ignored}).find(flat.input());
+  EXPECT_EQ(found.pairs, without(scene, all.pairs, ignored));
+  EXPECT_EQ(found.neighbour_pairs, all.neighbour_pairs);  // these are of one object
+  EXPECT_LT(found.report.candidates, all.report.candidates);
+  // The twin: one pair of objects less is noticed.
+  const ColliderResult fewer = Collider({.self = true, .ignore = {{0, 1}}}).find(flat.input());
+  EXPECT_NE(fewer.pairs, found.pairs);
+}
+
+TEST(LibraryLimit, GivesTheFirstPairsAndDecidesNoMoreThanItNeeds) {
+  for (const Scene& scene : {tangled(3), make_builtin_scene("two-tori")}) {
+    const std::string& name = scene.name;
+    const Flat flat(scene);
+    const ColliderResult all = Collider({.self = true}).find(flat.input());
+    EXPECT_TRUE(all.complete);
+    const std::vector<ColliderPair> merged = in_order(all);
+    ASSERT_GT(merged.size(), 20u);
+    for (const std::size_t limit :
+         {std::size_t{1}, std::size_t{17}, merged.size() - 1, merged.size(), merged.size() + 1}) {
+      const ColliderResult found =
+          Collider({.threads = 1, .self = true, .limit = limit}).find(flat.input());
+      const auto end = merged.begin() + static_cast<long>(std::min(limit, merged.size()));
+      EXPECT_EQ(in_order(found), std::vector<ColliderPair>(merged.begin(), end))
+          << name << " " << limit;
+      EXPECT_EQ(found.report.candidates, all.report.candidates);
+      EXPECT_LE(found.report.decided, found.report.candidates);
+      if (limit > merged.size()) {
+        EXPECT_TRUE(found.complete);
+      }
+      if (limit == 1) {
+        EXPECT_FALSE(found.complete) << name;
+        EXPECT_LT(found.report.decided, all.report.decided / 2);
+      }
+    }
+  }
+}
+
+TEST(LibraryIgnore, RefusesObjectsThatThereAreNot) {
+  const auto refused = [](const std::vector<std::array<std::uint32_t, 2>>& ignored) {
+    Collider collider({.ignore = ignored});
+    try {
+      collider.find(kFour);
+    } catch (const ColliderError& error) {
+      return error.where + ": " + error.reason;
+    }
+    return std::string("nothing was thrown");
+  };
+  EXPECT_EQ(refused({{0, 1}}), "nothing was thrown");
+  EXPECT_EQ(refused({{0, 4}}), "ignore: names objects 0 and 4 of 4, numbered from 0");
+  EXPECT_EQ(refused({{2, 2}}), "ignore: names objects 2 and 2, which are one");
+}
+
+}  // namespace
+}  // namespace farcull
