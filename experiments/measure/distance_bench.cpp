@@ -31,27 +31,7 @@ PeerDistances ask_ours(const Scene& scene, const PeerQuestion& question, unsigne
                                 .inside = false,
                                 .threads = threads};
   const Stopwatch watch;
-  const DistanceRecord record = distances(scene, options);
-  PeerDistances answer;
-  for (const Distance& distance : record.distances) {
-    const auto [a, b] = distance.objects;
-    answer.distances.push_back({a, b, distance.closest.distance});
-    if (nearest) answer.distances.push_back({b, a, distance.closest.distance});
-  }
-  std::sort(answer.distances.begin(), answer.distances.end(),
-            [](const PeerDistance& x, const PeerDistance& y) {
-              return std::tie(x.a, x.distance, x.b) < std::tie(y.a, y.distance, y.b);
-            });
-  if (nearest) {  // the pairs are those in which one is the nearest of the other
-    const auto same = [](const PeerDistance& x, const PeerDistance& y) { return x.a == y.a; };
-    answer.distances.erase(std::unique(answer.distances.begin(), answer.distances.end(), same),
-                           answer.distances.end());
-  } else {
-    std::sort(answer.distances.begin(), answer.distances.end(),
-              [](const PeerDistance& x, const PeerDistance& y) {
-                return std::tie(x.a, x.b) < std::tie(y.a, y.b);
-              });
-  }
+  PeerDistances answer{.distances = as_peer(distances(scene, options))};
   answer.query_ms = watch.ms();
   return answer;
 }
@@ -88,6 +68,32 @@ std::string task_name(const PeerQuestion& question) {
 }
 
 }  // namespace
+
+std::vector<PeerDistance> as_peer(const DistanceRecord& record) {
+  const bool nearest = record.options.pairs == DistancePairs::nearest;
+  std::vector<PeerDistance> out;
+  for (const Distance& distance : record.distances) {
+    const auto [a, b] = distance.objects;
+    out.push_back({a, b, distance.closest.distance});
+    if (nearest) out.push_back({b, a, distance.closest.distance});
+  }
+  std::sort(out.begin(), out.end(), [](const PeerDistance& x, const PeerDistance& y) {
+    return std::tie(x.a, x.distance, x.b) < std::tie(y.a, y.distance, y.b);
+  });
+  if (nearest) {  // the pairs are those in which one is the nearest of the other
+    const auto same = [](const PeerDistance& x, const PeerDistance& y) { return x.a == y.a; };
+    out.erase(std::unique(out.begin(), out.end(), same), out.end());
+  } else {
+    std::sort(out.begin(), out.end(), [](const PeerDistance& x, const PeerDistance& y) {
+      return std::tie(x.a, x.b) < std::tie(y.a, y.b);
+    });
+  }
+  return out;
+}
+
+DistancePeer farcull_distances() {
+  return {.name = kOurs, .library = "farcull", .missing = "", .run = ask_ours};
+}
 
 DistanceErrors errors_of(const std::vector<PeerDistance>& answer,
                          const std::vector<PeerDistance>& exact) {
@@ -131,8 +137,7 @@ DistanceBenchResult bench_distances(const Scene& given, const DistanceBenchOptio
   for (Object& object : scene.objects) object.self = false;
   if (options.repeat < 1) throw Error("--repeat", "is below 1", "give 1 or more");
   DistanceBenchResult result;
-  std::vector<DistancePeer> running = {
-      {.name = kOurs, .library = "farcull", .missing = "", .run = ask_ours}};
+  std::vector<DistancePeer> running = {farcull_distances()};
   for (DistancePeer& peer : chosen_peers(options.peers)) {
     std::string reason = peer.missing;
     if (reason.empty() && peer.refuses) reason = peer.refuses(scene);

@@ -16,6 +16,8 @@
 
 namespace farcull {
 
+struct DistanceRecord;
+
 struct DistanceBenchOptions {
   PeerQuestion question = {};
   std::string peers = "all";  // all, none, or names with commas
@@ -55,6 +57,11 @@ struct DistanceBenchResult {
 /// Error naming the option for peers that there are not, and for a repeat below 1.
 DistanceBenchResult bench_distances(const Scene& scene, const DistanceBenchOptions& options,
                                     const Progress& progress = {});
+
+/// `farcull distance` in the form of the peers: the first one of every bench.
+DistancePeer farcull_distances();
+/// The answers of a record of `objects`, or of `nearest` with k = 1, as a peer gives them.
+std::vector<PeerDistance> as_peer(const DistanceRecord& record);
 
 /// `answer` beside exact ones of the same question; both sorted.
 DistanceErrors errors_of(const std::vector<PeerDistance>& answer,

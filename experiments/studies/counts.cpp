@@ -169,6 +169,47 @@ NamedCounts named(const LibraryCounts& c) {
   return out;
 }
 
+NamedCounts named(const SetCounts& c) {
+  const NeighbourSizes& s = c.sizes;
+  return {{"with_nearest", s.objects},
+          {"missed", s.missed},
+          {"nearest_pairs", s.nearest_pairs},
+          {"missed_pairs", s.missed_pairs},
+          {"object_pairs", s.object_pairs},
+          {"triangle_pairs", s.triangle_pairs},
+          {"set_objects", s.set_objects},
+          {"median_objects", s.median_objects},
+          {"most_objects", s.most_objects},
+          {"set_triangles", s.set_triangles},
+          {"median_triangles", s.median_triangles},
+          {"most_triangles", s.most_triangles},
+          {"triangles", c.triangles},
+          {"objects", c.all_objects},
+          {"accounted", c.accounted},
+          {"promises", c.promises},
+          {"scene_hash", c.scene_hash}};
+}
+
+NamedCounts named(const DistanceCounts& c) {
+  const DistanceErrors& e = c.errors;
+  return {{"asked", c.asked},
+          {"answers", e.answers},
+          {"exact", e.exact},
+          {"lacking", e.lacking},
+          {"beyond", e.beyond_it},
+          {"other_zero", e.other_zero},
+          {"other_object", e.other_object},
+          {"largest_relative", e.largest_relative},
+          {"triangles", c.triangles},
+          {"objects", c.objects},
+          {"accounted", c.accounted},
+          // Distances that are not the nearest double, and distances of nothing that was asked for.
+          {"wrong", c.asked - e.exact + e.beyond_it},
+          {"promises", c.promises},
+          {"library", c.library},
+          {"scene_hash", c.scene_hash}};
+}
+
 }  // namespace
 
 NamedCounts named(const Counts& counts) {
@@ -194,8 +235,8 @@ bool breaks_promise(const Measurement& measurement) {
   const auto& counts = *measurement.counts;
   if (!counts.value("promises", false)) return false;
   // Of a contestant, silence breaks it as well.
-  for (const char* count : {"missed", "wrong", "violations", "refused", "unanswered", "not_asked",
-                            "crashed", "hung", "no_memory"}) {
+  for (const char* count : {"missed", "missed_pairs", "wrong", "violations", "refused",
+                            "unanswered", "not_asked", "crashed", "hung", "no_memory"}) {
     if (counts.value(count, std::uint64_t{0}) > 0) return true;
   }
   return false;

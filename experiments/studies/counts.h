@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "experiments/measure/distance_bench.h"
+#include "experiments/measure/neighbour_sets.h"
 #include "experiments/studies/json_object.h"
 
 namespace farcull {
@@ -148,9 +150,32 @@ struct LibraryCounts {
   std::string example_missed = {}, example_wrong = {}, example_death = {};
 };
 
+/// Counts of a NeighbourPoint.
+struct SetCounts {
+  NeighbourSizes sizes;
+  std::uint64_t triangles = 0, all_objects = 0;  // of the scene
+  /// All pairs of triangles of different objects: how many the accounting of the exact answers
+  /// decided (verify/distance_accounting.h).
+  std::uint64_t accounted = 0;
+  bool promises = false;  // to lose no nearest neighbour and no nearest pair of triangles
+  std::string scene_hash;
+};
+
+/// Counts of a DistancePoint: distances that are wrong in some way, of those asked for
+/// (measure/distance_bench.h).
+struct DistanceCounts {
+  DistanceErrors errors;
+  std::uint64_t asked = 0;  // distances that the question has
+  std::uint64_t triangles = 0, objects = 0;
+  std::uint64_t accounted = 0;  // as in SetCounts
+  bool promises = false;        // that every distance is the nearest double
+  std::string library = {};     // with its version
+  std::string scene_hash;
+};
+
 /// std::monostate: nothing was measured.
 using Counts = std::variant<std::monostate, RunCounts, PeerCounts, LemmaCounts, PlacementCounts,
-                            ClothCounts, SceneCounts, LibraryCounts>;
+                            ClothCounts, SceneCounts, LibraryCounts, SetCounts, DistanceCounts>;
 
 /// The names and values of counts, in the order in which a store holds them.
 using CountValue = std::variant<bool, std::uint64_t, double, std::string>;
@@ -187,8 +212,8 @@ struct Measurement {
 };
 Measurement stored(const PointResult& result);
 
-/// True where a promise was not kept: `promises` is true and `missed`, `wrong` or `violations`
-/// above 0, or a contestant had no answer to a question.
+/// True where a promise was not kept: `promises` is true and `missed`, `missed_pairs`, `wrong` or
+/// `violations` above 0, or a contestant had no answer to a question.
 bool breaks_promise(const Measurement& measurement);
 
 }  // namespace farcull

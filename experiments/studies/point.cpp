@@ -35,6 +35,9 @@ void add_scene(const ClothApart& scene, PointKey& key) {
   key.frame = scene.frame;
 }
 void add_scene(const PixelCorners&, PointKey& key) { key.scene = "pixel-corners"; }
+void add_scene(const ClusteredScene& scene, PointKey& key) {
+  key.scene = fmt::format("clusters:{}@seed{}", scene.ratio, scene.seed);
+}
 
 void add_scene(const PointScene& scene, PointKey& key) {
   std::visit([&](const auto& of) { add_scene(of, key); }, scene);
@@ -63,6 +66,22 @@ PointKey key_of(const PeerPoint& point) {
   PointKey key;
   add_scene(point.scene, key);
   key.method = point.peer;
+  return key;
+}
+
+PointKey key_of(const NeighbourPoint& point) {
+  PointKey key;
+  add_scene(point.scene, key);
+  key.method = to_string(point.method);
+  if (point.widening < 1) key.method += fmt::format(" --widening {}", point.widening);
+  key.resolution = point.resolution;
+  return key;
+}
+
+PointKey key_of(const DistancePoint& point) {
+  PointKey key;
+  add_scene(point.scene, key);
+  key.method = point.contestant + (point.task == DistanceTask::objects ? " objects" : " nearest");
   return key;
 }
 
@@ -146,7 +165,8 @@ std::string describe(const PointKey& key) {
   if (!key.radius.empty() && key.radius != "budget") add("radius " + key.radius);
   if (key.depth_format == "fixed24") add("24-bit depth");
   if (key.depth_mode == "fixed") add("fixed-function depth");
-  if (key.resolution > 0) add(fmt::format("{} px", key.resolution));
+  if (key.resolution > 0)
+    add(fmt::format("{} {}", key.resolution, key.method.starts_with("voronoi") ? "cells" : "px"));
   if (!key.views.empty()) add("views " + key.views);
   if (key.frame >= 0) add(fmt::format("frame {}", key.frame));
   if (key.seed > 0) add(fmt::format("seed {}", key.seed));

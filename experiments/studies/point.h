@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "experiments/measure/neighbour_sets.h"
+#include "experiments/measure/peers/distance_peers.h"
 #include "experiments/method/options.h"
 
 namespace farcull {
@@ -37,7 +39,14 @@ struct ClothApart {
 /// Segments that cross next to corners of pixels (pixel_corners() in point_scene.cpp).
 struct PixelCorners {};
 
-using PointScene = std::variant<NamedScene, MotionFrame, ChangedScene, ClothApart, PixelCorners>;
+/// Clusters of small objects in a large cube, drawn at random (clusters() in point_scene.cpp).
+struct ClusteredScene {
+  int ratio = 64;  // sides of a cluster along the side of the cube
+  std::uint64_t seed = 1;
+};
+
+using PointScene =
+    std::variant<NamedScene, MotionFrame, ChangedScene, ClothApart, PixelCorners, ClusteredScene>;
 
 /// A method of `farcull run`. What is empty is left to the method.
 struct RunPoint {
@@ -107,7 +116,25 @@ struct LibraryPoint {
   std::string suite_name = {};  // of that: the beginning of its sum
 };
 
-using Point = std::variant<RunPoint, PeerPoint, LemmaPoint, PlacementPoint, LibraryPoint>;
+/// What a method leaves as potential neighbours (measure/neighbour_sets.h).
+struct NeighbourPoint {
+  PointScene scene;
+  NeighbourMethod method = NeighbourMethod::trees;
+  int resolution = 0;   // cells; 0: the method has none
+  double widening = 1;  // of the reliable diagram; below 1 it promises nothing
+  int repeat = 1;       // runs
+};
+
+/// The distances of a scene, by farcull or by a library (measure/peers/distance_peers.h).
+struct DistancePoint {
+  PointScene scene;
+  std::string contestant;  // "farcull", or the name of a peer
+  DistanceTask task = DistanceTask::nearest;
+  int repeat = 1;
+};
+
+using Point = std::variant<RunPoint, PeerPoint, LemmaPoint, PlacementPoint, LibraryPoint,
+                           NeighbourPoint, DistancePoint>;
 
 /// The columns by which a store knows a point. What does not apply is empty, 0 or -1; no two points
 /// of a grid have the same key.
@@ -116,12 +143,14 @@ struct PointKey {
   std::string method = {};        // as --method with the options of its form ("cullide --rounds
                                   // 1"), perhaps with the mean size of triangles ("@4px"); a peer;
                                   // "lemma", "lemma-worst"; of placements "far", "far-snapped-8";
-                                  // a contestant
+                                  // a contestant, perhaps with what it is asked ("cgal-aabb
+                                  // nearest"); of potential neighbours "boxes", "trees",
+                                  // "voronoi", "voronoi-reliable"
   std::string offset = {};        // obb or exact
   std::string radius = {};        // as --radius
   std::string depth_format = {};  // float32 or fixed24
   std::string depth_mode = {};    // fragment or fixed
-  int resolution = 0;             // px
+  int resolution = 0;             // px; of "voronoi" and "voronoi-reliable" cells
   std::string views = {};
   long frame = -1;
   std::uint64_t seed = 0;

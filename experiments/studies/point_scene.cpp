@@ -48,6 +48,41 @@ Scene pixel_corners() {
   return scene.finish();
 }
 
+// Two hundred objects of one to four triangles in a cube of side 1: ten clusters of twenty objects,
+// each in a cube whose side is 1 / ratio, anywhere. Two objects of one triangle lie in opposite
+// corners of the large cube, so that a grid covers all of it.
+Scene clusters(const ClusteredScene& wanted) {
+  using shapes::Corners;
+  constexpr int kClusters = 10, kObjects = 20;
+  shapes::Random random(wanted.seed);
+  const double side = 1.0 / wanted.ratio;
+  const auto drawn = [&random](double from, double to) -> Vec3 {
+    return Vec3::Constant((from + to) / 2) + random.in_cube((to - from) / 2);
+  };
+  SceneBuilder scene("clusters", "clusters");
+  int objects = 0;
+  const auto add = [&](const std::vector<Corners>& triangles) {
+    scene.add(shapes::soup(triangles), fmt::format("object{}", objects++), Split::kNone, {});
+  };
+  for (int cluster = 0; cluster < kClusters; ++cluster) {
+    const Vec3 corner = drawn(0, 1 - side);
+    for (int object = 0; object < kObjects; ++object) {
+      // An object fills a part of the cluster, so that most do not meet.
+      const Vec3 at = corner + drawn(0, 0.9 * side);
+      std::vector<Corners> triangles(1 + random.below(4));
+      for (Corners& triangle : triangles) {
+        for (Vec3& p : triangle) p = at + drawn(0, 0.1 * side);
+      }
+      add(triangles);
+    }
+  }
+  for (const double at : {0.0, 1.0}) {
+    const double inside = at == 0 ? 0x1p-20 : 1 - 0x1p-20;
+    add({{Vec3::Constant(at), Vec3(inside, at, at), Vec3(at, inside, at)}});
+  }
+  return scene.finish();
+}
+
 Scene changed(const ChangedScene& scene) {
   const double by = std::strtod(fmt::format("1e{}", scene.power).c_str(), nullptr);
   const Scene plain = make_builtin_scene(scene.name);
@@ -80,6 +115,8 @@ const Scene& open_scene(const PointScene& scene, Lab& lab) {
     return lab.scene(fmt::format("{} frame {}", key.scene, key.frame),
                      [&] { return cloth_apart(*of); });
   }
+  if (const auto* of = std::get_if<ClusteredScene>(&scene))
+    return lab.scene(key.scene, [&] { return clusters(*of); });
   return lab.scene(key.scene, pixel_corners);
 }
 

@@ -35,8 +35,9 @@ struct Study {
   /// row of the point will hold as its count `library`. Empty: no library answers it, or the
   /// library is not here. Null: no point of this study asks a library.
   std::function<std::string(const Point&)> library = {};
-  /// It takes many hours or needs what most machines have not, so it is not among `all`. Its scenes
-  /// may take turns: what is measured after an hour is then of all of them.
+  /// It takes many hours, needs what most machines have not, or has a page of results of its own,
+  /// so it is not among `all`. Its scenes may take turns: what is measured after an hour is then of
+  /// all of them.
   bool campaign = false;
 };
 
@@ -64,5 +65,6 @@ Study scaling_study();
 Study cloth_study();
 Study culling_study();
 Study libraries_study();
+Study proximity_study();
 
 }  // namespace farcull

@@ -1,0 +1,224 @@
+// Sets of four methods in one form, their sizes for each object, and what they lack of the truth.
+#include "experiments/measure/neighbour_sets.h"
+
+#include <algorithm>
+#include <limits>
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/proximity/near_pairs.h"
+
+namespace farcull {
+namespace {
+
+// The squares of the least and of the largest distance of a point of one box and a point of the
+// other one, both rounded.
+struct SquaredRange {
+  double least = 0, largest = 0;
+};
+SquaredRange range_of(const Box& a, const Box& b) {
+  SquaredRange out;
+  for (int k = 0; k < 3; ++k) {
+    const double gap = std::max({a.lo[k] - b.hi[k], b.lo[k] - a.hi[k], 0.0});
+    const double reach = std::max(a.hi[k] - b.lo[k], b.hi[k] - a.lo[k]);
+    out.least += gap * gap;
+    out.largest += reach * reach;
+  }
+  return out;
+}
+
+// What is farther than this, as computed, is farther than the largest distance that was computed as
+// `largest`. Let u = 2^-53. A difference, a square and two sums round, and a square below 2^-1022
+// is off by 2^-1075: both squares are within the factors (1 - u)^5 and (1 + u)^5 of the exact ones,
+// and 2^-1072. 16 u cover both, and the rounding of this product. What overflows is infinite on
+// both sides, so it is kept.
+double limit_of(double largest) { return largest * (1 + 0x1p-49) + 0x1p-1000; }
+
+// An object may hold the nearest neighbour of another one if their boxes come as near as the box of
+// some object is as a whole. Of its triangles those may whose boxes do.
+NeighbourSets sets_of_boxes(const Scene& scene) {
+  const std::vector<Box> triangles = triangle_boxes(scene), boxes = object_boxes(scene, triangles);
+  const auto count = static_cast<std::uint32_t>(boxes.size());
+  std::vector<double> limit(count, -1);  // below 0: nothing is as near
+  for (std::uint32_t a = 0; a < count; ++a) {
+    for (std::uint32_t b = 0; b < count; ++b) {
+      if (a == b || boxes[a].is_empty() || boxes[b].is_empty()) continue;
+      const double found = limit_of(range_of(boxes[a], boxes[b]).largest);
+      limit[a] = limit[a] < 0 ? found : std::min(limit[a], found);
+    }
+  }
+  NeighbourSets out;
+  const auto near = [&](std::uint32_t object, const Box& box, double most) {
+    const Object& of = scene.objects[object];
+    const auto first = triangles.begin() + of.first_triangle;
+    return static_cast<std::uint64_t>(
+        std::count_if(first, first + of.triangle_count,
+                      [&](const Box& t) { return range_of(t, box).least <= most; }));
+  };
+  for (std::uint32_t a = 0; a < count; ++a) {
+    for (std::uint32_t b = a + 1; b < count; ++b) {
+      const double most = std::max(limit[a], limit[b]);
+      if (boxes[a].is_empty() || boxes[b].is_empty() ||
+          !(range_of(boxes[a], boxes[b]).least <= most))
+        continue;
+      out.objects.push_back({a, b});
+      out.left.push_back({near(a, boxes[b], most), near(b, boxes[a], most)});
+    }
+  }
+  return out;
+}
+
+NeighbourSets sets_of_trees(const Scene& scene, const NeighbourOptions& options,
+                            const Progress& progress) {
+  NeighbourSets out{.objects = {}, .has_pairs = true};
+  const ProximityTrees trees(scene, options.threads);
+  for (const NearPairs& near :
+       trees.nearest_objects(1, std::numeric_limits<double>::infinity(), progress)) {
+    if (near.pairs.empty()) continue;
+    out.objects.push_back(near.objects);
+    out.pairs.insert(out.pairs.end(), near.pairs.begin(), near.pairs.end());
+  }
+  std::sort(out.pairs.begin(), out.pairs.end());
+  return out;
+}
+
+NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& options,
+                              const Progress& progress) {
+  const VoronoiOptions voronoi{.resolution = options.resolution,
+                               .widening = options.widening,
+                               .threads = options.threads,
+                               .most_pairs = options.most_pairs};
+  NeighbourSets out;
+  try {
+    if (options.method == NeighbourMethod::voronoi) {
+      out.objects = voronoi_neighbours(scene, voronoi, progress).objects;
+      for (const auto& [a, b] : out.objects)
+        out.left.push_back({scene.objects[a].triangle_count, scene.objects[b].triangle_count});
+    } else {
+      ReliableNeighbours found = reliable_neighbours(scene, voronoi, progress);
+      out.has_pairs = true;
+      out.objects = std::move(found.objects);
+      out.pairs = std::move(found.triangles);
+    }
+  } catch (const Error& error) {
+    // Of options that are out of range the caller hears.
+    if (error.reason.find("too many pairs") == std::string::npos) throw;
+    return {.objects = {}, .left_out = error.reason};
+  } catch (const std::bad_alloc&) {
+    return {.objects = {}, .left_out = "the memory of this machine does not hold the diagram"};
+  }
+  return out;
+}
+
+// Adds to each object how many triangles of other objects its pairs name, each once. Triangles of
+// objects ascend with the objects, and a < b in each pair: those of later objects follow from the
+// pairs of one object after the other, those of earlier objects from the pairs of one triangle.
+void add_named(const Scene& scene, const std::vector<TrianglePair>& pairs,
+               std::vector<std::uint64_t>& named) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> last_object(scene.triangles.size(), kNobody);
+  std::vector<std::uint32_t> last_triangle(scene.objects.size(), kNobody);
+  for (const TrianglePair& pair : pairs) {
+    const std::uint32_t a = owner[pair.a], b = owner[pair.b];
+    if (std::exchange(last_object[pair.b], a) != a) ++named[a];
+    if (std::exchange(last_triangle[b], pair.a) != pair.a) ++named[b];
+  }
+}
+
+struct Sizes {
+  std::uint64_t sum = 0, median = 0, most = 0;
+};
+Sizes sizes_over(std::vector<std::uint64_t> values) {
+  Sizes out;
+  if (values.empty()) return out;
+  std::sort(values.begin(), values.end());
+  for (const std::uint64_t value : values) out.sum += value;
+  out.median = values[(values.size() - 1) / 2];
+  out.most = values.back();
+  return out;
+}
+
+bool holds(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b) {
+  return std::binary_search(sets.objects.begin(), sets.objects.end(),
+                            ObjectPair{std::min(a, b), std::max(a, b)});
+}
+
+}  // namespace
+
+std::string to_string(NeighbourMethod method) {
+  switch (method) {
+    case NeighbourMethod::boxes:
+      return "boxes";
+    case NeighbourMethod::trees:
+      return "trees";
+    case NeighbourMethod::voronoi:
+      return "voronoi";
+    case NeighbourMethod::voronoi_reliable:
+      return "voronoi-reliable";
+  }
+  throw std::logic_error("to_string: no method");
+}
+
+bool has_cells(NeighbourMethod method) {
+  return method == NeighbourMethod::voronoi || method == NeighbourMethod::voronoi_reliable;
+}
+
+NeighbourSets neighbour_sets(const Scene& scene, const NeighbourOptions& options,
+                             const Progress& progress) {
+  if (has_cells(options.method)) return sets_of_diagram(scene, options, progress);
+  if (options.method == NeighbourMethod::trees) return sets_of_trees(scene, options, progress);
+  return sets_of_boxes(scene);
+}
+
+NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,
+                        const std::vector<NearestObjects>& truth) {
+  if (!sets.left_out.empty() || truth.size() != scene.objects.size())
+    throw std::logic_error("sizes_of: no sets, or the truth of another scene");
+  NeighbourSizes out{.object_pairs = sets.objects.size(), .triangle_pairs = sets.pairs.size()};
+  std::vector<std::uint64_t> objects(truth.size()), triangles(truth.size());
+  for (std::size_t i = 0; i < sets.objects.size(); ++i) {
+    const auto [a, b] = sets.objects[i];
+    ++objects[a];
+    ++objects[b];
+    if (sets.has_pairs) continue;
+    const auto [of_a, of_b] = sets.left[i];
+    triangles[a] += of_b;
+    triangles[b] += of_a;
+    out.triangle_pairs += of_a * of_b;
+  }
+  if (sets.has_pairs) add_named(scene, sets.pairs, triangles);
+
+  std::vector<std::uint64_t> with_objects, with_triangles;
+  for (std::uint32_t object = 0; object < truth.size(); ++object) {
+    const NearestObjects& nearest = truth[object];
+    if (nearest.objects.empty()) continue;
+    ++out.objects;
+    with_objects.push_back(objects[object]);
+    with_triangles.push_back(triangles[object]);
+    bool found = false;
+    for (std::size_t i = 0; i < nearest.objects.size(); ++i) {
+      const bool has = holds(sets, object, nearest.objects[i]);
+      found |= has;
+      ++out.nearest_pairs;
+      out.missed_pairs +=
+          !(sets.has_pairs
+                ? std::binary_search(sets.pairs.begin(), sets.pairs.end(), nearest.triangles[i])
+                : has);
+    }
+    out.missed += !found;
+  }
+  const Sizes of_objects = sizes_over(std::move(with_objects));
+  const Sizes of_triangles = sizes_over(std::move(with_triangles));
+  out.set_objects = of_objects.sum;
+  out.median_objects = of_objects.median;
+  out.most_objects = of_objects.most;
+  out.set_triangles = of_triangles.sum;
+  out.median_triangles = of_triangles.median;
+  out.most_triangles = of_triangles.most;
+  return out;
+}
+
+}  // namespace farcull

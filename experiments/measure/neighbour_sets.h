@@ -1,0 +1,72 @@
+// Potential neighbour sets (PNS): for each object the objects and triangles that may hold its
+// nearest neighbour. Four methods leave such sets; their sizes are compared, and what they lose is
+// counted against exact answers.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/proximity/voronoi.h"
+#include "core/scene/scene.h"
+#include "experiments/measure/neighbours.h"
+
+namespace farcull {
+
+/// boxes: one box for each object (object_boxes()). trees: what `farcull distance --pairs nearest`
+/// hands to exact arithmetic (core/proximity/near_pairs.h). voronoi, voronoi_reliable: the discrete
+/// Voronoi diagram as published, and the form of it that loses nothing (core/proximity/voronoi.h).
+enum class NeighbourMethod : std::uint8_t { boxes, trees, voronoi, voronoi_reliable };
+std::string to_string(NeighbourMethod method);
+/// True of the two that have a resolution.
+bool has_cells(NeighbourMethod method);
+
+/// Pairs of triangles that the reliable form may keep here: 268 MB.
+constexpr std::uint64_t kMostNeighbourPairs = std::uint64_t{1} << 25;
+
+struct NeighbourOptions {
+  NeighbourMethod method = NeighbourMethod::trees;
+  int resolution = 64;   // of the diagrams, in cells along the longest side of the scene
+  double widening = 1;   // of the reliable form (VoronoiOptions)
+  unsigned threads = 0;  // 0: as many as there are cores; changes no answer
+  std::uint64_t most_pairs = kMostNeighbourPairs;  // VoronoiOptions::most_pairs
+};
+
+/// What a method leaves. Of the two forms below, one holds the triangles.
+struct NeighbourSets {
+  std::vector<ObjectPair> objects;  // sorted, each once: either may hold the other's nearest
+  /// trees, voronoi_reliable: the pairs of triangles that may be nearest, sorted, each once.
+  bool has_pairs = false;
+  std::vector<TrianglePair> pairs = {};
+  /// boxes, voronoi: of each pair of objects, how many triangles of a and of b are left.
+  std::vector<std::array<std::uint64_t, 2>> left = {};
+  /// Why there are no sets: the diagram would keep too many pairs, or memory ended. Empty: there
+  /// are.
+  std::string left_out = {};
+};
+
+/// The sets of a scene that satisfies validate(). Throws Error for options that are out of range.
+NeighbourSets neighbour_sets(const Scene& scene, const NeighbourOptions& options,
+                             const Progress& progress = {});
+
+/// Sizes of the sets, and what they lack.
+struct NeighbourSizes {
+  std::uint64_t objects = 0;         // that have a nearest neighbour
+  std::uint64_t missed = 0;          // of these, with none of the nearest ones in their sets
+  std::uint64_t nearest_pairs = 0;   // nearest pairs of triangles, each for each of its objects
+  std::uint64_t missed_pairs = 0;    // of these, not in the sets
+  std::uint64_t object_pairs = 0;    // pairs of objects that are left
+  std::uint64_t triangle_pairs = 0;  // pairs of triangles that are left
+  /// The set of an object: objects, and triangles of other objects. Over the objects with a nearest
+  /// neighbour the sum, the median (of an even number the lower one of the two) and the largest.
+  std::uint64_t set_objects = 0, median_objects = 0, most_objects = 0;
+  std::uint64_t set_triangles = 0, median_triangles = 0, most_triangles = 0;
+};
+/// truth: nearest_objects() of the scene. Sets without pairs of triangles lose a pair of triangles
+/// where they lose its objects. Precondition: there are sets.
+NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,
+                        const std::vector<NearestObjects>& truth);
+
+}  // namespace farcull
