@@ -20,7 +20,7 @@
 // the normal floats err by 2^-149 each, far less than uN |n| where |n| is at least kShortest.
 //
 // So voronoi_error() = 32 uN bounds both, with room for the roundings of a few sums of distances
-// (docs/voronoi.md, lemma V1).
+// (docs/voronoi.md, lemma V6).
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // The reliable form: each cell keeps the triangles that can hold an end of a shortest segment whose
-// middle lies in the cell (docs/voronoi.md, theorem V2). What is farther is culled by two rules. An
+// middle lies in the cell (docs/voronoi.md, theorem V9). What is farther is culled by two rules. An
 // end is about as near to the cell as any triangle is. And it is no farther than half the distance
 // that is looked for, of which every point of space gives an upper bound.
 #include <algorithm>

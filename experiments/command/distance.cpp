@@ -34,12 +34,14 @@ constexpr const char* kDistanceExamples =
     "  farcull distance cloth.obj --self --pairs all --within 0.001\n"
     "  farcull distance far-apart --verify\n"
     "  farcull distance far-apart --certificate d.json && farcull check d.json far-apart\n"
-    "  farcull distance 'cloth_%04d.obj' body.obj --frames 1:100 --csv frames.csv\n\n"
+    "  farcull distance 'cloth_%04d.obj' body.obj --frames 1:100 --csv frames.csv\n"
+    "  farcull distance crowd --neighbours published --resolution 128\n\n"
     "A distance is that of the surfaces; it is the root of an exact number, rounded once.\n"
     "The witness points are rounded too, coordinate by coordinate. 0: the objects meet.\n"
     "docs/proximity.md has the columns and the proof.\n\n"
     "Exit status 0: answered, also where objects meet. 1: --verify found a nearer pair than an\n"
-    "answer, or a wrong answer. 2: the input or an option is wrong.";
+    "answer, or a wrong answer; or --neighbours reliable lost a nearest object. 2: the input or an\n"
+    "option is wrong.";
 
 // The keys of a record that each frame has of its own; the others hold for all frames.
 constexpr const char* kOfFrame[] = {"pairs",  "nearest",      "counts",
@@ -183,6 +185,7 @@ CLI::App* DistanceCommand::add_to(CLI::App& app) {
   add("--certificate", outputs_.certificate, "FILE",
       "write evidence of each distance to this file, for\n"
       "farcull check; with --frames a number (%d or %04d) in it");
+  neighbours_.add_to(*command);
   add_footer(*command, kDistanceExamples);
   return command;
 }
@@ -213,15 +216,30 @@ DistanceOptions DistanceCommand::parse() const {
                   "leave it out, or use --pairs objects or nearest");
     out.inside = *signed_ == "yes";
   }
-  if (threads_) {
-    const std::optional<unsigned> threads = parse_number<unsigned>(*threads_);
-    if (!threads || *threads == 0 || *threads > kMostThreads)
-      throw Error("--threads", "'" + *threads_ + "' is no number of threads",
-                  fmt::format("give 1 to {}", kMostThreads));
-    out.threads = *threads;
-  }
+  out.threads = threads();
   out.verify = verify_;
   return out;
+}
+
+unsigned DistanceCommand::threads() const {
+  if (!threads_) return 0;
+  const std::optional<unsigned> threads = parse_number<unsigned>(*threads_);
+  if (!threads || *threads == 0 || *threads > kMostThreads)
+    throw Error("--threads", "'" + *threads_ + "' is no number of threads",
+                fmt::format("give 1 to {}", kMostThreads));
+  return *threads;
+}
+
+// With --neighbours no distances are answered.
+void DistanceCommand::require_no_distances() const {
+  for (const auto& [option, given] :
+       {std::pair("--pairs", pairs_.has_value()), std::pair("--k", k_.has_value()),
+        std::pair("--within", within_.has_value()), std::pair("--self", self_),
+        std::pair("--signed", signed_.has_value()), std::pair("--verify", verify_),
+        std::pair("--frames", frames_.has_value()),
+        std::pair("--certificate", outputs_.certificate.has_value())}) {
+    if (given) throw Error(option, "has no meaning with --neighbours", "leave one of the two out");
+  }
 }
 
 void DistanceCommand::require_question(const Scene& scene, const DistanceOptions& options) const {
@@ -238,6 +256,12 @@ void DistanceCommand::require_question(const Scene& scene, const DistanceOptions
 }
 
 int DistanceCommand::run() const {
+  if (neighbours_.asked()) {
+    require_no_distances();
+    const DiagramOptions options = neighbours_.parse(threads());
+    check_scene(scene_);
+    return run_neighbours(scene_, options, checked(outputs_, scene_files(scene_, {})));
+  }
   const DistanceOptions options = parse();
   check_scene(scene_);
   std::optional<FrameRange> range;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/command/distance_neighbours.h"
 #include "experiments/command/options.h"
 #include "experiments/method/distances.h"
 #include "experiments/scenes/frames.h"
@@ -14,12 +15,15 @@ namespace farcull {
 class DistanceCommand {
  public:
   CLI::App* add_to(CLI::App& app);
-  /// The exit status: 0 done, 1 the accounting found a nearer pair or a wrong answer. Throws Error
+  /// The exit status: 0 done, 1 the accounting found a nearer pair or a wrong answer, or
+  /// the reliable diagram lost a nearest object. Throws Error
   /// where the arguments are bad.
   int run() const;
 
  private:
   DistanceOptions parse() const;
+  unsigned threads() const;
+  void require_no_distances() const;
   void require_question(const Scene& scene, const DistanceOptions& options) const;
   int run_once(const DistanceOptions& options, const Outputs& outputs) const;
   int run_frames(const DistanceOptions& options, const Outputs& outputs, FrameRange range) const;
@@ -27,6 +31,7 @@ class DistanceCommand {
   std::vector<std::string> scene_;
   Text pairs_, k_, within_, signed_, threads_, frames_;
   bool self_ = false, verify_ = false;
+  NeighbourOptions neighbours_;
   Outputs outputs_;
 };
 

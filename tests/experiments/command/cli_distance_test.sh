@@ -43,6 +43,18 @@ bad 'no such file' 'none\.obj: ' distance small.obj none.obj --json old.json
 bad 'an output that is read' '--csv: ' distance "${two[@]}" --csv right.obj
 bad 'one file twice' '--csv: .*--json' distance "${two[@]}" --csv a.out --json a.out
 bad 'frames of what stands still' '--frames: nothing .*%d' distance "${two[@]}" --frames 3
+bad 'no such diagram' "--neighbours: 'some' is no choice; give published or reliable" distance "${two[@]}" \
+  --neighbours some
+for cells in 0 -1 1.5 '' x 16385 99999999999999999999; do
+  bad "cells '$cells'" '--resolution: ' distance "${two[@]}" --neighbours reliable --resolution "$cells"
+done
+bad 'cells of distances' '--resolution: has no meaning without --neighbours' distance "${two[@]}" --resolution 64
+for option in '--pairs nearest' '--k 2' '--within 1' --self '--signed no' --verify '--frames 3' '--certificate c.json'; do
+  # shellcheck disable=SC2086 # an option and its value
+  bad "a diagram and $option" "${option%% *}: has no meaning with --neighbours" distance "${two[@]}" \
+    --neighbours published $option
+done
+bad 'a diagram of one object' 'SCENE: only one object' distance small.obj --neighbours published
 ((cases += 1))
 launch distance random-soup --pairs all --within 100 # for longer than bad() lets it
 refused 'more pairs than are answered' 'within: has [0-9]+ pairs .*; give a smaller distance'
@@ -95,6 +107,14 @@ expect 'frames' frames.csv '^frame,object_a,'
 expect 'frames' frames.csv '^3,0,0,1,0,3,9/1,'
 expect 'frames' frames.json '^    "missed": 0$'
 good 'frames of a built-in scene' 0 distance two-spheres --frames 2 --signed no
+good 'a diagram' 0 distance small.obj right.obj large.obj --neighbours published
+expect 'a diagram' "$out" '^0 small +1 right +1 +'
+expect 'a diagram' "$out" '^nearest +[3-6] nearest objects of 3 objects; the diagram lost [0-9]+$'
+good 'a diagram that loses' 0 distance ground@tiny --neighbours published --csv lost.csv --json lost.json
+expect 'a diagram that loses' lost.csv '^object,nearest,nearest_objects,distance,'
+expect 'a diagram that loses' lost.json '^    "lost": [1-9]'
+good 'a reliable diagram' 0 distance crowd --neighbours reliable --resolution 32 --threads 1 --json -
+expect 'a reliable diagram' "$out" '^    "lost": 0,$'
 
 if ((failed > 0)); then
   echo "cli_distance_test: $failed of $cases cases failed"

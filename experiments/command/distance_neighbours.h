@@ -1,0 +1,30 @@
+// `farcull distance --neighbours`: potential neighbours by a discrete Voronoi diagram.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/command/options.h"
+#include "experiments/measure/potential_neighbours.h"
+
+namespace farcull {
+
+/// Options that go with --neighbours alone.
+class NeighbourOptions {
+ public:
+  void add_to(CLI::App& command);
+  /// Whether --neighbours was given. Throws Error where another of these was given without it.
+  bool asked() const;
+  /// threads: 0 for as many as there are cores. Throws Error naming the option that is bad.
+  DiagramOptions parse(unsigned threads) const;
+
+ private:
+  Text neighbours_, resolution_;
+};
+
+/// Writes the record of the scene to the outputs. The exit status: 0 done, 1 the reliable form lost
+/// a nearest object.
+int run_neighbours(const std::vector<std::string>& scene, const DiagramOptions& options,
+                   const Outputs& outputs);
+
+}  // namespace farcull
