@@ -31,6 +31,8 @@ farcull_packages=(
   zlib1g-dev
   # results, pictures, figures
   libsqlitecpp-dev libsqlite3-dev libpng-dev libfreetype-dev fonts-dejavu-core gnuplot-nox
+  # pages of pictures; the build works without
+  libjs-three
   # libraries that farcull bench compares with, and benchmarks of kernels; the build works without
   libfcl-dev libembree-dev libbullet-dev libode-dev libtbb-dev libbenchmark-dev
 )

@@ -106,7 +106,8 @@ Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
         std::tuple("--pairs", &outputs.pairs, "result.csv"),
         std::tuple("--certificate", &outputs.certificate, "result.json"),
         std::tuple("--csv", &outputs.csv, "result.csv"),
-        std::tuple("-o", &outputs.picture, "picture.png")}) {
+        std::tuple("-o", &outputs.picture, "picture.png"),
+        std::tuple("--html", &outputs.page, "page.html")}) {
     if (!*path) continue;
     // By its other name, standard output would be written at two places at once.
     if (**path == "/dev/stdout") *path = "-";

@@ -56,6 +56,7 @@ struct Outputs {
   Text certificate = {};
   Text csv = {};
   Text picture = {};  // -o
+  Text page = {};     // --html
 
   bool to_stdout() const;
 };

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 
 #include "core/base/error.h"
@@ -56,24 +57,38 @@ RunOptions parse_panel(const std::string& text, const RunOptions& usual) {
   return options;
 }
 
-// Where the picture goes, from a command that reads these files.
-std::string checked_output(const Text& output, const std::vector<NamedFile>& inputs) {
-  if (!output || output->empty())
+// The resolutions of a page's steps where none is named: from pixels that are large to the usual
+// ones.
+constexpr std::array<int, 5> kUsualSteps = {32, 64, 128, 256, 512};
+
+// Where the picture and the page go, from a command that reads these files.
+Outputs checked_outputs(const Text& picture, const Text& page,
+                        const std::vector<NamedFile>& inputs) {
+  if (!page && (!picture || picture->empty())) {
     throw Error("-o", "it does not say where the picture goes",
-                "give -o FILE.png, or -o - for standard output");
-  const std::string path = *checked({.picture = output}, inputs).picture;
-  if (path == "-" && is_terminal(stdout)) {
+                "give -o FILE.png, or -o - for standard output, or --html FILE for a page");
+  }
+  const Outputs out = checked({.picture = picture, .page = page}, inputs);
+  if (out.page == "-") {
+    throw Error("--html", "a page does not go to standard output", "give --html FILE.html");
+  }
+  if (out.picture == "-" && is_terminal(stdout)) {
     throw Error("-o", "standard output is a terminal, which shows no PNG",
                 "let it go somewhere, or give -o FILE.png");
   }
-  return path;
+  return out;
+}
+
+// "11.2 MB", as file managers count.
+std::string size_text(std::size_t bytes) {
+  return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6);
 }
 
 }  // namespace
 
 CLI::App* PictureCommand::add_to(CLI::App& app) {
   CLI::App* command =
-      add_command(app, "picture", "what a method finds and misses, as a picture (PNG)");
+      add_command(app, "picture", "what a method finds and misses, as a picture (PNG) or a page");
   add_options(*command);
   return command;
 }
@@ -106,6 +121,11 @@ void PictureCommand::add_options(CLI::App& app) {
                                        "instead: the depth that the method stores in one of\nits "
                                        "views (default z; --view-depth=-z for -z), and\n"
                                        "what that view culls");
+  add("--html", html_, "FILE",
+      "a page to look into the answers: one file that opens in\nany browser and needs no network");
+  add("--resolutions", resolutions_, "LIST",
+      "with --html: px, by commas, that the reader steps\nthrough, of methods without a resolution "
+      "of their own;\ndefault 32,64,128,256,512");
   add("--size", size_, "WxH", "px of a panel; default 900x760");
   add_footer(
       *command,
@@ -115,7 +135,8 @@ void PictureCommand::add_options(CLI::App& app) {
       "  farcull picture two-bunnies --compare cullide:128,cullide:512,far:128 --zoom -o c.png\n"
       "  farcull picture mannequin-devil --method s-cullide --self -o self.png\n"
       "  farcull picture two-tori --method far --resolution 64 --view-depth x -o depth.png\n"
-      "  farcull picture cloth --frame 100 --frames 101 --up z -o cloth.png\n\n"
+      "  farcull picture cloth --frame 100 --frames 101 --up z -o cloth.png\n"
+      "  farcull picture two-bunnies --compare cullide,far --html bunnies.html\n\n"
       "Exit status 1: a method that promises missed a pair; the picture shows it.");
 }
 
@@ -190,27 +211,83 @@ PictureArguments PictureCommand::arguments() const {
   return out;
 }
 
+PageArguments PictureCommand::page_arguments(const PictureArguments& picture) const {
+  if (picture.depth_view)
+    throw Error("--html", "a page shows no stored depth", "leave --view-depth out");
+  PageArguments out;
+  out.picture = picture;
+  std::vector<int> resolutions(kUsualSteps.begin(), kUsualSteps.end());
+  if (resolutions_) {
+    resolutions.clear();
+    for (const std::string& word : split_list(*resolutions_))
+      resolutions.push_back(parse_resolution(word, "--resolutions"));
+  }
+  bool used = false;
+  for (const RunOptions& panel : picture.panels) {
+    // far-pairs chooses its resolution by the scene.
+    const bool steps = draws(panel.method) && panel.resolution == 0;
+    used |= steps;
+    if (!steps) out.steps.push_back(panel);
+    for (std::size_t i = 0; steps && i < resolutions.size(); ++i) {
+      out.steps.push_back(panel);
+      out.steps.back().resolution = resolutions[i];
+    }
+  }
+  if (resolutions_ && !used) {
+    throw Error("--resolutions", "every method has a resolution of its own, or needs none",
+                "leave it out");
+  }
+  for (const RunOptions& options : out.steps) validate(options);
+  return out;
+}
+
 int PictureCommand::run() const {
   const PictureArguments arguments = this->arguments();
+  if (resolutions_ && !html_)
+    throw Error("--resolutions", "has a meaning for a page alone", "give --html FILE as well");
   check_scene(arguments.scene);
   std::optional<FrameRange> range = arguments.frames;
   if (arguments.frame && !range) range = FrameRange{*arguments.frame, *arguments.frame};
-  const std::string path = checked_output(output_, scene_files(arguments.scene, range));
+  const Outputs outputs = checked_outputs(output_, html_, scene_files(arguments.scene, range));
+  PageArguments page_arguments;
+  if (html_) {
+    require_three();
+    page_arguments = this->page_arguments(arguments);
+  }
   TerminalProgress terminal;
   Lab lab(arguments.panels.front().device, terminal.callback());
-  const PictureResult result = write_picture(arguments, lab, path);
+  const PictureResult result = make_picture(arguments, lab);
+  if (outputs.picture) write_output(*outputs.picture, to_png(result.image, result.texts));
+  PageResult page;
+  if (html_) {
+    page = make_page(page_arguments, result, lab);
+    write_output(*outputs.page, page.html);
+  }
   terminal.clear();
   int status = kExitDone;
   std::string lines;
-  for (const PanelResult& panel : result.panels) {
-    lines += panel.title + ": " + panel.headline + "\n";
-    if (!panel.broken) continue;
+  const auto tell = [&](const PanelResult& panel, const std::string& at) {
+    lines += panel.title + at + ": " + panel.headline + "\n";
+    if (!panel.broken) return;
     status = kExitBroken;
     complain_broken(
-        fmt::format("{} culled pairs that collide: {}", panel.title, grouped(panel.missed)));
+        fmt::format("{}{} culled pairs that collide: {}", panel.title, at, grouped(panel.missed)));
+  };
+  if (html_) {
+    for (const PageStep& step : page.steps)
+      tell(step.result, step.frame ? fmt::format(", frame {}", *step.frame) : "");
+  } else {
+    for (const PanelResult& panel : result.panels) tell(panel, "");
   }
-  if (path != "-")
-    write_output("-", lines + result.not_asked + "The picture is in " + clean_name(path) + "\n");
+  if (outputs.picture != "-") {
+    lines += result.not_asked;
+    if (outputs.picture) lines += "The picture is in " + clean_name(*outputs.picture) + "\n";
+    if (html_) {
+      lines += fmt::format("The page is in {} ({})\n", clean_name(*outputs.page),
+                           size_text(page.html.size()));
+    }
+    write_output("-", lines);
+  }
   return status;
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "experiments/command/options.h"
-#include "experiments/picture/picture.h"
+#include "experiments/picture/page.h"
 
 namespace farcull {
 
@@ -15,8 +15,10 @@ class PictureCommand {
   /// The exit status: 0 done, 1 a method that promises missed a pair (the picture is there then).
   /// Throws Error where the arguments are bad.
   int run() const;
-  /// The parsed options, checked; all but the path of the picture.
+  /// The parsed options, checked; all but the paths of the files.
   PictureArguments arguments() const;
+  /// What the page of --html shows, from the arguments of its flat picture.
+  PageArguments page_arguments(const PictureArguments& picture) const;
 
  private:
   void add_options(CLI::App& command);
@@ -25,7 +27,7 @@ class PictureCommand {
 
   std::vector<std::string> scene_;
   Text method_, compare_, resolution_, radius_, offset_, depth_, device_, frame_, frames_, view_,
-      up_, size_, output_;
+      up_, size_, output_, html_, resolutions_;
   std::vector<std::string> depth_view_;
   CLI::Option* depth_view_option_ = nullptr;
   bool self_ = false, zoom_ = false;

@@ -121,32 +121,39 @@ std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Wi
   return rings;
 }
 
-std::string panel_title(const RunOptions& options) {
+std::string method_title(const RunOptions& options) {
   std::string out = to_string(options.method);
-  if (fattens(options.method)) {
-    if (options.offset != "obb") out += ", " + options.offset + " offset";
-    const std::string radius = radius_text(options.radius);
-    if (radius == "published") out += ", published radius";
-    if (radius != "published" && radius != "budget") out += ", radius " + radius + " of the budget";
-    if (depth_of(options) == DepthMode::fixed) out += ", fixed depth";
-    if (out != to_string(options.method)) out += ",";
-  }
+  if (!fattens(options.method)) return out;
+  if (options.offset != "obb") out += ", " + options.offset + " offset";
+  const std::string radius = radius_text(options.radius);
+  if (radius == "published") out += ", published radius";
+  if (radius != "published" && radius != "budget") out += ", radius " + radius + " of the budget";
+  if (depth_of(options) == DepthMode::fixed) out += ", fixed depth";
+  return out;
+}
+
+std::string panel_title(const RunOptions& options) {
+  std::string out = method_title(options);
+  if (out != to_string(options.method)) out += ",";
   const int resolution = resolution_of(options);
   const bool has = looks(options.method);
   if (has && resolution > 0) out += fmt::format(" at {} px", resolution);
   return out;
 }
 
+std::string headline_of(const PanelResult& result, const std::string& verb) {
+  std::string out = fmt::format("{} {} of {}", verb, grouped(result.missed),
+                                counted(result.colliding, "colliding pair", "colliding pairs"));
+  if (result.neighbours > 0) {
+    out += fmt::format(" = {} + {} of neighbours", grouped(result.colliding - result.neighbours),
+                       grouped(result.neighbours));
+  }
+  return out;
+}
+
 void set_headline(DrawnPanel& panel, const std::string& verb) {
   const PanelResult& result = panel.result;
-  panel.result.headline =
-      fmt::format("{} {} of {}", verb, grouped(result.missed),
-                  counted(result.colliding, "colliding pair", "colliding pairs"));
-  if (result.neighbours > 0) {
-    panel.result.headline +=
-        fmt::format(" = {} + {} of neighbours", grouped(result.colliding - result.neighbours),
-                    grouped(result.neighbours));
-  }
+  panel.result.headline = headline_of(result, verb);
   panel.sheet.title = result.title;
   panel.sheet.headline = panel.result.headline;
   panel.sheet.headline_colour = result.missed > 0 ? kMissedColour : kGood;

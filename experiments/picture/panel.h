@@ -7,6 +7,7 @@
 
 #include "core/gl/picture.h"
 #include "experiments/method/run.h"
+#include "experiments/picture/colours.h"
 #include "experiments/picture/sheet.h"
 
 namespace farcull {
@@ -30,9 +31,6 @@ struct PanelResult {
   int left = 0, top = 0, width = 0, height = 0;  // of its picture in the image, px
 };
 
-/// The colour of missed pairs, with full opacity and unshaded, and of nothing else.
-constexpr Rgba kMissedColour = {220, 0, 90};
-
 /// A panel of the picture, and what it shows.
 struct DrawnPanel {
   SheetPanel sheet;
@@ -47,9 +45,13 @@ Image painted(const GlContext& context, const Scene& scene, const Window& window
 /// says how many rings.
 std::uint64_t draw_missed(const GlContext& context, const Scene& scene, const Window& window,
                           const std::vector<std::uint32_t>& missed, Image& image);
+/// "far, exact offset": what tells methods apart, without a resolution.
+std::string method_title(const RunOptions& options);
 /// "far, exact offset, at 128 px".
 std::string panel_title(const RunOptions& options);
-/// "missed 12 of 4,268 colliding pairs", and its colour.
+/// "missed 12 of 4,268 colliding pairs".
+std::string headline_of(const PanelResult& result, const std::string& verb);
+/// The same in the panel, and its colour.
 void set_headline(DrawnPanel& panel, const std::string& verb);
 
 }  // namespace farcull

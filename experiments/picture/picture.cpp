@@ -10,66 +10,20 @@
 
 #include "commit.h"
 #include "core/base/error.h"
+#include "experiments/picture/answer.h"
+#include "experiments/picture/colours.h"
 #include "experiments/picture/depth.h"
 #include "experiments/picture/lettering.h"
-#include "experiments/record/output.h"
 #include "experiments/record/tables.h"
-#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {
 
-constexpr Rgba kPaper = {255, 255, 255}, kFound = {0, 128, 116}, kIdle = {240, 176, 32};
-// Of the objects, in turn: pale, so that nothing but what collides has a strong colour.
-constexpr std::array<Rgba, 8> kObjects = {{{176, 190, 210},
-                                           {218, 214, 206},
-                                           {186, 203, 184},
-                                           {216, 204, 180},
-                                           {196, 190, 214},
-                                           {180, 206, 208},
-                                           {222, 190, 168},
-                                           {214, 192, 198}}};
-constexpr double kIdlePart = 0.6;    // of kIdle in what was kept for nothing
-constexpr double kThrough = 0.28;    // how strongly collisions shine through what hides them
+constexpr Rgba kPaper = {255, 255, 255};
 constexpr double kMargin = 0.04;     // around the scene, of the picture's size
 constexpr double kZoomMargin = 0.1;  // around what collides
-
-const Scene& open_scene(const PictureArguments& arguments, Lab& lab) {
-  if (arguments.scene.size() == 1 && !arguments.self && !arguments.frame)
-    return lab.scene(arguments.scene.front());
-  // No name of a scene holds a line feed.
-  std::string key = arguments.self ? "self\n" : "\n";
-  for (const std::string& part : arguments.scene) key += part + "\n";
-  if (arguments.frame) {
-    const FrameRange range = frames_of(arguments);
-    key += fmt::format("{} of {}:{}", *arguments.frame, range.first, range.last);
-  }
-  if (lab.progress()) lab.progress()("reading the scene");
-  return lab.scene(key, [&arguments] {
-    if (arguments.frame) {
-      FrameSource source(arguments.scene, frames_of(arguments), arguments.self);
-      return source.at(*arguments.frame);
-    }
-    Scene scene = load_scene(arguments.scene);
-    for (Object& object : scene.objects) object.self |= arguments.self;
-    return scene;
-  });
-}
-
-std::vector<TrianglePair> found_by(const Record& record) {
-  std::vector<TrianglePair> out;
-  std::set_union(record.collisions.pairs.begin(), record.collisions.pairs.end(),
-                 record.collisions.neighbour_pairs.begin(), record.collisions.neighbour_pairs.end(),
-                 std::back_inserter(out));
-  return out;
-}
-
-std::string device_of(const Record& record) {
-  if (record.found.device.gl) return record.found.device.gl->renderer;
-  return record.found.device.cpu ? "cpu" : "none";
-}
 
 enum : std::uint8_t { kRest, kKept, kCollides };
 
@@ -82,14 +36,14 @@ Image scene_image(const Scene& scene, const Window& window, const std::vector<st
   all.reserve(scene.triangles.size());
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const Object& object = scene.objects[o];
-    const Rgba plain = kObjects[o % kObjects.size()];
+    const Rgba plain = kObjectColours[o % kObjectColours.size()];
     Rgba idle = plain;
-    blend(idle, kIdle, kIdlePart);
+    blend(idle, kIdleColour, kIdlePart);
     for (std::uint32_t t = object.first_triangle; t < object.first_triangle + object.triangle_count;
          ++t) {
       const bool collides = kind[t] == kCollides;
       all.push_back({.triangle = t,
-                     .colour = collides           ? kFound
+                     .colour = collides           ? kFoundColour
                                : kind[t] == kKept ? idle
                                                   : plain,
                      .shaded = true,
@@ -102,7 +56,7 @@ Image scene_image(const Scene& scene, const Window& window, const std::vector<st
   std::vector<PictureTriangle> through;
   for (const std::uint32_t t : hit) {
     through.push_back({.triangle = t,
-                       .colour = kFound,
+                       .colour = kFoundColour,
                        .shaded = false,
                        .outline = static_cast<float>(0.5 * line)});
   }
@@ -112,13 +66,10 @@ Image scene_image(const Scene& scene, const Window& window, const std::vector<st
 
 DrawnPanel panel_of(const RunOptions& options, const Scene& scene, const Window& window,
                     const Truth& truth, Lab& lab, const GlContext& context) {
-  const Record record = run(scene, options, lab.session(), lab.progress());
-  const std::vector<TrianglePair> found = found_by(record);
-  std::vector<TrianglePair> missed;
-  std::set_difference(truth.pairs.begin(), truth.pairs.end(), found.begin(), found.end(),
-                      std::back_inserter(missed));
+  const MethodAnswer answer = answer_of(options, scene, lab);
+  const std::vector<TrianglePair>& missed = answer.missed;
   std::vector<std::uint8_t> kind(scene.triangles.size(), kRest);
-  for (const std::uint32_t t : record.found.triangles) kind[t] = kKept;
+  for (const std::uint32_t t : answer.kept) kind[t] = kKept;
   const std::vector<std::uint32_t> hit = members_of(truth.pairs);
   for (const std::uint32_t t : hit) kind[t] = kCollides;
 
@@ -128,11 +79,10 @@ DrawnPanel panel_of(const RunOptions& options, const Scene& scene, const Window&
   result.colliding = truth.pairs.size();
   result.neighbours = result.colliding - without_neighbours(scene, truth).pairs.size();
   result.missed = missed.size();
-  result.kept = record.found.triangles.size();
+  result.kept = answer.kept.size();
   result.idle = static_cast<std::uint64_t>(std::count(kind.begin(), kind.end(), kKept));
-  // As in run: whatever the probes of the device say.
-  result.broken = promises(record.options) && !missed.empty();
-  result.device = device_of(record);
+  result.broken = answer.broken;
+  result.device = answer.device;
 
   if (lab.progress()) lab.progress()("drawing " + result.title);
   Image& image = panel.sheet.image;
@@ -145,7 +95,7 @@ DrawnPanel panel_of(const RunOptions& options, const Scene& scene, const Window&
   const auto entry = [&](Rgba colour, const std::string& text) {
     panel.sheet.legend.push_back({.sign = LegendEntry::Sign::box, .colour = colour, .text = text});
   };
-  entry(kFound,
+  entry(kFoundColour,
         "collide and found: " + counted(truth.pairs.size() - missed.size(), "pair", "pairs"));
   if (!missed.empty()) {
     entry(kMissedColour, fmt::format("missed: {} of {}", counted(missed.size(), "pair", "pairs"),
@@ -157,8 +107,8 @@ DrawnPanel panel_of(const RunOptions& options, const Scene& scene, const Window&
                                   .text = "misses that are easily overlooked"});
   }
   if (culls(options.method)) {
-    Rgba idle = kObjects[0];
-    blend(idle, kIdle, kIdlePart);
+    Rgba idle = kObjectColours[0];
+    blend(idle, kIdleColour, kIdlePart);
     entry(idle, "kept, collide with nothing: " + counted(result.idle, "triangle", "triangles"));
   }
   return panel;

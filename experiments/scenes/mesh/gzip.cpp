@@ -94,4 +94,33 @@ std::string gunzip(std::string_view bytes, const std::string& name, const GzipLi
   return text;
 }
 
+std::string gzip(std::string_view bytes) {
+  constexpr int kGzip = 16 + MAX_WBITS, kUsualMemory = 8;
+  z_stream stream = {};
+  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, kGzip, kUsualMemory,
+                   Z_DEFAULT_STRATEGY) != Z_OK) {
+    throw std::bad_alloc();
+  }
+  std::string out;
+  std::array<char, 1 << 14> piece;
+  int code = Z_OK;
+  std::string_view rest = bytes;
+  while (code == Z_OK) {
+    if (stream.avail_in == 0 && !rest.empty()) {
+      // zlib's lengths are of 32 bits.
+      const std::size_t length = std::min<std::size_t>(rest.size(), 1u << 30);
+      stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(rest.data()));
+      stream.avail_in = static_cast<uInt>(length);
+      rest.remove_prefix(length);
+    }
+    stream.next_out = reinterpret_cast<Bytef*>(piece.data());
+    stream.avail_out = piece.size();
+    code = deflate(&stream, rest.empty() ? Z_FINISH : Z_NO_FLUSH);
+    out.append(piece.data(), piece.size() - stream.avail_out);
+  }
+  deflateEnd(&stream);
+  if (code != Z_STREAM_END) throw std::logic_error("gzip: zlib does not end");
+  return out;
+}
+
 }  // namespace farcull

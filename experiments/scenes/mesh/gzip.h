@@ -1,4 +1,4 @@
-// Meshes compressed by gzip (RFC 1952), by zlib.
+// Compression by gzip (RFC 1952), by zlib: meshes are read, the data of pages are written.
 #pragma once
 
 #include <cstdint>
@@ -23,5 +23,9 @@ struct GzipLimits {
 /// compared. Throws Error naming `name` where the data are cut, damaged, followed by something
 /// else, or beyond the limits; std::bad_alloc. Precondition: is_gzip(bytes).
 std::string gunzip(std::string_view bytes, const std::string& name, const GzipLimits& limits = {});
+
+/// The bytes as gzip data of one member. The same bytes give the same data with the same zlib: no
+/// time and no name are in them. Throws std::bad_alloc.
+std::string gzip(std::string_view bytes);
 
 }  // namespace farcull

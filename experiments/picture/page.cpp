@@ -1,0 +1,301 @@
+// Collects the triangles of each frame, the colliding pairs and the answers of each step, and puts
+// them into the page of web/ as compressed blocks and a text of JSON that names the blocks.
+#include "experiments/picture/page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "commit.h"
+#include "core/base/base64.h"
+#include "core/base/error.h"
+#include "embedded/page_css.h"
+#include "embedded/page_html.h"
+#include "embedded/page_js.h"
+#include "embedded/page_view_js.h"
+#include "experiments/picture/answer.h"
+#include "experiments/picture/colours.h"
+#include "experiments/picture/page_blocks.h"
+#include "experiments/picture/three.h"
+#include "experiments/record/tables.h"
+#include "experiments/system/text_table.h"
+#include "verify/contact.h"
+
+namespace farcull {
+namespace {
+
+using nlohmann::json;
+
+// Blocks of the page, each a script element that no browser runs.
+class Blocks {
+ public:
+  std::string add(const std::string& text) {
+    const std::string name = fmt::format("block-{}", count_++);
+    text_ += fmt::format("<script type=\"text/plain\" id=\"{}\">", name);
+    text_ += text;
+    text_ += "</script>\n";
+    return name;
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+  int count_ = 0;
+};
+
+json colour(const Rgba& c) { return {c.r, c.g, c.b}; }
+
+json vector(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+// JSON inside a script element: no text of it may look like the element's end.
+std::string for_script(const json& data) {
+  std::string out;
+  for (const char c : data.dump(-1, ' ', true, json::error_handler_t::replace))
+    out += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return out;
+}
+
+// Replaces the one place where the page has `mark`.
+void put(std::string& page, const std::string& mark, std::string_view text) {
+  const std::size_t at = page.find(mark);
+  if (at == std::string::npos) throw std::logic_error("page without " + mark);
+  page.replace(at, mark.size(), text);
+}
+
+Error too_large(const std::string& what, std::uint64_t count, std::uint64_t most) {
+  return Error("--html",
+               fmt::format("the scene has {} {}, and a page holds at most {}", grouped(count), what,
+                           grouped(most)),
+               "leave objects or frames out, or draw the flat picture alone, with -o");
+}
+
+void require_size(const Scene& scene, std::uint64_t triangles_of_all) {
+  if (scene.triangles.empty())
+    throw Error(scene.name, "it has no triangles to draw", "give a scene that has some");
+  if (scene.triangles.size() > kMostPageTriangles)
+    throw too_large("triangles", scene.triangles.size(), kMostPageTriangles);
+  if (triangles_of_all > kMostPageTrianglesOfFrames)
+    throw too_large("triangles in all frames", triangles_of_all, kMostPageTrianglesOfFrames);
+  if (scene.objects.size() > kMostPageObjects)
+    throw too_large("objects", scene.objects.size(), kMostPageObjects);
+}
+
+Box box_of(const Scene& scene) {
+  Box out = Box::empty();
+  for (const Box& box : triangle_boxes(scene)) out.add(box);
+  return out;
+}
+
+// Makes the page frame by frame.
+class PageMaker {
+ public:
+  PageMaker(const PageArguments& arguments, Lab& lab) : arguments_(arguments), lab_(lab) {
+    if (arguments.frames) {
+      source_.emplace(arguments.picture.scene, *arguments.frames, arguments.picture.self);
+    }
+  }
+
+  // Adds the triangles, the pairs and the answers of the next frame.
+  void add(std::optional<long> frame) {
+    const Scene& scene = open(frame);
+    triangles_ += scene.triangles.size();
+    require_size(scene, triangles_);
+    const std::vector<TrianglePair>& pairs = lab_.truth().pairs;
+    if (pairs.size() > kMostPagePairs)
+      throw too_large("colliding pairs", pairs.size(), kMostPagePairs);
+    json entry = geometry(scene);
+    entry["frame"] = frame ? json(*frame) : json();
+    std::vector<std::uint32_t> a, b;
+    std::string contacts;
+    for (const TrianglePair& pair : pairs) {
+      a.push_back(pair.a);
+      b.push_back(pair.b);
+      const Contact contact = contact_of(scene.corners(pair.a), scene.corners(pair.b));
+      contacts += contact == Contact::penetrating ? '\1' : '\0';
+    }
+    entry["pairs"] = pairs.size();
+    entry["a"] = blocks_.add(packed_numbers(a));
+    entry["b"] = blocks_.add(packed_numbers(b));
+    entry["contacts"] = blocks_.add(packed_bytes(contacts));
+    frames_.push_back(entry);
+    const std::vector<std::uint32_t> members = members_of(pairs);
+    const std::uint64_t neighbours =
+        pairs.size() - without_neighbours(scene, lab_.truth()).pairs.size();
+    for (const RunOptions& options : arguments_.steps) {
+      require_scene(scene, options.method);
+      step(scene, options, frame, pairs, members, neighbours);
+    }
+  }
+
+  PageResult finish(const PictureResult& flat) {
+    const View view = camera(arguments_.picture);
+    const Vec3 extent = 0.5 * box_.hi - 0.5 * box_.lo;
+    const double largest = extent.maxCoeff();
+    json objects = json::array();
+    for (const Rgba& c : kObjectColours) objects.push_back(colour(c));
+    const json about = {{"title", flat.scene},
+                        {"hash", flat.scene_hash},
+                        {"commit", FARCULL_COMMIT},
+                        {"command", command_of(arguments_.picture)},
+                        {"notAsked", flat.not_asked},
+                        {"lo", vector(box_.lo)},
+                        {"hi", vector(box_.hi)},
+                        {"ratio", vector(largest > 0 ? Vec3(extent / largest) : Vec3(1, 1, 1))},
+                        {"forward", vector(view.rows.row(2))},
+                        {"worldUp", vector(world_up())},
+                        {"zoom", arguments_.picture.zoom},
+                        {"contacts", {"touching", "penetrating"}},
+                        {"colours",
+                         {{"missed", colour(kMissedColour)},
+                          {"found", colour(kFoundColour)},
+                          {"idle", colour(kIdleColour)},
+                          {"idlePart", kIdlePart},
+                          {"through", kThrough},
+                          {"objects", objects}}},
+                        {"frames", frames_},
+                        {"steps", steps_}};
+    const ThreeJs three = three_js();
+    PageResult out;
+    out.steps = results_;
+    std::string& page = out.html;
+    page = embedded::page_html;
+    put(page, "/*STYLE*/", embedded::page_css);
+    put(page, "FLAT", "data:image/png;base64," + base64_of(to_png(flat.image, flat.texts)));
+    put(page, "<!--BLOCKS-->", blocks_.text());
+    put(page, "<!--LICENCE-->", three.licence);
+    put(page, "/*THREE*/", three.library);
+    put(page, "/*CONTROLS*/", three.controls);
+    put(page, "/*VIEW*/", embedded::page_view_js);
+    put(page, "/*PAGE*/", embedded::page_js);
+    put(page, "{/*ABOUT*/}", for_script(about));
+    return out;
+  }
+
+ private:
+  static std::string base64_of(const std::string& bytes) {
+    return to_base64({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  }
+
+  // The direction that stays upwards when the reader turns the scene.
+  Vec3 world_up() const {
+    const View view = camera(arguments_.picture);
+    const std::string& up = arguments_.picture.up;
+    const Vec3 given = parse_view(up.empty() ? "y" : up).rows.row(2);
+    // The default may be the direction of sight, and then camera() took another one.
+    return given.cross(Vec3(view.rows.row(2))).norm() < 1e-6 ? Vec3(view.rows.row(1)) : given;
+  }
+
+  const Scene& open(std::optional<long> frame) {
+    if (!source_) {
+      const Scene& scene = open_scene(arguments_.picture, lab_);
+      box_ = box_of(scene);
+      return scene;
+    }
+    if (frames_.empty()) measure(*arguments_.frames);
+    return lab_.scene(fmt::format("a frame of the page\n{}", *frame),
+                      [&] { return source_->at(*frame); });
+  }
+
+  // The box of all frames, in which coordinates are rounded alike. It reads the frames from a
+  // source of its own.
+  void measure(const FrameRange& range) {
+    FrameSource source(arguments_.picture.scene, range, arguments_.picture.self);
+    for (long frame = range.first; frame <= range.last; ++frame) box_.add(box_of(source.at(frame)));
+  }
+
+  // Corners and triangles; the latter only where they are not those of the frame before.
+  json geometry(const Scene& scene) {
+    json out = {{"vertices", scene.vertices.size()},
+                {"positions", blocks_.add(packed_numbers(quantized(scene.vertices, box_)))}};
+    json objects = json::array();
+    for (const Object& object : scene.objects)
+      objects.push_back({object.name, object.first_triangle, object.triangle_count});
+    if (objects != objects_ || scene.triangles != corners_) {
+      objects_ = objects;
+      corners_ = scene.triangles;
+      std::vector<std::uint32_t> flat;
+      for (const auto& triangle : scene.triangles)
+        flat.insert(flat.end(), triangle.begin(), triangle.end());
+      out["objects"] = objects;
+      out["triangles"] = scene.triangles.size();
+      out["corners"] = blocks_.add(packed_numbers(flat));
+    }
+    return out;
+  }
+
+  void step(const Scene& scene, const RunOptions& options, std::optional<long> frame,
+            const std::vector<TrianglePair>& pairs, const std::vector<std::uint32_t>& members,
+            std::uint64_t neighbours) {
+    const MethodAnswer answer = answer_of(options, scene, lab_);
+    PanelResult result;
+    result.title = panel_title(options);
+    result.colliding = pairs.size();
+    result.neighbours = neighbours;
+    result.missed = answer.missed.size();
+    result.missed_triangles = members_of(answer.missed).size();
+    result.kept = answer.kept.size();
+    std::vector<std::uint32_t> idle;
+    std::set_difference(answer.kept.begin(), answer.kept.end(), members.begin(), members.end(),
+                        std::back_inserter(idle));
+    result.idle = idle.size();
+    result.broken = answer.broken;
+    result.device = answer.device;
+    result.headline = headline_of(result, "missed");
+    json entry = {{"frame", frames_.size() - 1},
+                  {"method", method_title(options)},
+                  {"resolution", looks(options.method) ? resolution_of(options) : 0},
+                  {"title", result.title},
+                  {"headline", result.headline},
+                  {"missedPairs", result.missed},
+                  {"missedTriangles", result.missed_triangles},
+                  {"culls", culls(options.method)},
+                  {"idle", result.idle},
+                  {"device", result.device}};
+    if (!answer.missed.empty()) {
+      std::vector<std::uint32_t> lost;
+      for (const TrianglePair& pair : answer.missed) {
+        const auto at = std::lower_bound(pairs.begin(), pairs.end(), pair);
+        lost.push_back(static_cast<std::uint32_t>(at - pairs.begin()));
+      }
+      entry["missed"] = blocks_.add(packed_numbers(lost));
+    }
+    if (!idle.empty())
+      entry["kept"] = blocks_.add(packed_bytes(bits_of(idle, scene.triangles.size())));
+    steps_.push_back(entry);
+    results_.push_back({.result = result, .frame = frame});
+  }
+
+  const PageArguments& arguments_;
+  Lab& lab_;
+  std::optional<FrameSource> source_;
+  Box box_ = Box::empty();
+  Blocks blocks_;
+  json frames_ = json::array(), steps_ = json::array(), objects_;
+  std::vector<std::array<std::uint32_t, 3>> corners_;
+  std::vector<PageStep> results_;
+  std::uint64_t triangles_ = 0;
+};
+
+}  // namespace
+
+void require_three() {
+  if (!three_js().library.empty()) return;
+  throw Error("--html", "this farcull was built without three.js, which shows the page",
+              "install libjs-three (Debian) and build farcull again, or give -o alone");
+}
+
+PageResult make_page(const PageArguments& arguments, const PictureResult& flat, Lab& lab) {
+  require_three();
+  PageMaker maker(arguments, lab);
+  if (arguments.frames) {
+    for (long frame = arguments.frames->first; frame <= arguments.frames->last; ++frame)
+      maker.add(frame);
+  } else {
+    maker.add(arguments.picture.frame);
+  }
+  return maker.finish(flat);
+}
+
+}  // namespace farcull

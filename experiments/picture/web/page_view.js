@@ -1,0 +1,397 @@
+// Draws the scene of the page with three.js and WebGL 2. Every triangle has three corners of its
+// own, so that gl_VertexID / 3 is its number; two textures hold what may change: a byte of state for
+// each triangle, and a place for each object. Lengths are those of the scene's box, whose largest
+// extent is 2 and whose middle is the origin.
+
+const REST = 0, IDLE = 1, COLLIDES = 2, MISSED = 4, CHOSEN = 8, PARTNER = 16;
+const STATE_WIDTH = 2048, OBJECT_WIDTH = 256;
+
+const VERTEX_SHADER = `#version 300 es
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+uniform mat4 modelViewMatrix, projectionMatrix;
+uniform sampler2D states, places;
+uniform vec3 ratio;
+uniform vec3 palette[8];
+uniform vec3 found, missed, idle, chosen, partner;
+uniform float idlePart, explode, lift, pointSize, through;
+uniform int part;  // 0: all triangles, 1: collisions through what hides them, 2: missed, 3: chosen
+in vec4 position;  // 0 to 1 in the scene's box; w: object / 65535
+out vec3 placed, seen;
+flat out vec4 paint;
+flat out int shaded;
+flat out int number;
+void main() {
+  int object = int(position.w * 65535.0 + 0.5);
+  number = gl_VertexID / 3;
+  int state = int(texelFetch(states, ivec2(number % 2048, number / 2048), 0).r * 255.0 + 0.5);
+  vec4 place = texelFetch(places, ivec2(object % 256, object / 256), 0);
+  placed = position.xyz;
+  vec4 at = modelViewMatrix * vec4((2.0 * position.xyz - 1.0) * ratio + explode * place.xyz, 1.0);
+  seen = at.xyz;
+  if (part == 0 && (state & 2) != 0) at.z += lift;
+  gl_Position = place.w > 0.5 ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * at;
+  gl_PointSize = pointSize;
+  vec3 plain = palette[object % 8];
+  vec3 colour = (state & 2) != 0 ? found : (state & 1) != 0 ? mix(plain, idle, idlePart) : plain;
+  if (part == 2) colour = missed;
+  if (part == 3) colour = (state & 8) != 0 ? chosen : partner;
+  paint = vec4(colour, part == 1 ? through : 1.0);
+  shaded = part == 0 ? 1 : 0;
+}`;
+
+const FRAGMENT_SHADER = `#version 300 es
+precision highp float;
+precision highp int;
+uniform vec4 cut;  // what lies beyond this plane is cut off
+uniform int picking;
+in vec3 placed, seen;
+flat in vec4 paint;
+flat in int shaded;
+flat in int number;
+out vec4 colour;
+// Over the left shoulder of who looks, as in the flat picture.
+const vec3 kLight = vec3(-0.45, 0.60, 0.66);
+void main() {
+  if (dot(cut.xyz, placed) > cut.w) discard;
+  if (picking != 0) {
+    int id = number + 1;
+    colour = vec4(float(id & 255), float(id >> 8 & 255), float(id >> 16 & 255), 255.0) / 255.0;
+    return;
+  }
+  vec3 normal = cross(dFdx(seen), dFdy(seen));
+  float size = length(normal);
+  float light = 1.0;
+  if (shaded != 0 && size > 0.0)
+    light = 0.42 + 0.66 * abs(dot(normal, normalize(kLight))) / size;
+  colour = vec4(min(paint.rgb * light, 1.0), paint.a);
+}`;
+
+function shareOf(colour) {
+  return new THREE.Vector3(colour[0] / 255, colour[1] / 255, colour[2] / 255);
+}
+
+class SceneView {
+  // Throws where the browser has no WebGL 2.
+  constructor(canvas, about) {
+    const context = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false });
+    if (!context) throw new Error("This browser has no WebGL 2 here.");
+    this.canvas = canvas;
+    this.about = about;
+    this.renderer = new THREE.WebGLRenderer({ canvas, context, antialias: true, stencil: true, alpha: false });
+    this.scene = new THREE.Scene();
+    this.camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.01, 60);
+    this.camera.up.fromArray(about.worldUp);
+    const colours = about.colours;
+    this.uniforms = {
+      states: { value: null }, places: { value: null },
+      ratio: { value: new THREE.Vector3().fromArray(about.ratio) },
+      palette: { value: colours.objects.map(shareOf) },
+      found: { value: shareOf(colours.found) }, missed: { value: shareOf(colours.missed) },
+      idle: { value: shareOf(colours.idle) }, idlePart: { value: colours.idlePart },
+      chosen: { value: shareOf([31, 95, 255]) }, partner: { value: shareOf([140, 80, 255]) },
+      explode: { value: 0 }, lift: { value: 0 }, pointSize: { value: 3 },
+      through: { value: colours.through },
+      cut: { value: new THREE.Vector4(0, 0, 0, 1) }, picking: { value: 0 }
+    };
+    this.materials = [0, 1, 2, 3].map((part) => this.material(part));
+    this.target = new THREE.WebGLRenderTarget(1, 1,
+      { minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter, generateMipmaps: false });
+    this.drawn = [];
+    this.controls = new THREE.OrbitControls(this.camera, canvas);
+    this.controls.enableKeys = false;
+    this.controls.screenSpacePanning = true;
+    this.controls.rotateSpeed = 0.8;
+    this.controls.addEventListener("change", () => this.ask());
+    this.asked = false;
+    this.onDraw = () => {};
+    this.paper = new THREE.Color(0xffffff);
+  }
+
+  material(part) {
+    const uniforms = Object.assign({}, this.uniforms, { part: { value: part } });
+    const over = part > 0;
+    const material = new THREE.RawShaderMaterial({
+      vertexShader: VERTEX_SHADER, fragmentShader: FRAGMENT_SHADER, uniforms,
+      side: THREE.DoubleSide, transparent: over, depthTest: !over, depthWrite: !over
+    });
+    if (part === 1) {
+      // Once in a pixel, however many triangles lie behind one another.
+      material.stencilWrite = true;
+      material.stencilFunc = THREE.EqualStencilFunc;
+      material.stencilRef = 0;
+      material.stencilZPass = THREE.IncrementStencilOp;
+    }
+    return material;
+  }
+
+  // corners: three vertex numbers for each triangle; positions: all x, all y, all z, 0 to 65535;
+  // owner: the object of each triangle; objects: [name, first, count].
+  setFrame(corners, positions, owner, objects) {
+    const triangles = owner.length, vertices = positions.length / 3;
+    const same = this.points && this.points.count === 3 * triangles;
+    const array = same ? this.points.array : new Uint16Array(12 * triangles);
+    const box = objects.map(() => new THREE.Box3());
+    const at = new THREE.Vector3(), ratio = this.uniforms.ratio.value;
+    for (let i = 0; i < 3 * triangles; ++i) {
+      const v = corners[i], o = owner[(i / 3) | 0];
+      array[4 * i] = positions[v];
+      array[4 * i + 1] = positions[vertices + v];
+      array[4 * i + 2] = positions[2 * vertices + v];
+      array[4 * i + 3] = o;
+      at.set(array[4 * i], array[4 * i + 1], array[4 * i + 2]);
+      box[o].expandByPoint(at);
+    }
+    for (const b of box) {
+      for (const p of [b.min, b.max]) p.multiplyScalar(2 / 65535).subScalar(1).multiply(ratio);
+    }
+    this.boxes = box;
+    if (same) {
+      this.points.needsUpdate = true;
+    } else {
+      this.points = new THREE.BufferAttribute(array, 4, true);
+      const rows = Math.max(1, Math.ceil(triangles / STATE_WIDTH));
+      this.states = new THREE.DataTexture(new Uint8Array(rows * STATE_WIDTH), STATE_WIDTH, rows,
+        THREE.RedFormat, THREE.UnsignedByteType);
+      this.states.unpackAlignment = 1;
+      this.uniforms.states.value = this.states;
+    }
+    this.triangles = triangles;
+    this.setPlaces(objects);
+    this.setIndices();
+  }
+
+  // Where an exploded view moves each object: away from the middle of the scene, and those in the
+  // middle in directions of their own.
+  setPlaces(objects) {
+    const rows = Math.max(1, Math.ceil(objects.length / OBJECT_WIDTH));
+    const old = this.places && this.places.image.height === rows ? this.places.image.data : null;
+    const data = new Float32Array(4 * rows * OBJECT_WIDTH);
+    const middle = new THREE.Vector3();
+    for (let o = 0; o < objects.length; ++o) {
+      if (!this.boxes[o].isEmpty()) this.boxes[o].getCenter(middle);
+      if (middle.length() < 0.05 && objects.length > 1) {
+        const turn = 2.399963 * o, height = 1 - (2 * o + 1) / objects.length;
+        const radius = 0.7 * Math.sqrt(1 - height * height);
+        middle.set(radius * Math.cos(turn), 0.7 * height, radius * Math.sin(turn));
+      }
+      middle.multiplyScalar(1.6).toArray(data, 4 * o);
+      data[4 * o + 3] = old ? old[4 * o + 3] : 0;
+      middle.set(0, 0, 0);
+    }
+    if (this.places) this.places.dispose();
+    this.places = new THREE.DataTexture(data, OBJECT_WIDTH, rows, THREE.RGBAFormat, THREE.FloatType);
+    this.uniforms.places.value = this.places;
+    this.places.needsUpdate = true;
+  }
+
+  hide(object, hidden) {
+    this.places.image.data[4 * object + 3] = hidden ? 1 : 0;
+    this.places.needsUpdate = true;
+    this.ask();
+  }
+
+  // The state of every triangle, and what is drawn once more because of it.
+  setStates(states) {
+    this.states.image.data.set(states);
+    this.states.needsUpdate = true;
+    this.setIndices();
+    this.ask();
+  }
+
+  geometry(index) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", this.points);
+    if (index) geometry.setIndex(new THREE.BufferAttribute(index, 1));
+    return geometry;
+  }
+
+  // Corners of the triangles whose state has one of the bits; as edges, or as one point each.
+  indexOf(bits, kind) {
+    const data = this.states.image.data, out = [];
+    for (let t = 0; t < this.triangles; ++t) {
+      if ((data[t] & bits) === 0) continue;
+      const c = 3 * t;
+      if (kind === "faces") out.push(c, c + 1, c + 2);
+      if (kind === "edges") out.push(c, c + 1, c + 1, c + 2, c + 2, c);
+      if (kind === "points") out.push(c);
+    }
+    return new Uint32Array(out);
+  }
+
+  setIndices() {
+    for (const object of this.drawn) {
+      this.scene.remove(object);
+      object.geometry.dispose();
+    }
+    this.drawn = [];
+    const add = (object, order) => {
+      object.frustumCulled = false;
+      object.renderOrder = order;
+      this.drawn.push(object);
+      this.scene.add(object);
+    };
+    const some = (bits, part, kinds, order) => {
+      const faces = this.indexOf(bits, "faces");
+      if (faces.length === 0) return;
+      const make = { faces: THREE.Mesh, edges: THREE.LineSegments, points: THREE.Points };
+      for (const kind of kinds) {
+        const index = kind === "faces" ? faces : this.indexOf(bits, kind);
+        add(new make[kind](this.geometry(index), this.materials[part]), order++);
+      }
+    };
+    add(new THREE.Mesh(this.geometry(null), this.materials[0]), 0);
+    some(COLLIDES, 1, ["faces"], 1);
+    // An edge and a point, however small the triangle is, so that no miss goes unseen.
+    some(MISSED, 2, ["faces", "edges", "points"], 2);
+    some(PARTNER, 3, ["faces", "edges"], 5);
+    some(CHOSEN, 3, ["faces", "edges", "points"], 7);
+  }
+
+  // Looks from the direction `towards` (from the middle to the eye), so that all of the points fit.
+  fit(points, towards) {
+    this.controls.target.set(0, 0, 0);
+    this.camera.position.copy(towards).multiplyScalar(30);
+    this.camera.lookAt(0, 0, 0);
+    this.camera.updateMatrixWorld();
+    const inverse = new THREE.Matrix4().getInverse(this.camera.matrixWorld);
+    const box = new THREE.Box3();
+    for (const p of points) box.expandByPoint(p.clone().applyMatrix4(inverse));
+    const middle = box.getCenter(new THREE.Vector3()), size = box.getSize(new THREE.Vector3());
+    const right = new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0);
+    const up = new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
+    const move = right.multiplyScalar(middle.x).add(up.multiplyScalar(middle.y));
+    this.controls.target.copy(move);
+    this.camera.position.add(move);
+    const [width, height] = this.size();
+    const aspect = width / height;
+    this.camera.zoom = 0.92 * Math.min(2 * aspect / Math.max(size.x, 1e-6), 2 / Math.max(size.y, 1e-6));
+    this.resize();
+    this.controls.update();
+    this.ask();
+  }
+
+  cornersOfBoxes() {
+    const out = [];
+    for (const box of this.boxes) {
+      if (box.isEmpty()) continue;
+      for (let i = 0; i < 8; ++i) {
+        out.push(new THREE.Vector3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
+          i & 4 ? box.max.z : box.min.z));
+      }
+    }
+    return out;
+  }
+
+  // The place of a triangle's corner (0 to 2) as it is displayed.
+  corner(triangle, k) {
+    const a = this.points.array, i = 4 * (3 * triangle + k), ratio = this.uniforms.ratio.value;
+    const p = new THREE.Vector3(a[i], a[i + 1], a[i + 2]).multiplyScalar(2 / 65535).subScalar(1).multiply(ratio);
+    const place = new THREE.Vector3().fromArray(this.places.image.data, 4 * a[i + 3]);
+    return p.add(place.multiplyScalar(this.uniforms.explode.value));
+  }
+
+  middle(triangle) {
+    const p = this.corner(triangle, 0).add(this.corner(triangle, 1)).add(this.corner(triangle, 2));
+    return p.multiplyScalar(1 / 3);
+  }
+
+  // Where the triangle's middle is in the canvas, in CSS px.
+  project(triangle) {
+    const p = this.middle(triangle).project(this.camera);
+    const [width, height] = this.size();
+    return [0.5 * (1 + p.x) * width, 0.5 * (1 - p.y) * height];
+  }
+
+  // Moves the view, without turning it, so that the triangle is in the middle.
+  centre(triangle) {
+    const move = this.middle(triangle).sub(this.controls.target);
+    this.controls.target.add(move);
+    this.camera.position.add(move);
+    this.controls.update();
+    this.ask();
+  }
+
+  size() {
+    return [Math.max(1, this.canvas.clientWidth), Math.max(1, this.canvas.clientHeight)];
+  }
+
+  resize() {
+    const [width, height] = this.size();
+    const aspect = width / height;
+    this.renderer.setPixelRatio(window.devicePixelRatio || 1);
+    this.renderer.setSize(width, height, false);
+    this.camera.left = -aspect;
+    this.camera.right = aspect;
+    this.camera.updateProjectionMatrix();
+    this.uniforms.pointSize.value = 3 * (window.devicePixelRatio || 1);
+    this.ask();
+  }
+
+  // Turns the camera around the middle of the view, in radians.
+  turn(sideways, upwards) {
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const up = this.camera.up;
+    offset.applyAxisAngle(up, -sideways);
+    const right = new THREE.Vector3().crossVectors(up, offset).normalize();
+    const angle = offset.angleTo(up), next = Math.min(Math.PI - 0.01, Math.max(0.01, angle - upwards));
+    offset.applyAxisAngle(right, next - angle);
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+    this.ask();
+  }
+
+  // Moves the view by parts of its height.
+  move(right, up) {
+    const by = new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0)
+      .multiplyScalar(2 * right / this.camera.zoom);
+    by.add(new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1)
+      .multiplyScalar(2 * up / this.camera.zoom));
+    this.controls.target.add(by);
+    this.camera.position.add(by);
+    this.controls.update();
+    this.ask();
+  }
+
+  zoom(factor) {
+    this.camera.zoom *= factor;
+    this.camera.updateProjectionMatrix();
+    this.ask();
+  }
+
+  // Draws before the next refresh of the screen, once however often it is asked.
+  ask() {
+    if (this.asked) return;
+    this.asked = true;
+    requestAnimationFrame(() => this.draw());
+  }
+
+  draw() {
+    this.asked = false;
+    // Collisions lie on surfaces that they would flicker with: they are drawn 2 px nearer.
+    this.uniforms.lift.value = 4 / (this.size()[1] * this.camera.zoom);
+    this.renderer.setClearColor(this.paper, 1);
+    this.renderer.render(this.scene, this.camera);
+    this.onDraw();
+  }
+
+  // The triangle that is seen at (x, y) of the canvas, CSS px; -1 where none is.
+  pick(x, y) {
+    const [width, height] = this.size();
+    this.camera.setViewOffset(width, height, Math.floor(x), Math.floor(y), 1, 1);
+    this.uniforms.picking.value = 1;
+    this.materials[1].visible = this.materials[3].visible = false;
+    this.renderer.setRenderTarget(this.target);
+    this.renderer.setClearColor(0x000000, 0);
+    this.renderer.clear();
+    this.renderer.render(this.scene, this.camera);
+    const pixel = new Uint8Array(4);
+    this.renderer.readRenderTargetPixels(this.target, 0, 0, 1, 1, pixel);
+    this.renderer.setRenderTarget(null);
+    this.materials[1].visible = this.materials[3].visible = true;
+    this.uniforms.picking.value = 0;
+    this.camera.clearViewOffset();
+    return (pixel[0] | pixel[1] << 8 | pixel[2] << 16) - 1;
+  }
+}

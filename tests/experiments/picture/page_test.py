@@ -1,0 +1,381 @@
+# Drives the page of `farcull picture two-tori --compare cullide,far,exact` in a browser.
+#   page_test.py PAGE SAID PAIRS   SAID: what the command printed; PAIRS: all pairs as CSV
+import csv
+import os
+import re
+import sys
+import time
+
+from browser import Browser, Pixels
+
+MISSED, FOUND, PAPER, DARK = (220, 0, 90), (0, 128, 116), (255, 255, 255), (0x16, 0x18, 0x1c)
+READY = "document.documentElement && document.documentElement.dataset.ready !== undefined"
+# A headless browser draws its first frame in 2 s on two idle cores; a busy machine takes longer.
+SECONDS = 60
+failures = []
+
+
+def check(good, what):
+    if not good:
+        failures.append(what)
+        print("FAILED:", what, file=sys.stderr)
+
+
+def url(path):
+    return "file://" + os.path.abspath(path)
+
+
+def shown(b, path, fragment=""):
+    b.open(url(path) + fragment)
+    b.wait(READY, SECONDS)
+
+
+def drawn(b):
+    """After the next frame, and once no answer is being loaded."""
+    b.run("new Promise((done) => setTimeout(() => requestAnimationFrame(() => requestAnimationFrame(() => done(1))), 60))")
+
+
+def text(b, name):
+    return b.run(f"document.getElementById('{name}').textContent")
+
+
+def place_of_canvas(b):
+    return b.run("(() => { const r = document.getElementById('canvas').getBoundingClientRect();"
+                 "return [r.left, r.top, r.width, r.height]; })()")
+
+
+def pixels(b):
+    drawn(b)
+    return Pixels(b.screenshot())
+
+
+def missed_pixels(b):
+    left, top, width, height = place_of_canvas(b)
+    return pixels(b).count(MISSED, (left, top, width, height - 100))  # the legend is in the lowest part
+
+
+def is_lit(pixel, colour):
+    """Whether a pixel is `colour` times one factor of the light, 0.42 to 1.08. Each channel is rounded to a whole
+    number, twice where collisions shine through (once more by 1): so each factor lies in an interval."""
+    lo, hi = 0.42, 1.08
+    for value, full in zip(pixel, colour):
+        if full == 0:
+            if value > 1:
+                return False
+        else:
+            lo, hi = max(lo, (value - 1.5) / full), min(hi, (value + 1.5) / full)
+    return lo <= hi
+
+
+def set_value(b, name, value, event="input"):
+    b.run(f"(() => {{ const e = document.getElementById('{name}'); e.value = {value!r};"
+          f"e.dispatchEvent(new Event('{event}', {{ bubbles: true }})); }})()")
+
+
+def hash_of(b):
+    time.sleep(0.4)  # the page writes its address a quarter of a second after the last change
+    return b.run("location.hash")
+
+
+def check_steps(b, said):
+    """Method and resolution by their controls: headline and legend are what the command printed."""
+    seen = []
+    for method, steps in (("cullide", 3), ("far", 3), ("exact", 1)):
+        set_value(b, "method", method, "change")
+        drawn(b)
+        lost = []
+        for step in range(steps):
+            if steps > 1:
+                set_value(b, "resolution", step)
+            b.wait(f"document.getElementById('headline').textContent.startsWith('{method}')")
+            drawn(b)
+            seen.append(text(b, "headline"))
+            count = int(re.search(r"missed ([\d,]+) of", seen[-1])[1].replace(",", ""))
+            here = missed_pixels(b)
+            check((here > 0) == (count > 0), f"{seen[-1]}: {here} pixels of the colour of misses")
+            lost.append(count)
+            legend = text(b, "legend")
+            check(("missed:" in legend) == (count > 0), f"the legend says {legend}")
+        if method == "cullide":
+            check(lost[0] > lost[-1] > 0, f"cullide loses {lost}: the case shows nothing")
+        else:
+            check(set(lost) == {0}, f"{method} loses {lost}")
+    check(seen == [line for line in said if " missed " in line], f"headlines are {seen}")
+
+
+def partners(path):
+    """All partners of each triangle (object, triangle) in the CSV of --pairs."""
+    out = {}
+    with open(path, encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            a = (int(row["object_a"]), int(row["triangle_a"]))
+            b = (int(row["object_b"]), int(row["triangle_b"]))
+            out.setdefault(a, set()).add(b)
+            out.setdefault(b, set()).add(a)
+    return out
+
+
+def named(words):
+    """(object, triangle) of "triangle 1,234 of object 0, first"."""
+    found = re.search(r"[Tt]riangle ([\d,]+) of object (\d+)", words)
+    return (int(found[2]), int(found[1].replace(",", ""))) if found else None
+
+
+def check_click(b, pairs):
+    """A click chooses what is seen, and lists its pairs. Misses are in front of all else, so at 32 px each can be
+    clicked where it is."""
+    set_value(b, "method", "cullide", "change")
+    drawn(b)
+    set_value(b, "resolution", 0)
+    drawn(b)
+    b.run("document.getElementById('canvas').focus()")
+    tried = 0
+    for _ in range(4):
+        b.key("n")
+        drawn(b)
+        triangle = b.run("farcull.state.triangle")
+        b.run("farcull.view.camera.zoom = 40, farcull.view.zoom(1)")
+        wanted = named(text(b, "chosen"))
+        b.key("Escape")
+        drawn(b)
+        check("Click a triangle" in text(b, "chosen"), "Escape chooses no triangle")
+        left, top, *_ = place_of_canvas(b)
+        x, y = b.run(f"farcull.view.project({triangle})")
+        check(b.run(f"farcull.view.pick({x}, {y})") >= 0, "nothing is where a missed triangle is")
+        b.click(left + x, top + y)
+        drawn(b)
+        chosen = text(b, "chosen")
+        got = named(chosen)
+        check(got is not None, f"the click says {chosen}")
+        if got is None:
+            continue
+        listed = b.run("[...document.querySelectorAll('#chosen button')].map((e) => e.textContent)")
+        check({named(line) for line in listed} == pairs.get(got, set()), f"{got} has the pairs {listed}")
+        check(all(re.search(r": (penetrating|touching), (missed|found)$", line) for line in listed),
+              f"kinds of {listed}")
+        check(any(line.endswith("missed") for line in listed), f"a missed triangle without a miss: {listed}")
+        tried += got == wanted
+        # A button chooses the partner.
+        other = named(listed[0])
+        b.run("document.querySelector('#chosen button').click()")
+        drawn(b)
+        check(named(text(b, "chosen")) == other, f"the button of {other} chooses {text(b, 'chosen')}")
+        b.run(f"farcull.state.triangle = {triangle}")
+    check(tried > 0, "no click found the triangle that was aimed at")
+    b.key("Escape")
+    b.key("0")
+
+
+def check_colours(b):
+    """A triangle that collides and was found, seen from near: its colour, lit. Around it the paper."""
+    set_value(b, "method", "exact", "change")
+    drawn(b)
+    good = 0
+    left, top, width, height = place_of_canvas(b)
+    for triangle in b.run("[...farcull.frame.a].slice(0, 282)")[::20]:
+        b.run(f"choose({triangle}, true), choose(-1), farcull.view.camera.zoom = 60, farcull.view.zoom(1)")
+        drawn(b)
+        if b.run(f"farcull.view.pick({width / 2}, {height / 2})") != triangle:
+            continue  # something is in front of it
+        pixel = Pixels(b.screenshot()).at(left + width / 2, top + height / 2)
+        good += is_lit(pixel, FOUND)
+        check(is_lit(pixel, FOUND), f"triangle {triangle} has the colour {pixel}")
+    check(good > 0, "no colliding triangle was seen: the case shows nothing")
+    b.key("0")
+    image = pixels(b)
+    check(image.at(left + 3, top + 3) == PAPER, f"the paper is {image.at(left + 3, top + 3)}")
+
+
+def check_view(b):
+    """Orbit, pan, zoom, by mouse and keys; each changes the picture, and the reset brings it back."""
+    b.key("0")
+    drawn(b)
+    before = b.screenshot()
+    left, top, width, height = place_of_canvas(b)
+    x, y = left + width / 2, top + height / 2
+    acts = {
+        "a drag": lambda: b.drag(x, y, x + 120, y + 40),
+        "a drag with the right button": lambda: b.drag(x, y, x + 90, y + 30, "right"),
+        "the wheel": lambda: b.ask("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=-240),
+    }
+    for key in ("ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"):
+        acts[key] = lambda key=key: b.key(key)
+        acts["Shift " + key] = lambda key=key: b.key(key, shift=True)
+    for key in "+-exyz":
+        acts[key] = lambda key=key: b.key(key)
+    for name, act in acts.items():
+        b.run("document.getElementById('canvas').focus()")
+        act()
+        drawn(b)
+        time.sleep(0.1)
+        drawn(b)
+        check(b.screenshot() != before, f"{name} changes nothing")
+        if len(name) == 1 and name in "xyz":
+            b.key(name)
+        while name == "e" and b.run("farcull.state.explode > 0"):
+            b.key("e")
+        b.key("0")
+        drawn(b)
+        check(b.screenshot() == before, f"the view after {name} is not that of before")
+    check(b.run("document.activeElement.id") == "canvas", "the canvas lost the focus")
+
+
+def check_objects(b):
+    """Hiding, exploding and cutting by their controls."""
+    left, top, width, height = place_of_canvas(b)
+    before = pixels(b)
+    b.run("document.querySelector('#list input').click()")
+    after = pixels(b)
+    check(after.rows != before.rows and b.run("[...farcull.state.hidden]") == [0], "object 0 is not hidden")
+    picked = b.run("(() => { const out = new Set(); const f = farcull.frame;"
+                   f"for (let x = 5; x < {width}; x += 25) for (let y = 5; y < {height}; y += 25)"
+                   "{ const t = farcull.view.pick(x, y); if (t >= 0) out.add(f.owner[t]); } return [...out]; })()")
+    check(picked == [1], f"with object 0 hidden, objects {picked} are seen")
+    b.run("document.getElementById('show-all').click()")
+    check(pixels(b).rows == before.rows, "showing all does not bring object 0 back")
+    set_value(b, "explode", 60)
+    check(pixels(b).rows != before.rows, "the slider does not explode")
+    set_value(b, "explode", 0)
+    check(pixels(b).rows == before.rows, "the slider does not take the explosion back")
+    set_value(b, "axis", "x", "change")
+    cut = pixels(b)
+    b.run("document.getElementById('side').click()")
+    other = pixels(b)
+    check(cut.rows != before.rows and other.rows != cut.rows, "the cut and its side change nothing")
+    set_value(b, "cut", 200)
+    check(pixels(b).rows != other.rows, "the place of the cut changes nothing")
+    b.run("document.getElementById('side').click()")
+    set_value(b, "axis", "", "change")
+    check(pixels(b).rows == before.rows, "the cut is not taken back")
+
+
+def check_address(b, page):
+    """The address of a view shows the same view, and a senseless one does no harm."""
+    set_value(b, "method", "cullide", "change")
+    drawn(b)
+    set_value(b, "resolution", 1)
+    b.key("0")
+    b.run("farcull.view.turn(0.3, 0.2)")
+    set_value(b, "explode", 30)
+    set_value(b, "axis", "y", "change")
+    set_value(b, "cut", 700)
+    b.run("document.getElementById('canvas').focus()")
+    b.key("n")
+    fragment = hash_of(b)
+    for part in ("method=cullide", "px=256", "explode=0.3", "cut=y700", "triangle=", "eye=", "zoom="):
+        check(part in fragment, f"the address {fragment} lacks {part}")
+    chosen, headline = text(b, "chosen"), text(b, "headline")
+    shown(b, page, fragment)
+    drawn(b)
+    check((text(b, "chosen"), text(b, "headline")) == (chosen, headline), "the address shows another answer")
+    b.run("writeAddress()")
+    check(hash_of(b) == fragment, f"{fragment} becomes {hash_of(b)}")
+    shown(b, page, "#method=%3Cb%3E&px=-1&eye=a_b_c&middle=1_2&zoom=NaN&hide=9999.x&cut=q9&triangle=1e99&explode=7&frame=x")
+    check(text(b, "headline").startswith("cullide at 512 px"), "a senseless address shows " + text(b, "headline"))
+
+
+def check_looks(b, page):
+    """Dark by the system and by the button; print; three sizes."""
+    b.media(prefers_color_scheme="dark")
+    shown(b, page)
+    left, top, *_ = place_of_canvas(b)
+    check(pixels(b).at(left + 3, top + 3) == DARK, f"dark paper is {pixels(b).at(left + 3, top + 3)}")
+    b.run("document.getElementById('theme').click()")
+    check(pixels(b).at(left + 3, top + 3) == PAPER, "the button does not make it light")
+    b.media(prefers_color_scheme="light")
+    b.media("print")
+    seen = b.run("['canvas', 'controls', 'legend', 'flat'].map((id) => getComputedStyle(document.getElementById(id)).display)")
+    check(seen == ["none", "none", "none", "block"], f"printed: {seen}")
+    check(b.run("document.getElementById('flat').naturalWidth") > 1000, "the flat picture is not printed")
+    b.media("", prefers_color_scheme="light")
+    for width, height in ((360, 740), (1024, 768), (1920, 1080)):
+        for theme in ("light", "dark"):
+            b.size(width, height)
+            b.media(prefers_color_scheme=theme)
+            shown(b, page)
+            over = b.run("document.documentElement.scrollWidth - innerWidth")
+            check(over <= 0, f"at {width} px the page is {over} px too wide")
+            check(b.run("document.getElementById('canvas').clientHeight") > 300, f"at {width} px the scene is small")
+            if os.environ.get("FARCULL_PAGE_SHOTS"):
+                drawn(b)
+                with open(f"{os.environ['FARCULL_PAGE_SHOTS']}/{width}-{theme}.png", "wb") as file:
+                    file.write(b.screenshot())
+    b.media(prefers_color_scheme="light")
+    b.size(1024, 768)
+
+
+def check_dialogs(b):
+    for button, dialog, word in (("help", "keys", "turn"), ("licence-button", "licence", "Permission is hereby granted")):
+        b.run(f"document.getElementById('{button}').click()")
+        check(b.run(f"document.getElementById('{dialog}').open") and word in text(b, dialog), f"{dialog} does not open")
+        b.run(f"document.getElementById('{dialog}').close()")
+
+
+def spoiled(page, old, new):
+    with open(page, encoding="utf-8") as file:
+        whole = file.read()
+    assert whole.count(old) >= 1, old
+    with open("spoiled.html", "w", encoding="utf-8") as file:
+        file.write(whole.replace(old, new, 1))
+    return "spoiled.html"
+
+
+def check_twins(page, pairs):
+    """Faults that the checks have to catch: each must leave a problem or a failure."""
+    global failures
+
+    def caught(what, act):
+        global failures
+        kept, failures = failures, []
+        stderr, sys.stderr = sys.stderr, open(os.devnull, "w", encoding="utf-8")
+        with Browser() as b:
+            try:
+                act(b)
+            except (RuntimeError, TimeoutError, AttributeError) as error:
+                failures.append(str(error))
+            found = failures + b.problems
+        sys.stderr.close()
+        sys.stderr, failures = stderr, kept
+        check(found, f"{what} is not caught")
+
+    def looks(path):
+        return lambda b: (b.open(url(path)), b.wait(READY, 10))
+
+    caught("a line on the console", looks(spoiled(page, "\nstart();", "\nconsole.log('made up');start();")))
+    caught("a request", looks(spoiled(page, "\nstart();", "\nfetch('https://example.org/').catch(() => {});start();")))
+    caught("an exception", looks(spoiled(page, "\nstart();", "\nstart();nothing_of_this_name();")))
+    caught("a block that is cut", looks(spoiled(page, 'id="block-0">', 'id="block-0">AAAA')))
+    path = spoiled(page, "if (part == 2) colour = missed;", "if (part == 2) colour = found;")
+    caught("misses in another colour", lambda b: (shown(b, path), set_value(b, "resolution", 0),
+                                                   check(missed_pixels(b) > 0, "no misses are seen")))
+    path2 = spoiled(page, "int id = number + 1;", "int id = number + 2;")
+    caught("a click beside", lambda b: (shown(b, path2), check_click(b, pairs)))
+
+
+def main():
+    page, said, pairs = sys.argv[1], open(sys.argv[2], encoding="utf-8").read().splitlines(), partners(sys.argv[3])
+    with Browser() as b:
+        shown(b, page)
+        print("picture.page: first frame after", b.run("document.documentElement.dataset.ready"), "ms")
+        check_steps(b, said)
+        check_click(b, pairs)
+        check_colours(b)
+        check_view(b)
+        check_objects(b)
+        check_dialogs(b)
+        check_address(b, page)
+        check_looks(b, page)
+        check(not b.problems, f"the page has problems: {b.problems}")
+    with Browser("--disable-3d-apis") as b:
+        shown(b, page)
+        check(b.run("getComputedStyle(document.getElementById('flat')).display") == "block" and
+              "stands in" in text(b, "trouble"), "without WebGL the flat picture does not stand in")
+        set_value(b, "method", "far", "change")
+        b.wait("document.getElementById('headline').textContent.startsWith('far')")
+    check_twins(page, pairs)
+    if failures:
+        sys.exit(1)
+    print("picture.page: every control was driven")
+
+
+main()
