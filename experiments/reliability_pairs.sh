@@ -1,15 +1,9 @@
 #!/usr/bin/env bash
 # The promise of far-pairs. It runs at 32 to 4096 px, in one view, in three, and as the scene decides, by both back ends, on packaged
 # meshes, on needles and inside objects. It prints a row for each run (candidates, colliding pairs, their quotient, missed), keeps the
-# records in build/reliability-pairs/, and fails if a pair is missed. `bash experiments/reliability_pairs.sh needles` runs one scene.
+# records in build/reliability-pairs/, and fails if a pair is missed. `bash experiments/reliability_pairs.sh needles` runs one scene;
+# --list prints all. The back ends are the cores of the CPU and Mesa's software device; DEVICE=hardware asks for another second one.
 set -euo pipefail
-
-# shellcheck source-path=SCRIPTDIR source=setup.sh
-source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
-cd "$farcull_root"
-farcull_setup
-farcull_build farcull
-bash experiments/meshes.sh
 
 # A scene with its options.
 runs=(
@@ -18,7 +12,19 @@ runs=(
   "crumpled:20000" "rope:20000" "spheres:40000" "fans:8000" "funnel"
   "mannequin-devil --self" "armadillo --self" "bunny --self" "degenerate --self" "two-spheres --clearance 0.01"
 )
+if [[ ${1-} == --list ]]; then
+  printf '%s\n' "${runs[@]}"
+  exit 0
+fi
 if (($#)); then runs=("$@"); fi
+
+# shellcheck source-path=SCRIPTDIR source=setup.sh
+source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
+cd "$farcull_root"
+farcull_setup
+farcull_build farcull
+bash experiments/meshes.sh
+
 out=build/reliability-pairs
 mkdir -p "$out"
 failed=()
@@ -26,7 +32,8 @@ printf '%-30s %-9s %-6s %11s %11s %10s %12s %7s\n' scene device views resolution
 for run in "${runs[@]}"; do
   read -ra words <<<"$run"
   scene=${words[0]}
-  for device in cpu software; do
+  for device in cpu "${DEVICE:-software}"; do
+    if [[ $device == native ]]; then continue; fi # that is cpu
     for views in auto z x,y,z; do
       resolutions=auto
       if [[ $views != auto ]]; then resolutions=32,128,512,2048,4096; fi

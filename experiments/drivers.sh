@@ -1,0 +1,212 @@
+#!/usr/bin/env bash
+# Tries every rasterizer that Debian's Mesa has without a GPU: the probes of `farcull doctor`, and what FAR
+# misses in the quick grid of the study radius, at the published radius and at that of the budget. One driver
+# does nothing at all (Mesa's noop): every probe has to fail there.
+#   bash experiments/drivers.sh              all drivers, some minutes each; makes docs/drivers/results.md
+#   bash experiments/drivers.sh zink noop    these; the tables are printed
+#     --probes           the probes alone
+#     --program FARCULL  this program, and nothing is installed or built
+#     --out DIR          default build/drivers; what is there of the same program is not measured again
+# Exit status: 0; 1 a driver whose probes pass missed a pair at the budget's radius, or noop passed a probe;
+# 2 a run could not be made.
+set -euo pipefail
+
+# shellcheck source-path=SCRIPTDIR source=setup.sh
+source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
+
+# A driver, its environment, and what it is.
+drivers=(llvmpipe llvmpipe-128 zink softpipe softpipe-4.5 noop)
+declare -A settings=(
+  [llvmpipe]="GALLIUM_DRIVER=llvmpipe"
+  [llvmpipe-128]="GALLIUM_DRIVER=llvmpipe LP_NATIVE_VECTOR_WIDTH=128 LP_NUM_THREADS=0"
+  [zink]="GALLIUM_DRIVER=zink VK_ICD_FILENAMES=$(echo /usr/share/vulkan/icd.d/lvp_icd.*.json)"
+  [softpipe]="GALLIUM_DRIVER=softpipe"
+  [softpipe-4.5]="GALLIUM_DRIVER=softpipe MESA_GL_VERSION_OVERRIDE=4.5 MESA_GLSL_VERSION_OVERRIDE=450"
+  [noop]="GALLIUM_DRIVER=llvmpipe GALLIUM_NOOP=true"
+)
+declare -A about=(
+  [llvmpipe]="compiled by LLVM, on all cores"
+  [llvmpipe-128]="the same with vectors of 128 bits, on one thread"
+  [zink]="OpenGL by Vulkan (lavapipe)"
+  [softpipe]="an interpreter"
+  [softpipe-4.5]="the same, told to say that it has OpenGL 4.5"
+  [noop]="drops every command"
+)
+
+probes_only='' program='' out=$farcull_root/build/drivers
+chosen=()
+while (($#)); do
+  case $1 in
+    --probes) probes_only=yes ;;
+    --program | --out)
+      if (($# < 2)); then
+        echo "drivers: $1 needs a value" >&2
+        exit 2
+      fi
+      if [[ $1 == --out ]]; then out=$(realpath -m "$2"); else program=$(realpath "$2"); fi
+      shift
+      ;;
+    *)
+      if [[ -z ${settings[$1]-} ]]; then
+        echo "drivers: '$1' is none of them; they are: ${drivers[*]}" >&2
+        exit 2
+      fi
+      chosen+=("$1")
+      ;;
+  esac
+  shift
+done
+if [[ -z $program ]]; then
+  cd "$farcull_root"
+  farcull_packages+=(sqlite3 mesa-vulkan-drivers)
+  farcull_setup
+  farcull_build farcull
+  program=$farcull_root/build/farcull
+fi
+commit=$("$program" --version)
+out=$out/${commit##* }
+whole=''
+if ((${#chosen[@]} == 0)); then
+  chosen=("${drivers[@]}")
+  whole=yes
+fi
+mkdir -p "$out"
+export LC_ALL=C
+unset "${!MESA_@}" "${!GALLIUM_@}" "${!LP_@}" "${!EGL_@}" "${!__EGL_@}" VK_DRIVER_FILES
+# Mesa takes any Gallium driver for its software device only where this is set.
+export LIBGL_ALWAYS_SOFTWARE=true
+
+# under DRIVER COMMAND...: verdicts about a device are those of this driver and this program alone.
+under() {
+  local -a variables
+  read -ra variables <<<"${settings[$1]}"
+  env "${variables[@]}" XDG_CACHE_HOME="$out/$1/cache" "${@:2}"
+}
+sql() { sqlite3 -separator ' | ' :memory: "$@"; }
+
+# measure DRIVER: doctor.json or refused, and results/ of the study.
+measure() {
+  local -i status=0
+  local folder=$out/$1
+  mkdir -p "$folder"
+  if [[ ! -e $folder/doctor.json && ! -e $folder/refused ]]; then
+    under "$1" timeout 900 "$program" doctor --device software --json "$folder/doctor.part" \
+      >"$folder/doctor.txt" 2>"$folder/said" || status=$?
+    case $status in
+      0 | 1) mv "$folder/doctor.part" "$folder/doctor.json" ;;
+      2) sed -n 's/^farcull: //p' "$folder/said" >"$folder/refused" ;;
+      *)
+        echo "drivers: $1: the probes ended with status $status; $folder/said says why" >&2
+        return 2
+        ;;
+    esac
+  fi
+  if [[ -n $probes_only || -e $folder/refused || -e $folder/measured ]]; then return 0; fi
+  status=0
+  under "$1" timeout 3600 "$program" experiment radius --quick --resume --device software --out "$folder/results" \
+    >"$folder/study.txt" 2>"$folder/study.said" || status=$?
+  # 2: some points have no answer, and are named. Then the rows that there are count.
+  if ((status > 2)); then
+    echo "drivers: $1: the study ended with status $status; $folder/study.said says why" >&2
+    return 2
+  fi
+  touch "$folder/measured"
+}
+
+assumptions=(A1 A2 A3 A4 A5 A6 A7 A8)
+probes_table() {
+  local driver json
+  echo "| driver | what it is | answers as | probes that pass | $(printf '%s | ' "${assumptions[@]}")"
+  echo "|---|---|---|---|$(printf -- '---|%.0s' "${assumptions[@]}")"
+  for driver in "${chosen[@]}"; do
+    json=$out/$driver/doctor.json
+    if [[ ! -e $json ]]; then
+      echo "| $driver | ${about[$driver]} | refused: $(sed 's/;.*//' "$out/$driver/refused") | - |$(printf -- ' - |%.0s' "${assumptions[@]}")"
+      continue
+    fi
+    sql "WITH report AS (SELECT readfile('$json') AS j),
+      probe AS (SELECT p.value ->> 'assumption' AS a, p.value ->> 'pass' AS pass FROM report, json_each(j, '\$.probes') p)
+      SELECT '| $driver', '${about[$driver]}', j ->> '\$.gl.renderer' || ', OpenGL ' || (j ->> '\$.gl.version'),
+        (SELECT sum(pass) || ' of ' || count(*) FROM probe),
+        $(for a in "${assumptions[@]}"; do echo "(SELECT sum(pass) || '/' || count(*) FROM probe WHERE a = '$a'),"; done | sed '$ s/,$//')
+        || ' |' FROM report"
+  done
+}
+broken_table() {
+  local driver
+  echo '| driver | probe that fails | measured | bound | unit |'
+  echo '|---|---|---|---|---|'
+  for driver in "${chosen[@]}"; do
+    # Of noop all fail.
+    if [[ ! -e $out/$driver/doctor.json || $driver == noop ]]; then continue; fi
+    sql "SELECT '| $driver', (p.value ->> 'assumption') || ' ' || (p.value ->> 'name'),
+      CASE WHEN p.value ->> 'samples' = 0 OR p.value ->> 'unit' = '' THEN 'broke off: ' || replace(p.value ->> 'note', '|', '/')
+        ELSE printf('%.3g', p.value ->> 'measured') END,
+      printf('%.3g', p.value ->> 'bound'), (p.value ->> 'unit') || ' |'
+      FROM json_each(readfile('$out/$driver/doctor.json'), '\$.probes') p WHERE NOT p.value ->> 'pass'"
+  done
+}
+# For each kind of radius: pairs that FAR missed of those that collide, and broken lemmas of the points tried.
+missed_table() {
+  local driver store
+  echo '| driver | points with an answer | missed, published radius | missed, budget | lemmas broken, published | lemmas broken, budget |'
+  echo '|---|---|---|---|---|---|'
+  for driver in "${chosen[@]}"; do
+    store=$out/$driver/results/results.sqlite
+    if [[ ! -e $store ]]; then continue; fi
+    sqlite3 -separator ' | ' "$store" "
+      SELECT '| $driver', (SELECT count(*) FROM rows) || ' of ' || (SELECT count(*) FROM points),
+        $(for what in "far% missed colliding" "lemma violations points"; do
+          read -r method count of <<<"$what"
+          for radius in published budget; do
+            echo "(SELECT coalesce(sum(counts ->> '\$.$count') || ' of ' || sum(counts ->> '\$.$of'), 'no answer') FROM results
+              WHERE method LIKE '$method' AND radius = '$radius' AND depth_mode = 'fragment' AND counts IS NOT NULL),"
+          done
+        done | sed '$ s/,$//') || ' |'"
+  done
+}
+
+# shellcheck disable=SC2016 # the backticks are those of the page
+tables() {
+  printf 'Made by `bash experiments/drivers.sh` at commit %s, %s.\n\n' "${commit##* }" "$(dpkg-query -W -f 'Mesa ${Version}' libgl1-mesa-dri 2>/dev/null || echo 'Mesa of unknown version')"
+  probes_table
+  printf '\n'
+  broken_table
+  if [[ -z $probes_only ]]; then
+    printf '\n'
+    missed_table
+  fi
+}
+
+for driver in "${chosen[@]}"; do
+  echo "drivers: $driver (${settings[$driver]})" >&2
+  measure "$driver"
+done
+tables >"$out/results.md"
+cat "$out/results.md"
+
+status=0
+for driver in "${chosen[@]}"; do
+  json=$out/$driver/doctor.json
+  store=$out/$driver/results/results.sqlite
+  if [[ ! -e $json ]]; then continue; fi
+  passing=$(sql "SELECT sum(p.value ->> 'pass') || ' ' || count(*) FROM json_each(readfile('$json'), '\$.probes') p")
+  if [[ $driver == noop && ${passing% *} != 0 ]]; then
+    echo "drivers: a probe passes on a driver that does nothing: see $json" >&2
+    status=1
+  fi
+  if [[ ${passing% *} == "${passing#* }" && -e $store ]]; then
+    missed=$(sqlite3 "$store" "SELECT coalesce(sum(counts ->> '\$.missed'), 0) FROM results
+      WHERE method LIKE 'far%' AND radius = 'budget' AND depth_mode = 'fragment'")
+    if [[ $missed != 0 ]]; then
+      echo "drivers: $driver missed $missed pairs at the budget's radius, though its probes pass" >&2
+      status=1
+    fi
+  fi
+done
+if [[ -n $whole && -z $probes_only ]] && ((status == 0)) && [[ -d $farcull_root/docs ]]; then
+  mkdir -p "$farcull_root/docs/drivers"
+  { printf '# Drivers without a GPU\n\n'; cat "$out/results.md"; } >"$farcull_root/docs/drivers/results.md"
+  echo "drivers: made docs/drivers/results.md" >&2
+fi
+exit "$status"

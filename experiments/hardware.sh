@@ -1,0 +1,254 @@
+#!/usr/bin/env bash
+# Everything that this machine can say of its GPU, in one command and within two hours: the probes, missed
+# pairs, times beside other libraries, growth to 10^7 triangles, moving scenes, the test suite, the scripts of
+# reliability, all studies and their report. The most telling parts come first. It installs what is missing
+# and builds; experiments/pack.sh makes a folder for a machine without network and compilers.
+#   bash experiments/hardware.sh
+#     --minutes N      how long measuring may take (default 120). What was left out or cut off is named
+#     --device DEVICE  default hardware; software (Mesa's) or native for a trial
+#     --out DIR        default build/hardware-COMMIT-DEVICE
+# Call it again to go on, after Ctrl-C, a kill or a budget that was spent: a part that is done is not measured
+# again, and studies go on point by point. At the end there is one archive, DIR.tar.gz, and a page,
+# DIR/NAME.md, where NAME is that of the device. For hardware the page is also put in docs/hardware/.
+# It stops when DIR has 20 GiB. Exit status: 0; 1 a pair was missed or a check failed; 2 it could not begin;
+# 3 nothing failed, but parts were left out or cut off; 130 and 143 it was interrupted.
+set -euo pipefail
+
+# shellcheck source-path=SCRIPTDIR source=setup.sh
+source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
+
+minutes=120 device=hardware out=''
+refuse() {
+  echo "hardware: $*" >&2
+  exit 2
+}
+while (($#)); do
+  case $1 in
+    --minutes | --device | --out) if (($# < 2)); then refuse "$1 needs a value"; fi ;;
+    *) refuse "'$1' is no option; the head of $0 names them" ;;
+  esac
+  case $1 in
+    --minutes) minutes=$2 ;;
+    --device) device=$2 ;;
+    --out) out=$(realpath -m "$2") ;;
+  esac
+  shift 2
+done
+if [[ ! $minutes =~ ^[1-9][0-9]{0,3}$ ]]; then refuse "--minutes: '$minutes' is no number from 1 to 9999"; fi
+if [[ ! $device =~ ^[a-z0-9]+$ ]]; then refuse "--device: '$device' is no device; farcull doctor lists them"; fi
+
+cd "$farcull_root"
+farcull_setup
+farcull_build farcull
+bash experiments/meshes.sh || echo "hardware: what needs the packaged meshes will fail"
+version=$(build/farcull --version)
+commit=${version##* }
+out=${out:-$farcull_root/build/hardware-$commit-$device}
+mkdir -p "$out/steps" "$out/logs"
+exec 9>"$out/lock"
+flock -n 9 || refuse "another program works in $out"
+if [[ -e $out/commit && $(<"$out/commit") != "$version, $device" ]]; then
+  refuse "$out is of $(<"$out/commit"); this is $version, $device; name another folder with --out"
+fi
+echo "$version, $device" >"$out/commit"
+export DEVICE=$device XDG_CACHE_HOME=$out/cache
+
+began=$SECONDS
+cores=$(nproc)
+# FARCULL_HARDWARE_DISK is for the test.
+most_disk=${FARCULL_HARDWARE_DISK:-20971520} # KiB
+child=''
+missing=() # parts without a result, with the reason
+say() { printf 'hardware: %s\n' "$*"; }
+
+# ---- one part ----
+
+left() { echo $((60 * minutes - (SECONDS - began))); } # seconds of the budget
+
+# step NAME SHARE TEXT COMMAND...: runs the command unless it is done. It may take 1/SHARE of the time that
+# is left, at least a minute. steps/NAME gets the status and the seconds, logs/NAME.txt what the command said.
+step() {
+  local name=$1 text=$3 used
+  local -i share=$2 limit start status=0
+  shift 3
+  if [[ -e $out/steps/$name ]]; then return 0; fi
+  limit=$(($(left) / share))
+  if ((limit < 60)); then limit=60; fi
+  if (($(left) < 60)); then limit=$(left); fi
+  if ((limit < 10)); then
+    missing+=("$name ($text): left out, the $minutes minutes are spent")
+    return 0
+  fi
+  used=$(du -sk "$out" | cut -f 1)
+  if ((used > most_disk)); then
+    missing+=("$name ($text): left out, $out has $used KiB, more than $most_disk")
+    return 0
+  fi
+  say "$text (part $name, at most $limit s)"
+  start=$SECONDS
+  # A signal interrupts `wait`, but no command in the foreground. Children in the background ignore Ctrl-C
+  # unless they are told otherwise; timeout passes on what it gets.
+  env --default-signal=INT timeout --kill-after=30 "$limit" "$@" >"$out/logs/$name.txt" 2>&1 </dev/null 9>&- &
+  child=$!
+  wait "$child" || status=$?
+  child=''
+  case $status in
+    0) echo "$status $((SECONDS - start))" >"$out/steps/$name" ;;
+    1)
+      echo "$status $((SECONDS - start))" >"$out/steps/$name"
+      say "FAILED: $name: $(tail -n 1 "$out/logs/$name.txt")"
+      ;;
+    124 | 137) missing+=("$name ($text): cut off after $((SECONDS - start)) s") ;;
+    *) missing+=("$name ($text): status $status: $(tail -n 1 "$out/logs/$name.txt")") ;;
+  esac
+}
+# shellcheck disable=SC2317 # called by traps
+stop() {
+  if [[ -n $child ]]; then
+    kill -TERM "$child" 2>/dev/null || true
+    wait "$child" 2>/dev/null || true
+  fi
+  say "interrupted; what is done is kept in $out, and the same command goes on"
+  exit "$1"
+}
+trap 'stop 130' INT
+trap 'stop 143' TERM HUP
+
+# ---- the parts, the most telling first ----
+
+moving_scenes() {
+  build/farcull scenes --json - | awk -F'"' '$2 == "name" { name = $4 } /"moves": true/ { print name }'
+}
+safe() { tr -c 'a-zA-Z0-9\n' '-' <<<"$1"; } # a name for files
+bench() { # SHARE SCENE [OPTIONS]: all peers, on all cores and on one
+  local share=$1 name threads
+  name=$(safe "${*:2}")
+  for threads in "$cores" 1; do
+    step "bench-$name-$threads" "$share" "times of ${*:2} beside other libraries, $threads threads" \
+      build/farcull bench "${@:2}" --device "$device" --threads "$threads" --json "$out/bench-$name-$threads.json"
+    if ((cores == 1)); then return; fi
+  done
+}
+if [[ -e $out/steps/doctor ]]; then
+  say "going on with $out"
+fi
+step doctor 1 "the probes of the assumptions" build/farcull doctor --device "$device" --json "$out/doctor.json"
+if [[ ! -e $out/steps/doctor ]]; then
+  cat "$out/logs/doctor.txt" >&2
+  refuse "farcull doctor --device $device has no result; --device software tries the script without a GPU"
+fi
+step misses 3 "missed pairs of two bunnies" build/farcull compare two-bunnies \
+  --methods far,far-pairs,cullide,exact --offsets obb,exact --resolutions 128,512 --device "$device" --json "$out/misses.json"
+bench 3 two-bunnies
+for size in 10000 30000 100000 300000 1000000 3000000 10000000; do
+  step "field-$size" 3 "far-pairs on a field of $size triangles" build/farcull bench "field:$size" \
+    --peers none --methods far-pairs --device "$device" --json "$out/field-$size.json"
+done
+mapfile -t moving < <(moving_scenes)
+for scene in "${moving[@]}"; do
+  step "family-$scene" 3 "every method on frames of $scene" build/farcull experiment family "$scene" --frames 10 \
+    --device "$device" --json "$out/family-$scene.json"
+done
+if [[ -e packed ]]; then
+  missing+=("suite (the test suite): left out, it is not in a packed folder")
+else
+  step suite 2 "the test suite" bash tests/run.sh
+fi
+for scene in two-bunnies armadillo-elephant dragon-bunny near-copy bunnies-far-apart; do
+  step "reliability-$scene" 3 "missed pairs of $scene, and of its copies" bash experiments/reliability.sh "$scene"
+done
+mapfile -t runs < <(bash experiments/reliability_pairs.sh --list)
+for run in "${runs[@]}"; do
+  step "pairs-$(safe "$run")" 3 "missed pairs of far-pairs, $run" bash experiments/reliability_pairs.sh "$run"
+done
+for scene in "${moving[@]}"; do
+  step "motion-$scene" 3 "missed pairs in 100 frames of $scene" bash experiments/reliability_motion.sh "$scene"
+done
+for scene in armadillo-elephant needles-layers needles-crossed "mannequin-devil --self" "armadillo --self" "bunny --self" \
+  tree-leaves field:100000 crumpled rope spheres fans funnel; do
+  read -ra words <<<"$scene"
+  bench 3 "${words[@]}"
+done
+devices=$device
+if [[ $device != native ]]; then devices=$device,native; fi
+# --resume: what an earlier call measured stays.
+step studies 1 "all studies" build/farcull experiment all --devices "$devices" --resume --out "$out/results"
+
+# ---- the report, the page, the archive ----
+
+rm -f "$out/steps/report"
+if [[ ! -e $out/results/results.sqlite ]]; then
+  missing+=("report (of the studies): left out, no study was measured")
+elif ! command -v gnuplot >/dev/null; then
+  missing+=("report (of the studies): left out, gnuplot is not here; elsewhere: farcull report DIR/results")
+else
+  # It is not part of the budget, since it shows what the budget was spent on. It takes a minute.
+  minutes=$((minutes + 10))
+  step report 1 "the report of the studies" build/farcull report "$out/results" --device "$device"
+  minutes=$((minutes - 10))
+fi
+
+processor=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
+renderer=$(sed -n '/"gl": {/,/}/ s/.*"renderer": "\(.*\)".*/\1/p' "$out/doctor.json" 2>/dev/null || true)
+renderer=${renderer:-native, $processor}
+name=$(tr '[:upper:]' '[:lower:]' <<<"$renderer" | sed 's/[^a-z0-9]\+/-/g; s/^-//; s/-$//' | cut -c 1-60)
+failed=()
+for file in "$out"/steps/*; do
+  if [[ $(<"$file") == 1\ * ]]; then failed+=("${file##*/}"); fi
+done
+# section HEADING PATTERNS...: what the parts that are done said.
+# shellcheck disable=SC2016 # the backticks are those of the page
+section() {
+  local heading=$1 pattern part status seconds
+  for pattern in "${@:2}"; do
+    while read -r part; do
+      if [[ -n $heading ]]; then printf '\n## %s\n' "$heading"; fi
+      heading=''
+      read -r status seconds <"$out/steps/$part"
+      printf '\nPart `%s`, %d s%s:\n\n' "$part" "$seconds" "$(if ((status)); then echo ', **failed**'; fi)"
+      # A long log is cut in the middle.
+      awk '{ line[NR] = $0 }
+        END {
+          for (i = 1; i <= NR; i++)
+            if (NR <= 120 || i <= 60 || i > NR - 60) print "    " line[i]
+            else if (i == 61) print "    ..."
+        }' "$out/logs/$part.txt"
+    done < <(cd "$out/steps" && compgen -G "$pattern" | sort -V)
+  done
+}
+# shellcheck disable=SC2016 # the backticks are those of the page
+{
+  printf '# %s\n\nMade by `bash experiments/hardware.sh` with %s, on %s, in parts of at most %d minutes.\n' \
+    "$renderer" "$version" "$(date -u +%F)" "$minutes"
+  printf '%s, %d threads, %s MiB of memory, %s.\n' "$processor" "$cores" \
+    "$(awk '/^MemTotal/ { print int($2 / 1024) }' /proc/meminfo)" "$(sed -n 's/^PRETTY_NAME="\(.*\)"/\1/p' /etc/os-release 2>/dev/null)"
+  printf '\n%d parts are done, %d failed%s.\n' "$(find "$out/steps" -type f | wc -l)" "${#failed[@]}" "${failed[*]:+: ${failed[*]}}"
+  if ((${#missing[@]})); then
+    printf '\nNot measured:\n\n'
+    printf -- '- %s\n' "${missing[@]//"$farcull_root/"/}"
+  fi
+  section 'The assumptions' doctor
+  section 'Missed pairs' misses 'reliability-*' 'pairs-*' 'motion-*'
+  section 'Times beside other libraries' 'bench-*'
+  section 'Growth' 'field-*'
+  section 'Moving scenes' 'family-*'
+  section 'The test suite' suite
+  if [[ -e $out/results/report/results.md ]]; then
+    printf '\n'
+    # Headings one level lower, and no figures, which are in the archive.
+    sed '1s/^# .*/## The studies/; 2,$s/^#/##/; /^!\[/d' "$out/results/report/results.md"
+  fi
+} >"$out/$name.md"
+if [[ $device == hardware && ! -e packed ]]; then
+  mkdir -p docs/hardware
+  cp "$out/$name.md" docs/hardware/
+  say "made docs/hardware/$name.md"
+fi
+# The archive appears as a whole.
+tar -czf "$out.tar.gz.part" -C "$(dirname "$out")" --exclude=lock "$(basename "$out")"
+mv "$out.tar.gz.part" "$out.tar.gz"
+say "$(find "$out/steps" -type f | wc -l) parts are done, ${#failed[@]} failed, ${#missing[@]} are not measured:"
+if ((${#missing[@]})); then printf '  %s\n' "${missing[@]}"; fi
+say "the page is $out/$name.md, the archive $out.tar.gz ($(du -h "$out.tar.gz" | cut -f 1))"
+if ((${#failed[@]})); then exit 1; fi
+if ((${#missing[@]})); then exit 3; fi
