@@ -34,7 +34,8 @@ while (($#)); do
   esac
   shift 2
 done
-if [[ ! $minutes =~ ^[1-9][0-9]{0,3}$ ]]; then refuse "--minutes: '$minutes' is no number from 1 to 9999"; fi
+if [[ ! $minutes =~ ^[0-9]{1,4}(\.[0-9]{1,3})?$ ]]; then refuse "--minutes: '$minutes' is no number of minutes, such as 30 or 0.5"; fi
+budget=$(awk -v m="$minutes" 'BEGIN { printf "%d", 60 * m }') # seconds
 if [[ ! $device =~ ^[a-z0-9]+$ ]]; then refuse "--device: '$device' is no device; farcull doctor lists them"; fi
 
 cd "$farcull_root"
@@ -63,7 +64,7 @@ say() { printf 'hardware: %s\n' "$*"; }
 
 # ---- one part ----
 
-left() { echo $((60 * minutes - (SECONDS - began))); } # seconds of the budget
+left() { echo $((budget - (SECONDS - began))); } # seconds
 
 # step NAME SHARE TEXT COMMAND...: runs the command unless it is done. It may take 1/SHARE of the time that
 # is left, at least a minute. steps/NAME gets the status and the seconds, logs/NAME.txt what the command said.
@@ -183,9 +184,8 @@ elif ! command -v gnuplot >/dev/null; then
   missing+=("report (of the studies): left out, gnuplot is not here; elsewhere: farcull report DIR/results")
 else
   # It is not part of the budget, since it shows what the budget was spent on. It takes a minute.
-  minutes=$((minutes + 10))
+  budget=$((budget + 600))
   step report 1 "the report of the studies" build/farcull report "$out/results" --device "$device"
-  minutes=$((minutes - 10))
 fi
 
 processor=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
@@ -218,7 +218,7 @@ section() {
 }
 # shellcheck disable=SC2016 # the backticks are those of the page
 {
-  printf '# %s\n\nMade by `bash experiments/hardware.sh` with %s, on %s, in parts of at most %d minutes.\n' \
+  printf '# %s\n\nMade by `bash experiments/hardware.sh` with %s, on %s, with a budget of %s minutes.\n' \
     "$renderer" "$version" "$(date -u +%F)" "$minutes"
   printf '%s, %d threads, %s MiB of memory, %s.\n' "$processor" "$cores" \
     "$(awk '/^MemTotal/ { print int($2 / 1024) }' /proc/meminfo)" "$(sed -n 's/^PRETTY_NAME="\(.*\)"/\1/p' /etc/os-release 2>/dev/null)"

@@ -75,6 +75,7 @@ farcull_install() {
 # Installs those of farcull_packages that are missing. If that is impossible it prints what to do, and
 # returns 2. A script that needs more packages appends them to farcull_packages first.
 farcull_setup() {
+  if [[ -e $farcull_root/packed ]]; then return 0; fi # made by experiments/pack.sh: all is here
   if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
     echo "setup: no apt-get here, so nothing is installed; CMake names what it does not find" >&2
     return 0
@@ -194,6 +195,7 @@ farcull_progress() {
 # farcull_build [TARGETS...]: brings the targets in build/ up to date, or all targets if none is named.
 # It prints one line if there is nothing to do, else the progress and the messages of the compilers.
 farcull_build() {
+  if [[ -e $farcull_root/packed ]]; then return 0; fi
   local build=$farcull_root/build started=$SECONDS jobs steps
   local -a what=()
   if (($#)); then what=(--target "$@"); fi
