@@ -50,6 +50,10 @@ struct Feature {
 };
 /// "vertex 2", "edge 0" or "face".
 std::string to_string(const Feature& feature);
+/// As certificates number them: 0 to 2 the corners, 3 to 5 the edges, 6 the face.
+constexpr std::uint8_t number_of(const Feature& feature) {
+  return static_cast<std::uint8_t>(3 * static_cast<int>(feature.kind) + feature.index);
+}
 
 /// Two closest points of two triangles. Where several pairs of points are as near, as of parallel
 /// edges or of triangles that overlap, it is the pair on the first features: the least feature of a

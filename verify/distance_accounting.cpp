@@ -1,6 +1,7 @@
 // Each object has a tree of boxes over its triangles. Of every two objects that are asked about the
 // trees are joined: two nodes whose boxes are farther apart than the threshold of these objects
-// settle all their pairs at once, and so does a threshold that nothing can be below. What is left
+// settle all their pairs at once, and so does an answer of 0, before which alone another pair could
+// matter. What is left
 // is decided pair by pair: by two parallel planes in doubles, then in integers, as the checker of
 // certificates does it (verify/certificate/integer_distance.h).
 #include "verify/distance_accounting.h"
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <deque>
+#include <optional>
 #include <stdexcept>
 
 #include "core/base/floating_point.h"
@@ -32,6 +34,7 @@ constexpr std::uint32_t kNone = 0xffffffff;
 struct Node {
   Bounds bounds = separation::empty_bounds();
   std::uint32_t first = 0, count = 0;         // into Trees::order
+  std::uint32_t least = kNone;                // of its triangles
   std::uint32_t left = kNone, right = kNone;  // kNone: a leaf
 };
 
@@ -58,7 +61,10 @@ class Trees {
  private:
   std::uint32_t build(std::uint32_t first, std::uint32_t count) {
     Node node{.first = first, .count = count};
-    for (std::uint32_t k = first; k < first + count; ++k) include(node.bounds, bounds_[order_[k]]);
+    for (std::uint32_t k = first; k < first + count; ++k) {
+      include(node.bounds, bounds_[order_[k]]);
+      node.least = std::min(node.least, order_[k]);
+    }
     if (count > kLeafSize) {
       const std::uint32_t half = count / 2;
       divide(first, half, count, node.bounds);
@@ -93,9 +99,10 @@ class Undecided {
   Undecided(const Scene& scene, unsigned threads, DistanceAccounting& result)
       : scene_(scene), threads_(threads), result_(result) {}
 
-  /// What follows is of two objects with this threshold, or of one.
-  void begin(const Threshold& threshold, bool self) {
-    now_ = {threshold, self};
+  /// What follows is of two objects with this threshold, or of one. answer: the only one about
+  /// them, if any; none with `all`.
+  void begin(const Threshold& threshold, bool self, std::optional<TrianglePair> answer) {
+    now_ = {threshold, self, answer};
     stored_ = false;
   }
   void add(const TrianglePair& pair) {
@@ -117,10 +124,11 @@ class Undecided {
   }
 
  private:
-  enum class Class : std::uint8_t { planes, neighbours, exact, nearer };
+  enum class Class : std::uint8_t { planes, neighbours, exact, nearer, earlier };
   struct Asked {
     Threshold threshold;
     bool self = false;
+    std::optional<TrianglePair> answer;
   };
   struct Pair {
     TrianglePair pair;
@@ -135,16 +143,19 @@ class Undecided {
       return Class::planes;
     if (pair.asked->self && share_position(s, t)) return Class::neighbours;
     if (!length) return Class::nearer;
-    if (is_beyond(s, t, *length, bound == Bound::below)) return Class::exact;
+    // Before the answer no pair is as near, behind it none is nearer.
+    const bool before = pair.asked->answer && pair.pair < *pair.asked->answer;
+    const bool or_as_far = bound == Bound::below && !before;
+    if (is_beyond(s, t, *length, or_as_far)) return Class::exact;
     // No direction shows that the pair is far enough: its nearest points have to show that it is
     // not.
     const auto order = integer_distance(s, t).squared <=> length->squared;
-    if (order > 0 || (order == 0 && bound == Bound::below)) {
+    if (order > 0 || (order == 0 && or_as_far)) {
       throw std::logic_error(
           "account_distances: neither does a direction show that two triangles are far apart, nor "
           "are their nearest points near");
     }
-    return Class::nearer;
+    return order == 0 && before ? Class::earlier : Class::nearer;
   }
 
   void count(const TrianglePair& pair, Class of) {
@@ -157,6 +168,9 @@ class Undecided {
         return;
       case Class::exact:
         ++result_.farther_by_exact;
+        return;
+      case Class::earlier:
+        ++result_.earlier;
         return;
       case Class::nearer:
         ++result_.nearer;
@@ -186,7 +200,15 @@ class Join {
         answers_(answers),
         met_(answers.size()),
         undecided_(undecided),
-        result_(result) {}
+        result_(result) {
+    if (nothing_is_nearer(threshold) && !answers.empty()) first_ = answers.front().pair;
+  }
+
+  /// A threshold that no pair is below.
+  static bool nothing_is_nearer(const Threshold& threshold) {
+    return threshold.length && threshold.length->squared.over == 0 &&
+           threshold.bound == Bound::below;
+  }
 
   void objects(std::uint32_t a, std::uint32_t b) {
     if (a == b) {
@@ -201,12 +223,18 @@ class Join {
   }
 
  private:
+  /// Whether all pairs of which no triangle comes before this one are behind an answer that is 0.
+  bool settled(std::uint32_t least) const { return first_ && least > first_->a; }
   bool farther(const Bounds& a, const Bounds& b) const {
     return threshold_.length && std::isfinite(threshold_.length->above) &&
            separation::farther(a, b, threshold_.length->above);
   }
 
   void one(const Node& node) {
+    if (settled(node.least)) {
+      result_.objects_meet += std::uint64_t{node.count} * (node.count - 1) / 2;
+      return;
+    }
     if (node.left != kNone) {
       one(trees_.left(node));
       one(trees_.right(node));
@@ -220,6 +248,10 @@ class Join {
   }
 
   void two(const Node& a, const Node& b) {
+    if (settled(std::min(a.least, b.least))) {
+      result_.objects_meet += std::uint64_t{a.count} * b.count;
+      return;
+    }
     if (farther(a.bounds, b.bounds)) {
       result_.farther_by_boxes += std::uint64_t{a.count} * b.count;
       return;
@@ -239,11 +271,15 @@ class Join {
   }
 
   void triangles(std::uint32_t s, std::uint32_t t) {
+    const TrianglePair pair = {std::min(s, t), std::max(s, t)};
+    if (first_ && *first_ < pair) {
+      ++result_.objects_meet;
+      return;
+    }
     if (farther(trees_.bounds(s), trees_.bounds(t))) {
       ++result_.farther_by_boxes;
       return;
     }
-    const TrianglePair pair = {std::min(s, t), std::max(s, t)};
     const auto found = std::ranges::lower_bound(answers_, pair, {}, &ClaimedDistance::pair);
     if (found != answers_.end() && found->pair == pair) {
       met_[static_cast<std::size_t>(found - answers_.begin())] = true;
@@ -256,6 +292,7 @@ class Join {
   const Threshold& threshold_;
   std::span<const ClaimedDistance> answers_;  // of these objects, sorted by their pairs
   std::vector<bool> met_;                     // by the join
+  std::optional<TrianglePair> first_;         // an answer that is 0
   Undecided& undecided_;
   DistanceAccounting& result_;
 };
@@ -263,8 +300,8 @@ class Join {
 }  // namespace
 
 bool DistanceAccounting::adds_up() const {
-  return pairs_total ==
-         answers + farther_by_boxes + farther_by_planes + neighbours + farther_by_exact + nearer;
+  return pairs_total == answers + objects_meet + farther_by_boxes + farther_by_planes + neighbours +
+                            farther_by_exact + nearer + earlier;
 }
 
 DistanceAccounting account_distances(const Scene& scene, std::span<const ClaimedDistance> answers,
@@ -284,13 +321,13 @@ DistanceAccounting account_distances(const Scene& scene, std::span<const Claimed
       out.pairs_total += pairs;
       const Threshold threshold = claims.threshold(a, b);
       const std::span<const ClaimedDistance> of = claims.of(a, b);
-      if (threshold.length && threshold.length->squared.over == 0 &&
-          threshold.bound == Bound::below) {
-        out.answers += of.size();
-        out.farther_by_boxes += pairs - of.size();  // nothing is nearer than 0
+      if (Join::nothing_is_nearer(threshold) && of.empty()) {
+        out.objects_meet += pairs;
         continue;
       }
-      undecided.begin(threshold, a == b);
+      std::optional<TrianglePair> answer;
+      if (question.kind != DistanceQuestion::Kind::all && !of.empty()) answer = of.front().pair;
+      undecided.begin(threshold, a == b, answer);
       Join(trees, threshold, of, undecided, out).objects(a, b);
     }
   }

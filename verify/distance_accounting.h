@@ -17,25 +17,29 @@ namespace farcull {
 
 /// Of all pairs of triangles that were asked about: each is in one class, the first that fits,
 /// counted where it is decided. A pair is *nearer* if an answer should be nearer because of it, or
-/// if it should be an answer itself.
+/// if it should be an answer itself. It is *earlier* if it is as near as the answer about its
+/// objects and comes before it, so that it should be the answer.
 struct DistanceAccounting {
-  std::uint64_t pairs_total = 0;       // by combinatorics
-  std::uint64_t answers = 0;           // pairs that the answers name
+  std::uint64_t pairs_total = 0;   // by combinatorics
+  std::uint64_t answers = 0;       // pairs that the answers name
+  std::uint64_t objects_meet = 0;  // behind an answer that is 0, or of objects of which a neighbour
+                                   // at distance 0 is the last: nothing is nearer than 0
   std::uint64_t farther_by_boxes = 0;  // by the gaps between their boxes
   std::uint64_t farther_by_planes =
       0;                               // some two parallel planes between them are far enough apart
   std::uint64_t neighbours = 0;        // of one object, which do not count
   std::uint64_t farther_by_exact = 0;  // by the squares of distances, in integers
   std::uint64_t nearer = 0;            // missed
+  std::uint64_t earlier = 0;           // the answer is not the first of the nearest pairs
   std::vector<TrianglePair> examples;  // the first missed ones
-  /// Answers whose distance is not that of their triangles, is beyond `within`, or is not what was
-  /// asked for.
+  /// Answers whose distance, nearest points or features are not those of their triangles, or that
+  /// are beyond `within`, or not asked for.
   std::uint64_t wrong = 0;
   double ms = 0;
   /// True iff the classes sum to pairs_total. Not so by construction: the total is computed.
   bool adds_up() const;
-  /// No pair was missed, no answer is wrong.
-  bool holds() const { return nearer == 0 && wrong == 0; }
+  /// No pair was missed, no answer is wrong or not the first.
+  bool holds() const { return nearer == 0 && earlier == 0 && wrong == 0; }
 };
 
 /// answers: sorted by objects, then by pairs, each once. Throws std::logic_error where they are

@@ -136,7 +136,10 @@ bool DistanceClaims::wrong(std::size_t answer) const {
   if (within_.length && *squared > within_.length->squared) return true;
   const std::array<Vec3, 3> s = scene_.corners(x.pair.a), t = scene_.corners(x.pair.b);
   if (x.a == x.b && share_position(s, t)) return true;
-  if (integer_distance(s, t).squared != *squared) return true;
+  const IntegerDistance exact = integer_distance(s, t);
+  if (exact.squared != *squared || exact.features != x.features ||
+      !is_rounded(x.points[0], exact.points[0]) || !is_rounded(x.points[1], exact.points[1]))
+    return true;
   if (question_.kind != DistanceQuestion::Kind::nearest) return false;
   // Neither object has it among its k nearest.
   const auto beyond = [&](const Farthest& of, std::uint32_t other) {

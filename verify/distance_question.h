@@ -2,6 +2,7 @@
 // (verify/distance_accounting.h).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -11,13 +12,16 @@
 
 namespace farcull {
 
-/// An answer: `pair` is said to be nearest of the objects a <= b, or one of all pairs within a
-/// distance; a == b: of one object, neighbours (verify/exact.h) left out.
+/// An answer: `pair` is said to be the first of the nearest of the objects a <= b, or one of all
+/// pairs within a distance; a == b: of one object, neighbours (verify/exact.h) left out.
 struct ClaimedDistance {
   std::uint32_t a = 0, b = 0;  // objects
   TrianglePair pair;           // a triangle of a and one of b
   double distance = 0;         // the root, rounded to the nearest double
   std::string squared;         // its square, "numerator/denominator" in lowest terms
+  std::array<Vec3, 2> points;  // two nearest points, of a and of b, each coordinate rounded once
+  std::array<std::uint8_t, 2> features{};  // on which they lie, numbered as in
+                                           // verify/certificate/integer_distance.h
 };
 
 /// What was asked.

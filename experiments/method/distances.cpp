@@ -285,11 +285,14 @@ std::vector<ClaimedDistance> claims_of(const DistanceRecord& record) {
   std::vector<ClaimedDistance> out;
   out.reserve(record.distances.size());
   for (const Distance& d : record.distances) {
-    out.push_back({.a = d.objects.a,
-                   .b = d.objects.b,
-                   .pair = d.triangles,
-                   .distance = d.closest.distance,
-                   .squared = d.closest.squared.text()});
+    out.push_back(
+        {.a = d.objects.a,
+         .b = d.objects.b,
+         .pair = d.triangles,
+         .distance = d.closest.distance,
+         .squared = d.closest.squared.text(),
+         .points = d.closest.points,
+         .features = {number_of(d.closest.features[0]), number_of(d.closest.features[1])}});
   }
   return out;
 }

@@ -1,20 +1,8 @@
-// Names the features of a record by the numbers that certificates have for them.
+// Writes what a record answers as a certificate has it.
 #include "experiments/record/distance_certificate.h"
 
 namespace farcull {
 namespace {
-
-std::uint8_t number_of(const Feature& feature) {
-  switch (feature.kind) {
-    case FeatureKind::vertex:
-      return feature.index;
-    case FeatureKind::edge:
-      return 3 + feature.index;
-    case FeatureKind::face:
-      break;
-  }
-  return 6;
-}
 
 DistanceCertificate::Pairs pairs_of(DistancePairs pairs) {
   switch (pairs) {

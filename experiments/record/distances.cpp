@@ -77,11 +77,13 @@ Json verification_json(const Scene& scene, const std::optional<DistanceAccountin
   if (!accounting) return nullptr;
   return {{"pairs_total", accounting->pairs_total},
           {"answers", accounting->answers},
+          {"objects_meet", accounting->objects_meet},
           {"farther_by_boxes", accounting->farther_by_boxes},
           {"farther_by_planes", accounting->farther_by_planes},
           {"neighbours", accounting->neighbours},
           {"farther_by_exact", accounting->farther_by_exact},
           {"nearer", accounting->nearer},
+          {"earlier", accounting->earlier},
           {"wrong", accounting->wrong},
           {"examples", pairs_json(scene, accounting->examples)},
           {"ms", accounting->ms}};
@@ -249,20 +251,26 @@ std::string distances_rows(const Scene& scene, const DistanceRecord& record,
 
 std::string verdict_text(const DistanceAccounting& v) {
   const std::string all = counted(v.pairs_total, "pair", "pairs") + " accounted for";
-  if (v.holds()) return "verified: no nearer pair was culled, and the distances are right; " + all;
+  if (v.holds()) return "verified: the answers are right, no nearer pair was culled, " + all;
   std::string what;
   if (v.nearer > 0) what = counted(v.nearer, "nearer pair was", "nearer pairs were") + " culled, ";
+  if (v.earlier > 0)
+    what += counted(v.earlier, "pair as near comes", "pairs as near come") + " before an answer, ";
   if (v.wrong > 0) what += counted(v.wrong, "answer is", "answers are") + " wrong, ";
   return "NOT verified: " + what + all;
 }
 
 std::string accounting_sum(const DistanceAccounting& v) {
   return fmt::format(
-      "accounted  {} = {} answered + {} farther by boxes\n           + {} by planes + {} by exact "
-      "distances{} + {} missed\n",
-      counted(v.pairs_total, "pair", "pairs"), grouped(v.answers), grouped(v.farther_by_boxes),
-      grouped(v.farther_by_planes), grouped(v.farther_by_exact),
-      v.neighbours > 0 ? " + " + grouped(v.neighbours) + " neighbours" : "", grouped(v.nearer));
+      "accounted  {} = {} answered{} + {} farther by boxes\n           + {} by planes + {} by "
+      "exact "
+      "distances{}{} + {} missed\n",
+      counted(v.pairs_total, "pair", "pairs"), grouped(v.answers),
+      v.objects_meet > 0 ? " + " + grouped(v.objects_meet) + " of objects that meet" : "",
+      grouped(v.farther_by_boxes), grouped(v.farther_by_planes), grouped(v.farther_by_exact),
+      v.neighbours > 0 ? " + " + grouped(v.neighbours) + " neighbours" : "",
+      v.earlier > 0 ? " + " + grouped(v.earlier) + " as near and before an answer" : "",
+      grouped(v.nearer));
 }
 
 std::string distances_table(const Scene& scene, const DistanceRecord& record) {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "experiments/lemma/pair_generators.h"
 #include "tests/core/base/trials.h"
 #include "tests/experiments/method/distance_lab.h"
@@ -110,23 +112,37 @@ struct Case {
   }
 };
 
-std::vector<ClaimedDistance> right_answers(const Scene& scene, const DistanceOptions& options) {
-  std::vector<ClaimedDistance> out;
-  for (const auto& [objects, pair, squared] : distance_lab::Truth(scene).answers(options)) {
-    double root = root_above(squared);
-    while (!closest_reference::is_rounded_root(root, squared)) root = std::nextafter(root, 0);
-    out.push_back({objects.a, objects.b, pair, root,
-                   squared.get_num().get_str() + "/" + squared.get_den().get_str()});
-  }
+/// The rational number, rounded to the nearest double.
+double rounded(const Q& x) {
+  double out = x.get_d() + 0.0;  // cut off; never -0.0
+  while (!closest_reference::is_rounded(out, x))
+    out = std::nextafter(out, x > 0 ? HUGE_VAL : -HUGE_VAL) + 0.0;
   return out;
 }
 
 ClaimedDistance claim_of(const Scene& scene, std::uint32_t a, std::uint32_t b,
                          const TrianglePair& pair) {
-  const Q squared = distance_lab::squared_distance(scene.corners(pair.a), scene.corners(pair.b));
+  const auto closest =
+      closest_reference::closest_points(scene.corners(pair.a), scene.corners(pair.b));
+  const Q& squared = closest.squared;
   double root = root_above(squared);
   while (!closest_reference::is_rounded_root(root, squared)) root = std::nextafter(root, 0);
-  return {a, b, pair, root, squared.get_num().get_str() + "/" + squared.get_den().get_str()};
+  ClaimedDistance out{a, b, pair, root, text_of(fraction(squared)), {}, {}};
+  for (std::size_t side = 0; side < 2; ++side) {
+    out.features[side] = number_of(closest.features[side]);
+    for (int k = 0; k < 3; ++k)
+      out.points[side][k] = rounded(closest.points[side][static_cast<std::size_t>(k)]);
+  }
+  return out;
+}
+
+std::vector<ClaimedDistance> right_answers(const Scene& scene, const DistanceOptions& options) {
+  std::vector<ClaimedDistance> out;
+  for (const auto& [objects, pair, squared] : distance_lab::Truth(scene).answers(options)) {
+    out.push_back(claim_of(scene, objects.a, objects.b, pair));
+    EXPECT_EQ(Q(out.back().squared), squared);
+  }
+  return out;
 }
 
 std::vector<Case> cases(Kind kind, int count) {
@@ -180,12 +196,26 @@ TEST(DistanceAccounting, FindsAnAnswerThatIsNotTheNearest) {
   EXPECT_GT(tried, trials(8));
 }
 
-/// Pairs of triangles of the objects that are nearer than the square, by rational numbers; or as
-/// near. Neighbours do not count.
+/// The last pair of two objects that is as near as this one.
+TrianglePair last_as_near(const Scene& scene, const ClaimedDistance& claim) {
+  const Object &x = scene.objects[claim.a], &y = scene.objects[claim.b];
+  for (std::uint32_t i = x.first_triangle + x.triangle_count; i-- > x.first_triangle;) {
+    for (std::uint32_t j = y.first_triangle + y.triangle_count; j-- > y.first_triangle;) {
+      if (distance_lab::squared_distance(scene.corners(i), scene.corners(j)) == Q(claim.squared))
+        return {i, j};
+    }
+  }
+  return claim.pair;
+}
+
+/// Pairs of triangles of the objects that are nearer than the claim, by rational numbers; or as
+/// near, before it and behind it. Neighbours do not count.
 struct Counted {
-  std::uint64_t nearer = 0, as_near = 0;
+  std::uint64_t nearer = 0, before = 0, behind = 0;
 };
-Counted counted(const Scene& scene, std::uint32_t a, std::uint32_t b, const Q& squared) {
+Counted counted(const Scene& scene, const ClaimedDistance& claim) {
+  const auto& [a, b] = std::pair(claim.a, claim.b);
+  const Q squared(claim.squared);
   Counted out;
   const Object &x = scene.objects[a], &y = scene.objects[b];
   for (std::uint32_t i = x.first_triangle; i < x.first_triangle + x.triangle_count; ++i) {
@@ -195,7 +225,8 @@ Counted counted(const Scene& scene, std::uint32_t a, std::uint32_t b, const Q& s
       if (a == b && share_position(s, t)) continue;
       const Q of = distance_lab::squared_distance(s, t);
       out.nearer += of < squared;
-      out.as_near += of == squared;
+      out.before += of == squared && TrianglePair{i, j} < claim.pair;
+      out.behind += of == squared && claim.pair < TrianglePair{i, j};
     }
   }
   return out;
@@ -204,30 +235,36 @@ Counted counted(const Scene& scene, std::uint32_t a, std::uint32_t b, const Q& s
 // Scenes on a grid of any scale: pairs that tie, that touch and that are degenerate.
 TEST(DistanceAccounting, MissedPairsAreThoseOfRationalNumbers) {
   rational::Draws random(17);
-  std::uint64_t nearer = 0, ties = 0;
+  std::uint64_t nearer = 0, before = 0, behind = 0;
   for (const Case& one : cases(Kind::objects, trials(16))) {
-    // Each answer names any pair of its objects, with its own distance.
+    // Each answer names any pair of its objects, with its own distance; or the last of the nearest.
     std::vector<ClaimedDistance> claims = right_answers(one.scene, {.pairs = Kind::objects});
-    std::uint64_t expected = 0;
+    Counted expected;
     for (ClaimedDistance& claim : claims) {
       const Object &a = one.scene.objects[claim.a], &b = one.scene.objects[claim.b];
       if (claim.a != claim.b) {
+        const TrianglePair any = {a.first_triangle + random.below(a.triangle_count),
+                                  b.first_triangle + random.below(b.triangle_count)};
         claim = claim_of(one.scene, claim.a, claim.b,
-                         {a.first_triangle + random.below(a.triangle_count),
-                          b.first_triangle + random.below(b.triangle_count)});
+                         random.coin() ? any : last_as_near(one.scene, claim));
       }
-      const Counted found = counted(one.scene, claim.a, claim.b, Q(claim.squared));
-      expected += found.nearer;
-      ties += found.as_near - 1;  // without the claim itself
+      const Counted found = counted(one.scene, claim);
+      expected.nearer += found.nearer;
+      expected.before += found.before;
+      behind += found.behind;
     }
     const DistanceAccounting found = account_distances(one.scene, claims, {});
-    ASSERT_EQ(found.nearer, expected);
+    ASSERT_EQ(found.nearer, expected.nearer);
+    ASSERT_EQ(found.earlier, expected.before);
     ASSERT_EQ(found.wrong, 0u);
-    nearer += expected;
+    ASSERT_EQ(found.holds(), expected.nearer + expected.before == 0);
+    nearer += expected.nearer;
+    before += expected.before;
   }
   EXPECT_GT(nearer, static_cast<std::uint64_t>(trials(50)));
-  // The twin: to count pairs as near as well would be noticed.
-  EXPECT_GT(ties, static_cast<std::uint64_t>(trials(20)));
+  EXPECT_GT(before, static_cast<std::uint64_t>(trials(10)));
+  // The twin: to count pairs behind the answer as well would be noticed.
+  EXPECT_GT(behind, static_cast<std::uint64_t>(trials(10)));
 }
 
 Scene three_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
@@ -311,6 +348,32 @@ TEST(DistanceAccounting, FindsADistanceThatIsOneBitOff) {
   }
 }
 
+TEST(DistanceAccounting, FindsPointsAndFeaturesThatAreNotTheFirstNearest) {
+  rational::Draws random(23);
+  for (const Kind kind : {Kind::objects, Kind::nearest, Kind::all}) {
+    for (const Case& one : cases(kind, trials(8))) {
+      const auto wrong = [&](const std::function<void(ClaimedDistance&)>& change) {
+        auto claims = one.claims;
+        change(claims[random.below(claims.size())]);
+        return one.account(claims).wrong;
+      };
+      const std::size_t side = random.below(2u);
+      const int axis = static_cast<int>(random.below(3u));
+      EXPECT_EQ(wrong([&](ClaimedDistance& c) {
+                  double& x = c.points[side][axis];
+                  x = std::nextafter(x, random.coin() ? HUGE_VAL : -HUGE_VAL);
+                }),
+                1u);
+      EXPECT_EQ(wrong([&](ClaimedDistance& c) { c.points[side][axis] = std::nan(""); }), 1u);
+      EXPECT_EQ(wrong([&](ClaimedDistance& c) {
+                  c.features[side] = static_cast<std::uint8_t>((c.features[side] + 1) % 7);
+                }),
+                1u);
+      EXPECT_EQ(wrong([](ClaimedDistance&) {}), 0u);
+    }
+  }
+}
+
 /// Points on a line, an object each.
 Scene points(std::initializer_list<double> places) {
   Scene scene;
@@ -343,13 +406,45 @@ TEST(DistanceAccounting, OfObjectsAsFarTheLowerOneIsTheNeighbour) {
   EXPECT_EQ(account_distances(tie, later, nearest).nearer, 1u);
 }
 
+TEST(DistanceAccounting, ZerosHaveNoSign) {
+  const Scene scene = points({0, 1});
+  ClaimedDistance claim = claim_of(scene, 0, 1, {0, 1});
+  EXPECT_TRUE(account_distances(scene, std::array{claim}, {}).holds());
+  claim.points[0].y() = -0.0;
+  EXPECT_EQ(account_distances(scene, std::array{claim}, {}).wrong, 1u);
+}
+
+// Of objects that meet all pairs behind the first one that meets are settled.
+TEST(DistanceAccounting, OfObjectsThatMeetTheAnswerIsTheFirstPairThatMeets) {
+  Scene scene = points({0, 5, 5, 5, 7, 5});
+  scene.objects = {{.name = "a", .first_triangle = 0, .triangle_count = 3},
+                   {.name = "b", .first_triangle = 3, .triangle_count = 3}};
+  const auto account = [&](const TrianglePair& pair) {
+    return account_distances(scene, std::array{claim_of(scene, 0, 1, pair)}, {});
+  };
+  const DistanceAccounting right = account({1, 3});
+  EXPECT_TRUE(right.holds());
+  EXPECT_EQ(right.objects_meet, 5u);  // all of the last two triangles but the answer
+  EXPECT_EQ(right.farther_by_boxes, 3u);
+  EXPECT_EQ(account({1, 5}).earlier, 1u);
+  EXPECT_EQ(account({2, 5}).earlier, 3u);
+  EXPECT_EQ(account({2, 5}).nearer, 0u);
+  EXPECT_FALSE(account({2, 5}).holds());
+}
+
 TEST(DistanceAccounting, RefusesAnswersThatNameNothing) {
   const Scene scene = points({0, 1, 2});
   const ClaimedDistance good = claim_of(scene, 0, 1, {0, 1});
   EXPECT_THROW(account_distances(scene, std::array{good, good}, {}), std::logic_error);
+  const auto changed = [&](std::uint32_t a, std::uint32_t b, const TrianglePair& pair) {
+    ClaimedDistance out = good;
+    out.a = a;
+    out.b = b;
+    out.pair = pair;
+    return out;
+  };
   for (const ClaimedDistance& bad :
-       {ClaimedDistance{1, 0, {0, 1}, 1, "1/1"}, ClaimedDistance{0, 3, {0, 1}, 1, "1/1"},
-        ClaimedDistance{0, 1, {0, 2}, 1, "1/1"}, ClaimedDistance{0, 1, {1, 1}, 1, "1/1"}})
+       {changed(1, 0, {0, 1}), changed(0, 3, {0, 1}), changed(0, 1, {0, 2}), changed(0, 1, {1, 1})})
     EXPECT_THROW(account_distances(scene, std::array{bad}, {}), std::logic_error);
   EXPECT_THROW(account_distances(scene, {}, {.kind = Kind::all}), std::logic_error);
   EXPECT_THROW(account_distances(scene, {}, {.within = -1}), std::logic_error);

@@ -3,6 +3,9 @@
 #include "verify/certificate/integer_distance.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "verify/certificate/integer_direction.h"
@@ -47,7 +50,39 @@ bool construct(PointSearch& on_a, PointSearch& on_b, const ScaledPair& pair, int
          on_b.edge_and_edge(b, of_b - 3, a, of_a - 3);
 }
 
+/// Whether x is the fraction, rounded: whether that lies between the middles beside x.
+bool is_rounded(double x, const mpq_class& exact) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (std::isnan(x) || (x == 0 && std::signbit(x))) return false;
+  const bool even = (std::bit_cast<std::uint64_t>(x) & 1) == 0;
+  // 2^1024 stands for infinity.
+  const auto rational = [](double y) {
+    return std::isfinite(y) ? mpq_class(y) : mpq_class((y > 0 ? 1 : -1) * (mpz_class(1) << 1024));
+  };
+  const auto beside = [&](double next) {
+    return cmp(exact, mpq_class((rational(x) + rational(next)) / 2));
+  };
+  const int below = x == -kInfinity ? 1 : beside(std::nextafter(x, -kInfinity));
+  const int above = x == kInfinity ? -1 : beside(std::nextafter(x, kInfinity));
+  return (below > 0 || (below == 0 && even)) && (above < 0 || (above == 0 && even));
+}
+
 }  // namespace
+
+bool is_rounded(const Vec3& x, const FractionPoint& point) {
+  for (int k = 0; k < 3; ++k) {
+    mpq_class exact(point.over[static_cast<std::size_t>(k)], point.under);
+    exact.canonicalize();
+    if (point.exponent >= 0) {
+      exact <<= static_cast<mp_bitcnt_t>(point.exponent);
+    } else {
+      exact >>= static_cast<mp_bitcnt_t>(-point.exponent);
+    }
+    exact += mpq_class(point.from[k]);
+    if (!is_rounded(x[k], exact)) return false;
+  }
+  return true;
+}
 
 IntegerDistance integer_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
   thread_local PointSearch on_a, on_b;
@@ -64,6 +99,8 @@ IntegerDistance integer_distance(const std::array<Vec3, 3>& a, const std::array<
       if (pair.exponent > 0) out.squared.over <<= 2 * pair.exponent;
       if (pair.exponent < 0) out.squared.under <<= -2 * pair.exponent;
       out.features = {static_cast<std::uint8_t>(of_a), static_cast<std::uint8_t>(of_b)};
+      out.points = {FractionPoint{on_a.point(), on_a.scale(), pair.exponent, a[0]},
+                    FractionPoint{on_b.point(), on_b.scale(), pair.exponent, a[0]}};
       return out;
     }
   }

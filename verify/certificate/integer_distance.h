@@ -15,12 +15,26 @@
 
 namespace farcull {
 
+/// (over[k] / under) 2^exponent + from[k] along axis k.
+struct FractionPoint {
+  std::array<mpz_class, 3> over;
+  mpz_class under = 1;  // > 0
+  int exponent = 0;
+  Vec3 from;
+};
+/// True iff each coordinate of x is that of the point, rounded to the nearest double, of two as
+/// near to the even one; beyond the largest double infinity, as IEEE 754 rounds. -0.0 is no
+/// rounded number.
+bool is_rounded(const Vec3& x, const FractionPoint& point);
+
 /// The distance of two triangles, and where on them its ends lie. Features are numbered: 0 to 2 the
 /// corners, 3 to 5 the edge from corner 0 to 2 to the next one, 6 the face. Of all pairs of nearest
 /// points this is the first pair of features that has one, that of a compared first.
 struct IntegerDistance {
   Fraction squared;
   std::array<std::uint8_t, 2> features{};
+  /// The only two nearest points on these features, of a and of b.
+  std::array<FractionPoint, 2> points;
 };
 
 /// Points are constructed for one pair of features after the other, until two of them lie in their

@@ -107,6 +107,10 @@ class PointSearch {
     multiply(under, value_, value_);
   }
 
+  /// The point constructed last, as a vector over an integer > 0.
+  const BigVector& point() const { return point_; }
+  const mpz_class& scale() const { return scale_; }
+
   /// True iff the normal of t is not zero.
   bool is_triangle(const BigCorners& t) {
     make_normal(t);
