@@ -47,40 +47,53 @@ Triple<T> cross(const Triple<T>& a, const Triple<T>& b) {
   return {T(a[1] * b[2] - a[2] * b[1]), T(a[2] * b[0] - a[0] * b[2]), T(a[0] * b[1] - a[1] * b[0])};
 }
 
-/// The square of the distance of two closed triangles (or the segments or points that they are).
-/// The gap of their projections onto a direction is never longer than the distance times the
-/// direction's length, and is that along the direction between two closest points, which depends
-/// only on the features that these lie inside: corner and corner, corner and edge, corner and face,
-/// edge and edge. So it is the largest quotient among 2 + 9 + 18 + 9 directions, or 0 where there
-/// is no gap.
-template <class T>
-Fraction<T> squared_distance(const Corners<T>& a, const Corners<T>& b) {
-  Fraction<T> out;
+/// Directions along which two triangles (or the segments or points that they are) can be as far
+/// apart as they are: the direction between two closest points depends only on the features that
+/// these lie inside, corner and corner, corner and edge, corner and face, edge and edge. So they
+/// are 2 + 9 + 18 + 9.
+template <class T, class Visit>
+void each_direction(const Corners<T>& a, const Corners<T>& b, const Visit& visit) {
   const auto edge = [](const Corners<T>& t, std::size_t i) { return minus(t[(i + 1) % 3], t[i]); };
-  const auto by = [&](const Triple<T>& d) {
-    const std::array<T, 3> s = {dot(d, a[0]), dot(d, a[1]), dot(d, a[2])};
-    const std::array<T, 3> t = {dot(d, b[0]), dot(d, b[1]), dot(d, b[2])};
-    const auto [s_lo, s_hi] = std::minmax_element(s.begin(), s.end());
-    const auto [t_lo, t_hi] = std::minmax_element(t.begin(), t.end());
-    const T gap = *s_hi < *t_lo ? T(*t_lo - *s_hi) : T(*s_lo - *t_hi);
-    if (!(gap > 0)) return;
-    const Fraction<T> own = {T(gap * gap), dot(d, d)};
-    if (out < own) out = own;
-  };
-  by(cross(edge(a, 0), edge(a, 1)));
-  by(cross(edge(b, 0), edge(b, 1)));
+  visit(cross(edge(a, 0), edge(a, 1)));
+  visit(cross(edge(b, 0), edge(b, 1)));
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       const Triple<T> between = minus(b[j], a[i]);
-      by(between);
-      by(cross(edge(a, i), edge(b, j)));
+      visit(between);
+      visit(cross(edge(a, i), edge(b, j)));
       for (const Triple<T>& e : {edge(a, i), edge(b, j)}) {
         const T ee = dot(e, e), be = dot(between, e);
-        by({T(between[0] * ee - e[0] * be), T(between[1] * ee - e[1] * be),
-            T(between[2] * ee - e[2] * be)});
+        visit(Triple<T>{T(between[0] * ee - e[0] * be), T(between[1] * ee - e[1] * be),
+                        T(between[2] * ee - e[2] * be)});
       }
     }
   }
+}
+
+/// The gap of the projections of two triangles onto a direction, times its length; negative or 0
+/// where there is none.
+template <class T>
+T gap_along(const Triple<T>& d, const Corners<T>& a, const Corners<T>& b) {
+  const std::array<T, 3> s = {dot(d, a[0]), dot(d, a[1]), dot(d, a[2])};
+  const std::array<T, 3> t = {dot(d, b[0]), dot(d, b[1]), dot(d, b[2])};
+  const auto [s_lo, s_hi] = std::minmax_element(s.begin(), s.end());
+  const auto [t_lo, t_hi] = std::minmax_element(t.begin(), t.end());
+  return *s_hi < *t_lo ? T(*t_lo - *s_hi) : T(*s_lo - *t_hi);
+}
+
+/// The square of the distance of two closed triangles. The gap of their projections onto a
+/// direction is never longer than the distance times the direction's length, and is that along the
+/// direction between two closest points. So it is the largest quotient among all these directions,
+/// or 0 where there is no gap.
+template <class T>
+Fraction<T> squared_distance(const Corners<T>& a, const Corners<T>& b) {
+  Fraction<T> out;
+  each_direction(a, b, [&](const Triple<T>& d) {
+    const T gap = gap_along(d, a, b);
+    if (!(gap > 0)) return;
+    const Fraction<T> own = {T(gap * gap), dot(d, d)};
+    if (out < own) out = own;
+  });
   return out;
 }
 

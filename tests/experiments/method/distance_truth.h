@@ -5,14 +5,12 @@
 // rounded outwards to a grid, and each triangle, and each group of triangles, has a box of grid
 // cells. Two boxes whose gap is longer than the distance of some pair hold no nearest pair. Of
 // pairs that are left, the projections of both triangles onto some direction may be farther apart
-// than that. This is decided for three directions in cells, then for both normals in integers of
-// any length, from the coordinates as given. For the rest the distance is computed, as a quotient
-// of integers (tests/core/proximity/near_lab.h).
+// than that, which is decided in cells as well. For the rest the distance is computed, as a
+// quotient of integers of any length (tests/core/proximity/near_lab.h).
 // tests/experiments/method/distance_truth_test.cpp compares all this with code that leaves out
 // nothing but triangles with boxes too far apart.
 #pragma once
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -53,16 +51,6 @@ inline Integer least_square(const CellBox& a, const CellBox& b) {
   }
   return out;
 }
-/// The square of the length of the box around both: no two points of them are farther apart.
-inline Integer most_square(const CellBox& a, const CellBox& b) {
-  Integer out = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Integer length = std::max(a.hi[k] - b.lo[k], b.hi[k] - a.lo[k]);
-    out += length * length;
-  }
-  return out;
-}
-
 struct Nearest {
   ObjectPair objects;
   Q squared;
@@ -74,7 +62,8 @@ class Truth {
  public:
   explicit Truth(const Scene& scene)
       : scene_(scene), owner_(owners(scene)), scale_(distance_lab::scale_of(scene.vertices)) {
-    // Cells: coordinates times 2^shift_ are below 2^40, so that squares are below 2^85.
+    // Cells: coordinates times 2^shift_ are below 2^38, so that squares of distances are below
+    // 2^80.
     double most = 0;
     for (const Vec3& p : scene.vertices) {
       most = std::max(most, p.cwiseAbs().maxCoeff());
@@ -82,7 +71,7 @@ class Truth {
       for (int k = 0; k < 3; ++k) x[static_cast<std::size_t>(k)] = Z(Q(Q(p[k]) * scale_));
       points_.push_back(std::move(x));
     }
-    if (most > 0) shift_ = 39 - std::ilogb(most);
+    if (most > 0) shift_ = 37 - std::ilogb(most);
     for (const Vec3& p : scene.vertices) {
       std::array<Cell, 3> cell{};
       for (std::size_t k = 0; k < 3; ++k)
@@ -260,8 +249,7 @@ class Truth {
   // The least squared distance of an object's triangles to those below the node.
   std::optional<Squared> least_of(std::uint32_t object, std::uint32_t node, std::uint32_t self) {
     if (node == kNone || root_[object] == kNone) return std::nullopt;
-    // First an upper bound, in cells: what can be nearest is no farther than the longest line
-    // between the boxes of any pair.
+    // First an upper bound, in cells: what can be nearest is no farther than any two corners.
     constexpr Integer kFar = Integer{1} << 120;
     const Object& of = scene_.objects[object];
     Integer limit = kFar;
@@ -271,7 +259,7 @@ class Truth {
       walk(
           i, node, self, [&] { return limit; },
           [&](std::uint32_t j) {
-            const Integer most = most_square(boxes_[i], boxes_[j]);
+            const Integer most = most_square(i, j);
             own = std::min(own, most);
             limit = std::min(limit, most);
           });
@@ -284,7 +272,8 @@ class Truth {
       walk(
           i, node, self, [&] { return limit; },
           [&](std::uint32_t j) {
-            if (least && (least->numerator == 0 || farther(i, j, *least))) return;
+            if (least && least->numerator == 0) return;
+            if (farther(i, j, limit)) return;
             Squared squared = squared_distance(i, j);
             if (least && !(squared < *least)) return;
             least = std::move(squared);
@@ -309,7 +298,7 @@ class Truth {
           });
       std::ranges::sort(others);
       for (const std::uint32_t j : others) {
-        if (farther_in_cells(i, j, limit) || farther(i, j, squared)) continue;
+        if (farther(i, j, limit)) continue;
         if (!(squared_distance(i, j) == squared)) continue;
         out.push_back({i, j});
         if (squared.numerator == 0) return out;
@@ -326,73 +315,54 @@ class Truth {
     ++computed_;
     return near_lab::squared_distance(corners(i), corners(j));
   }
-  // Proves that the pair is farther than the limit, in square cells: the gap of the projections
-  // onto a direction is. Any direction proves it; these are the normals and what is perpendicular
-  // to the longest edges, as far as integers up to 2^20 can say.
-  bool farther_in_cells(std::uint32_t i, std::uint32_t j, Integer limit) const {
-    if (limit >= Integer{1} << 80) return false;
-    const Vec3 a = cell_edge(i, 0), b = cell_edge(j, 0);
-    for (const Vec3& d : {a.cross(cell_edge(i, 1)).eval(), b.cross(cell_edge(j, 1)).eval(),
-                          longest_edge(i).cross(longest_edge(j)).eval()}) {
-      const double most = d.cwiseAbs().maxCoeff();
-      if (!(most > 0)) continue;
-      std::array<Cell, 3> n{};
-      for (std::size_t k = 0; k < 3; ++k)
-        n[k] = std::llround(d[static_cast<Eigen::Index>(k)] / most * 0x1p20);
-      const auto along = [&](std::uint32_t t) {
-        std::array<Integer, 3> out{};
-        for (std::size_t corner = 0; corner < 3; ++corner) {
-          const auto& cell = cells_[scene_.triangles[t][corner]];
-          for (std::size_t k = 0; k < 3; ++k) out[corner] += Integer{n[k]} * cell[k];
+  // Two corners are no farther apart than this, in square cells, rounded up.
+  Integer most_square(std::uint32_t i, std::uint32_t j) const {
+    Integer out = Integer{1} << 120;
+    for (const std::uint32_t v : scene_.triangles[i]) {
+      for (const std::uint32_t w : scene_.triangles[j]) {
+        Integer squared = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const Integer length = std::abs(cells_[v][k] - cells_[w][k]) + 3;
+          squared += length * length;
         }
-        return std::minmax({out[0], out[1], out[2]});
-      };
-      const auto [s_lo, s_hi] = along(i);
-      const auto [t_lo, t_hi] = along(j);
-      Integer gap = std::max(t_lo - s_hi, s_lo - t_hi), squared = 0;
-      for (const Cell x : n) {
-        gap -= 4 * (x < 0 ? -x : x);  // two for each of the points
-        squared += Integer{x} * x;
+        out = std::min(out, squared);
       }
-      // Below 2^63, so the square is below 2^126.
-      if (gap > 0 && gap * gap > limit * squared) return true;
-    }
-    return false;
-  }
-  Vec3 cell_edge(std::uint32_t t, std::size_t k) const {
-    const auto& v = scene_.triangles[t];
-    Vec3 out;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      out[static_cast<Eigen::Index>(axis)] =
-          static_cast<double>(cells_[v[(k + 1) % 3]][axis] - cells_[v[k]][axis]);
     }
     return out;
   }
-  Vec3 longest_edge(std::uint32_t t) const {
-    Vec3 out = cell_edge(t, 0);
-    for (const std::size_t k : {1u, 2u}) {
-      const Vec3 other = cell_edge(t, k);
-      if (other.squaredNorm() > out.squaredNorm()) out = other;
-    }
-    return out;
-  }
-  // Proves that the pair is farther than `squared`: the gap of the projections onto the normal of
-  // one of them is.
-  bool farther(std::uint32_t i, std::uint32_t j, const Squared& squared) const {
-    const Corners a = corners(i), b = corners(j);
-    for (const Corners* of : {&a, &b}) {
-      const auto d =
-          near_lab::cross(near_lab::minus((*of)[1], (*of)[0]), near_lab::minus((*of)[2], (*of)[0]));
-      std::array<Z, 3> s, t;
-      for (std::size_t k = 0; k < 3; ++k) {
-        s[k] = near_lab::dot(d, a[k]);
-        t[k] = near_lab::dot(d, b[k]);
+  // Proves that the pair is farther than the limit, in square cells: the gap of the projections
+  // onto a direction is. Any direction proves it. The one with the largest gap is chosen in
+  // doubles, and rounded to integers up to 2^20.
+  bool farther(std::uint32_t i, std::uint32_t j, Integer limit) const {
+    if (limit >= Integer{1} << 80) return false;
+    // Relative to a corner, so that doubles are exact.
+    const std::array<Cell, 3>& origin = cells_[scene_.triangles[i][0]];
+    const auto converted = [&]<class T>(std::uint32_t t, T) {
+      near_lab::Corners<T> out;
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        for (std::size_t k = 0; k < 3; ++k)
+          out[corner][k] = static_cast<T>(cells_[scene_.triangles[t][corner]][k] - origin[k]);
       }
-      const Z gap = std::max(Z(std::min({t[0], t[1], t[2]}) - std::max({s[0], s[1], s[2]})),
-                             Z(std::min({s[0], s[1], s[2]}) - std::max({t[0], t[1], t[2]})));
-      if (gap > 0 && squared < Squared{gap * gap, near_lab::dot(d, d)}) return true;
-    }
-    return false;
+      return out;
+    };
+    const auto a = converted(i, 0.0), b = converted(j, 0.0);
+    near_lab::Triple<double> best{};
+    double largest = 0;
+    near_lab::each_direction(a, b, [&](const near_lab::Triple<double>& d) {
+      const double gap = near_lab::gap_along(d, a, b), squared = near_lab::dot(d, d);
+      if (!(gap > 0) || !(gap * gap > largest * squared)) return;
+      largest = gap * gap / squared;
+      best = d;
+    });
+    if (!(largest > static_cast<double>(limit))) return false;
+    const double most = std::max({std::abs(best[0]), std::abs(best[1]), std::abs(best[2])});
+    near_lab::Triple<Integer> d;
+    for (std::size_t k = 0; k < 3; ++k) d[k] = std::llround(best[k] / most * 0x1p20);
+    // Each of the two points is less than two cells from its cell's lower corner.
+    Integer gap = near_lab::gap_along(d, converted(i, Integer{}), converted(j, Integer{}));
+    for (const Integer x : d) gap -= 4 * (x < 0 ? -x : x);
+    // Below 2^63, so the square is below 2^126.
+    return gap > 0 && gap * gap > limit * near_lab::dot(d, d);
   }
 
   const Scene& scene_;
