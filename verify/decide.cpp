@@ -259,18 +259,21 @@ FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> c
     out.decided += part.size();
     step *= 2;
   }
-  keep_first(limit, all);
+  const bool more = keep_first(limit, all);
+  out.complete = !more && out.decided == candidates.size();
   return out;
 }
 
-void keep_first(std::uint64_t limit, Collisions& collisions) {
+bool keep_first(std::uint64_t limit, Collisions& collisions) {
   std::vector<TrianglePair>& pairs = collisions.pairs;
   std::vector<TrianglePair>& neighbours = collisions.neighbour_pairs;
+  const bool more = pairs.size() + neighbours.size() > limit;
   while (pairs.size() + neighbours.size() > limit) {
     const bool last_is_neighbour =
         pairs.empty() || (!neighbours.empty() && pairs.back() < neighbours.back());
     (last_is_neighbour ? neighbours : pairs).pop_back();
   }
+  return more;
 }
 
 Collisions FrameDecider::decide(const Scene& scene, std::span<const TrianglePair> candidates,

@@ -294,7 +294,10 @@ ExactResult all_colliding_pairs(const Scene& scene, const ExactQuestion& questio
     }
     const TrianglePair pair = {std::min(a->triangle, b->triangle),
                                std::max(a->triangle, b->triangle)};
-    if (is_ignored(pair)) return;
+    if (is_ignored(pair)) {
+      ++result.ignored;
+      return;
+    }
     chunk.push_back(pair);
     if (chunk.size() == kChunk) decide_chunk();
   });

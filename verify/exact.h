@@ -28,8 +28,8 @@
 #include <thread>
 #include <vector>
 
-#include "core/scene/object_pair.h"
 #include "core/scene/moved.h"
+#include "core/scene/object_pair.h"
 #include "core/scene/scene.h"
 #include "verify/answers.h"
 
@@ -75,7 +75,8 @@ Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
 
 struct FirstCollisions {
   Collisions collisions;      // the counts are of the candidates that were decided
-  std::uint64_t decided = 0;  // the first so many candidates; not all where the limit was reached
+  std::uint64_t decided = 0;  // the first so many candidates
+  bool complete = true;       // all were decided, and not more than the limit collide
 };
 
 /// The first `limit` candidates that collide, neighbours among them. Decides a block of candidates
@@ -84,9 +85,9 @@ struct FirstCollisions {
 FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> candidates,
                              std::uint64_t limit, const ExactQuestion& question = {});
 
-/// Removes the last pairs, until `limit` are left, neighbours among them. Precondition: both lists
-/// are sorted. The counts stay.
-void keep_first(std::uint64_t limit, Collisions& collisions);
+/// Removes the last pairs, until `limit` are left, neighbours among them; returns whether there
+/// were more. Precondition: both lists are sorted. The counts stay.
+bool keep_first(std::uint64_t limit, Collisions& collisions);
 
 /// decide() for one frame of a scene after the other. The answer about a pair depends on the
 /// corners of its triangles alone, so the answers about pairs of which neither triangle moved are
@@ -123,6 +124,7 @@ struct ExactResult {
   std::uint64_t neighbours = 0;               // of the pairs that count
   std::uint64_t box_pairs = 0;  // pairs that count whose closed boxes overlap; with a clearance,
                                 // those not farther apart along an axis, by differences in double
+  std::uint64_t ignored = 0;    // such pairs that do not count, since their objects are ignored
   double join_ms = 0;           // boxes and box join, wall clock
   double predicates_ms = 0;     // exact decisions on the overlapping pairs, wall clock
 };

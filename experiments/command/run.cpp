@@ -3,10 +3,12 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "experiments/measure/frames.h"
 #include "experiments/record/certificate.h"
 #include "experiments/record/output.h"
@@ -31,12 +33,40 @@ Value choose(const std::string& option, const std::string& given,
   throw Error(option, "'" + given + "' is no choice", "give " + known);
 }
 
+std::uint64_t parse_limit(const std::string& text) {
+  const std::optional<std::uint64_t> value = parse_number<std::uint64_t>(text);
+  if (!value || *value == 0)
+    throw Error("--limit", "'" + text + "' is no number of pairs",
+                "give a whole number, 1 or more");
+  return *value;
+}
+
+std::vector<ContactKind> parse_kinds(const std::string& list) {
+  std::vector<ContactKind> out;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string name = list.substr(begin, end - begin);
+    const std::optional<ContactKind> kind = parse_contact_kind(name);
+    if (!kind) {
+      std::string known;
+      for (const ContactKind one : kContactKinds)
+        known.append(known.empty() ? "" : ", ").append(name_of(one));
+      throw Error("--kinds", "'" + name + "' is no kind of contact", "give some of " + known);
+    }
+    out.push_back(*kind);
+    begin = end + 1;
+  }
+  return out;
+}
+
 constexpr const char* kRunExamples =
     "Examples:\n"
     "  farcull run two-spheres\n"
     "  farcull run bunny.off dragon.off --method cullide --resolution 256\n"
     "  farcull run cloth.obj --self --pairs pairs.csv\n"
     "  farcull run a.obj b.obj --clearance 0.001\n"
+    "  farcull run a.obj b.obj --pairs pairs.csv --kinds crossing,coplanar --segments\n"
+    "  farcull run robot.json --ignore 'link*:base,hand:cup' --limit 100\n"
     "  farcull run 'cloth_%04d.obj' body.obj --frames 1:100 --no-verify\n"
     "  farcull run two-spheres --frames 10 --certificate c_%04d.json\n"
     "  farcull run scene.json --json - | jq .verification\n"
@@ -134,6 +164,13 @@ void RunCommand::add_method_options(CLI::App& command) {
   add_option(command, "--device", device_, "DEVICE", device_help_of_methods());
   add_flag(command, "--self", self_, kSelfHelp);
   add("--clearance", clearance_, "D", kClearanceHelp);
+  add("--ignore", ignore_, "LIST",
+      "pairs of objects that are not tested against each\n"
+      "other, as in a:b,link*:gripper; * is any text");
+  add("--ignore-file", ignore_file_, "FILE", "the same, a pair a line; # begins a comment");
+  add("--limit", limit_, "N",
+      "only the first N colliding pairs, in the order of\n"
+      "--pairs; the exact tests stop there");
   add_flag(command, "--full", full_, kFullHelp);
 }
 
@@ -153,6 +190,16 @@ void RunCommand::add_outputs(CLI::App& command) {
       "triangles within their object; with --self also\n"
       "neighbours, 0 or 1 (see farcull help pairs)");
   add_flag(command, "--faces", faces_, kFacesHelp);
+  add_flag(command, "--contacts", contacts_,
+           "how the triangles of each pair meet: counts in the table\n"
+           "and the record, a column `contact` in the file of\n"
+           "--pairs (see farcull help pairs)");
+  add_flag(command, "--segments", segments_,
+           "with --pairs: the same, and the ends of what the two\n"
+           "triangles have in common");
+  add("--kinds", kinds_, "LIST",
+      "with --pairs: the same, and pairs of these kinds alone,\n"
+      "as in crossing,coplanar");
   add("--json", outputs_.json, "FILE", kJsonHelp);
   add("--certificate", outputs_.certificate, "FILE",
       "write evidence for every pair to this file, for\n"
@@ -192,6 +239,9 @@ RunOptions RunCommand::parse() const {
   out.conservative = conservative_;
   if (views_) out.views = parse_views_option(*views_, pairs);
   if (clearance_) out.clearance = parse_clearance(*clearance_);
+  if (limit_) out.limit = parse_limit(*limit_);
+  if (contacts_ || kinds_) out.contacts = ContactDetail::kinds;
+  if (segments_) out.contacts = ContactDetail::segments;
   out.device = device_of(device_);
   out.verify = !no_verify_;
   out.full = full_;
@@ -239,6 +289,42 @@ void RunCommand::refuse_idle(Method chosen) const {
     throw Error("--full", "exact leaves nothing out", "leave --full out");
 }
 
+void RunCommand::refuse_outputs() const {
+  const auto needs_pairs = [&](const char* option, bool given, const char* what) {
+    if (!given || outputs_.pairs) return;
+    throw Error(option, std::string(what) + " the file of --pairs, which is not asked for",
+                "give --pairs FILE.csv as well");
+  };
+  needs_pairs("--faces", faces_, "adds columns to");
+  needs_pairs("--segments", segments_, "adds columns to");
+  needs_pairs("--kinds", kinds_.has_value(), "chooses the rows of");
+  if (!outputs_.certificate) return;
+  const auto refuse = [](const char* option, bool given) {
+    if (!given) return;
+    throw Error(option, "a certificate is about all colliding pairs of all objects",
+                std::string("leave ") + option + " or --certificate out");
+  };
+  refuse("--ignore", ignore_.has_value());
+  refuse("--ignore-file", ignore_file_.has_value());
+  refuse("--limit", limit_.has_value());
+}
+
+PairColumns RunCommand::columns() const {
+  return {.faces = faces_,
+          .contacts = contacts_ || segments_ || kinds_,
+          .segments = segments_,
+          .kinds = kinds_ ? parse_kinds(*kinds_) : std::vector<ContactKind>()};
+}
+
+std::vector<IgnoredNames> RunCommand::ignored() const {
+  std::vector<IgnoredNames> out;
+  if (ignore_) out = parse_ignored(*ignore_);
+  if (ignore_file_) {
+    for (IgnoredNames& names : read_ignored(*ignore_file_)) out.push_back(std::move(names));
+  }
+  return out;
+}
+
 std::string RunCommand::with_self() const {
   std::string command = kind_ == Kind::run ? "run" : kind_ == Kind::verify ? "verify" : "plan";
   command = command_with("farcull " + command, scene_);
@@ -258,10 +344,8 @@ int RunCommand::run() const {
   const RunOptions options = parse();
   check_scene(scene_);
   if (kind_ == Kind::plan) return plan(options);
-  if (faces_ && !outputs_.pairs) {
-    throw Error("--faces", "adds columns to the file of --pairs, which is not asked for",
-                "give --pairs FILE.csv as well");
-  }
+  refuse_outputs();
+  columns();
   std::optional<FrameRange> range;
   if (frames_) range = parse_frames(*frames_);
   const Outputs outputs = checked(outputs_, scene_files(scene_, range), range);
@@ -272,7 +356,9 @@ int RunCommand::plan(const RunOptions& options) const {
   const Outputs outputs = checked(outputs_, scene_files(scene_));
   Scene scene = load_scene(scene_);
   if (self_) make_self(scene);
-  const Plan planned = farcull::plan(scene, options);
+  RunOptions all = options;
+  all.ignored = ignored_objects(scene, ignored());
+  const Plan planned = farcull::plan(scene, all);
   if (outputs.json) write_json(plan_json(scene, planned), *outputs.json);
   if (!outputs.to_stdout()) {
     write_output("-",
@@ -287,10 +373,12 @@ int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) cons
   if (progress) progress("reading the scene");
   Scene scene = load_scene(scene_);
   if (self_) make_self(scene);
+  RunOptions all = options;
+  all.ignored = ignored_objects(scene, ignored());
   Session session(options.device);
-  const Record record = farcull::run(scene, options, session, progress);
+  const Record record = farcull::run(scene, all, session, progress);
   terminal.clear();
-  if (outputs.pairs) write_output(*outputs.pairs, pairs_csv(scene, record, faces_));
+  if (outputs.pairs) write_output(*outputs.pairs, pairs_csv(scene, record, columns()));
   if (outputs.certificate) {
     write_output(*outputs.certificate, to_text(certificate_of(scene, record)));
   }
@@ -315,8 +403,11 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
                           .self = self_,
                           .strict = kind_ == Kind::verify,
                           .pairs = outputs.pairs.has_value(),
-                          .faces = faces_,
+                          .columns = columns(),
                           .certificates = outputs.certificate.has_value()};
+  if (const std::vector<IgnoredNames> names = ignored(); !names.empty()) {
+    question.ignored = [names](const Scene& scene) { return ignored_objects(scene, names); };
+  }
   if (progress) progress("reading the scene");
   FrameSource source(scene_, range, self_);
   if (const std::optional<Error> missing = source.missing()) {

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "experiments/command/ignore.h"
 #include "experiments/command/options.h"
+#include "experiments/record/output.h"
 #include "experiments/scenes/frames.h"
 
 namespace farcull {
@@ -24,6 +26,10 @@ class RunCommand {
   void add_outputs(CLI::App& command);
   RunOptions parse() const;
   void refuse_idle(Method chosen) const;
+  /// Throws Error where an output cannot say what another option asks.
+  void refuse_outputs() const;
+  PairColumns columns() const;
+  std::vector<IgnoredNames> ignored() const;
   /// The command line that tests a scene of one object.
   std::string with_self() const;
   /// Of verify: the verdict, green or red on a terminal; else empty.
@@ -37,9 +43,10 @@ class RunCommand {
   Text method_, resolution_, radius_, offset_, depth_, depth_format_, query_, clusters_, views_,
       device_;
   Text rounds_, clear_, level_;
-  Text clearance_, frames_;
+  Text clearance_, frames_, ignore_, ignore_file_, limit_, kinds_;
   Outputs outputs_;
   bool self_ = false, no_verify_ = false, full_ = false, faces_ = false, conservative_ = false;
+  bool contacts_ = false, segments_ = false;
 };
 
 }  // namespace farcull

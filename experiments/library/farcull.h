@@ -148,8 +148,8 @@ struct ColliderResult {
   std::vector<ColliderContact> contacts;            // one for each of `pairs`, and
   std::vector<ColliderContact> neighbour_contacts;  // of `neighbour_pairs`; empty without
                                                     // ColliderOptions::contacts
-  /// Whether all candidates were decided. If not, ColliderOptions::limit was reached first: there
-  /// may be more pairs behind the last one, and none that is missing before it.
+  /// False: ColliderOptions::limit was reached, and there may be more pairs behind the last one.
+  /// Before it none is missing.
   bool complete = true;
   ColliderReport report;
 };
@@ -174,6 +174,48 @@ class Collider {
   /// round in any direction and flush subnormals: the call sets its floating-point environment
   /// (rounding, flushing, traps) and restores it at the end.
   ColliderResult find(const ColliderInput& input);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// A pair that ColliderStream finds.
+struct ColliderFound {
+  ColliderPair pair;
+  bool neighbours = false;  // of one object, and they share a vertex position
+  ColliderContact contact;  // where ColliderOptions::contacts asks for it
+  bool operator==(const ColliderFound&) const = default;
+};
+
+/// The pairs of Collider::find(), neighbours among them, in the order of ColliderPair and some at a
+/// time: where they are too many for the memory, or where the first ones are wanted at once.
+///
+///   ColliderStream stream(input, options);
+///   std::vector<ColliderFound> pairs;
+///   while (stream.next(pairs)) use(pairs);
+///
+/// Memory O(triangles), whatever the number of pairs. It compares boxes of triangles on the cores
+/// of the CPU, so every pair that collides is found, and it is slower than a Collider where nearly
+/// all pairs are wanted. An object is used by one thread at a time.
+class ColliderStream {
+ public:
+  /// Copies the input. Throws ColliderError as Collider::find(), and naming `device` for gl, which
+  /// it does not use. The options views and resolution mean nothing to it.
+  explicit ColliderStream(const ColliderInput& input, const ColliderOptions& options = {});
+  ~ColliderStream();
+  ColliderStream(ColliderStream&&) noexcept;
+  ColliderStream& operator=(ColliderStream&&) noexcept;
+
+  /// Replaces `pairs` by those that follow; there may be none although there are more behind.
+  /// False: the end, and `pairs` is empty. Each call decides about 2^16 candidates at most, and
+  /// those of one triangle more for each thread, so that the caller can stop between two calls.
+  /// Throws std::bad_alloc without memory; each later call then throws ColliderError.
+  bool next(std::vector<ColliderFound>& pairs);
+  /// Candidates that exact tests have decided up to now.
+  std::uint64_t decided() const;
+  /// After the end: as in ColliderResult.
+  bool complete() const;
 
  private:
   struct State;

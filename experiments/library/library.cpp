@@ -8,25 +8,14 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
-#include "core/scene/ignored.h"
 #include "core/view/view.h"
+#include "experiments/library/answers.h"
 #include "experiments/library/farcull.h"
 #include "experiments/library/input.h"
 #include "experiments/method/run.h"
 
 namespace farcull {
 namespace {
-
-constexpr int kMostResolution = 16384;
-
-void check(const ColliderOptions& options) {
-  if (options.threads > kMostThreads)
-    throw Error("threads", "are more than 1024", "give a number up to 1024, or 0");
-  if (!(options.clearance >= 0) || !std::isfinite(options.clearance))
-    throw Error("clearance", "is no distance", "give a finite number, 0 or more");
-  if (options.resolution < 0 || options.resolution > kMostResolution)
-    throw Error("resolution", "is outside 0 .. 16384", "give a number of pixels, or 0");
-}
 
 std::string device_of(const ColliderOptions& options) {
   switch (options.device) {
@@ -55,71 +44,6 @@ RunOptions run_options(const ColliderOptions& options) {
   return out;
 }
 
-ContactDetail detail_of(ColliderContacts contacts) {
-  switch (contacts) {
-    case ColliderContacts::none:
-      return ContactDetail::none;
-    case ColliderContacts::kinds:
-      return ContactDetail::kinds;
-    case ColliderContacts::segments:
-      return ContactDetail::segments;
-  }
-  return ContactDetail::none;
-}
-
-ColliderContactKind given_out(ContactKind kind) {
-  switch (kind) {
-    case ContactKind::apart:
-      return ColliderContactKind::apart;
-    case ContactKind::equal:
-      return ColliderContactKind::equal;
-    case ContactKind::touch_vertex:
-      return ColliderContactKind::touch_vertex;
-    case ContactKind::touch_edge:
-      return ColliderContactKind::touch_edge;
-    case ContactKind::coplanar:
-      return ColliderContactKind::coplanar;
-    case ContactKind::crossing:
-      return ColliderContactKind::crossing;
-    case ContactKind::touch_face:
-      return ColliderContactKind::touch_face;
-  }
-  throw std::logic_error("library: a kind of contact that there is not");
-}
-
-ColliderContact given_out(const ContactShape& shape) {
-  const auto point = [](const Vec3& p) { return std::array{p.x(), p.y(), p.z()}; };
-  return {.kind = given_out(shape.kind),
-          .dimension = shape.dimension,
-          .ends = {point(shape.ends[0]), point(shape.ends[1])}};
-}
-
-std::vector<ColliderContact> given_out(const std::vector<ContactShape>& shapes) {
-  std::vector<ColliderContact> out;
-  out.reserve(shapes.size());
-  for (const ContactShape& shape : shapes) out.push_back(given_out(shape));
-  return out;
-}
-
-/// The ignored pairs of a scene with so many objects.
-std::vector<ObjectPair> ignored_of(const ColliderOptions& options, std::size_t objects) {
-  std::vector<ObjectPair> out;
-  for (const auto& [a, b] : options.ignore) {
-    const std::string text = "names objects " + std::to_string(a) + " and " + std::to_string(b);
-    if (std::max(a, b) >= objects) {
-      throw Error("ignore", text + " of " + std::to_string(objects) + ", numbered from 0",
-                  "give two objects of the input in each pair");
-    }
-    if (a == b) {
-      throw Error("ignore", text + ", which are one",
-                  "give two different objects; self_objects says which are tested against "
-                  "themselves");
-    }
-    out.push_back({a, b});
-  }
-  return in_order(std::move(out));
-}
-
 std::vector<ColliderPair> given_out(const std::vector<TrianglePair>& pairs) {
   std::vector<ColliderPair> out(pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) out[k] = {pairs[k].a, pairs[k].b};
@@ -127,13 +51,6 @@ std::vector<ColliderPair> given_out(const std::vector<TrianglePair>& pairs) {
 }
 
 }  // namespace
-
-const char* to_string(ColliderContactKind kind) {
-  for (const ContactKind own : kContactKinds) {
-    if (given_out(own) == kind) return name_of(own).data();  // of a literal, so it ends with a 0
-  }
-  throw std::logic_error("library: a kind of contact that there is not");
-}
 
 ColliderError::ColliderError(const std::string& what, std::string where, std::string reason,
                              std::string remedy)
@@ -208,10 +125,10 @@ ColliderResult Collider::State::find(const Stopwatch& start) {
     FirstCollisions first = decide_first(scene, found.pairs, options.limit, question);
     decided = std::move(first.collisions);
     report.decided = first.decided;
+    out.complete = first.complete;
   } else {
     decided = session.frame_decider()->decide(scene, found.pairs, question);
   }
-  out.complete = report.decided == found.pairs.size();
   out.pairs = given_out(decided.pairs);
   out.neighbour_pairs = given_out(decided.neighbour_pairs);
   report.neighbours = decided.neighbours;

@@ -33,6 +33,10 @@ constexpr std::array kOfFrame = {"views",
                                  "neighbour_pairs",
                                  "all_colliding_pairs",
                                  "neighbours",
+                                 "contacts",
+                                 "ignored",
+                                 "decided_pairs",
+                                 "complete",
                                  "verification",
                                  "time_ms"};
 
@@ -178,6 +182,7 @@ FrameTimes summary_of_sorted(const std::vector<double>& ms) {
 
 void add(const Accounting& frame, Accounting& sum) {
   sum.pairs_total += frame.pairs_total;
+  sum.ignored += frame.ignored;
   sum.pairs_kept += frame.pairs_kept;
   sum.certified_by_boxes += frame.certified_by_boxes;
   sum.neighbours += frame.neighbours;
@@ -304,7 +309,9 @@ FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
     const Stopwatch reading;
     const Scene& scene = source.at(frame);
     const double read_ms = reading.ms();
-    const Record record = run(scene, question.options, session, named);
+    RunOptions options = question.options;
+    if (question.ignored) options.ignored = question.ignored(scene);
+    const Record record = run(scene, options, session, named);
     totals.add(record, source.topology_changed());
     if (record.verification) add(*record.verification, out.sum);
     const NothingToTest nothing = nothing_to_test(scene);
@@ -313,13 +320,13 @@ FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
     warnings.add(frame, source.notes().warning);
     std::string rows = table.row(), csv;
     if (question.pairs) {
-      csv = pairs_rows(scene, record, std::to_string(frame) + ",", question.faces);
+      csv = pairs_rows(scene, record, std::to_string(frame) + ",", question.columns);
     }
     if (frame == question.range.first) {
       out.json = to_json(scene, record);
       for (const char* key : kOfFrame) out.json.erase(key);
       rows.insert(0, run_heading(scene, record) + "\n");
-      if (question.pairs) csv.insert(0, "frame," + pairs_header(scene, question.faces));
+      if (question.pairs) csv.insert(0, "frame," + pairs_header(scene, question.columns));
     }
     Json one = frame_json(scene, record, frame, read_ms, source);
     if (sink) {

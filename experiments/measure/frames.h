@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/method/run.h"
+#include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/frames.h"
 #include "experiments/system/output_file.h"
@@ -18,10 +19,12 @@ struct FramesQuestion {
   RunOptions options;
   FrameRange range;
   bool self = false;
-  bool strict = false;  // farcull verify: ask the guarantee of every method
-  bool pairs = false;   // the CSV is wanted
-  bool faces = false;   // with its columns of faces
+  bool strict = false;       // farcull verify: ask the guarantee of every method
+  bool pairs = false;        // the CSV is wanted
+  PairColumns columns = {};  // of it, besides the usual ones
   bool certificates = false;
+  /// The objects of a frame's scene that are not tested against each other; empty: options.ignored.
+  std::function<std::vector<ObjectPair>(const Scene&)> ignored = {};
 };
 
 /// Milliseconds of frames: candidates and exact tests, without reading and accounting.

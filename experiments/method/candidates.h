@@ -35,8 +35,8 @@ struct SweptObjects {
 struct Candidates {
   std::vector<TrianglePair> pairs;       // sorted; empty where `decided` is set
   std::uint64_t count = 0;               // of candidate pairs
-  std::uint64_t ignored = 0;             // pairs that find() removed: of objects that are ignored;
-                                         // where `decided` is set, 0
+  std::uint64_t ignored = 0;             // candidates that were removed: of objects that are
+                                         // ignored
   std::vector<std::uint32_t> triangles;  // the potentially colliding set, ascending; of far-pairs
                                          // filled by run(), from the pairs; empty where
                                          // `decided` is set, which keeps all

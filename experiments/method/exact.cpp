@@ -23,6 +23,7 @@ Candidates find_exact(const Scene& scene, const Plan& plan, Session& session,
   out.triangle_count = scene.triangles.size();
   for (const Object& object : scene.objects) out.object_count += object.triangle_count > 0;
   out.count = result.box_pairs;
+  out.ignored = result.ignored;
   out.ms = result.join_ms;
   out.decided_ms = result.predicates_ms;
   const std::size_t colliding = result.pairs.size() + result.neighbour_pairs.size();

@@ -43,6 +43,7 @@ void decide_stage(const Scene& scene, Session& session, const Progress& progress
           decide_first(scene, record.found.pairs, record.options.limit, question);
       record.collisions = std::move(first.collisions);
       record.decided = first.decided;
+      record.complete = first.complete;
     } else {
       record.collisions = frames ? frames->decide(scene, record.found.pairs, question)
                                  : decide(scene, record.found, question);
@@ -98,8 +99,9 @@ Candidates find(const Scene& scene, const Plan& plan, Session& session, const Pr
   const FloatingPointGuard guard;
   try {
     Candidates found = traits(plan.options.method).find(scene, plan, session, progress);
-    found.ignored = remove_ignored(scene, plan.options.ignored, found.pairs);
-    found.count -= found.ignored;
+    const std::uint64_t removed = remove_ignored(scene, plan.options.ignored, found.pairs);
+    found.ignored += removed;
+    found.count -= removed;
     return found;
   } catch (...) {
     session.forget_device();
@@ -132,6 +134,16 @@ std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<Tria
   return out;
 }
 
+std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& record) {
+  std::vector<std::pair<ContactKind, std::uint64_t>> out;
+  for (const ContactKind kind : kContactKinds) {
+    const auto is = [&](const ContactShape& shape) { return shape.kind == kind; };
+    out.emplace_back(kind, std::ranges::count_if(record.contacts, is) +
+                               std::ranges::count_if(record.neighbour_contacts, is));
+  }
+  return out;
+}
+
 Record run(const Scene& scene, const RunOptions& options, Session& session,
            const Progress& progress) {
   const FloatingPointGuard guard;
@@ -158,7 +170,8 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   decide_stage(scene, session, progress, record);
   record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
   verify_stage(scene, progress, record);
-  if (options.limit > 0) keep_first(options.limit, record.collisions);  // of a method that decides
+  // Of a method that decides as it finds: decide_first() has kept to the limit already.
+  if (options.limit > 0 && keep_first(options.limit, record.collisions)) record.complete = false;
   contact_stage(scene, session, progress, record);
   require_proved("arithmetic");  // a driver's code ran in this thread too
   record.used = floating_point();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/floating_point.h"
@@ -41,8 +42,9 @@ struct Record {
   Promise promise;
   Candidates found;
   Collisions collisions;
-  std::uint64_t decided = 0;  // candidates that exact predicates decided; fewer than there are
-                              // where a limit was reached before
+  std::uint64_t decided = 0;  // candidates that exact predicates decided
+  bool complete = true;       // false: the limit was reached, so candidates were left undecided, or
+                              // colliding ones behind the last were left out
   std::vector<ContactShape> contacts;            // of collisions.pairs, where they are asked for;
   std::vector<ContactShape> neighbour_contacts;  // of collisions.neighbour_pairs. Without segments
                                                  // the kinds alone are set
@@ -67,6 +69,10 @@ Collisions decide(const Scene& scene, const Candidates& candidates, const ExactQ
 /// What the options ask of how pairs meet, one for each.
 std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<TrianglePair>& pairs,
                                       ContactDetail contacts, unsigned threads);
+
+/// How many of the colliding pairs, neighbours among them, meet in each way; all kinds in their
+/// order.
+std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& record);
 
 /// The promise of the method on the device that it used, whose verdict is the session's.
 Promise promise_of(const RunOptions& options, const UsedDevice& device, Session& session);

@@ -1,7 +1,10 @@
 // Turns a record into JSON and its colliding pairs into CSV.
 #include "experiments/record/output.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "commit.h"
@@ -104,6 +107,7 @@ Json verification_json(const Scene& scene, const Record& record) {
   const std::optional<Accounting>& accounting = record.verification;
   if (!accounting) return nullptr;
   return {{"pairs_total", accounting->pairs_total},
+          {"ignored", accounting->ignored},
           {"pairs_kept", accounting->pairs_kept},
           {"certified_by_boxes", accounting->certified_by_boxes},
           {"certified_by_predicates", accounting->certified_by_predicates},
@@ -113,6 +117,29 @@ Json verification_json(const Scene& scene, const Record& record) {
           {"penetrating", record.missed ? Json(record.missed->penetrating) : Json(nullptr)},
           {"examples", pairs_json(scene, accounting->examples)},
           {"ms", accounting->ms}};
+}
+
+Json contacts_json(const Record& record) {
+  if (record.options.contacts == ContactDetail::none) return nullptr;
+  Json out = Json::object();
+  for (const auto& [kind, count] : count_kinds(record)) out[std::string(name_of(kind))] = count;
+  return out;
+}
+
+Json ignored_json(const Record& record) {
+  if (record.options.ignored.empty()) return nullptr;
+  return {{"object_pairs", record.options.ignored.size()}, {"candidates", record.found.ignored}};
+}
+
+// Six cells: the ends of a segment, or a point twice.
+void append_ends(const ContactShape& shape, std::string& out) {
+  for (const Vec3& end : shape.ends) {
+    for (const double x : end) {
+      out += ',';
+      if (shape.dimension == 0 || shape.dimension == 1)
+        fmt::format_to(std::back_inserter(out), "{}", x);
+    }
+  }
 }
 
 }  // namespace
@@ -224,45 +251,67 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
       {"all_colliding_pairs",
        record.collisions.pairs.size() + record.collisions.neighbour_pairs.size()},
       {"neighbours", record.collisions.neighbours},
+      {"contacts", contacts_json(record)},
+      {"ignored", ignored_json(record)},
+      {"limit", o.limit > 0 ? Json(o.limit) : Json(nullptr)},
+      {"decided_pairs", record.decided},
+      {"complete", record.complete},
       {"verification", verification_json(scene, record)},
       {"time_ms",
        {{"setup", record.ms.setup},
         {"cull", record.ms.cull},
         {"exact", record.ms.exact},
-        {"total", record.ms.total}}},
+        {"total", record.ms.total},
+        {"contacts", record.ms.contacts}}},
       {"seed", o.seed ? Json(*o.seed) : Json(nullptr)},
       {"commit", FARCULL_COMMIT}};
 }
 
-std::string pairs_header(const Scene& scene, bool faces) {
+std::string pairs_header(const Scene& scene, const PairColumns& columns) {
   std::string header = pair_list_header(scene);
-  if (faces) header.replace(header.size() - 1, 1, ",face_a,face_b\n");
-  return header;
+  header.pop_back();
+  if (columns.contacts) header += ",contact";
+  if (columns.segments) header += ",x0,y0,z0,x1,y1,z1";
+  if (columns.faces) header += ",face_a,face_b";
+  return header + '\n';
 }
 
 std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before,
-                       bool faces) {
+                       const PairColumns& columns) {
   const PairListRows rows(scene);
   std::string out;
-  const auto add = [&](const TrianglePair& pair) {
+  const auto add = [&](const std::vector<TrianglePair>& pairs,
+                       const std::vector<ContactShape>& contacts, std::size_t k) {
+    const TrianglePair& pair = pairs[k];
+    if (!columns.kinds.empty() &&
+        std::ranges::find(columns.kinds, contacts.at(k).kind) == columns.kinds.end()) {
+      return;
+    }
     out += before;
     rows.append(pair, out);
-    if (!faces) return;
-    out.back() = ',';
-    out += std::to_string(scene.source_face[pair.a]) + ',' +
-           std::to_string(scene.source_face[pair.b]) + '\n';
+    out.pop_back();
+    if (columns.contacts) out.append(",").append(name_of(contacts.at(k).kind));
+    if (columns.segments) append_ends(contacts.at(k), out);
+    if (columns.faces) {
+      fmt::format_to(std::back_inserter(out), ",{},{}", scene.source_face[pair.a],
+                     scene.source_face[pair.b]);
+    }
+    out += '\n';
   };
-  auto next = record.collisions.neighbour_pairs.begin();
-  for (const TrianglePair& p : record.collisions.pairs) {
-    for (; next != record.collisions.neighbour_pairs.end() && *next < p; ++next) add(*next);
-    add(p);
+  const Collisions& all = record.collisions;
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < all.pairs.size(); ++k) {
+    for (; next < all.neighbour_pairs.size() && all.neighbour_pairs[next] < all.pairs[k]; ++next)
+      add(all.neighbour_pairs, record.neighbour_contacts, next);
+    add(all.pairs, record.contacts, k);
   }
-  for (; next != record.collisions.neighbour_pairs.end(); ++next) add(*next);
+  for (; next < all.neighbour_pairs.size(); ++next)
+    add(all.neighbour_pairs, record.neighbour_contacts, next);
   return out;
 }
 
-std::string pairs_csv(const Scene& scene, const Record& record, bool faces) {
-  return pairs_header(scene, faces) + pairs_rows(scene, record, "", faces);
+std::string pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns) {
+  return pairs_header(scene, columns) + pairs_rows(scene, record, "", columns);
 }
 
 }  // namespace farcull

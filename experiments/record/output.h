@@ -30,13 +30,22 @@ nlohmann::ordered_json place_json(const Scene& scene, const std::vector<std::uin
 /// Pairs of triangles, each as {"a": place, "b": place}.
 nlohmann::ordered_json pairs_json(const Scene& scene, const std::vector<TrianglePair>& pairs);
 
+/// Columns of pairs_csv() besides those that every list has, and which rows there are.
+struct PairColumns {
+  bool faces = false;     // face_a, face_b: 0-based in the files that the objects come from
+  bool contacts = false;  // contact: the kind; of a record that has the kinds
+  bool segments = false;  // x0,y0,z0,x1,y1,z1: the ends of what the triangles have in common, world
+                          // units; empty where that is a polygon or nothing. Of a record with them
+  std::vector<ContactKind> kinds = {};  // pairs of these kinds alone; empty: all
+};
+
 /// The colliding pairs as verify/certificate/pair_list.h writes them, sorted, each once; neighbours
-/// among them where an object of the scene is tested against itself. faces: two more columns at the
-/// end, face_a and face_b, 0-based in the files that the objects come from.
-std::string pairs_csv(const Scene& scene, const Record& record, bool faces = false);
+/// among them where an object of the scene is tested against itself. More columns come at the end:
+/// contact, the segment, the faces.
+std::string pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns = {});
 /// Its parts, `before` at the start of each row.
-std::string pairs_header(const Scene& scene, bool faces = false);
+std::string pairs_header(const Scene& scene, const PairColumns& columns = {});
 std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before,
-                       bool faces = false);
+                       const PairColumns& columns = {});
 
 }  // namespace farcull

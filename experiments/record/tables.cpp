@@ -212,6 +212,32 @@ std::string missed_text(const Record& record) {
   return record.verification ? grouped(record.verification->false_negatives) : "not verified";
 }
 
+// The kinds that there are, as in "12 crossing + 3 touch-vertex"; empty where nobody asked.
+std::string contacts_line(const Record& record) {
+  if (record.options.contacts == ContactDetail::none) return "";
+  std::string text;
+  for (const auto& [kind, count] : count_kinds(record)) {
+    if (count == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : " + ", grouped(count), name_of(kind));
+  }
+  return fmt::format("contacts   {}\n", text.empty() ? "none" : text);
+}
+
+std::string limit_line(const Record& record) {
+  if (record.options.limit == 0) return "";
+  return fmt::format("limit      {} at most; {} of {} decided{}\n",
+                     counted(record.options.limit, "pair", "pairs"), grouped(record.decided),
+                     counted(record.found.count, "candidate", "candidates"),
+                     record.complete ? "" : "; there may be more pairs behind the last one");
+}
+
+std::string ignored_line(const Record& record) {
+  if (record.options.ignored.empty()) return "";
+  return fmt::format("ignored    {} of {}\n",
+                     counted(record.found.ignored, "candidate pair", "candidate pairs"),
+                     counted(record.options.ignored.size(), "pair of objects", "pairs of objects"));
+}
+
 }  // namespace
 
 std::string radius_text(const RadiusRule& radius) {
@@ -311,12 +337,12 @@ std::string verdict_text(const Accounting& accounting) {
 
 std::string accounting_sum(const Accounting& v) {
   return fmt::format(
-      "accounted  {} = {} kept + {} disjoint boxes\n           + {} proved disjoint{} + {} "
+      "accounted  {} = {} kept + {} disjoint boxes\n           + {} proved disjoint{}{} + {} "
       "missed\n",
       counted(v.pairs_total, "pair", "pairs"), grouped(v.pairs_kept), grouped(v.certified_by_boxes),
       grouped(v.certified_by_predicates),
       v.neighbours > 0 ? " + " + grouped(v.neighbours) + " neighbours" : "",
-      grouped(v.false_negatives));
+      v.ignored > 0 ? " + " + grouped(v.ignored) + " ignored" : "", grouped(v.false_negatives));
 }
 
 std::string run_table(const Scene& scene, const Record& record, const std::string& verdict) {
@@ -338,6 +364,7 @@ std::string run_table(const Scene& scene, const Record& record, const std::strin
       self ? "; " + counted(record.collisions.neighbours, "candidate is", "candidates are") +
                  " of neighbours"
            : "");
+  out += contacts_line(record) + limit_line(record) + ignored_line(record);
   out += work_line(record);
   out += fmt::format(
       "time       {:.1f} ms = setup {:.1f} + cull {:.1f} + exact {:.1f}{}\n", record.ms.total,

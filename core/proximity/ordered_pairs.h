@@ -1,0 +1,49 @@
+// Pairs of triangles whose boxes overlap, in order and some at a time, so that the memory does not
+// grow with their number.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/proximity/box_tree.h"
+#include "core/scene/ignored.h"
+#include "core/scene/object_pair.h"
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+/// All pairs a < b of triangles of different objects, and of one object where it is `self`, whose
+/// closed boxes, grown by half the clearance, overlap; in ascending order. Two triangles at the
+/// clearance or less are such a pair (core/pairs/grown_box.h), so none that collides is left out.
+class OrderedPairs {
+ public:
+  /// clearance: world units, finite, >= 0. ignored: as in_order() gives them; their pairs are left
+  /// out. threads: 0 for as many as there are cores; changes no answer. The scene must stay as it
+  /// is. Memory O(triangles).
+  OrderedPairs(const Scene& scene, double clearance, std::span<const ObjectPair> ignored,
+               unsigned threads);
+
+  /// Replaces `out` by the next pairs: about `most` of them, fewer at the end, and at most all of
+  /// one triangle more for each thread. May leave it empty before the end. Precondition: most > 0.
+  void next(std::size_t most, std::vector<TrianglePair>& out);
+  bool at_end() const { return next_ == boxes_.size(); }
+
+ private:
+  std::uint64_t nodes_of(int height) const;
+  void append(std::uint32_t a, std::vector<TrianglePair>& out) const;
+
+  const Scene& scene_;
+  IgnoredObjects ignored_;
+  unsigned threads_;
+  std::vector<std::uint32_t> owner_;  // per triangle, as join_owners() gives them
+  std::vector<Box> boxes_;            // per triangle, grown
+  std::vector<std::uint32_t> order_;  // the triangle of each leaf of the tree
+  std::vector<WideBoxes> blocks_;
+  BoxTree tree_;
+  std::uint32_t next_ = 0;        // the first triangle whose pairs have not been given
+  std::uint32_t triangles_ = 64;  // to ask about at a time
+};
+
+}  // namespace farcull

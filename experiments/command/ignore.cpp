@@ -1,0 +1,127 @@
+// Names are looked up in the scene when it is there: those of frames may differ from frame to
+// frame.
+#include "experiments/command/ignore.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/scene/ignored.h"
+
+namespace farcull {
+namespace {
+
+constexpr const char* kRemedy =
+    "give two names of objects with a colon between, as in a:b or link*:gripper; a name is that of "
+    "the mesh file without its ending, or that in the scene file";
+
+/// Whether the name fits a pattern, in which a * stands for any characters. The last * is tried
+/// with one character more whenever the rest does not fit.
+bool fits(std::string_view name, std::string_view pattern) {
+  std::size_t n = 0, p = 0, star = std::string_view::npos, from = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      from = n;
+    } else if (p < pattern.size() && pattern[p] == name[n]) {
+      ++n, ++p;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      n = ++from;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string_view::npos;
+}
+
+std::vector<std::uint32_t> objects_of(const Scene& scene, std::string_view pattern) {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    if (fits(scene.objects[o].name, pattern)) out.push_back(o);
+  }
+  return out;
+}
+
+std::string some_names(const Scene& scene) {
+  constexpr std::size_t kShown = 5;
+  std::string out;
+  for (std::size_t o = 0; o < std::min(kShown, scene.objects.size()); ++o)
+    out += (o > 0 ? ", " : "") + scene.objects[o].name;
+  return out + (scene.objects.size() > kShown ? ", ..." : "");
+}
+
+/// Appends the pairs that one text names.
+void append(const Scene& scene, const IgnoredNames& names, std::vector<ObjectPair>& out) {
+  const std::string_view text = names.text;
+  const auto fail = [&](const std::string& reason) {
+    throw Error(names.where, fmt::format("'{}' {}", names.text, reason),
+                fmt::format("{}; the scene has {}", kRemedy, some_names(scene)), names.line);
+  };
+  std::vector<std::uint32_t> first, second;
+  std::string unknown;
+  int places = 0;
+  for (std::size_t colon = text.find(':'); colon != std::string_view::npos;
+       colon = text.find(':', colon + 1)) {
+    const std::string_view left = text.substr(0, colon), right = text.substr(colon + 1);
+    const std::vector<std::uint32_t> a = objects_of(scene, left), b = objects_of(scene, right);
+    if (a.empty() || b.empty()) {
+      if (unknown.empty()) unknown = a.empty() ? left : right;
+      continue;
+    }
+    ++places;
+    first = a;
+    second = b;
+  }
+  if (text.find(':') == std::string_view::npos) fail("has no colon");
+  if (places == 0) fail(fmt::format("names '{}', and no object is called so", unknown));
+  if (places > 1) fail("can be divided at more than one colon");
+  if (first.size() == 1 && first == second)
+    fail("names one object; only --self tests an object against itself");
+  for (const std::uint32_t a : first) {
+    for (const std::uint32_t b : second) {
+      if (a != b) out.push_back({a, b});
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<IgnoredNames> parse_ignored(const std::string& list) {
+  std::vector<IgnoredNames> out;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    out.push_back({list.substr(begin, end - begin), "--ignore"});
+    if (out.back().text.empty()) throw Error("--ignore", "a pair of names is empty", kRemedy);
+    begin = end + 1;
+  }
+  return out;
+}
+
+std::vector<IgnoredNames> read_ignored(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw Error(path, "cannot be read", "name a text file with a pair of names a line");
+  std::vector<IgnoredNames> out;
+  long line = 0;
+  for (std::string text; std::getline(file, text);) {
+    ++line;
+    if (text.ends_with('\r')) text.pop_back();
+    if (!text.empty() && !text.starts_with('#')) out.push_back({text, path, line});
+  }
+  if (!file.eof()) throw Error(path, "cannot be read to its end", "name a text file", line);
+  if (out.empty()) throw Error(path, "names no pair of objects", kRemedy);
+  return out;
+}
+
+std::vector<ObjectPair> ignored_objects(const Scene& scene,
+                                        const std::vector<IgnoredNames>& names) {
+  std::vector<ObjectPair> out;
+  for (const IgnoredNames& one : names) append(scene, one, out);
+  return in_order(std::move(out));
+}
+
+}  // namespace farcull

@@ -1,0 +1,31 @@
+// Objects that are not tested against each other, as the command line and files name them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/scene/object_pair.h"
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+/// Two groups of objects by their names, as in "link*:gripper". A * stands for any characters.
+struct IgnoredNames {
+  std::string text;   // such as "link*:gripper"
+  std::string where;  // --ignore, or the file
+  long line = 0;      // of the file, from 1; 0 without one
+};
+
+/// The pairs of a list as in "a:b,link*:gripper". Throws Error naming --ignore where one is empty.
+std::vector<IgnoredNames> parse_ignored(const std::string& list);
+/// The pairs of a text file, one a line; empty lines and those that begin with # are passed over.
+/// Throws Error naming the file where it cannot be read or names no pair.
+std::vector<IgnoredNames> read_ignored(const std::string& path);
+
+/// The pairs of different objects of which one is of the first group and the other one of the
+/// second; as in_order() gives them. A name may hold colons: each place where both sides name
+/// objects is tried. Throws Error naming `where` and the line for a text without a colon, for a
+/// name that no object has, where two places fit, and where the two groups are one object.
+std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<IgnoredNames>& names);
+
+}  // namespace farcull

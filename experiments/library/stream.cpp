@@ -1,0 +1,101 @@
+// The stream: candidates in order, some at a time, each decided exactly as it comes.
+#include <algorithm>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "core/proximity/ordered_pairs.h"
+#include "experiments/library/answers.h"
+#include "experiments/library/farcull.h"
+#include "experiments/library/input.h"
+#include "experiments/method/run.h"
+
+namespace farcull {
+namespace {
+
+constexpr std::size_t kPart = std::size_t{1} << 16;  // candidates at a time
+
+}  // namespace
+
+struct ColliderStream::State {
+  ColliderOptions options;
+  unsigned threads;
+  Scene scene;
+  std::optional<OrderedPairs> candidates;
+  std::vector<TrianglePair> part;
+  std::uint64_t decided = 0, given = 0;
+  bool complete = false;
+  bool failed = false;  // a call began and did not end: what it found is lost
+
+  State(const ColliderInput& input, const ColliderOptions& of)
+      : options(of), threads(of.threads > 0 ? of.threads : std::thread::hardware_concurrency()) {
+    check(options);
+    if (options.device == ColliderDevice::gl)
+      throw Error("device", "gl is not used by a stream", "give cpu or best");
+    take(input, options.self, options.self_objects, scene);
+    candidates.emplace(scene, options.clearance, ignored_of(options, scene.objects.size()),
+                       threads);
+  }
+
+  bool next(std::vector<ColliderFound>& pairs);
+  void decide_part(std::vector<ColliderFound>& pairs);
+};
+
+bool ColliderStream::State::next(std::vector<ColliderFound>& pairs) {
+  pairs.clear();
+  if (!failed && options.limit > 0 && given == options.limit) return false;
+  if (!failed && candidates->at_end()) {
+    complete = true;
+    return false;
+  }
+  if (std::exchange(failed, true))
+    throw Error("stream", "an earlier call failed, and its pairs are lost", "make a new stream");
+  decide_part(pairs);
+  failed = false;
+  return true;
+}
+
+void ColliderStream::State::decide_part(std::vector<ColliderFound>& pairs) {
+  candidates->next(kPart, part);
+  const ExactQuestion question{
+      .clearance = options.clearance, .threads = threads, .neighbours = options.neighbours};
+  Collisions found;
+  if (options.limit > 0 && !part.empty()) {
+    FirstCollisions first = decide_first(scene, part, options.limit - given, question);
+    found = std::move(first.collisions);
+    decided += first.decided;
+    complete = first.complete && candidates->at_end();
+  } else {
+    found = decide(scene, part, question);
+    decided += part.size();
+  }
+  const auto append = [&](const std::vector<TrianglePair>& those, bool neighbours) {
+    const std::vector<ContactShape> contacts =
+        contacts_of(scene, those, detail_of(options.contacts), threads);
+    for (std::size_t k = 0; k < those.size(); ++k) {
+      pairs.push_back({.pair = {those[k].a, those[k].b},
+                       .neighbours = neighbours,
+                       .contact = contacts.empty() ? ColliderContact() : given_out(contacts[k])});
+    }
+  };
+  append(found.pairs, false);
+  append(found.neighbour_pairs, true);
+  std::ranges::sort(pairs, {}, &ColliderFound::pair);
+  given += pairs.size();
+}
+
+ColliderStream::ColliderStream(const ColliderInput& input, const ColliderOptions& options)
+    : state_(translated([&] { return std::make_unique<State>(input, options); })) {}
+ColliderStream::~ColliderStream() = default;
+ColliderStream::ColliderStream(ColliderStream&&) noexcept = default;
+ColliderStream& ColliderStream::operator=(ColliderStream&&) noexcept = default;
+
+bool ColliderStream::next(std::vector<ColliderFound>& pairs) {
+  return translated([&] { return state_->next(pairs); });
+}
+
+std::uint64_t ColliderStream::decided() const { return state_->decided; }
+
+bool ColliderStream::complete() const { return state_->complete; }
+
+}  // namespace farcull

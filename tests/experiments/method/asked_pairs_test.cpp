@@ -1,0 +1,120 @@
+// What a run is asked about pairs: which objects it ignores, how many pairs it gives, how they
+// meet. For every kind of method, against the run that is asked for all.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/scene/ignored.h"
+#include "experiments/method/run.h"
+#include "experiments/record/output.h"
+#include "experiments/scenes/builtin/scenes.h"
+
+namespace farcull {
+namespace {
+
+Record run(const Scene& scene, const RunOptions& options) {
+  Session session(options.device);
+  return run(scene, options, session);
+}
+
+RunOptions on_cpu(Method method) {
+  RunOptions options;
+  options.method = method;
+  options.device = "cpu";
+  options.resolution = draws(method) ? 64 : 0;
+  return options;
+}
+
+const std::vector<ObjectPair> kIgnored = {{0, 1}, {0, 3}, {2, 5}, {6, 7}};
+
+TEST(AskedPairs, IgnoredObjectsAreLeftOutByEveryMethodAndAccountedFor) {
+  const Scene scene = make_builtin_scene("random-soup");
+  for (const Method method : {Method::far_pairs, Method::exact, Method::i_collide, Method::far}) {
+    RunOptions options = on_cpu(method);
+    const Record all = run(scene, options);
+    options.ignored = kIgnored;
+    const Record some = run(scene, options);
+    std::vector<TrianglePair> expected = all.collisions.pairs;
+    const std::uint64_t removed = remove_ignored(scene, kIgnored, expected);
+    EXPECT_GT(removed, 0u);
+    EXPECT_EQ(some.collisions.pairs, expected) << to_string(method);
+    EXPECT_NE(some.collisions.pairs, all.collisions.pairs);
+    EXPECT_EQ(some.found.count + some.found.ignored, all.found.count) << to_string(method);
+    ASSERT_TRUE(some.verification);
+    EXPECT_EQ(some.verification->false_negatives, 0u) << to_string(method);
+    EXPECT_EQ(some.verification->ignored, 4u * 500 * 500);
+    EXPECT_TRUE(some.verification->adds_up());
+    // The twin: without the class, the same candidates miss what is ignored.
+    EXPECT_GT(account(scene, pairs_left(some)).false_negatives, 0u);
+    const nlohmann::ordered_json json = to_json(scene, some);
+    EXPECT_EQ(json["ignored"]["object_pairs"], 4);
+    EXPECT_EQ(json["ignored"]["candidates"], some.found.ignored);
+    EXPECT_EQ(json["verification"]["ignored"], 4 * 500 * 500);
+    EXPECT_TRUE(to_json(scene, all)["ignored"].is_null());
+  }
+}
+
+TEST(AskedPairs, OfALimitAreTheFirstAndTheAccountingStillHolds) {
+  Scene scene = make_builtin_scene("random-soup");
+  for (const Method method : {Method::far_pairs, Method::exact, Method::i_collide}) {
+    RunOptions options = on_cpu(method);
+    const Record all = run(scene, options);
+    ASSERT_GT(all.collisions.pairs.size(), 10u);
+    EXPECT_TRUE(all.complete);
+    options.limit = 10;
+    const Record some = run(scene, options);
+    EXPECT_EQ(some.collisions.pairs, std::vector<TrianglePair>(all.collisions.pairs.begin(),
+                                                               all.collisions.pairs.begin() + 10));
+    EXPECT_FALSE(some.complete);
+    EXPECT_EQ(some.found.count, all.found.count);
+    EXPECT_EQ(some.verification->false_negatives, 0u);
+    EXPECT_EQ(some.verification->pairs_kept, all.verification->pairs_kept);
+    const nlohmann::ordered_json json = to_json(scene, some);
+    EXPECT_EQ(json["limit"], 10);
+    EXPECT_EQ(json["complete"], false);
+    EXPECT_EQ(json["decided_pairs"], some.decided);
+    if (method == Method::far_pairs) {
+      EXPECT_LT(some.decided, all.decided);
+    }
+  }
+}
+
+TEST(AskedPairs, KindsOfContactAreCountedAndListed) {
+  const Scene scene = make_builtin_scene("degenerate");
+  RunOptions options = on_cpu(Method::far_pairs);
+  const Record silent = run(scene, options);
+  EXPECT_TRUE(silent.contacts.empty());
+  EXPECT_TRUE(to_json(scene, silent)["contacts"].is_null());
+  options.contacts = ContactDetail::segments;
+  const Record record = run(scene, options);
+  ASSERT_EQ(record.contacts.size(), record.collisions.pairs.size());
+  const nlohmann::ordered_json json = to_json(scene, record);
+  std::uint64_t sum = 0;
+  for (const auto& [name, count] : json["contacts"].items()) sum += count.get<std::uint64_t>();
+  EXPECT_EQ(sum, record.contacts.size());
+  EXPECT_EQ(json["contacts"]["apart"], 0);
+  EXPECT_GT(json["contacts"]["touch-vertex"], 0);
+
+  const PairColumns columns{.faces = true, .contacts = true, .segments = true};
+  const std::string csv = pairs_csv(scene, record, columns);
+  EXPECT_TRUE(csv.starts_with(
+      "object_a,triangle_a,object_b,triangle_b,contact,x0,y0,z0,x1,y1,z1,face_a,face_b\n"));
+  const auto rows = static_cast<std::size_t>(std::ranges::count(csv, '\n'));
+  EXPECT_EQ(rows, record.contacts.size() + 1);
+  // Twelve commas in each row, whatever is empty.
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, ',')), 12 * rows);
+  EXPECT_NE(csv.find(",coplanar,,,,,,,"), std::string::npos);
+
+  const auto of = [&](std::vector<ContactKind> kinds) {
+    return pairs_csv(scene, record, {.contacts = true, .kinds = std::move(kinds)});
+  };
+  const std::string crossing = of({ContactKind::crossing});
+  EXPECT_EQ(static_cast<std::uint64_t>(std::ranges::count(crossing, '\n')),
+            json["contacts"]["crossing"].get<std::uint64_t>() + 1);
+  EXPECT_EQ(crossing.find("touch"), std::string::npos);
+  EXPECT_EQ(of({kContactKinds.begin(), kContactKinds.end()}), of({}));
+}
+
+}  // namespace
+}  // namespace farcull
