@@ -106,7 +106,7 @@ void StudiesCommand::add_to(CLI::App& experiment) {
     commands_.push_back(command);
   };
   for (const Study& study : studies()) declare(study.name, study.title);
-  declare("all", "all of these studies but cloth and libraries, one\nafter the other");
+  declare("all", "all of these studies but cloth, libraries and\nproximity, one after the other");
 }
 
 bool StudiesCommand::named() const {

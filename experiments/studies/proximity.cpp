@@ -18,18 +18,20 @@ namespace {
 
 using enum NeighbourMethod;
 
-constexpr int kResolutions[] = {64, 128, 256, 512, 1024};
+std::vector<int> resolutions(bool quick) {
+  return quick ? std::vector{64, 128, 256} : std::vector{64, 128, 256, 512, 1024};
+}
 constexpr int kFrameResolution = 256;  // cells, of scenes that move
 constexpr int kCountResolution = 128;  // cells, of times against the number of objects
 constexpr int kMostInDiagrams = 400;   // objects there
 constexpr int kRepeat = 9;             // as in the study "scaling"
-constexpr int kSeeds = 5;              // of clusters
+constexpr int kSeeds = 3;              // of clusters
 
 // Both diagrams at each resolution, beside the methods without cells.
-void add_sets(const PointScene& scene, bool unwidened, std::vector<Point>& out) {
+void add_sets(const PointScene& scene, bool quick, bool unwidened, std::vector<Point>& out) {
   for (const NeighbourMethod method : {boxes, trees})
     out.emplace_back(NeighbourPoint{.scene = scene, .method = method});
-  for (const int cells : kResolutions) {
+  for (const int cells : resolutions(quick)) {
     out.emplace_back(NeighbourPoint{.scene = scene, .method = voronoi, .resolution = cells});
     out.emplace_back(
         NeighbourPoint{.scene = scene, .method = voronoi_reliable, .resolution = cells});
@@ -56,9 +58,9 @@ void add_scenes_at_rest(bool quick, std::vector<Point>& out) {
   static const std::vector<RestCase> full = {{"crowd"},       {"cylinders", objects},
                                              {"field"},       {"tree-leaves"},
                                              {"ground@tiny"}, {"bunnies-far-apart", objects}};
-  static const std::vector<RestCase> few = {{"crowd:60"}, {"cylinders:12", objects}};
+  static const std::vector<RestCase> few = {{"field:2000"}, {"cylinders:12", objects}};
   for (const RestCase& c : quick ? few : full) {
-    add_sets(NamedScene{c.scene}, false, out);
+    add_sets(NamedScene{c.scene}, quick, false, out);
     add_distances(NamedScene{c.scene}, c.task, out);
   }
   // Far from the origin doubles have fewer digits left for what is between objects.
@@ -67,19 +69,18 @@ void add_scenes_at_rest(bool quick, std::vector<Point>& out) {
 }
 
 void add_clusters(const GridChoice& choice, std::vector<Point>& out) {
-  for (const int ratio : choice.quick ? std::vector{64, 1024} : std::vector{16, 64, 256, 1024}) {
+  for (const int ratio : choice.quick ? std::vector{64} : std::vector{16, 64, 256}) {
     for (int i = 0; i < (choice.quick ? 1 : kSeeds); ++i) {
       const auto seed = choice.seed + static_cast<std::uint64_t>(i);
-      add_sets(ClusteredScene{ratio, seed}, true, out);
+      add_sets(ClusteredScene{ratio, seed}, choice.quick, true, out);
     }
   }
 }
 
 void add_motion(bool quick, std::vector<Point>& out) {
-  static const std::vector<std::string> full = {"crowd:100",       "cylinders:30",
-                                                "field:4000",      "tree-leaves:60",
-                                                "two-spheres@far", "breaking-dragon:19994"};
-  static const std::vector<std::string> few = {"crowd:30", "tree-leaves:20"};
+  static const std::vector<std::string> full = {"crowd:100", "cylinders:30", "field:4000",
+                                                "tree-leaves:60"};
+  static const std::vector<std::string> few = {"crowd:30", "cylinders:8"};
   // Six frames at least, as in the study "efficiency".
   const long frames = quick ? 6 : 12;
   for (const std::string& name : quick ? few : full) {

@@ -138,5 +138,6 @@ Chapter cloth_chapter(const StoredStudy& stored);
 Chapter efficiency_chapter(const StoredStudy& stored);
 Chapter scaling_chapter(const StoredStudy& stored);
 Chapter libraries_chapter(const StoredStudy& stored);
+Chapter proximity_chapter(const StoredStudy& stored);
 
 }  // namespace farcull

@@ -16,6 +16,7 @@ Chapter chapter_of(const StoredStudy& stored) {
       {"precision", precision_chapter}, {"stability", stability_chapter},
       {"cloth", cloth_chapter},         {"efficiency", efficiency_chapter},
       {"scaling", scaling_chapter},     {"libraries", libraries_chapter},
+      {"proximity", proximity_chapter},
   };
   const auto at = kChapters.find(stored.declaration.study);
   if (at == kChapters.end()) {
