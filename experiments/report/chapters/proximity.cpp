@@ -214,9 +214,15 @@ Figure size_figure(const std::vector<SetScene>& scenes, const char* name, const 
       panel.series.push_back(std::move(series));
     }
     if (panel.series.empty()) continue;
+    // Without cells: the same at each resolution.
     for (const char* method : {kBoxes, kTrees}) {
-      if (const SetSums* const sums = scene.find(method, 0))
-        panel.marks.push_back({.vertical = false, .at = (sums->*size)(), .name = method});
+      const SetSums* const sums = scene.find(method, 0);
+      if (sums == nullptr) continue;
+      const std::vector<double>& x = panel.series.front().x;
+      panel.series.push_back({.name = method,
+                              .x = x,
+                              .y = std::vector<double>(x.size(), (sums->*size)()),
+                              .style = Series::Style::lines});
     }
     out.panels.push_back(std::move(panel));
   }
@@ -472,8 +478,10 @@ Chapter proximity_chapter(const StoredStudy& stored) {
   add_size_finding(rest, out);
   add_distance_findings(stored, out);
   out.limits = {
-      "The code of the published diagram is not known: its form here is that of docs/voronoi.md, "
-      "on the CPU and on one thread, so that its times say nothing about graphics hardware.",
+      "The code of the published diagram is not known: its form here is the one that "
+      "docs/voronoi.md "
+      "defines. It runs on one thread of the CPU, so that its times say nothing about graphics "
+      "hardware.",
       "Objects of one scene are not independent, so that intervals of shares are the best that so "
       "many objects allow.",
       "Boxes of objects are those along the axes; other hulls would leave fewer triangles.",

@@ -13,9 +13,9 @@ namespace farcull::proximity {
 
 inline constexpr const char* kBoxes = "boxes of objects";
 inline constexpr const char* kTrees = "trees of boxes";
-inline constexpr const char* kPublished = "Voronoi, published";
-inline constexpr const char* kReliable = "Voronoi, reliable";
-inline constexpr const char* kNarrow = "Voronoi, not widened";
+inline constexpr const char* kPublished = "Voronoi (published)";
+inline constexpr const char* kReliable = "Voronoi (reliable)";
+inline constexpr const char* kNarrow = "Voronoi (not widened)";
 
 /// One of the names above; of a contestant that was asked for distances its own.
 std::string name_of(const PointKey& point);

@@ -99,10 +99,10 @@ TEST(ProximityChapter, SaysWhatIsLostAndByWhom) {
   EXPECT_FALSE(says(chapter, "BROKEN"));
   // Nine rows of boxes and of trees each but for frames and counts, six of the reliable diagram.
   EXPECT_TRUE(
-      says(chapter, "Voronoi, reliable, boxes of objects and trees of boxes lost 0 of 950 "));
+      says(chapter, "Voronoi (reliable), boxes of objects and trees of boxes lost 0 of 950 "));
   EXPECT_TRUE(says(chapter, "Of the distances of farcull 0 of 40 "));
   EXPECT_TRUE(says(chapter,
-                   "Voronoi, published, lost of all objects: 20 of 150 at 64 cells and 10 "
+                   "Voronoi (published), lost of all objects: 20 of 150 at 64 cells and 10 "
                    "of 150 at 128 cells."));
   EXPECT_TRUE(says(chapter,
                    "peer: 3 of 40 distances are not the nearest double; the largest "
@@ -118,7 +118,7 @@ TEST(ProximityChapter, SaysWhatIsLostAndByWhom) {
   EXPECT_NE(lost->caption.find("n: clusters:64 (100 objects, 2 seeds)"), std::string::npos)
       << lost->caption;
   EXPECT_EQ(table_of(chapter, "proximity-lost").rows.at(0),
-            (Cells{"clusters:64", "Voronoi, published", "100", "20", "10"}));
+            (Cells{"clusters:64", "Voronoi (published)", "100", "20", "10"}));
   EXPECT_EQ(table_of(chapter, "proximity-lost").rows.size(), 4u);
 }
 
@@ -134,7 +134,7 @@ TEST(ProximityChapter, ComparesSizesWithThoseOfBoxes) {
   ASSERT_NE(sizes, nullptr);
   ASSERT_EQ(sizes->panels.size(), 2u);
   EXPECT_EQ(sizes->panels[1].series.at(0).y, (std::vector<double>{30, 30}));
-  EXPECT_EQ(sizes->panels[1].marks.at(0).at, 40);
+  EXPECT_EQ(sizes->panels[1].series.at(2).y, (std::vector<double>{40, 40}));
 }
 
 TEST(ProximityChapter, FitsTimesAndListsDistances) {
