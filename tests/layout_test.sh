@@ -25,7 +25,7 @@ core/sweep                 core/scene
 core/pairs                 core/view
 core/proximity             core/pairs
 core/native                core/canvas
-core/gl                    core/cull core/sweep core/pairs
+core/gl                    core/cull core/sweep core/proximity
 offsets                    core/native
 verify/certificate         core/scene
 verify                     core/canvas verify/certificate

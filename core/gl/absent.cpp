@@ -8,6 +8,7 @@
 #include "core/gl/picture.h"
 #include "core/gl/probe.h"
 #include "core/gl/probe_kernels.h"
+#include "core/gl/voronoi.h"
 
 namespace farcull {
 namespace {
@@ -35,6 +36,10 @@ std::unique_ptr<Canvas> gl_canvas(const GlContext&, DepthMode, const SolidProgra
 }
 
 std::unique_ptr<PairBackend> gl_pair_backend(const GlContext&, std::size_t) { refuse(); }
+
+std::unique_ptr<VoronoiDevice> gl_voronoi_device(const GlContext&, const GlVoronoiOptions&) {
+  refuse();
+}
 
 std::vector<ProbeResult> run_probes(const GlContext&, const ProbeOptions&,
                                     const std::function<void(const std::string&)>&) {

@@ -15,6 +15,16 @@ void require(const VoronoiOptions& options) {
   }
 }
 
+std::uint64_t distances_in(int slice, const VoronoiBricks& bricks) {
+  std::uint64_t out = 0;
+  for (const VoronoiBrick& brick : bricks.bricks) {
+    if (slice < brick.from[2] || slice >= brick.to[2]) continue;
+    out += static_cast<std::uint64_t>(brick.to[0] - brick.from[0]) *
+           static_cast<std::uint64_t>(brick.to[1] - brick.from[1]) * brick.count;
+  }
+  return out;
+}
+
 void sort_each_once(std::vector<ObjectPair>& pairs) {
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());

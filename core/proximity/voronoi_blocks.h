@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -15,6 +16,7 @@
 
 #include "core/base/parallel.h"
 #include "core/proximity/voronoi.h"
+#include "core/proximity/voronoi_device.h"
 #include "core/proximity/voronoi_distance.h"
 #include "core/proximity/voronoi_grid.h"
 
@@ -28,10 +30,15 @@ struct Block {
   std::array<int, 3> from, to;
   std::size_t first, count;
 
-  bool is_cell() const {
-    return to[0] - from[0] == 1 && to[1] - from[1] == 1 && to[2] - from[2] == 1;
+  bool is_cell() const { return fits(1); }
+  // Whether no side is longer.
+  bool fits(int side) const {
+    return to[0] - from[0] <= side && to[1] - from[1] <= side && to[2] - from[2] <= side;
   }
 };
+
+// Sides of the bricks that a device is given: so many slices are in memory at a time.
+inline constexpr int kBrick = 8;
 
 struct Level {
   std::vector<Block> blocks;
@@ -45,6 +52,22 @@ struct Level {
     triangles.insert(triangles.end(), other.triangles.begin(), other.triangles.end());
   }
 };
+
+// Half the diagonal of a block whose sides are as much shorter, rounded up.
+inline float half_diagonal(const Block& block, int shorter) {
+  float square = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto side = static_cast<float>(block.to[k] - block.from[k] - shorter);
+    square += side * side;
+  }
+  return 0.5f * std::sqrt(square) * (1 + 0x1p-20f);
+}
+inline GridPoint centre_of(const Block& block) {
+  GridPoint out;
+  for (std::size_t k = 0; k < 3; ++k)
+    out[k] = 0.5f * static_cast<float>(block.from[k] + block.to[k]);
+  return out;
+}
 
 // Adds the halves of the block along each axis that has any. All have the triangles `kept`.
 inline void add_parts(const Block& block, std::span<const std::uint32_t> kept, Level& below) {
@@ -118,21 +141,22 @@ class Distances {
 
 /// Throws Error naming the option that is out of range.
 void require(const VoronoiOptions& options);
+/// Distances of cells and triangles that a device computes for a slice.
+std::uint64_t distances_in(int slice, const VoronoiBricks& bricks);
 /// Sorts them and leaves each once.
 void sort_each_once(std::vector<ObjectPair>& pairs);
 inline ObjectPair pair_of(std::uint32_t a, std::uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// Calls form.look() for each block that matters, level by level, and form.add() with what the
-/// chunks of a level found, in order, before it looks at the next level. Form::Found: what a chunk
-/// finds.
+/// Calls form.look() for each block that matters of `whole`, which has all triangles, level by
+/// level, and form.add() with what the chunks of a level found, in order, before it looks at the
+/// next level. Form::Found: what a chunk finds.
 template <class Form>
-void descend(Form& form, const VoronoiGrid& grid, std::size_t triangles,
-             const VoronoiOptions& options, const Progress& progress, VoronoiCounts& counts) {
-  counts.cells = grid.cells;
+void descend(Form& form, const Block& whole, std::size_t triangles, const VoronoiOptions& options,
+             const Progress& progress, VoronoiCounts& counts) {
   Level level;
-  level.blocks.push_back({{0, 0, 0}, grid.cells, 0, triangles});
+  level.blocks.push_back(whole);
   for (std::uint32_t t = 0; t < triangles; ++t) level.triangles.push_back(t);
   while (!level.blocks.empty()) {
     if (progress) progress("voronoi: " + std::to_string(level.blocks.size()) + " blocks");
@@ -154,6 +178,24 @@ void descend(Form& form, const VoronoiGrid& grid, std::size_t triangles,
       form.add(found[k]);
       level.append(below[k]);
     }
+  }
+}
+
+/// The same for the whole grid.
+template <class Form>
+void descend(Form& form, const VoronoiGrid& grid, std::size_t triangles,
+             const VoronoiOptions& options, const Progress& progress, VoronoiCounts& counts) {
+  counts.cells = grid.cells;
+  descend(form, Block{{0, 0, 0}, grid.cells, 0, triangles}, triangles, options, progress, counts);
+}
+
+/// slab(whole block, first slice, slice after the last one) for the slabs of the grid, kBrick
+/// slices each, in order.
+template <class Slab>
+void for_slabs(const VoronoiGrid& grid, std::size_t triangles, const Slab& slab) {
+  for (int z = 0; z < grid.cells[2]; z += kBrick) {
+    const int end = std::min(z + kBrick, grid.cells[2]);
+    slab(Block{{0, 0, z}, {grid.cells[0], grid.cells[1], end}, 0, triangles}, z, end);
   }
 }
 

@@ -22,18 +22,25 @@ void NeighbourOptions::add_to(CLI::App& command) {
   add_option(command, "--resolution", resolution_, "N",
              "with --neighbours: cells of the diagram along the\n"
              "longest side of the scene; default 64");
+  add_option(command, "--device", device_, "DEVICE",
+             "with --neighbours: cpu (alias native) or a GL device:\n"
+             "gl, software, hardware or a number that farcull doctor\n"
+             "lists; default cpu");
 }
 
 bool NeighbourOptions::asked() const {
   if (neighbours_) return true;
-  if (resolution_)
-    throw Error("--resolution", "has no meaning without --neighbours",
-                "add --neighbours published or reliable, or leave it out");
+  for (const auto& [option, given] : {std::pair("--resolution", resolution_.has_value()),
+                                      std::pair("--device", device_.has_value())}) {
+    if (given)
+      throw Error(option, "has no meaning without --neighbours",
+                  "add --neighbours published or reliable, or leave it out");
+  }
   return false;
 }
 
 DiagramOptions NeighbourOptions::parse(unsigned threads) const {
-  DiagramOptions out{.threads = threads};
+  DiagramOptions out{.threads = threads, .device = device_of(device_)};
   if (*neighbours_ == "reliable") {
     out.form = DiagramForm::reliable;
   } else if (*neighbours_ != "published") {

@@ -19,7 +19,7 @@ class NeighbourOptions {
   DiagramOptions parse(unsigned threads) const;
 
  private:
-  Text neighbours_, resolution_;
+  Text neighbours_, resolution_, device_;
 };
 
 /// Writes the record of the scene to the outputs. The exit status: 0 done, 1 the reliable form lost

@@ -5,9 +5,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
+#include "core/gl/voronoi.h"
 #include "experiments/measure/neighbours.h"
+#include "experiments/method/options.h"
+#include "experiments/method/session.h"
 #include "verify/closest.h"
 #include "verify/exact.h"
 
@@ -46,9 +50,42 @@ bool holds(const std::vector<ObjectPair>& sorted, std::uint32_t a, std::uint32_t
                             ObjectPair{std::min(a, b), std::max(a, b)});
 }
 
-void add_published(const Scene& scene, const VoronoiOptions& options, const Progress& progress,
+// Asks the diagram on a GL device, where one is wanted.
+class Asked {
+ public:
+  Asked(const DiagramOptions& options, DiagramRecord& record)
+      : options_{.resolution = options.resolution,
+                 .widening = options.widening,
+                 .threads = options.threads} {
+    if (options.device.empty() || is_cpu(options.device)) return;
+    session_.emplace(options.device, options.threads);
+    const GlContext& context = session_->context();
+    const DeviceVerdict& verdict = session_->verdict(Reliance::drawing);
+    record.gl = context.info();
+    record.probes = to_string(verdict, Reliance::drawing);
+    if (!verdict.holds)
+      throw Error("--device " + options.device, record.probes, "use --device cpu");
+    device_ = gl_voronoi_device(context);
+  }
+
+  VoronoiNeighbours published(const Scene& scene, const Progress& progress) const {
+    return device_ ? voronoi_neighbours(scene, options_, *device_, progress)
+                   : voronoi_neighbours(scene, options_, progress);
+  }
+  ReliableNeighbours reliable(const Scene& scene, const Progress& progress) const {
+    return device_ ? reliable_neighbours(scene, options_, *device_, progress)
+                   : reliable_neighbours(scene, options_, progress);
+  }
+
+ private:
+  VoronoiOptions options_;
+  std::optional<Session> session_;  // its context outlives the device
+  std::unique_ptr<VoronoiDevice> device_;
+};
+
+void add_published(const Scene& scene, const Asked& diagram, const Progress& progress,
                    DiagramRecord& out, std::vector<ObjectPair>& objects) {
-  VoronoiNeighbours found = voronoi_neighbours(scene, options, progress);
+  VoronoiNeighbours found = diagram.published(scene, progress);
   out.work = found.counts;
   objects = std::move(found.objects);
   for (const ObjectPair& pair : objects) {
@@ -60,10 +97,10 @@ void add_published(const Scene& scene, const VoronoiOptions& options, const Prog
   }
 }
 
-std::vector<TrianglePair> add_reliable(const Scene& scene, const VoronoiOptions& options,
+std::vector<TrianglePair> add_reliable(const Scene& scene, const Asked& diagram,
                                        const Progress& progress, DiagramRecord& out,
                                        std::vector<ObjectPair>& objects) {
-  ReliableNeighbours found = reliable_neighbours(scene, options, progress);
+  ReliableNeighbours found = diagram.reliable(scene, progress);
   out.work = found.counts;
   out.triangle_pairs = found.triangles.size();
   objects = std::move(found.objects);
@@ -81,10 +118,9 @@ DiagramRecord potential_neighbours(const Scene& scene, const DiagramOptions& opt
                     .degenerate_triangles = degenerate_triangles(scene),
                     .objects = std::vector<PotentialNeighbours>(scene.objects.size())};
   const bool reliable = options.form == DiagramForm::reliable;
-  const VoronoiOptions diagram{
-      .resolution = options.resolution, .widening = options.widening, .threads = options.threads};
   std::vector<ObjectPair> objects;
   std::vector<TrianglePair> triangles;
+  const Asked diagram(options, out);
   const Stopwatch diagram_watch;
   if (reliable)
     triangles = add_reliable(scene, diagram, progress, out, objects);
@@ -112,6 +148,7 @@ DiagramRecord potential_neighbours(const Scene& scene, const DiagramOptions& opt
     of.nearest = std::move(truth[object].objects);
   }
   out.exact_ms = exact_watch.ms();
+  require_proved("arithmetic");  // a driver's code ran in this thread too
   return out;
 }
 

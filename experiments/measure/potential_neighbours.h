@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/gl/context.h"
 #include "core/proximity/voronoi.h"
 #include "core/scene/scene.h"
 
@@ -22,6 +23,9 @@ struct DiagramOptions {
   int resolution = 64;   // cells along the longest side of the scene's box; 1 to kVoronoiLargest
   unsigned threads = 0;  // of the CPU; 0: as many as there are cores; changes no answer
   double widening = 1;   // of VoronoiOptions; below 1 the reliable form loses nearest objects
+  /// Where the cells are computed. "", "native" or "cpu": on the cores of the CPU; else a GL device
+  /// as Session takes it.
+  std::string device = {};
 };
 
 /// Of one object.
@@ -39,6 +43,8 @@ struct PotentialNeighbours {
 
 struct DiagramRecord {
   DiagramOptions options;
+  std::optional<GlInfo> gl = {};  // what answered; empty: the CPU
+  std::string probes = {};        // what the probes of that device showed
   std::string scene_hash;
   std::uint64_t degenerate_triangles = 0;
   std::vector<PotentialNeighbours> objects;  // of each object of the scene
@@ -48,8 +54,9 @@ struct DiagramRecord {
   double diagram_ms = 0, exact_ms = 0;
 };
 
-/// Throws Error as voronoi_neighbours() and reliable_neighbours() do. Precondition: the scene
-/// satisfies validate().
+/// Throws Error as voronoi_neighbours() and reliable_neighbours() do, and where a GL device does
+/// not answer, fails, or does not pass the probes (docs/reliability.md, A1 to A8). Precondition:
+/// the scene satisfies validate().
 DiagramRecord potential_neighbours(const Scene& scene, const DiagramOptions& options,
                                    const Progress& progress = {});
 

@@ -45,6 +45,14 @@ std::string objects_table(const Scene& scene, const DiagramRecord& record) {
   return out;
 }
 
+Json device_json(const DiagramRecord& record) {
+  if (!record.gl) return {{"kind", "cpu"}};
+  return {{"kind", record.gl->kind},         {"vendor", record.gl->vendor},
+          {"renderer", record.gl->renderer}, {"version", record.gl->version},
+          {"glsl", record.gl->glsl},         {"reason", "--device " + record.options.device},
+          {"probes", record.probes}};
+}
+
 }  // namespace
 
 Json diagram_json(const Scene& scene, const DiagramRecord& record,
@@ -65,6 +73,7 @@ Json diagram_json(const Scene& scene, const DiagramRecord& record,
           {"diagram", to_string(record.options.form)},
           {"resolution", record.options.resolution},
           {"cells", record.work.cells},
+          {"device", device_json(record)},
           {"objects", objects},
           {"totals",
            {{"objects", totals.objects},
@@ -101,8 +110,11 @@ std::string diagram_table(const Scene& scene, const DiagramRecord& record) {
   std::string out =
       fmt::format("{}: {}, {}\n", scene.name, counted(scene.objects.size(), "object", "objects"),
                   counted(scene.triangles.size(), "triangle", "triangles"));
-  out += fmt::format("diagram    {}, {} x {} x {} cells\n\n", to_string(record.options.form),
+  out += fmt::format("diagram    {}, {} x {} x {} cells\n", to_string(record.options.form),
                      cells[0], cells[1], cells[2]);
+  out += "device     " + (record.gl ? record.gl->renderer : "cpu") + "\n";
+  if (record.gl) out += "promise    " + record.probes + "\n";
+  out += "\n";
   out += objects_table(scene, record) + "\n";
   out += fmt::format("left       {} and {}\n",
                      counted(record.object_pairs, "pair of objects", "pairs of objects"),

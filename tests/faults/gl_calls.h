@@ -83,6 +83,7 @@ struct GlHook<Pointer, Result (*)(Arguments...)> {
   X(glActiveTexture) X(glAttachShader) X(glBeginQuery) X(glBindBuffer) X(glBindBufferBase) \
   X(glBindBufferRange) X(glBindFramebuffer) X(glBindTexture) X(glBindVertexArray) \
   X(glBufferSubData) X(glClear) X(glClearBufferData) X(glClearBufferSubData) X(glClearBufferfv) \
+  X(glClearBufferuiv) X(glColorMask) \
   X(glClearDepth) X(glClientWaitSync) X(glCompileShader) X(glCreateProgram) X(glCreateShader) \
   X(glDeleteBuffers) X(glDeleteFramebuffers) X(glDeleteProgram) X(glDeleteQueries) \
   X(glDeleteShader) X(glDeleteSync) X(glDeleteTextures) X(glDeleteVertexArrays) X(glDepthFunc) \

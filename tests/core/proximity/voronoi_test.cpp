@@ -13,6 +13,7 @@
 #include "tests/core/base/rational.h"
 #include "tests/core/base/trials.h"
 #include "tests/core/proximity/voronoi_lab.h"
+#include "tests/core/proximity/voronoi_slices_lab.h"
 
 namespace farcull {
 namespace {
@@ -91,40 +92,13 @@ TEST(VoronoiGrid, ContainsWhatTheSceneHasAndRoundsItAsSaid) {
   }
 }
 
-// A triangle in the unit cubes of a grid, often a needle, a segment or a point.
-GridTriangle drawn_triangle(rational::Random& random, float longest) {
-  GridTriangle out;
-  const auto number = [&] { return static_cast<float>(random.uniform(0, longest)); };
-  const float thin = std::exp2(static_cast<float>(-random.below(40)));
-  for (auto& corner : out.corners) corner = {number(), number(), number()};
-  auto& [a, b, c] = out.corners;
-  switch (random.below(6)) {
-    case 0:  // a needle
-      for (std::size_t k = 0; k < 3; ++k) c[k] = std::min(longest, b[k] + thin);
-      break;
-    case 1:  // three points close to a line
-      for (std::size_t k = 0; k < 3; ++k) c[k] = 0.5f * (a[k] + b[k]);
-      c[0] = std::min(longest, c[0] + thin);
-      break;
-    case 2:
-      c = b;
-      break;
-    case 3:
-      c = b = a;
-      break;
-    default:
-      break;
-  }
-  return out;
-}
-
 // How many of the bounds that `error` makes are wrong.
 int wrong_bounds(int count, float error_share) {
   rational::Random random(2);
   int wrong = 0;
   for (int i = 0; i < count; ++i) {
     const int longest = 1 << random.below(11);
-    const GridTriangle triangle = drawn_triangle(random, static_cast<float>(longest));
+    const GridTriangle triangle = lab::drawn_triangle(random, static_cast<float>(longest));
     GridPoint point;
     for (float& x : point) x = static_cast<float>(random.below(2 * longest) + 1) * 0.5f;
     const GridDistance d = distance_of(point, triangle, error_share * voronoi_error(longest));
