@@ -30,7 +30,6 @@ constexpr std::size_t kReportWords = 4;
 constexpr GLuint kTriangles = 0, kItems = 1, kReport = 2, kList = 3;  // bindings
 
 constexpr std::size_t kItemsDrawn = std::size_t{1} << 20;  // by one call
-constexpr std::size_t kMostListed = std::size_t{1} << 24;  // triangles near cells of a slice
 constexpr float kCleared = 1;                              // farther than any depth
 
 using Words = std::array<std::uint32_t, 4>;
@@ -367,11 +366,13 @@ class GlVoronoi : public VoronoiDevice {
   }
 
   void grow_list(std::uint32_t listed) {
+    require_voronoi_list(listed);
     const std::size_t bytes = 16 + std::size_t{listed} * 16;
-    if (listed > kMostListed || bytes > block_) {
+    if (bytes > block_) {
       throw Error("resolution",
                   "a slice has " + std::to_string(listed) +
-                      " triangles that may be nearest to its cells, too many to list",
+                      " triangles that may be nearest to its cells, more than a storage block of "
+                      "this device holds",
                   "give more cells, or use --device cpu");
     }
     list_.reserve(bytes, block_);

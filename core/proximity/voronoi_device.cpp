@@ -2,8 +2,12 @@
 #include "core/proximity/voronoi_device.h"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
+#include <string>
+#include <utility>
 
+#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/proximity/voronoi_bounds.h"
 
@@ -49,14 +53,18 @@ class CpuDevice : public VoronoiDevice {
 
   std::vector<VoronoiNear> near(int slice, const VoronoiBricks& bricks, float reach) override {
     std::vector<std::vector<VoronoiNear>> found(chunks(bricks));
+    std::atomic<std::size_t> listed = 0;
     for_cells(slice, bricks,
               [&](std::size_t chunk, std::uint32_t cell, auto ids, const auto& bounds) {
                 float least = std::numeric_limits<float>::infinity();
                 for (const Bounds& b : bounds) least = std::min(least, b.upper);
+                const std::size_t before = found[chunk].size();
                 for (std::size_t i = 0; i < ids.size(); ++i) {
                   if (bounds[i].lower <= least + reach)
                     found[chunk].push_back({cell, ids[i], bounds[i].lower, bounds[i].upper});
                 }
+                listed += found[chunk].size() - before;
+                require_voronoi_list(listed);
               });
     std::vector<VoronoiNear> out;
     for (const auto& part : found) out.insert(out.end(), part.begin(), part.end());
@@ -110,6 +118,14 @@ class CpuDevice : public VoronoiDevice {
 };
 
 }  // namespace
+
+void require_voronoi_list(std::size_t listed) {
+  if (listed <= kVoronoiMostListed) return;
+  throw Error("resolution",
+              "a slice has " + std::to_string(listed) +
+                  " triangles or more that may be nearest to its cells, too many to list",
+              "take more cells, or objects that differ less in size");
+}
 
 std::unique_ptr<VoronoiDevice> cpu_voronoi_device(unsigned threads) {
   return std::make_unique<CpuDevice>(threads);

@@ -58,9 +58,13 @@ class VoronoiDevice {
 
   /// For each cell of the slice in a brick all triangles of the brick that satisfy
   /// lower <= the least upper bound of the brick's triangles + reach. Sorted by cell, then by
-  /// triangle. The bounds hold (docs/voronoi.md, lemma V13).
+  /// triangle. The bounds hold (docs/voronoi.md, lemma V13). Throws Error where these are too many.
   virtual std::vector<VoronoiNear> near(int slice, const VoronoiBricks& bricks, float reach) = 0;
 };
+
+/// Of a slice, near() lists no more: 16 bytes each. Throws Error where it would.
+constexpr std::size_t kVoronoiMostListed = std::size_t{1} << 24;
+void require_voronoi_list(std::size_t listed);
 
 /// On the cores of the CPU. threads: 0 for as many as there are cores.
 std::unique_ptr<VoronoiDevice> cpu_voronoi_device(unsigned threads);
