@@ -27,7 +27,7 @@ Scene flat_scene() {
 
 class VoronoiFaults : public testing::Test {
  protected:
-  const GlContext context;
+  std::unique_ptr<GlContext> context;
   const Scene scene = flat_scene();
   const VoronoiOptions options{.resolution = 6};
   const std::unique_ptr<VoronoiDevice> cpu = cpu_voronoi_device(1);
@@ -35,14 +35,20 @@ class VoronoiFaults : public testing::Test {
   const std::vector<TrianglePair> kept = reliable_neighbours(scene, options, *cpu).triangles;
   std::unique_ptr<VoronoiDevice> device;
 
-  // A device that failed is made anew for the next answer.
+  void open() {
+    device.reset();
+    if (!context) context = std::make_unique<GlContext>();
+    device = gl_voronoi_device(*context);
+  }
+  // A device that failed is made anew for the next answer, and its context too.
   template <class Answer>
   bool answered(const Answer& answer) {
-    if (!device) device = gl_voronoi_device(context);
     try {
+      if (!device) open();
       return answer();
     } catch (...) {
       device.reset();
+      context.reset();
       throw;
     }
   }
@@ -135,7 +141,7 @@ TEST_F(VoronoiFaultsDepth, WithoutTheComparisonAnotherTestGivesAWrongAnswer) {
   text_from = "flags |= kWrong;";
   text_to = ";";
   replaced = 0;
-  device = gl_voronoi_device(context);
+  open();
   EXPECT_EQ(replaced, 3);
   EXPECT_EQ(said(GL_ALWAYS, false), "");
   EXPECT_FALSE(right);
@@ -146,10 +152,10 @@ TEST_F(VoronoiFaultsDepth, AWorseRootIsRefused) {
   text_from = "float length = sqrt(square);";
   text_to = "float length = sqrt(square) * 1.00001;";
   replaced = 0;
-  device = gl_voronoi_device(context);
+  open();
   EXPECT_EQ(replaced, 1);
   EXPECT_EQ(said(GL_LESS, false), "a square root is too inexact");
-  device = gl_voronoi_device(context);
+  open();
   EXPECT_EQ(said(GL_LESS, true), "a square root is too inexact");
 }
 
@@ -160,7 +166,7 @@ TEST_F(VoronoiFaultsDepth, AnotherCentreGivesAnotherAnswer) {
   text_from = "float(pixel.x) + 0.5";
   text_to = "float(pixel.x) + 3.5";
   replaced = 0;
-  device = gl_voronoi_device(context);
+  open();
   EXPECT_EQ(replaced, 1);
   EXPECT_EQ(said(GL_LESS, true), "");
   EXPECT_FALSE(right);
