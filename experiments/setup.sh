@@ -40,7 +40,7 @@ farcull_packages=(
 # in a browser, prints it, reads the PDF, and compiles its LaTeX (39 MB to fetch, 124 MB on the disk;
 # the browser alone takes 290 MB); another one makes the paper a PDF (32 MB to fetch, 202 MB on the
 # disk); another one reads the manual and tries completion; gappa proves the bounds of rounding errors.
-farcull_test_packages=(gappa chromium poppler-utils sqlite3 texlive-latex-base pandoc texlive-latex-recommended
+farcull_test_packages=(gappa chromium python3 poppler-utils sqlite3 texlive-latex-base pandoc texlive-latex-recommended
   librsvg2-bin mandoc groff-base man-db zsh fish)
 
 # Prints those of farcull_packages that are not completely installed, one per line.

@@ -52,6 +52,14 @@ p 'a frame that is none' '--frame: ' --frame x -o new.png
 p 'a frame below' '--frame: ' --frame -1 -o new.png
 p 'a frame beyond' '--frame: ' --frame 5 --frames 5 -o new.png
 p 'frames alone' '--frames: ' --frames 5 -o new.png
+p 'an empty page' '--html: ' --html ''
+p 'a page to standard output' '--html: ' --html -
+p 'a page named like a mesh' '--html: .*mesh' --html crossing.obj
+p 'a page and a picture in one file' '--html' --html new.png -o new.png
+p 'a page of a stored depth' '--html: ' --method far --view-depth --html new.html
+p 'resolutions without a page' '--resolutions: ' --method far --resolutions 32,64 -o new.png
+p 'no resolution' '--resolutions: ' --method far --resolutions 32, --html new.html
+p 'resolutions that no method takes' '--resolutions: ' --compare exact,far:64 --resolutions 32 --html new.html
 p 'an unknown device' '--device: ' --device nope --method cullide -o new.png
 p 'an unknown option' '--nope: ' --nope -o new.png
 p 's-cullide without self' 'two-spheres: ' --method s-cullide -o new.png
@@ -79,6 +87,12 @@ good 'standard output' 0 picture crossing.obj --method exact --self "${small[@]}
 is_png 'standard output' "$out"
 good 'a view of the method' 0 picture two-spheres --method far --resolution 32 --view-depth=-x "${small[@]}" -o v.png
 expect 'a view of the method' "$out" '^far at 32 px, along -x: this view loses 0 of '
+good 'a page' 0 picture two-spheres --compare cullide,exact --resolutions 32,64 "${small[@]}" --html page.html
+expect 'a page' "$out" '^cullide at 32 px: missed [1-9]'
+expect 'a page' "$out" '^exact: missed 0 of '
+expect 'a page' "$out" '^The page is in page.html .[0-9.]* MB.$'
+expect 'a page' page.html '^<!DOCTYPE html>'
+expect 'a page' page.html 'three.js'
 good 'a single mesh' 0 picture crossing.obj --method far-pairs --self --device cpu --view -z --up x \
   "${small[@]}" -o s.png
 expect 'a single mesh' "$out" '^far-pairs: missed 0 of '

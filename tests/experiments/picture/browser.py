@@ -14,7 +14,7 @@ class Browser:
     """Use as a context. `problems` grows by what a page must not do: exceptions, lines on the
     console, requests to anything but files and data."""
 
-    def __init__(self, *flags, width=1024, height=768):
+    def __init__(self, *flags, width=800, height=600):
         self.problems, self.next, self.waiting, self.events = [], 0, {}, []
         self.folder = tempfile.TemporaryDirectory()
         to_it, self.write_end = os.pipe()
