@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <charconv>
 
 #include "core/base/error.h"
@@ -57,10 +56,6 @@ RunOptions parse_panel(const std::string& text, const RunOptions& usual) {
   return options;
 }
 
-// The resolutions of a page's steps where none is named: from pixels that are large to the usual
-// ones.
-constexpr std::array<int, 5> kUsualSteps = {32, 64, 128, 256, 512};
-
 // Where the picture and the page go, from a command that reads these files.
 Outputs checked_outputs(const Text& picture, const Text& page,
                         const std::vector<NamedFile>& inputs) {
@@ -112,7 +107,8 @@ void PictureCommand::add_options(CLI::App& app) {
   add_flag(*command, "--self", self_, kSelfHelp);
   add("--frame", frame_, "F", "of a scene that moves");
   add("--frames", frames_, "N|A:B",
-      "of the motion that F is one of; default 30 of a\nbuilt-in scene");
+      "of the motion that F is one of; default 30 of a\nbuilt-in scene. With --html and without "
+      "--frame: the\nframes that the reader steps through");
   add("--view", view_, "DIR",
       "direction that the picture looks along, as in -z or\n-1:-1:-2; default -0.45:-0.35:-0.82");
   add("--up", up_, "AXIS", "upwards in the picture; default y");
@@ -136,7 +132,8 @@ void PictureCommand::add_options(CLI::App& app) {
       "  farcull picture mannequin-devil --method s-cullide --self -o self.png\n"
       "  farcull picture two-tori --method far --resolution 64 --view-depth x -o depth.png\n"
       "  farcull picture cloth --frame 100 --frames 101 --up z -o cloth.png\n"
-      "  farcull picture two-bunnies --compare cullide,far --html bunnies.html\n\n"
+      "  farcull picture two-bunnies --compare cullide,far --html bunnies.html\n"
+      "  farcull picture two-spheres --frames 20 --html motion.html\n\n"
       "Exit status 1: a method that promises missed a pair; the picture shows it.");
 }
 
@@ -162,6 +159,8 @@ PictureArguments PictureCommand::arguments() const {
   out.zoom = zoom_;
   if (frame_) out.frame = parse_frame(*frame_);
   if (frames_) out.frames = parse_frames(*frames_);
+  // The flat picture of a page of many frames is that of the first one.
+  if (html_ && out.frames && !out.frame) out.frame = out.frames->first;
   if (size_) parse_size(*size_, out.width, out.height);
   for (const auto& [option, text] : {std::pair("--view", view_), std::pair("--up", up_)}) {
     if (text && text->empty())
@@ -216,7 +215,8 @@ PageArguments PictureCommand::page_arguments(const PictureArguments& picture) co
     throw Error("--html", "a page shows no stored depth", "leave --view-depth out");
   PageArguments out;
   out.picture = picture;
-  std::vector<int> resolutions(kUsualSteps.begin(), kUsualSteps.end());
+  if (frames_ && !frame_) out.frames = picture.frames;
+  std::vector<int> resolutions(kPageResolutions.begin(), kPageResolutions.end());
   if (resolutions_) {
     resolutions.clear();
     for (const std::string& word : split_list(*resolutions_))
@@ -224,14 +224,11 @@ PageArguments PictureCommand::page_arguments(const PictureArguments& picture) co
   }
   bool used = false;
   for (const RunOptions& panel : picture.panels) {
-    // far-pairs chooses its resolution by the scene.
     const bool steps = draws(panel.method) && panel.resolution == 0;
     used |= steps;
-    if (!steps) out.steps.push_back(panel);
-    for (std::size_t i = 0; steps && i < resolutions.size(); ++i) {
-      out.steps.push_back(panel);
-      out.steps.back().resolution = resolutions[i];
-    }
+    const std::vector<RunOptions> each =
+        steps ? at_resolutions({panel}, resolutions) : std::vector{panel};
+    out.steps.insert(out.steps.end(), each.begin(), each.end());
   }
   if (resolutions_ && !used) {
     throw Error("--resolutions", "every method has a resolution of its own, or needs none",

@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "experiments/command/options.h"
 #include "experiments/command/studies.h"
-#include "experiments/picture/picture.h"
+#include "experiments/picture/page.h"
 #include "experiments/report/report.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
@@ -51,6 +51,7 @@ int ReportCommand::run() {
   }
   TerminalProgress terminal;
   std::optional<Lab> lab;
+  PictureResult drawn;  // the last one, which the page of its scene holds
   ReportRequest request;
   request.folder = folder_;
   request.progress = terminal.callback();
@@ -58,16 +59,34 @@ int ReportCommand::run() {
                              const std::string& path) -> std::vector<PanelResult> {
     if (no_pictures_) throw Error("--no-pictures", "was given", "leave it out");
     if (!lab) lab.emplace(device_of(device_), request.progress);
-    return write_picture(arguments, *lab, path).panels;
+    drawn = write_picture(arguments, *lab, path);
+    return drawn.panels;
+  };
+  request.make_page = [&](const PictureArguments& picture, const std::string& path) {
+    require_three();
+    std::vector<int> resolutions(kPageResolutions.begin(), kPageResolutions.end());
+    for (const RunOptions& panel : picture.panels) {
+      if (panel.resolution > 0) resolutions.push_back(panel.resolution);
+    }
+    const PageArguments arguments = {
+        .picture = picture, .steps = at_resolutions(picture.panels, resolutions), .frames = {}};
+    const PageResult page = make_page(arguments, drawn, *lab);
+    write_output(path, page.html);
+    std::vector<std::string> broken;
+    for (const PageStep& step : page.steps) {
+      if (step.result.broken) broken.push_back(step.result.title + " " + step.result.headline);
+    }
+    return broken;
   };
   const ReportSummary summary = write_report(request);
   terminal.clear();
   std::string text;
   for (const std::string& note : summary.notes) text += note + "\n";
   text += fmt::format(
-      "{}, {}, {}, {}\n{}/index.html\n", counted(summary.studies, "study", "studies"),
+      "{}, {}, {}, {}, {}\n{}/index.html\n", counted(summary.studies, "study", "studies"),
       counted(summary.figures, "figure", "figures"), counted(summary.tables, "table", "tables"),
-      counted(summary.pictures, "picture", "pictures"), summary.folder);
+      counted(summary.pictures, "picture", "pictures"), counted(summary.pages, "page", "pages"),
+      summary.folder);
   write_output("-", text);
   for (const std::string& broken : summary.broken)
     complain_broken("a promise is broken: " + broken);

@@ -6,7 +6,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <numeric>
+#include <set>
+#include <stdexcept>
 
 #include "commit.h"
 #include "core/base/base64.h"
@@ -279,6 +280,23 @@ class PageMaker {
 };
 
 }  // namespace
+
+std::vector<RunOptions> at_resolutions(const std::vector<RunOptions>& panels,
+                                       std::vector<int> resolutions) {
+  std::sort(resolutions.begin(), resolutions.end());
+  resolutions.erase(std::unique(resolutions.begin(), resolutions.end()), resolutions.end());
+  std::vector<RunOptions> out;
+  std::set<std::string> titles;
+  for (RunOptions options : panels) {
+    std::vector<int> of_method = {options.resolution};
+    if (draws(options.method)) of_method = resolutions;
+    for (const int resolution : of_method) {
+      options.resolution = resolution;
+      if (titles.insert(panel_title(options)).second) out.push_back(options);
+    }
+  }
+  return out;
+}
 
 void require_three() {
   if (!three_js().library.empty()) return;

@@ -2,6 +2,7 @@
 // browser needs to show them and to look around in them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -21,6 +22,15 @@ struct PageArguments {
   std::vector<RunOptions> steps;     // what the reader can choose among: at least one
   std::optional<FrameRange> frames;  // of a scene that moves; empty: the frame of the picture
 };
+
+/// Resolutions that a reader can step through where none is named, px: from pixels that are large
+/// to the usual ones.
+constexpr std::array<int, 5> kPageResolutions = {32, 64, 128, 256, 512};
+
+/// The methods of the panels, each once at every resolution, ascending; one that takes none, or
+/// chooses it by the scene, as it is.
+std::vector<RunOptions> at_resolutions(const std::vector<RunOptions>& panels,
+                                       std::vector<int> resolutions);
 
 /// What one method answered on one frame.
 struct PageStep {

@@ -223,10 +223,15 @@ class Writer {
         drawn.picture.name,
         to_base64({reinterpret_cast<const std::uint8_t*>(drawn.png.data()), drawn.png.size()}),
         html_text(drawn.picture.caption));
+    const std::string look = drawn.page ? fmt::format(
+                                              " <a href=\"pages/{}.html\">look around in it"
+                                              "</a>",
+                                              drawn.picture.name)
+                                        : "";
     add("<figcaption><strong>Figure {}.</strong> {} <span class=\"files\"><code>{}</code> <a "
-        "href=\"pictures/{}.png\">PNG</a></span></figcaption>\n</figure>",
+        "href=\"pictures/{}.png\">PNG</a>{}</span></figcaption>\n</figure>",
         figure_, html_prose(sentence(drawn.picture.caption)), html_text(command),
-        drawn.picture.name);
+        drawn.picture.name, look);
   }
 
   void show(const DataTable& table) {

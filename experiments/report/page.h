@@ -13,6 +13,7 @@ namespace farcull {
 struct DrawnPicture {
   Picture picture;
   std::string png;       // empty: there is none
+  bool page = false;     // whether there is a page of it, pages/NAME.html
   std::string left_out;  // why
 };
 

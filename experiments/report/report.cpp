@@ -348,7 +348,7 @@ class Reporter {
   // Promises that the picture breaks become findings of the chapter.
   DrawnPicture draw(const Picture& picture, Chapter& chapter) {
     say("picture " + picture.name);
-    DrawnPicture out{.picture = picture, .png = {}, .left_out = {}};
+    DrawnPicture out{.picture = picture};
     const std::string folder = root_ + "/pictures";
     std::error_code ignored;
     fs::create_directory(folder, ignored);
@@ -367,7 +367,31 @@ class Reporter {
       out.left_out = error.where + " " + error.reason;
       summary_.notes.push_back("picture " + picture.name + " is left out: " + out.left_out);
     }
+    if (!out.png.empty()) out.page = make_page(picture);
     return out;
+  }
+
+  // Whether the page of the picture's scene is there. A page of a stored depth is never asked for.
+  bool make_page(const Picture& picture) {
+    if (!request_.make_page || picture.arguments.depth_view) return false;
+    say("page " + picture.name);
+    const std::string folder = root_ + "/pages";
+    std::error_code ignored;
+    fs::create_directory(folder, ignored);
+    try {
+      const std::string path = folder + "/" + picture.name + ".html";
+      for (const std::string& broken : request_.make_page(picture.arguments, path)) {
+        summary_.broken.push_back(
+            fmt::format("in the page of the picture {}, {}", picture.name, broken));
+      }
+      ++summary_.pages;
+      return true;
+    } catch (const Error& error) {
+      Signals::check();
+      summary_.notes.push_back(fmt::format("the page of picture {} is left out: {} {}",
+                                           picture.name, error.where, error.reason));
+      return false;
+    }
   }
 
   const ReportRequest& request_;

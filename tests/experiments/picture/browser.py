@@ -149,9 +149,12 @@ class Browser:
                  **({"text": key} if len(key) == 1 else {}), **names)
         self.ask("Input.dispatchKeyEvent", type="keyUp", **names)
 
-    def screenshot(self):
-        """The bytes of a PNG of what the window shows."""
-        return base64.b64decode(self.ask("Page.captureScreenshot", format="png")["data"])
+    def screenshot(self, box=None):
+        """The bytes of a PNG of what the window shows; of a box (left, top, width, height) of it, CSS px."""
+        clip = {}
+        if box:
+            clip["clip"] = dict(zip(("x", "y", "width", "height"), box), scale=1)
+        return base64.b64decode(self.ask("Page.captureScreenshot", format="png", **clip)["data"])
 
 
 class Pixels:
@@ -194,11 +197,7 @@ class Pixels:
         n = self.channels
         return tuple(self.rows[int(y)][n * int(x):n * int(x) + 3])
 
-    def count(self, colour, box=None):
-        """How many pixels of the box (left, top, width, height) have exactly this colour."""
-        left, top, width, height = box or (0, 0, self.width, self.height)
-        n, wanted, total = self.channels, bytes(colour), 0
-        for y in range(int(top), min(self.height, int(top + height))):
-            row = self.rows[y]
-            total += sum(row[n * x:n * x + 3] == wanted for x in range(int(left), min(self.width, int(left + width))))
-        return total
+    def count(self, colour):
+        """How many pixels have exactly this colour."""
+        n, wanted = self.channels, bytes(colour)
+        return sum(row[i:i + 3] == wanted for row in self.rows for i in range(0, len(row), n))

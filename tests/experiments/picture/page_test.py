@@ -1,5 +1,6 @@
 # Drives the page of `farcull picture two-tori --compare cullide,far,exact` in a browser.
-#   page_test.py PAGE SAID PAIRS   SAID: what the command printed; PAIRS: all pairs as CSV
+#   page_test.py PAGE SAID PAIRS MOTION SAID_OF_MOTION
+# SAID: what the command printed; PAIRS: all pairs as CSV; MOTION: the page of a scene that moves
 import csv
 import os
 import re
@@ -45,14 +46,24 @@ def place_of_canvas(b):
                  "return [r.left, r.top, r.width, r.height]; })()")
 
 
-def pixels(b):
+def look(b):
+    """The PNG of the window once it is drawn: equal pixels are equal bytes."""
     drawn(b)
-    return Pixels(b.screenshot())
+    return b.screenshot()
+
+
+def pixel(b, x, y):
+    """The colour at a place of the canvas, CSS px."""
+    left, top, *_ = place_of_canvas(b)
+    drawn(b)
+    return Pixels(b.screenshot((int(left + x), int(top + y), 1, 1))).at(0, 0)
 
 
 def missed_pixels(b):
     left, top, width, height = place_of_canvas(b)
-    return pixels(b).count(MISSED, (left, top, width, height - 100))  # the legend is in the lowest part
+    drawn(b)
+    # Its middle: the colour is in the legend as well.
+    return Pixels(b.screenshot((left, top + 0.2 * height, width, 0.6 * height))).count(MISSED)
 
 
 def is_lit(pixel, colour):
@@ -172,26 +183,24 @@ def check_colours(b):
     set_value(b, "method", "exact", "change")
     drawn(b)
     good = 0
-    left, top, width, height = place_of_canvas(b)
+    *_, width, height = place_of_canvas(b)
     for triangle in b.run("[...farcull.frame.a].slice(0, 282)")[::20]:
         b.run(f"choose({triangle}, true), choose(-1), farcull.view.camera.zoom = 60, farcull.view.zoom(1)")
         drawn(b)
         if b.run(f"farcull.view.pick({width / 2}, {height / 2})") != triangle:
             continue  # something is in front of it
-        pixel = Pixels(b.screenshot()).at(left + width / 2, top + height / 2)
-        good += is_lit(pixel, FOUND)
-        check(is_lit(pixel, FOUND), f"triangle {triangle} has the colour {pixel}")
+        colour = pixel(b, width / 2, height / 2)
+        good += is_lit(colour, FOUND)
+        check(is_lit(colour, FOUND), f"triangle {triangle} has the colour {colour}")
     check(good > 0, "no colliding triangle was seen: the case shows nothing")
     b.key("0")
-    image = pixels(b)
-    check(image.at(left + 3, top + 3) == PAPER, f"the paper is {image.at(left + 3, top + 3)}")
+    check(pixel(b, 3, 3) == PAPER, f"the paper is {pixel(b, 3, 3)}")
 
 
 def check_view(b):
     """Orbit, pan, zoom, by mouse and keys; each changes the picture, and the reset brings it back."""
     b.key("0")
-    drawn(b)
-    before = b.screenshot()
+    before = look(b)
     left, top, width, height = place_of_canvas(b)
     x, y = left + width / 2, top + height / 2
     acts = {
@@ -204,50 +213,53 @@ def check_view(b):
         acts["Shift " + key] = lambda key=key: b.key(key, shift=True)
     for key in "+-exyz":
         acts[key] = lambda key=key: b.key(key)
+    address = "addressOf().replace(/&triangle.*?&/, '&')"
+    start, seen = b.run(address), set()
     for name, act in acts.items():
         b.run("document.getElementById('canvas').focus()")
         act()
-        drawn(b)
-        time.sleep(0.1)
-        drawn(b)
-        check(b.screenshot() != before, f"{name} changes nothing")
-        if len(name) == 1 and name in "xyz":
+        b.wait(f"{address} !== {start!r}")
+        seen.add(b.run(address))
+        if name in ("a drag", "ArrowLeft", "e", "x"):
+            check(look(b) != before, f"{name} changes nothing that is seen")
+        if name in ("x", "y", "z"):
             b.key(name)
         while name == "e" and b.run("farcull.state.explode > 0"):
             b.key("e")
         b.key("0")
-        drawn(b)
-        check(b.screenshot() == before, f"the view after {name} is not that of before")
+        check(b.run(address) == start, f"the view after {name} is not that of before")
+    check(len(seen) == len(acts), "two of the acts do the same")
+    check(look(b) == before, "the view at the end is not that of the beginning")
     check(b.run("document.activeElement.id") == "canvas", "the canvas lost the focus")
 
 
 def check_objects(b):
     """Hiding, exploding and cutting by their controls."""
-    left, top, width, height = place_of_canvas(b)
-    before = pixels(b)
+    *_, width, height = place_of_canvas(b)
+    before = look(b)
     b.run("document.querySelector('#list input').click()")
-    after = pixels(b)
-    check(after.rows != before.rows and b.run("[...farcull.state.hidden]") == [0], "object 0 is not hidden")
+    after = look(b)
+    check(after != before and b.run("[...farcull.state.hidden]") == [0], "object 0 is not hidden")
     picked = b.run("(() => { const out = new Set(); const f = farcull.frame;"
-                   f"for (let x = 5; x < {width}; x += 25) for (let y = 5; y < {height}; y += 25)"
+                   f"for (let x = 5; x < {width}; x += 40) for (let y = 5; y < {height}; y += 40)"
                    "{ const t = farcull.view.pick(x, y); if (t >= 0) out.add(f.owner[t]); } return [...out]; })()")
     check(picked == [1], f"with object 0 hidden, objects {picked} are seen")
     b.run("document.getElementById('show-all').click()")
-    check(pixels(b).rows == before.rows, "showing all does not bring object 0 back")
+    check(look(b) == before, "showing all does not bring object 0 back")
     set_value(b, "explode", 60)
-    check(pixels(b).rows != before.rows, "the slider does not explode")
+    check(look(b) != before, "the slider does not explode")
     set_value(b, "explode", 0)
-    check(pixels(b).rows == before.rows, "the slider does not take the explosion back")
+    check(look(b) == before, "the slider does not take the explosion back")
     set_value(b, "axis", "x", "change")
-    cut = pixels(b)
+    cut = look(b)
     b.run("document.getElementById('side').click()")
-    other = pixels(b)
-    check(cut.rows != before.rows and other.rows != cut.rows, "the cut and its side change nothing")
+    other = look(b)
+    check(cut != before and other != cut, "the cut and its side change nothing")
     set_value(b, "cut", 200)
-    check(pixels(b).rows != other.rows, "the place of the cut changes nothing")
+    check(look(b) != other, "the place of the cut changes nothing")
     b.run("document.getElementById('side').click()")
     set_value(b, "axis", "", "change")
-    check(pixels(b).rows == before.rows, "the cut is not taken back")
+    check(look(b) == before, "the cut is not taken back")
 
 
 def check_address(b, page):
@@ -279,10 +291,9 @@ def check_looks(b, page):
     """Dark by the system and by the button; print; three sizes."""
     b.media(prefers_color_scheme="dark")
     shown(b, page)
-    left, top, *_ = place_of_canvas(b)
-    check(pixels(b).at(left + 3, top + 3) == DARK, f"dark paper is {pixels(b).at(left + 3, top + 3)}")
+    check(pixel(b, 3, 3) == DARK, f"dark paper is {pixel(b, 3, 3)}")
     b.run("document.getElementById('theme').click()")
-    check(pixels(b).at(left + 3, top + 3) == PAPER, "the button does not make it light")
+    check(pixel(b, 3, 3) == PAPER, "the button does not make it light")
     b.media(prefers_color_scheme="light")
     b.media("print")
     seen = b.run("['canvas', 'controls', 'legend', 'flat'].map((id) => getComputedStyle(document.getElementById(id)).display)")
@@ -303,6 +314,38 @@ def check_looks(b, page):
                     file.write(b.screenshot())
     b.media(prefers_color_scheme="light")
     b.size(800, 600)
+
+
+def check_frames(b, page, said):
+    """Frames by keys, slider, button and address; each shows the scene and the answer of its own."""
+    b.problems = []
+    shown(b, page)
+    seen, scenes = [], []
+    for frame in (3, 4, 5, 6):
+        b.wait(f"document.getElementById('frame-value').textContent === '{frame}'")
+        scenes.append(look(b))
+        for method in ("cullide", "far-pairs"):
+            set_value(b, "method", method, "change")
+            b.wait(f"document.getElementById('headline').textContent.startsWith('{method}')")
+            seen.append(text(b, "headline").replace(":", f", frame {frame}:", 1))
+        set_value(b, "method", "cullide", "change")
+        drawn(b)
+        b.run("document.getElementById('canvas').focus()")
+        b.key(".")
+    check(seen == [line for line in said if " missed " in line], f"headlines of frames are {seen}")
+    check(all(a != c for a, c in zip(scenes, scenes[1:])), "a frame looks like the one before")
+    b.key(",")
+    b.wait("document.getElementById('frame-value').textContent === '5'")
+    check(look(b) == scenes[2], "frame 5 looks another way when it is shown again")
+    set_value(b, "frame", 0)
+    b.wait("document.getElementById('frame-value').textContent === '3'")
+    check(look(b) == scenes[0], "frame 3 looks another way when it is shown again")
+    b.run("document.getElementById('play').click()")
+    b.wait("document.getElementById('frame-value').textContent === '4'")
+    b.run("document.getElementById('play').click()")
+    shown(b, page, "#frame=6")
+    check(text(b, "frame-value") == "6", f"the address of frame 6 shows frame {text(b, 'frame-value')}")
+    check(not b.problems, f"the page of frames has problems: {b.problems}")
 
 
 def check_dialogs(b):
@@ -369,6 +412,7 @@ def main():
             act()
             print(f"picture.page: {time.monotonic() - begun:.1f} s", flush=True)
         check(not b.problems, f"the page has problems: {b.problems}")
+        check_frames(b, sys.argv[4], open(sys.argv[5], encoding="utf-8").read().splitlines())
         check_twins(b, page, pairs)
     with Browser("--disable-3d-apis") as b:
         shown(b, page)

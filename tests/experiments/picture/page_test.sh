@@ -19,5 +19,7 @@ if grep -q 'three.js' errors; then
   exit 77
 fi
 ((status == 0)) || { cat errors >&2; exit 1; }
+"$farcull" picture two-spheres --compare cullide:64,far-pairs --frames 3:6 --size 200x160 \
+  --html spheres.html >said-of-frames || exit 1
 "$farcull" run two-tori --method exact --no-verify --pairs pairs.csv >/dev/null || exit 1
-PYTHONDONTWRITEBYTECODE=1 python3 "$here/page_test.py" tori.html said pairs.csv || exit 1
+PYTHONDONTWRITEBYTECODE=1 python3 "$here/page_test.py" tori.html said pairs.csv spheres.html said-of-frames || exit 1
