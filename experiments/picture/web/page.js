@@ -165,8 +165,9 @@ function showStates() {
   if (view) view.setStates(states);
 }
 
+const MOST_LISTED = 1000;
 function showObjects() {
-  byId("list").replaceChildren(...frame.objects.map(([name, , count], o) => {
+  const listed = frame.objects.slice(0, MOST_LISTED).map(([name, , count], o) => {
     const row = element("li"), label = element("label"), colour = element("i");
     const box = element("input", undefined, { type: "checkbox", checked: !state.hidden.has(o) });
     box.dataset.object = o;
@@ -176,7 +177,10 @@ function showObjects() {
     label.append(box, colour, `${o}: ${name} (${digits.format(count)})`);
     row.append(label);
     return row;
-  }));
+  });
+  const others = frame.objects.length - listed.length;
+  if (others > 0) listed.push(element("li", `and ${digits.format(others)} others, which h hides`));
+  byId("list").replaceChildren(...listed);
   frame.objects.forEach((object, o) => view && view.hide(o, state.hidden.has(o)));
 }
 
@@ -557,4 +561,9 @@ async function start() {
 
 // For tests, and for who wants to know more in the console.
 window.farcull = { about, state, get view() { return view; }, get frame() { return frame; }, get answer() { return answer; } };
-start();
+start().catch((error) => {
+  standIn(`The data of this page cannot be shown: ${error.message}.`);
+  byId("headline").textContent = "";
+  byId("controls").hidden = true;
+  throw error;
+});

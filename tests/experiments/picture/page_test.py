@@ -13,7 +13,7 @@ MISSED, FOUND, PAPER, DARK = (220, 0, 90), (0, 128, 116), (255, 255, 255), (0x16
 READY = "location.protocol === 'file:' && document.documentElement && document.documentElement.dataset.ready !== undefined"
 # A headless browser draws its first frame in 2 s on two idle cores; a busy machine takes longer.
 SECONDS = 60
-START = "\nstart();\n"
+START = "\nstart().catch("
 failures = []
 
 
@@ -384,6 +384,11 @@ def check_twins(b, page, pairs):
         b.wait(READY, 10)
         drawn(b)
 
+    def damaged(path):
+        b.open(url(path))
+        b.wait("document.getElementById('trouble') && !document.getElementById('trouble').hidden")
+        check(not b.problems, "a problem is told of")
+
     def misses(path):
         shown(b, path)
         check(missed_pixels(b) > 0, "no misses are seen")
@@ -392,10 +397,10 @@ def check_twins(b, page, pairs):
         shown(b, path)
         check_click(b, pairs, 1)
 
-    caught("a line on the console", START, "\nconsole.log('made up');start();", looks)
-    caught("a request", START, "\nfetch('https://example.org/').catch(() => {});start();", looks)
-    caught("an exception", START, "\nstart();nothing_of_this_name();", looks)
-    caught("a block that is damaged", 'id="block-0">', 'id="block-0">AAAA', looks)
+    caught("a line on the console", START, "\nconsole.log('made up');start().catch(", looks)
+    caught("a request", START, "\nfetch('https://example.org/').catch(() => {});start().catch(", looks)
+    caught("an exception", START, "\nsetTimeout(() => nothing_of_this_name());start().catch(", looks)
+    caught("a block that is damaged", 'id="block-0">', 'id="block-0">AAAA', damaged)
     caught("misses in another colour", "if (part == 2) colour = missed;", "if (part == 2) colour = found;", misses)
     caught("a click beside", "int id = number + 1;", "int id = number + 2;", click)
 

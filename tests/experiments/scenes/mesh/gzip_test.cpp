@@ -56,6 +56,25 @@ std::vector<Sample> samples() {
           {"b.stl", MeshFormat::kStl, binary_stl("b", {{0, 0, 0, 1, 0, 0, 0, 1, 0}})}};
 }
 
+// Sizes around the 16384 bytes that are compressed and decompressed at a time; noise, which grows,
+// and one letter, which becomes nearly nothing.
+TEST(Gzip, WhatIsCompressedComesBack) {
+  for (const std::size_t size : {0u, 1u, 16383u, 16384u, 16385u, 100'000u}) {
+    std::string noise;
+    std::uint32_t state = 2463534242;
+    for (std::size_t i = 0; i < size; ++i) {
+      state ^= state << 13, state ^= state >> 17, state ^= state << 5;
+      noise += static_cast<char>(state);
+    }
+    for (const std::string& bytes : {noise, std::string(size, 'a')}) {
+      const std::string small = gzip(bytes);
+      ASSERT_TRUE(is_gzip(small)) << size;
+      EXPECT_TRUE(gunzip(small, "small") == bytes) << size;
+      EXPECT_TRUE(gzip(bytes) == small) << size;
+    }
+  }
+}
+
 TEST(GzipMesh, IsReadByNameAndByContentsInEveryFormat) {
   const ScratchFolder folder;
   for (const Sample& sample : samples()) {
