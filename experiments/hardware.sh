@@ -60,6 +60,7 @@ cores=$(nproc)
 most_disk=${FARCULL_HARDWARE_DISK:-20971520} # KiB
 child=''
 missing=() # parts without a result, with the reason
+spent=()   # parts that were not begun, since the budget was spent
 say() { printf 'hardware: %s\n' "$*"; }
 
 # ---- one part ----
@@ -67,17 +68,18 @@ say() { printf 'hardware: %s\n' "$*"; }
 left() { echo $((budget - (SECONDS - began))); } # seconds
 
 # step NAME SHARE TEXT COMMAND...: runs the command unless it is done. It may take 1/SHARE of the time that
-# is left, at least a minute. steps/NAME gets the status and the seconds, logs/NAME.txt what the command said.
+# is left, or 10 minutes if that is more. steps/NAME gets the status and the seconds, logs/NAME.txt what the
+# command said.
 step() {
   local name=$1 text=$3 used
   local -i share=$2 limit start status=0
   shift 3
   if [[ -e $out/steps/$name ]]; then return 0; fi
   limit=$(($(left) / share))
-  if ((limit < 60)); then limit=60; fi
-  if (($(left) < 60)); then limit=$(left); fi
+  if ((limit < 600)); then limit=600; fi
+  if (($(left) < limit)); then limit=$(left); fi
   if ((limit < 10)); then
-    missing+=("$name ($text): left out, the $minutes minutes are spent")
+    spent+=("$name")
     return 0
   fi
   used=$(du -sk "$out" | cut -f 1)
@@ -125,7 +127,7 @@ bench() { # SHARE SCENE [OPTIONS]: all peers, on all cores and on one
   local share=$1 name threads
   name=$(safe "${*:2}")
   for threads in "$cores" 1; do
-    step "bench-$name-$threads" "$share" "times of ${*:2} beside other libraries, $threads threads" \
+    step "bench-$name-$threads" "$share" "times of ${*:2} beside other libraries, --threads $threads" \
       build/farcull bench "${@:2}" --device "$device" --threads "$threads" --json "$out/bench-$name-$threads.json"
     if ((cores == 1)); then return; fi
   done
@@ -192,6 +194,9 @@ processor=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
 renderer=$(sed -n '/"gl": {/,/}/ s/.*"renderer": "\(.*\)".*/\1/p' "$out/doctor.json" 2>/dev/null || true)
 renderer=${renderer:-native, $processor}
 name=$(tr '[:upper:]' '[:lower:]' <<<"$renderer" | sed 's/[^a-z0-9]\+/-/g; s/^-//; s/-$//' | cut -c 1-60)
+if ((${#spent[@]})); then
+  missing+=("left out, since the $minutes minutes are spent, ${#spent[@]} parts: ${spent[*]}")
+fi
 failed=()
 for file in "$out"/steps/*; do
   if [[ $(<"$file") == 1\ * ]]; then failed+=("${file##*/}"); fi
@@ -245,9 +250,10 @@ if [[ $device == hardware && ! -e packed ]]; then
   say "made docs/hardware/$name.md"
 fi
 # The archive appears as a whole.
-tar -czf "$out.tar.gz.part" -C "$(dirname "$out")" --exclude=lock "$(basename "$out")"
+tar -czf "$out.tar.gz.part" -C "$(dirname "$out")" --exclude=lock --exclude=mesa_shader_cache \
+  "$(basename "$out")"
 mv "$out.tar.gz.part" "$out.tar.gz"
-say "$(find "$out/steps" -type f | wc -l) parts are done, ${#failed[@]} failed, ${#missing[@]} are not measured:"
+say "$(find "$out/steps" -type f | wc -l) parts are done, ${#failed[@]} failed, $((${#missing[@]} + (${#spent[@]} ? ${#spent[@]} - 1 : 0))) are not measured:"
 if ((${#missing[@]})); then printf '  %s\n' "${missing[@]}"; fi
 say "the page is $out/$name.md, the archive $out.tar.gz ($(du -h "$out.tar.gz" | cut -f 1))"
 if ((${#failed[@]})); then exit 1; fi
