@@ -40,7 +40,8 @@ constexpr const char* kDistanceExamples =
     "The witness points are rounded too, coordinate by coordinate. 0: the objects meet.\n"
     "docs/proximity.md has the columns and the proof.\n\n"
     "Exit status 0: answered, also where objects meet. 1: --verify found a nearer pair than an\n"
-    "answer, or a wrong answer; or --neighbours reliable lost a nearest object. 2: the input or an\n"
+    "answer, or a wrong answer; or --neighbours reliable lost a nearest object. 2: the input or "
+    "an\n"
     "option is wrong.";
 
 // The keys of a record that each frame has of its own; the others hold for all frames.
@@ -180,8 +181,9 @@ CLI::App* DistanceCommand::add_to(CLI::App& app) {
   add("--signed", signed_, "yes|no",
       "no: leave out whether an object lies inside another;\ndefault yes");
   add("--threads", threads_, "N", "of the CPU; default as many as there are cores");
-  add_flag(*command, "--verify", verify_,
-           "check each answer by other code, and of each pair that\nit is no nearer than the answers");
+  add_flag(
+      *command, "--verify", verify_,
+      "check each answer by other code, and of each pair that\nit is no nearer than the answers");
   add("--frames", frames_, "N|A:B", "as for farcull run: of a scene that moves");
   add("--json", outputs_.json, "FILE", kJsonHelp);
   add("--csv", outputs_.csv, "FILE",

@@ -31,7 +31,7 @@ class DistanceCommand {
   std::vector<std::string> scene_;
   Text pairs_, k_, within_, signed_, threads_, frames_;
   bool self_ = false, verify_ = false;
-  NeighbourOptions neighbours_;
+  DiagramArguments neighbours_;
   Outputs outputs_;
 };
 

@@ -14,7 +14,7 @@
 
 namespace farcull {
 
-void NeighbourOptions::add_to(CLI::App& command) {
+void DiagramArguments::add_to(CLI::App& command) {
   add_option(command, "--neighbours", neighbours_, "FORM",
              "which objects may be nearest by a discrete Voronoi\n"
              "diagram, and which nearest ones it loses, instead of\n"
@@ -28,7 +28,7 @@ void NeighbourOptions::add_to(CLI::App& command) {
              "lists; default cpu");
 }
 
-bool NeighbourOptions::asked() const {
+bool DiagramArguments::asked() const {
   if (neighbours_) return true;
   for (const auto& [option, given] : {std::pair("--resolution", resolution_.has_value()),
                                       std::pair("--device", device_.has_value())}) {
@@ -39,7 +39,7 @@ bool NeighbourOptions::asked() const {
   return false;
 }
 
-DiagramOptions NeighbourOptions::parse(unsigned threads) const {
+DiagramOptions DiagramArguments::parse(unsigned threads) const {
   DiagramOptions out{.threads = threads, .device = device_of(device_)};
   if (*neighbours_ == "reliable") {
     out.form = DiagramForm::reliable;

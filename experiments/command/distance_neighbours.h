@@ -10,7 +10,7 @@
 namespace farcull {
 
 /// Options that go with --neighbours alone.
-class NeighbourOptions {
+class DiagramArguments {
  public:
   void add_to(CLI::App& command);
   /// Whether --neighbours was given. Throws Error where another of these was given without it.
