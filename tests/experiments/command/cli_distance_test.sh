@@ -48,6 +48,8 @@ bad 'no such diagram' "--neighbours: 'some' is no choice; give published or reli
 for cells in 0 -1 1.5 '' x 16385 99999999999999999999; do
   bad "cells '$cells'" '--resolution: ' distance "${two[@]}" --neighbours reliable --resolution "$cells"
 done
+bad 'a device of distances' '--device: has no meaning without --neighbours' distance "${two[@]}" --device cpu
+bad 'no such device' "--device: 'toaster' is no device" distance "${two[@]}" --neighbours published --device toaster
 bad 'cells of distances' '--resolution: has no meaning without --neighbours' distance "${two[@]}" --resolution 64
 for option in '--pairs nearest' '--k 2' '--within 1' --self '--signed no' --verify '--frames 3' '--certificate c.json'; do
   # shellcheck disable=SC2086 # an option and its value
@@ -115,6 +117,16 @@ expect 'a diagram that loses' lost.csv '^object,nearest,nearest_objects,distance
 expect 'a diagram that loses' lost.json '^    "lost": [1-9]'
 good 'a reliable diagram' 0 distance crowd --neighbours reliable --resolution 32 --threads 1 --json -
 expect 'a reliable diagram' "$out" '^    "lost": 0,$'
+for form in published reliable; do
+  good "a $form diagram on GL" 0 distance small.obj right.obj large.obj --neighbours "$form" --resolution 9 \
+    --device software --csv gl.csv --json gl.json
+  good "a $form diagram on the CPU" 0 distance small.obj right.obj large.obj --neighbours "$form" --resolution 9 \
+    --device cpu --csv cpu.csv
+  ((cases += 1))
+  [[ $(cut -d, -f1-4,7 gl.csv) == "$(cut -d, -f1-4,7 cpu.csv)" ]] || fail "a $form diagram on GL" 'other answers'
+  expect "a $form diagram on GL" gl.json '^    "renderer": '
+  expect "a $form diagram on GL" gl.json '^    "probes": "[0-9]+ probes of '
+done
 
 if ((failed > 0)); then
   echo "cli_distance_test: $failed of $cases cases failed"
