@@ -72,10 +72,14 @@ farcull_install() {
   farcull_apt_get install --yes --no-install-recommends "$@"
 }
 
+# Whether nothing is to be installed or built: in a folder that experiments/pack.sh made, and in scripts that
+# a script calls which has built (FARCULL_BUILT).
+farcull_is_built() { [[ -n ${FARCULL_BUILT-} || -e $farcull_root/packed ]]; }
+
 # Installs those of farcull_packages that are missing. If that is impossible it prints what to do, and
 # returns 2. A script that needs more packages appends them to farcull_packages first.
 farcull_setup() {
-  if [[ -e $farcull_root/packed ]]; then return 0; fi # made by experiments/pack.sh: all is here
+  if farcull_is_built; then return 0; fi
   if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
     echo "setup: no apt-get here, so nothing is installed; CMake names what it does not find" >&2
     return 0
@@ -195,7 +199,7 @@ farcull_progress() {
 # farcull_build [TARGETS...]: brings the targets in build/ up to date, or all targets if none is named.
 # It prints one line if there is nothing to do, else the progress and the messages of the compilers.
 farcull_build() {
-  if [[ -e $farcull_root/packed ]]; then return 0; fi
+  if farcull_is_built; then return 0; fi
   local build=$farcull_root/build started=$SECONDS jobs steps
   local -a what=()
   if (($#)); then what=(--target "$@"); fi
