@@ -6,14 +6,37 @@
 #include <condition_variable>
 #include <deque>
 #include <exception>
+#include <functional>
 #include <mutex>
+#include <thread>
+#include <utility>
 
 #ifndef _WIN32
+#include <pthread.h>
+
 #include <csignal>
 #endif
 
+#include "core/base/stoppable.h"
+
 namespace farcull {
 namespace {
+
+// The request to stop of the call that this thread works for; null where it works for none.
+thread_local const std::atomic<bool>* stop_requested = nullptr;
+
+// While it lives, the calling thread works for the call of this request.
+class WorksFor {
+ public:
+  explicit WorksFor(const std::atomic<bool>* request)
+      : before_(std::exchange(stop_requested, request)) {}
+  ~WorksFor() { stop_requested = before_; }
+  WorksFor(const WorksFor&) = delete;
+  WorksFor& operator=(const WorksFor&) = delete;
+
+ private:
+  const std::atomic<bool>* before_;
+};
 
 // How long a thread looks for work, or for the end of it, before it sleeps: steps of a query follow
 // each other faster than a sleeping thread wakes.
@@ -56,8 +79,9 @@ struct Batch {
   void (*part)(const void*, std::size_t);
   const void* data;
   std::size_t parts;
-  std::size_t next = 0;               // guarded by the pool's mutex
-  std::atomic<std::size_t> done = 0;  // parts that have returned
+  const std::atomic<bool>* stop_request;  // of the thread that calls
+  std::size_t next = 0;                   // guarded by the pool's mutex
+  std::atomic<std::size_t> done = 0;      // parts that have returned
 };
 
 class Pool {
@@ -118,7 +142,10 @@ class Pool {
       Batch& batch = *batches_.front();
       const std::size_t k = claim(batch);
       lock.unlock();
-      batch.part(batch.data, k);
+      {
+        const WorksFor works_for(batch.stop_request);
+        batch.part(batch.data, k);
+      }
       lock.lock();
       // The batch may be gone from here on.
       const bool last = batch.done.fetch_add(1) + 1 == batch.parts;
@@ -134,17 +161,76 @@ class Pool {
   std::size_t threads_ = 0;
 };
 
+// Never destroyed: its threads sleep until the process ends. A forked process has none of these
+// threads, so it begins with a pool of its own.
+Pool& pool() {
+  static std::atomic<Pool*> current = [] {
+#ifndef _WIN32
+    pthread_atfork(nullptr, nullptr, [] { current = new Pool; });
+#endif
+    return new Pool;
+  }();
+  return *current;
+}
+
 }  // namespace
 
 void run_parts(std::size_t parts, void (*part)(const void*, std::size_t), const void* data) {
+  stop_point();
   if (parts <= 1) {
     if (parts == 1) part(data, 0);
     return;
   }
-  // Never destroyed: its threads sleep until the process ends.
-  static Pool& pool = *new Pool;
-  Batch batch{part, data, parts};
-  pool.run(batch);
+  Batch batch{part, data, parts, stop_requested};
+  pool().run(batch);
+}
+
+void stop_point() {
+  if (stop_requested != nullptr && stop_requested->load(std::memory_order_relaxed)) throw Stopped();
+}
+
+struct StoppableCall::State {
+  std::function<void()> work;
+  std::atomic<bool> stop = false;
+  std::exception_ptr failure;  // written before `ended`
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool ended = false;  // guarded by the mutex
+  std::thread thread;
+
+  void run() {
+    try {
+      const WorksFor works_for(&stop);
+      work();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    const std::lock_guard lock(mutex);
+    ended = true;
+    changed.notify_all();
+  }
+};
+
+StoppableCall::StoppableCall(std::function<void()> work) : state_(std::make_unique<State>()) {
+  state_->work = std::move(work);
+  const SignalsBlocked blocked;
+  state_->thread = std::thread([state = state_.get()] { state->run(); });
+}
+
+StoppableCall::~StoppableCall() {
+  if (state_->thread.joinable()) state_->thread.join();
+}
+
+void StoppableCall::stop() { state_->stop = true; }
+
+bool StoppableCall::wait_for(std::chrono::milliseconds most) {
+  std::unique_lock lock(state_->mutex);
+  return state_->changed.wait_for(lock, most, [&] { return state_->ended; });
+}
+
+void StoppableCall::finish() {
+  if (state_->thread.joinable()) state_->thread.join();
+  if (state_->failure) std::rethrow_exception(std::exchange(state_->failure, nullptr));
 }
 
 }  // namespace farcull

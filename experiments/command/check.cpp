@@ -14,10 +14,10 @@
 
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
-#include "core/base/stopwatch.h"
 #include "experiments/command/check_distances.h"
 #include "experiments/command/frame_checks.h"
 #include "experiments/record/check_result.h"
+#include "experiments/record/check_scene.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/cache.h"
 #include "experiments/scenes/mesh/load.h"
@@ -41,79 +41,11 @@ Certificate read_certificate(const std::string& path) {
   return parse_certificate(read_file(path, kMaxBytes), clean_name(path));
 }
 
-std::string differences_text(const ListDifferences& differ) {
-  return differ.wrong > 0 ? fmt::format("line {}: {}", differ.wrong_line, differ.wrong_reason)
-                          : "a pair is missing";
-}
-
-// The evidence for a list is made here. The checker trusts it no more than any other.
-CheckResult check_list(const Scene& scene, const std::string& name,
-                       std::span<const ListedPair> rows, double clearance) {
-  const Stopwatch start;
-  std::vector<TrianglePair> listed;
-  for (const ListedPair& row : rows) {
-    const TrianglePair pair = pair_of(scene, name, row);
-    if (pair.a != pair.b) listed.push_back(pair);
-  }
-  CheckResult result =
-      check_certificate(certificate_of_list(scene, std::move(listed), clearance), scene);
-  result.unattested.clear();  // there is no run
-  result.ms = start.ms();
-  return result;
-}
-
-// Takes the list into account: the verdict is about both.
-void compare_list(const Scene& scene, const GivenList& list, std::span<const ListedPair> rows,
-                  SceneCheck& check) {
-  CheckResult& result = check.result;
-  check.list = list.name;
-  check.not_looked_at = list.not_looked_at;
-  if (result.list_sha256.empty()) return;  // nothing was decided
-  check.differences = find_differences(scene, list.name, rows, result.meeting, check.clearance);
-  const ListDifferences& differ = *check.differences;
-  const bool alone = check.certificate.empty();
-  if (differ.none()) {
-    if (alone && result.verdict != Verdict::proved)
-      throw std::logic_error("check: the evidence for a right list proves nothing: " +
-                             result.reason);
-    return;
-  }
-  if (!alone && result.verdict != Verdict::proved) return;
-  result.verdict = alone ? Verdict::refuted : Verdict::not_proved;
-  result.reason =
-      fmt::format("{} is {}: {}", list.name, alone ? "not the list of the pairs" : "another list",
-                  differences_text(differ));
-  result.pair = differ.wrong > 0 ? differ.wrong_pair : differ.missing_pair;
-}
-
 // The clearance that is asked about: --clearance, or that of the certificate, of several frames the
 // first one. One question for all frames.
 double clearance_of(const CheckArguments& arguments,
                     const std::optional<Certificate>& certificate) {
   return arguments.clearance.value_or(certificate ? certificate->clearance : 0);
-}
-
-// `file`: of the certificate of this scene, empty for none.
-SceneCheck check_scene_with(double clearance, const std::string& file,
-                            const std::optional<Certificate>& certificate, const Scene& scene,
-                            const GivenList* list, std::span<const ListedPair> rows) {
-  SceneCheck out;
-  out.clearance = clearance;
-  if (certificate) {
-    out.certificate = clean_name(file);
-    out.claimed_sha256 = certificate->list_sha256;
-    out.claimed = certificate->claims;
-    if (out.clearance == certificate->clearance) {
-      out.result = check_certificate(*certificate, scene);
-    } else {
-      out.result.reason = fmt::format("the certificate is of another clearance: {}, not {}",
-                                      certificate->clearance, out.clearance);
-    }
-  } else {
-    out.result = check_list(scene, list->name, rows, out.clearance);
-  }
-  if (list) compare_list(scene, *list, rows, out);
-  return out;
 }
 
 GivenList read_list(const CheckArguments& arguments) {
@@ -163,8 +95,8 @@ int check_one(const CheckArguments& arguments, const GivenList* list) {
   Scene scene = load_scene(arguments.scene);
   if (arguments.self) make_self(scene);
   const SceneCheck done = check_scene_with(
-      clearance_of(arguments, certificate), arguments.certificate, certificate, scene, list,
-      list ? std::span<const ListedPair>(list->rows) : std::span<const ListedPair>());
+      clearance_of(arguments, certificate), clean_name(arguments.certificate), certificate, scene,
+      list, list ? std::span<const ListedPair>(list->rows) : std::span<const ListedPair>());
   if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
   if (arguments.json != "-") write_output("-", clean_lines(check_text(scene, done)));
   return done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
@@ -228,7 +160,7 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
     }
     const Scene& scene = source.at(frame);
     if (!clearance) clearance = clearance_of(arguments, certificate);
-    last = check_scene_with(*clearance, file, certificate, scene, list, rows);
+    last = check_scene_with(*clearance, clean_name(file), certificate, scene, list, rows);
     verdicts.add(frame, last.result.verdict, last.result.meeting.size());
     if (table) {
       std::string text = row_of(frame, last);

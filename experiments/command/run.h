@@ -20,11 +20,12 @@ class RunCommand {
   CLI::App* add_to(CLI::App& app);
   /// The exit status: 0 done, 1 a guarantee is broken. Throws Error where the arguments are bad.
   int run() const;
+  /// The options of the method. Throws Error where one is bad, or options do not go together.
+  RunOptions parse() const;
 
  private:
   void add_method_options(CLI::App& command);
   void add_outputs(CLI::App& command);
-  RunOptions parse() const;
   void refuse_idle(Method chosen) const;
   /// Throws Error where an output cannot say what another option asks.
   void refuse_outputs() const;

@@ -1,0 +1,85 @@
+// Arrays of the caller as the library takes them, and its answers as arrays.
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "experiments/library/farcull.h"
+#include "experiments/python/call.h"
+
+namespace farcull::python {
+
+/// An array of rows of three numbers, of any type of number, with any strides: what its memory says
+/// at the time of a call. The array is kept as long as this lives.
+class Rows {
+ public:
+  /// name: of the parameter, for errors. Throws farcull.InputError where the array is not (n, 3),
+  /// or its numbers are none that become doubles without rounding (of indices: whole numbers).
+  Rows(const py::array& array, std::string name, bool indices);
+
+  /// The numbers as doubles or as indices, row after row. Those of the array itself where they
+  /// are of that type and lie so, else copies in `memory`. Touches no Python. Throws Error for a
+  /// number that rounds, or an index below 0 or of 2^32 or more.
+  std::span<const double> doubles(std::vector<double>& memory) const;
+  std::span<const std::uint32_t> indices(std::vector<std::uint32_t>& memory) const;
+
+ private:
+  template <class Out, class In>
+  void copy(std::vector<Out>& memory) const;
+  bool packed(std::size_t size) const;
+
+  py::array kept_;
+  std::string name_;
+  const std::byte* data_ = nullptr;
+  std::size_t rows_ = 0;
+  std::ptrdiff_t row_stride_ = 0, column_stride_ = 0;  // bytes
+  char kind_ = 'f';                                    // as numpy.dtype.kind
+  std::size_t size_ = 8;                               // bytes of a number
+};
+
+/// What a call is about. Only its construction and its end need the interpreter.
+class Given {
+ public:
+  Given(const py::array& vertices, const py::array& triangles, const py::array& object_starts);
+  /// Copies the arrays where the library cannot take them as they are. To be called once.
+  ColliderInput input();
+
+ private:
+  Rows vertices_, triangles_;
+  std::vector<std::uint32_t> starts_;
+  std::vector<double> vertex_memory_;
+  std::vector<std::uint32_t> triangle_memory_;
+};
+
+/// (k, 2), whatever the type of the pairs, which have a and b.
+template <class Pairs>
+py::array_t<std::int64_t> pair_array(const Pairs& pairs) {
+  py::array_t<std::int64_t> out({static_cast<py::ssize_t>(pairs.size()), py::ssize_t{2}});
+  std::int64_t* to = out.mutable_data();
+  for (const auto& pair : pairs) {
+    *to++ = pair.a;
+    *to++ = pair.b;
+  }
+  return out;
+}
+
+/// Memory of `owner` as an array that cannot be written to, which keeps the owner.
+template <class Value>
+py::array_t<Value> view_of(const Value* data, std::vector<py::ssize_t> shape, py::handle owner) {
+  py::array_t<Value> out(std::move(shape), data, owner);
+  py::detail::array_proxy(out.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return out;
+}
+
+/// Pairs (k, 2) of whole numbers below `triangles`, each with its lower number first. Throws
+/// farcull.InputError naming `name`.
+std::vector<TrianglePair> pairs_of(const py::array& array, const std::string& name,
+                                   std::size_t triangles);
+
+}  // namespace farcull::python

@@ -1,0 +1,128 @@
+// Calls in a thread of their own, and exceptions of C++ as those of Python. The names of options in
+// messages become the names of parameters: "--depth-format" is depth_format in Python.
+#include "experiments/python/call.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <new>
+#include <regex>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+
+#include "core/base/error.h"
+#include "core/base/floating_point.h"
+#include "core/base/stoppable.h"
+#include "experiments/library/farcull.h"
+
+namespace farcull::python {
+namespace {
+
+constexpr std::chrono::milliseconds kLook{50};  // between looks for signals
+
+// "--depth-format" as depth_format.
+std::string as_parameters(const std::string& text) {
+  static const std::regex option("--([a-z]+(-[a-z]+)*)");
+  std::string out;
+  auto at = text.begin();
+  for (std::sregex_iterator m(text.begin(), text.end(), option), end; m != end; ++m) {
+    out.append(at, (*m)[0].first);
+    std::string name = (*m)[1];
+    std::replace(name.begin(), name.end(), '-', '_');
+    out += name;
+    at = (*m)[0].second;
+  }
+  return out.append(at, text.end());
+}
+
+// Of the library's errors, where they name what the caller gave.
+bool is_parameter(std::string_view where) {
+  constexpr std::array<std::string_view, 14> kNames = {
+      "vertices",  "triangles",  "object_starts", "self_objects", "threads",
+      "clearance", "resolution", "views",         "neighbours",   "kind",
+      "within",    "k",          "ignore",        "limit"};
+  return std::find(kNames.begin(), kNames.end(), where) != kNames.end();
+}
+
+// The interpreter's names of the library's parameters.
+std::string parameter_of(const std::string& where) {
+  if (where == "object_starts") return "objects";
+  if (where == "self_objects") return "self";
+  return where;
+}
+
+void set(const std::string& where, const std::string& reason, const std::string& remedy,
+         bool input) {
+  const py::object type =
+      py::module_::import("farcull._errors").attr(input ? "InputError" : "Error");
+  const py::object made = type(where, reason, remedy);
+  PyErr_SetObject(type.ptr(), made.ptr());
+}
+
+void set_from(const std::string& where, const std::string& reason, const std::string& remedy) {
+  const bool option = where.starts_with("--");
+  set(option ? as_parameters(where) : parameter_of(where), as_parameters(reason),
+      as_parameters(remedy), option || is_parameter(where));
+}
+
+void translate(std::exception_ptr failure) {
+  try {
+    if (failure) std::rethrow_exception(failure);
+  } catch (const ColliderError& error) {
+    set_from(error.where, error.reason, error.remedy);
+  } catch (const Error& error) {
+    const std::string line = error.line > 0 ? ":" + std::to_string(error.line) : "";
+    set_from(error.where + line, error.reason, error.remedy);
+  } catch (const std::system_error& error) {
+    // Threads that cannot be started: each takes memory for its stack.
+    if (error.code() != std::errc::resource_unavailable_try_again) throw;
+    PyErr_SetString(PyExc_MemoryError, "farcull: no thread can be started");
+  } catch (const std::length_error&) {
+    PyErr_SetString(PyExc_MemoryError, "farcull: more than fits into memory");
+  } catch (const std::logic_error& error) {
+    set("farcull", std::string("a fault of farcull itself: ") + error.what(),
+        "report it with what was called", false);
+  }
+}
+
+}  // namespace
+
+void beside(const std::function<void()>& work) {
+  StoppableCall call([&work] {
+    const FloatingPointGuard guard;
+    work();
+  });
+  std::optional<py::error_already_set> interrupted;
+  for (;;) {
+    bool ended = false;
+    {
+      const py::gil_scoped_release released;
+      ended = call.wait_for(kLook);
+    }
+    if (ended) break;
+    if (PyErr_CheckSignals() == 0) continue;
+    interrupted.emplace();
+    call.stop();
+    const py::gil_scoped_release released;
+    while (!call.wait_for(kLook)) {
+    }
+    break;
+  }
+  if (interrupted) throw std::move(*interrupted);
+  call.finish();
+}
+
+Progress stopping_progress() {
+  return [](const std::string&) { stop_point(); };
+}
+
+void raise(const std::string& where, const std::string& reason, const std::string& remedy,
+           bool input) {
+  set(where, reason, remedy, input);
+  throw py::error_already_set();
+}
+
+void register_exceptions() { py::register_exception_translator(&translate); }
+
+}  // namespace farcull::python

@@ -1,0 +1,45 @@
+"""farcull: collision culling that never misses.
+
+Arrays to colliding pairs in three lines::
+
+    import farcull
+    result = farcull.collide(V, F, objects=[0, 12])  # two objects; the second begins at triangle 12
+    print(result.pairs)
+
+``V`` is an array of shape (n, 3), the vertices, in any type of number that a double holds exactly.
+``F`` is an array of shape (m, 3), the triangles, as indices of vertices in any type of whole number.
+Triangles are closed sets, so touching counts. A degenerate triangle is the segment or the point that
+it is. Arrays are only read. Each call runs without the lock of the interpreter; Ctrl-C ends it. What
+is wrong raises :class:`InputError` or :class:`Error` with ``where``, ``reason`` and ``remedy``, and
+MemoryError where there is no memory; there is no answer then.
+"""
+
+from ._errors import Error, InputError
+from . import _farcull  # refuses an interpreter that is not the main one, before numpy is imported
+from ._collide import Collider, Distance, Report, Result, collide, distances, join
+from ._runs import Check, Picture, Plan, Record, check, picture, plan
+from ._scenes import Frames, Scene, builtin_scenes
+
+__all__ = [
+    "Check",
+    "Collider",
+    "Distance",
+    "Error",
+    "Frames",
+    "InputError",
+    "Picture",
+    "Plan",
+    "Record",
+    "Report",
+    "Result",
+    "Scene",
+    "builtin_scenes",
+    "check",
+    "collide",
+    "distances",
+    "join",
+    "picture",
+    "plan",
+]
+
+del _farcull

@@ -1,0 +1,164 @@
+"""Checks of arguments, before the compiled module gets them."""
+
+import math
+import numbers
+import operator
+from typing import Any, List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from ._errors import InputError
+
+
+def array(name: str, given: Any) -> np.ndarray:
+    """The argument as an array, its memory shared where it is one. No rows at all are (0, 3)."""
+    if isinstance(given, np.ma.MaskedArray):
+        raise InputError(name, "are a masked array", "give an array without a mask")
+    try:
+        out = np.asarray(given)
+    except MemoryError:
+        raise
+    except Exception as error:  # whatever the __array__ of the argument raises
+        raise InputError(
+            name, f"cannot be read as an array ({error})", "give rows of three numbers"
+        ) from error
+    if not out.dtype.isnative:
+        out = out.astype(out.dtype.newbyteorder("="))
+    if out.shape == (0,) and out.dtype == np.float64:  # an empty list
+        out = np.empty((0, 3), np.int64 if name == "triangles" else np.float64)
+    return out
+
+
+def starts(given: Any, triangles: np.ndarray) -> np.ndarray:
+    """The first triangle of each object; None stands for one object."""
+    if given is None:
+        return np.zeros(1, np.int64)
+    try:
+        out = np.asarray(given)
+    except MemoryError:
+        raise
+    except Exception as error:
+        raise InputError(
+            "objects", f"cannot be read as an array ({error})", "give whole numbers"
+        ) from error
+    if out.ndim != 1 or (out.dtype.kind not in "iu" and out.size):
+        raise InputError(
+            "objects",
+            "are no whole numbers in one dimension",
+            "give the number of the first triangle of each object",
+        )
+    if out.size == 0:
+        return np.zeros(1, np.int64)
+    if out.dtype == np.uint64 and out.max() > np.iinfo(np.int64).max:
+        raise InputError("objects", f"hold {out.max()}", "give numbers of triangles")
+    return np.ascontiguousarray(out, dtype=np.int64)
+
+
+def number(name: str, given: Any) -> float:
+    if isinstance(given, (bool, np.bool_)) or not isinstance(given, numbers.Real):
+        raise InputError(name, f"{given!r} is no number", "give a number")
+    try:
+        out = float(given)
+    except OverflowError:
+        out = math.inf
+    if math.isnan(out):
+        raise InputError(name, "is no number", "give a number")
+    return out
+
+
+def integer(name: str, given: Any, low: int, high: int) -> int:
+    try:
+        if isinstance(given, (bool, np.bool_)):
+            raise TypeError
+        out = operator.index(given)
+    except TypeError:
+        raise InputError(name, f"{given!r} is no whole number", "give a whole number") from None
+    if not low <= out <= high:
+        raise InputError(name, f"is {out}", f"give a whole number from {low} to {high}")
+    return out
+
+
+def flag(name: str, given: Any) -> bool:
+    if not isinstance(given, (bool, np.bool_)):
+        raise InputError(name, f"{given!r} is neither True nor False", "give one of them")
+    return bool(given)
+
+
+def text(name: str, given: Any) -> str:
+    if not isinstance(given, str):
+        raise InputError(name, f"{given!r} is no text", "give a string")
+    return encoded(name, given)
+
+
+def encoded(name: str, given: str) -> str:
+    """The text, where UTF-8 can hold it."""
+    try:
+        given.encode()
+    except UnicodeEncodeError:
+        raise InputError(name, "holds what is no character", "give text") from None
+    return given
+
+
+def choice(name: str, given: Any, choices: Sequence[str]) -> str:
+    if not isinstance(given, str) or given not in choices:
+        raise InputError(name, f"{given!r} is no choice", "give " + " or ".join(choices))
+    return given
+
+
+def selves(given: Any) -> Tuple[bool, List[bool]]:
+    """Whether all objects are tested against themselves, and which."""
+    if isinstance(given, (bool, np.bool_)):
+        return bool(given), []
+    try:
+        each = list(given)
+    except TypeError:
+        raise InputError(
+            "self", f"{given!r} is no truth value", "give True, False, or one for each object"
+        ) from None
+    return False, [flag("self", value) for value in each]
+
+
+def require_something(objects: int, all_objects: bool, each: List[bool]) -> None:
+    """One object that is not tested against itself has nothing to collide with."""
+    if objects == 1 and not all_objects and not any(each):
+        raise InputError(
+            "objects",
+            "is one object that is not tested against itself, so nothing can collide",
+            "give the first triangle of each object, or self=True",
+        )
+
+
+def words(**options: Any) -> List[str]:
+    """Options as on the command line. None and False are left out."""
+    out = []
+    for name, value in options.items():
+        if value is None or value is False:
+            continue
+        option = "--" + name.replace("_", "-")
+        if value is True:
+            out.append(option)
+            continue
+        if isinstance(value, (list, tuple)):
+            value = ",".join(_word(name, part) for part in value)
+        out.append(f"{option}={_word(name, value)}")
+    return out
+
+
+def _word(name: str, value: Any) -> str:
+    if isinstance(value, str):
+        if "\0" in value:
+            raise InputError(name, "holds a zero byte", "give text")
+        return encoded(name, value)
+    if isinstance(value, numbers.Integral) and not isinstance(value, bool):
+        return str(int(value))
+    if isinstance(value, numbers.Real) and not isinstance(value, bool):
+        return repr(float(value))
+    raise InputError(name, f"{value!r} is no value of it", "give text or a number")
+
+
+def threads(given: Any) -> int:
+    return integer("threads", given, 0, 1024)
+
+
+def optional_number(name: str, given: Any) -> Optional[float]:
+    return None if given is None else number(name, given)

@@ -1,0 +1,214 @@
+"""Pairs of triangles that collide, and distances of objects."""
+
+from dataclasses import dataclass
+from typing import Any, Dict, List, Sequence, Tuple, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _arguments, _farcull
+from ._errors import InputError
+
+
+@dataclass(frozen=True)
+class Report:
+    """What ran, on what, why, and how long. For people and logs."""
+
+    device: str  # "cpu", or the renderer
+    device_reason: str
+    promises: bool  # a pair that collides is never left out; False where a probe of the device failed
+    promises_reason: str
+    candidates_ms: float  # wall clock, from the input to the candidates
+    exact_ms: float  # wall clock of the exact tests
+    candidates: int
+    neighbours: int  # candidates that are neighbours, colliding or not
+    callers_arithmetic: str  # how the calling thread computes, where that is unusual; else empty
+    views: List[Dict[str, Any]]
+    stages: List[Dict[str, Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """The pairs that collide. Triangles are numbered from 0 in the order of the input."""
+
+    pairs: NDArray[np.int64]
+    """(k, 2), in each row the lower number first, rows sorted, each once: of different objects, or of
+    one that is tested against itself and no neighbours."""
+    neighbour_pairs: NDArray[np.int64]
+    """The same of neighbours: triangles of one object that share a vertex position, and that meet in
+    more than the shared positions and the edge between them."""
+    report: Report
+
+
+class Collider:
+    """Finds colliding pairs again and again, as for the frames of an animation.
+
+    It keeps its memory from call to call. Where the triangles and objects are those of the call
+    before, it also keeps what it found about triangles that did not move. The answers are those of
+    :func:`collide`. One thread at a time may use it.
+
+    Parameters (all by name):
+
+    - ``self``: every object is tested against itself as well; or one truth value for each object.
+    - ``clearance``: pairs at this distance or less collide too. World units, finite, 0 or more.
+    - ``neighbours``: False: neighbours are counted, not decided.
+    - ``device``: "cpu"; "gl" (OpenGL 4.3 through EGL, without a window); or "best": the CPU where
+      boxes of runs decide, else gl if hardware answers, else the CPU.
+    - ``threads``: up to 1024; 0: one for each core.
+    - ``views``, ``resolution``: directions to look along and pixels; they change the time only.
+
+    Raises InputError naming the option that is wrong, and Error where the device does not answer.
+    """
+
+    # The first parameter is positional, so that `self` can be a name of an option.
+    def __init__(
+        collider,
+        /,
+        *,
+        self: Union[bool, Sequence[bool]] = False,
+        clearance: float = 0.0,
+        neighbours: bool = True,
+        device: str = "cpu",
+        threads: int = 0,
+        views: str = "auto",
+        resolution: int = 0,
+    ) -> None:
+        collider._all, collider._each = _arguments.selves(self)
+        collider._collider = _farcull.Collider(
+            device=_arguments.choice("device", device, ("cpu", "gl", "best")),
+            threads=_arguments.threads(threads),
+            all_objects=collider._all,
+            self_objects=collider._each,
+            clearance=_arguments.number("clearance", clearance),
+            neighbours=_arguments.flag("neighbours", neighbours),
+            views=_arguments.text("views", views),
+            resolution=_arguments.integer("resolution", resolution, 0, 16384),
+        )
+
+    def find(self, V: ArrayLike, F: ArrayLike, objects: Any = None) -> Result:
+        """The pairs that collide.
+
+        - ``V``: (n, 3), the vertices; finite.
+        - ``F``: (m, 3), the triangles, as indices of vertices from 0.
+        - ``objects``: the number of the first triangle of each object, ascending from 0. None: all
+          triangles are one object, which has to be tested against itself.
+
+        Raises InputError for arrays that are not so, Error for a fault of the device, and MemoryError.
+        The collider can be used again after each, and after Ctrl-C.
+        """
+        triangles = _arguments.array("triangles", F)
+        starts = _arguments.starts(objects, triangles)
+        _arguments.require_something(len(starts), self._all, self._each)
+        found = self._collider.find(_arguments.array("vertices", V), triangles, starts)
+        return Result(
+            pairs=found["pairs"],
+            neighbour_pairs=found["neighbour_pairs"],
+            report=Report(**found["report"]),
+        )
+
+
+def collide(
+    V: ArrayLike,
+    F: ArrayLike,
+    objects: Any = None,
+    self: Union[bool, Sequence[bool]] = False,
+    clearance: float = 0.0,
+    neighbours: bool = True,
+    device: str = "cpu",
+    threads: int = 0,
+) -> Result:
+    """All pairs of triangles that collide: of different objects, and of one that is tested against
+    itself. The parameters are those of :class:`Collider` and :meth:`Collider.find`.
+
+    For many frames, keep a Collider.
+    """
+    collider = Collider(
+        self=self, clearance=clearance, neighbours=neighbours, device=device, threads=threads
+    )
+    return collider.find(V, F, objects)
+
+
+def join(
+    *meshes: Tuple[ArrayLike, ArrayLike]
+) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
+    """Several meshes, each as (V, F), as one V, F and objects: the arguments of :func:`collide`."""
+    if not meshes:
+        raise InputError("meshes", "are none", "give (V, F) of each")
+    vertices, triangles, starts = [], [], []
+    first_vertex = first_triangle = 0
+    for mesh in meshes:
+        if not isinstance(mesh, (tuple, list)) or len(mesh) != 2:
+            raise InputError("meshes", "hold what is no pair of arrays", "give (V, F) of each")
+        V = _arguments.array("vertices", mesh[0])
+        F = _arguments.array("triangles", mesh[1])
+        for name, given, kinds in (("vertices", V, "fiu"), ("triangles", F, "iu")):
+            if given.ndim != 2 or given.shape[1] != 3 or given.dtype.kind not in kinds:
+                raise InputError(name, "are no rows of three numbers", "give an array (n, 3)")
+        if F.size and not (0 <= F.min() and F.max() < len(V)):
+            raise InputError(
+                "triangles", "name a vertex that the mesh does not have", "correct the index"
+            )
+        vertices.append(V)
+        triangles.append(F.astype(np.int64) + first_vertex)
+        starts.append(first_triangle)
+        first_vertex += len(V)
+        first_triangle += len(F)
+    return np.concatenate(vertices), np.concatenate(triangles), np.array(starts, np.int64)
+
+
+@dataclass(frozen=True)
+class Distance:
+    """How far two objects are apart, or with kind="all" two triangles."""
+
+    objects: Tuple[int, int]
+    triangles: Tuple[int, int]  # the first of those that are nearest; numbered as in Result.pairs
+    distance: float  # rounded to nearest; infinity beyond the largest double
+    squared: str  # "numerator/denominator" in lowest terms, nothing rounded
+    points: Tuple[Tuple[float, float, float], Tuple[float, float, float]]  # nearest points
+    features: Tuple[str, str]  # where they lie: "vertex 2", "edge 0" or "face"
+    inside: str  # "none", "a" or "b": that object lies inside the other; "not-closed"; "unknown"
+
+
+def distances(
+    V: ArrayLike,
+    F: ArrayLike,
+    objects: Any = None,
+    kind: str = "objects",
+    k: int = 1,
+    within: Union[float, None] = None,
+    self: Union[bool, Sequence[bool]] = False,
+    inside: bool = True,
+    threads: int = 0,
+) -> List[Distance]:
+    """How far objects are apart, exactly, with the points that are nearest.
+
+    - ``V``, ``F``, ``objects``, ``self``: as in :func:`collide`.
+    - ``kind``: "objects": of every two objects; "nearest": of each object and its ``k`` nearest
+      others; "all": every pair of triangles at the distance ``within`` or less.
+    - ``within``: nothing farther apart is answered. World units, 0 or more; None: no limit.
+    - ``inside``: whether an object lies inside another; not with "all".
+    - ``threads``: up to 1024; 0: one for each core.
+
+    The answers are sorted by objects, then by triangles. Raises InputError naming the argument that is
+    wrong, and MemoryError.
+    """
+    triangles = _arguments.array("triangles", F)
+    starts = _arguments.starts(objects, triangles)
+    all_objects, each = _arguments.selves(self)
+    _arguments.require_something(len(starts), all_objects, each)
+    limit = _arguments.optional_number("within", within)
+    if limit is not None and limit < 0:
+        raise InputError("within", f"is {limit}", "give a distance, 0 or more, or None")
+    answers = _farcull.distances(
+        _arguments.array("vertices", V),
+        triangles,
+        starts,
+        _arguments.choice("kind", kind, ("objects", "nearest", "all")),
+        _arguments.integer("k", k, 1, 2**32 - 1),
+        -1.0 if limit is None else limit,
+        all_objects,
+        each,
+        _arguments.flag("inside", inside),
+        _arguments.threads(threads),
+    )
+    return [Distance(**answer) for answer in answers]

@@ -1,0 +1,264 @@
+"""Runs of any method with their records, plans, checks and pictures."""
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _arguments, _farcull
+from ._errors import InputError
+
+if TYPE_CHECKING:
+    from ._scenes import Scene
+
+_OPTIONS = (
+    "resolution",
+    "radius",
+    "offset",
+    "depth",
+    "depth_format",
+    "query",
+    "clusters",
+    "views",
+    "rounds",
+    "clear",
+    "level",
+    "conservative",
+    "device",
+    "clearance",
+    "full",
+)
+_FLAGS = ("conservative", "full")
+
+
+def _scene(given: Any) -> Any:
+    from ._scenes import Scene
+
+    if not isinstance(given, Scene):
+        raise InputError("scene", f"{given!r} is no farcull.Scene", "make one of it")
+    return given._scene
+
+
+def _words(method: Any, options: Dict[str, Any]) -> List[str]:
+    for name, value in options.items():
+        if name not in _OPTIONS:
+            raise InputError(name, "is no option", "give one of " + ", ".join(_OPTIONS))
+        if name in _FLAGS:
+            _arguments.flag(name, value)
+        elif isinstance(value, (bool, np.bool_)):
+            raise InputError(name, f"{value!r} is no value of it", "give text or a number")
+    return _arguments.words(method=_arguments.text("method", method), **options)
+
+
+class Record:
+    """What a run found, and what it took. Made by :meth:`Scene.run`."""
+
+    __slots__ = ("_record", "scene", "method")
+
+    def __init__(self, record: Any, scene: "Scene", method: str) -> None:
+        self._record = record
+        self.scene = scene
+        self.method = method
+
+    @property
+    def pairs(self) -> NDArray[np.int64]:
+        """(k, 2), as in :class:`Result`: the pairs that collide among those that were kept."""
+        return self._record.pairs
+
+    @property
+    def neighbour_pairs(self) -> NDArray[np.int64]:
+        """The same of neighbours, as in :class:`Result`."""
+        return self._record.neighbour_pairs
+
+    @property
+    def candidates(self) -> int:
+        """How many pairs culling left to the exact tests."""
+        return self._record.candidates
+
+    @property
+    def kept_triangles(self) -> NDArray[np.uint32]:
+        """The triangles that were kept, ascending; a view that cannot be written to."""
+        return self._record.kept_triangles
+
+    @property
+    def bits(self) -> NDArray[np.uint8]:
+        """Of a method that draws, per triangle: 1 fully visible in the first pass, 2 in the second,
+        3 culled. Empty for other methods. A view that cannot be written to."""
+        return self._record.bits
+
+    @property
+    def views(self) -> List[Dict[str, Any]]:
+        """Name, width and height (px) of each view, and whether it was looked at."""
+        return self._record.views
+
+    @property
+    def promises(self) -> bool:
+        """Whether the method promises to miss nothing, and its device keeps what that rests on."""
+        return self._record.promises
+
+    @property
+    def promises_reason(self) -> str:
+        return self._record.promises_reason
+
+    @property
+    def accounting(self) -> Optional[Dict[str, Any]]:
+        """How many pairs are in which class; None with verify=False."""
+        return self._record.accounting
+
+    def missed(self) -> Optional[NDArray[np.int64]]:
+        """(k, 2): all pairs that collide and that culling removed; None with verify=False."""
+        return self._record.missed()
+
+    def certificate(self) -> str:
+        """Evidence for every pair, as ``farcull run --certificate`` writes it; see :func:`check`."""
+        return self._record.certificate()
+
+    def json(self) -> Dict[str, Any]:
+        """The record as ``farcull run --json`` writes it."""
+        return json.loads(self._record.json())
+
+    def __str__(self) -> str:
+        return self._record.table()
+
+    def __repr__(self) -> str:
+        return f"<farcull.Record of {self.scene!r} by {self.method}: {len(self.pairs)} pairs>"
+
+
+def run(
+    scene: "Scene",
+    method: str = "far-pairs",
+    *,
+    verify: bool = True,
+    threads: int = 0,
+    **options: Any,
+) -> Record:
+    words = _words(method, options)
+    if not _arguments.flag("verify", verify):
+        words.append("--no-verify")
+    return Record(
+        _farcull.run(_scene(scene), words, _arguments.threads(threads)), scene, method
+    )
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a run would do, what it would leave out, and why."""
+
+    stages: Dict[str, Any]  # as ``farcull plan --json`` writes it
+    text: str  # as ``farcull plan`` prints it
+
+    def __str__(self) -> str:
+        return self.text
+
+
+def plan(scene: "Scene", method: str = "far-pairs", threads: int = 0, **options: Any) -> Plan:
+    """What :meth:`Scene.run` would do with these options. Opens no device."""
+    words = _words(method, options)
+    text, table = _farcull.plan(_scene(scene), words, _arguments.threads(threads))
+    return Plan(json.loads(text), table)
+
+
+@dataclass(frozen=True, eq=False)
+class Check:
+    """What a check found."""
+
+    verdict: str  # "proved", "refuted" or "not proved"
+    reason: str  # empty where proved
+    pair: Optional[Tuple[int, int]]  # the pair that it is about, where it is about one
+    decided: bool  # whether all pairs were decided; not so for a certificate of another scene
+    pairs: NDArray[np.int64]  # (k, 2): those that meet, neighbours among them, by the checker
+    culled_meeting: int  # pairs that the certificate calls culled, and that meet
+    unattested: List[str]  # what the check cannot speak about
+    text: str  # as ``farcull check`` prints it
+
+    @property
+    def proved(self) -> bool:
+        return self.verdict == "proved"
+
+    def __str__(self) -> str:
+        return self.text
+
+
+def check(
+    scene: "Scene",
+    certificate: Optional[str] = None,
+    pairs: Optional[ArrayLike] = None,
+    clearance: Optional[float] = None,
+) -> Check:
+    """Proves or refutes a certificate, a list of pairs, or both, with integers alone.
+
+    - ``certificate``: the text of :meth:`Record.certificate`.
+    - ``pairs``: (k, 2) triangles, in any order: are these all that meet, neighbours among them?
+    - ``clearance``: of the list; default 0, or that of the certificate.
+
+    Raises InputError where neither is given or the pairs are none of the scene, and Error where the
+    certificate is not of the form.
+    """
+    if certificate is None and pairs is None:
+        raise InputError("certificate", "is not given, nor are pairs", "give one of them, or both")
+    if certificate is not None:
+        certificate = _arguments.text("certificate", certificate)
+    distance = _arguments.optional_number("clearance", clearance)
+    if distance is not None and not 0 <= distance < np.inf:
+        raise InputError("clearance", "is no distance", "give a finite number, 0 or more")
+    listed = None
+    if pairs is not None:
+        listed = np.asarray(pairs)
+        if listed.size == 0:
+            listed = np.empty((0, 2), np.int64)
+        if listed.dtype.kind not in "iu" or listed.ndim != 2 or listed.shape[1] != 2:
+            raise InputError("pairs", "are no rows of two whole numbers", "give an array (k, 2)")
+    return Check(**_farcull.check(_scene(scene), certificate, listed, distance))
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """A picture of the answers of methods, a panel for each."""
+
+    pixels: NDArray[np.uint8]  # (height, width, 4): red, green, blue, opacity; rows from the top
+    panels: List[Dict[str, Any]]  # title, headline, and the counts that they show
+
+
+def picture(
+    scene: "Scene",
+    methods: Sequence[Union[str, Dict[str, Any]]] = ("far-pairs",),
+    *,
+    view: str = "",
+    up: str = "",
+    zoom: bool = False,
+    depth_view: Optional[str] = None,
+    width: int = 900,
+    height: int = 760,
+    device: str = "",
+    threads: int = 0,
+) -> Picture:
+    """Draws which triangles collide, which of them a method missed, and which it kept in vain.
+
+    - ``methods``: a panel each: a name, or options as of :meth:`Scene.run` with ``method`` among them.
+    - ``view``, ``up``: the direction to look along, as in "x" or "1:1:-0.5", and what is upwards.
+    - ``zoom``: only what collides. ``depth_view``: instead, the depth stored in this view.
+    - ``width``, ``height``: px of a panel.
+
+    It needs OpenGL, for which Mesa's software device will do. Raises InputError and Error.
+    """
+    if isinstance(methods, (str, dict)):
+        methods = [methods]
+    panels = []
+    for one in methods:
+        options = dict(one) if isinstance(one, dict) else {"method": one}
+        panels.append(_words(options.pop("method", "far-pairs"), options))
+    pixels, shown = _farcull.picture(
+        _scene(scene),
+        panels,
+        _arguments.text("view", view),
+        _arguments.text("up", up),
+        _arguments.flag("zoom", zoom),
+        None if depth_view is None else _arguments.text("depth_view", depth_view),
+        _arguments.integer("width", width, 1, 10**6),
+        _arguments.integer("height", height, 1, 10**6),
+        _arguments.text("device", device),
+        _arguments.threads(threads),
+    )
+    return Picture(pixels, shown)

@@ -1,0 +1,166 @@
+"""Scenes: of arrays, files, or built-in ones; and scenes that move."""
+
+import os
+from typing import Any, Iterator, List, Optional, Sequence, Tuple, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _arguments, _farcull
+from ._errors import InputError
+
+
+def _names(names: Tuple[Any, ...]) -> List[str]:
+    if not names:
+        raise InputError("scene", "none is named", "name mesh files or a built-in scene")
+    out = []
+    for name in names:
+        try:
+            path = os.fspath(name)
+        except TypeError:
+            raise InputError("scene", f"{name!r} is no name", "name files or a scene") from None
+        if not isinstance(path, str) or not path or "\0" in path:
+            raise InputError("scene", f"{name!r} is no name", "name files or a scene")
+        out.append(_arguments.encoded("scene", path))
+    return out
+
+
+class Scene:
+    """A scene that never changes: triangles, grouped into objects.
+
+    ``Scene("two-bunnies")`` is a built-in scene; ``Scene("a.obj", "b.ply")`` are mesh files, each an
+    object; ``Scene("scene.json")`` is a scene file; :meth:`from_arrays` takes arrays. With
+    ``self=True`` every object is tested against itself as well. Raises Error for what cannot be read.
+    """
+
+    __slots__ = ("_scene",)
+
+    def __init__(scene, /, *names: Union[str, "os.PathLike[str]"], self: bool = False) -> None:
+        scene._scene = _farcull.scene_of_names(_names(names), _arguments.flag("self", self))
+
+    @classmethod
+    def _of(cls, made: Any) -> "Scene":
+        out = cls.__new__(cls)
+        out._scene = made
+        return out
+
+    @staticmethod
+    def from_arrays(
+        V: ArrayLike,
+        F: ArrayLike,
+        objects: Any = None,
+        self: Union[bool, Sequence[bool]] = False,
+        name: str = "arrays",
+        names: Optional[Sequence[str]] = None,
+    ) -> "Scene":
+        """A scene of arrays, which are those of :func:`collide` and are copied. ``names``: of the
+        objects; else they are "0", "1" and so on. Raises InputError as :func:`collide`."""
+        triangles = _arguments.array("triangles", F)
+        starts = _arguments.starts(objects, triangles)
+        all_objects, each = _arguments.selves(self)
+        if isinstance(names, str):
+            raise InputError("names", "are one text", "give a list of texts")
+        return Scene._of(
+            _farcull.scene_of_arrays(
+                _arguments.array("vertices", V),
+                triangles,
+                starts,
+                _arguments.text("name", name),
+                [_arguments.text("names", one) for one in names or []],
+                all_objects,
+                each,
+            )
+        )
+
+    @property
+    def name(self) -> str:
+        return self._scene.name
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """(n, 3); a view that cannot be written to."""
+        return self._scene.vertices
+
+    @property
+    def triangles(self) -> NDArray[np.uint32]:
+        """(m, 3) indices of vertices; a view that cannot be written to."""
+        return self._scene.triangles
+
+    @property
+    def objects(self) -> NDArray[np.int64]:
+        """The number of the first triangle of each object."""
+        return self._scene.objects
+
+    @property
+    def names(self) -> List[str]:
+        """Of the objects."""
+        return self._scene.names
+
+    @property
+    def self(self) -> List[bool]:
+        """Which objects are tested against themselves."""
+        return self._scene.self
+
+    def run(self, method: str = "far-pairs", **options: Any) -> "Record":
+        """Culls the scene, tests what is left, and accounts for every pair.
+
+        Options by name, as of ``farcull run``: ``resolution``, ``radius``, ``offset``, ``depth``,
+        ``depth_format``, ``query``, ``clusters``, ``views``, ``rounds``, ``clear``, ``level``,
+        ``conservative``, ``device``, ``clearance``, ``full``; and ``verify`` (default True: account
+        for every pair) and ``threads``. Raises InputError naming the option that is wrong, and Error
+        for a fault of the device.
+        """
+        from ._runs import run
+
+        return run(self, method, **options)
+
+    def __repr__(self) -> str:
+        return (
+            f"<farcull.Scene {self.name!r}: {len(self.names)} objects, "
+            f"{len(self.triangles)} triangles>"
+        )
+
+
+class Frames:
+    """A scene that moves: ``for frame, scene in farcull.Frames("cloth-drop", frames=60): ...``.
+
+    The names are those of :class:`Scene`: a built-in scene that moves, or mesh files with %d or %04d
+    in their names. ``frames``: a number N (0 to N - 1), or (first, last). Raises Error where nothing
+    moves, and for a frame that cannot be read when it is reached.
+    """
+
+    def __init__(
+        collection,
+        /,
+        *names: Union[str, "os.PathLike[str]"],
+        frames: Union[int, Tuple[int, int]],
+        self: bool = False,
+    ) -> None:
+        most = 10**9
+        if isinstance(frames, (tuple, list)):
+            if len(frames) != 2:
+                raise InputError("frames", "are no pair", "give a number, or (first, last)")
+            first, last = (_arguments.integer("frames", f, 0, most) for f in frames)
+            asked = f"{first}:{last}"
+        else:
+            asked = str(_arguments.integer("frames", frames, 1, most))
+        collection._frames = _farcull.Frames(_names(names), asked, _arguments.flag("self", self))
+
+    def __len__(self) -> int:
+        return self._frames.last - self._frames.first + 1
+
+    def at(self, frame: int) -> Scene:
+        """The scene at a frame. A simulation computes the frames before it first."""
+        return Scene._of(self._frames.at(_arguments.integer("frame", frame, 0, 2**31 - 1)))
+
+    def __iter__(self) -> Iterator[Tuple[int, Scene]]:
+        for frame in range(self._frames.first, self._frames.last + 1):
+            yield frame, self.at(frame)
+
+
+def builtin_scenes() -> List[str]:
+    """The names of the built-in scenes. Most take a size, as in "crowd:3000"."""
+    return _farcull.builtin_scenes()
+
+
+from ._runs import Record  # noqa: E402  (the annotation of Scene.run)
