@@ -1,0 +1,306 @@
+"""Answers of collide, Collider, join and distances, and the arrays that they take."""
+
+import math
+import threading
+
+import farcull
+import numpy as np
+import pytest
+
+V = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1, 1], [9, 9, 9]], float)
+F = np.array([[0, 1, 2], [3, 4, 5], [6, 6, 6]])
+OBJECTS = [0, 1, 2]
+
+
+def error_of(call, *arguments, **options):
+    with pytest.raises(farcull.Error) as caught:
+        call(*arguments, **options)
+    error = caught.value
+    assert error.where and error.reason and error.remedy
+    assert str(error) == f"{error.where}: {error.reason}; {error.remedy}"
+    return error
+
+
+def test_pairs_are_sorted_rows():
+    result = farcull.collide(V, F, OBJECTS)
+    assert result.pairs.tolist() == [[0, 1]]
+    assert result.pairs.dtype == np.int64 and result.neighbour_pairs.shape == (0, 2)
+    assert result.report.promises and result.report.device == "cpu"
+
+
+@pytest.mark.parametrize("kind", ["f2", "f4", "f8", "i1", "i2", "i4", "i8", ">f8", ">i4", ">f4"])
+def test_every_type_of_vertices_answers_the_same(kind):
+    assert farcull.collide(V.astype(kind), F, OBJECTS).pairs.tolist() == [[0, 1]]
+
+
+@pytest.mark.parametrize("kind", ["i1", "i2", "i4", "i8", "u1", "u2", "u4", "u8", ">i8", ">u4"])
+def test_every_type_of_triangles_answers_the_same(kind):
+    assert farcull.collide(V, F.astype(kind), OBJECTS).pairs.tolist() == [[0, 1]]
+
+
+def test_half_precision_is_read_exactly():
+    # Every finite number of half precision, subnormal ones too, as the x of a point.
+    halves = np.arange(1 << 16, dtype=np.uint16).view(np.float16)
+    halves = halves[np.isfinite(halves)]
+    points = np.zeros((len(halves), 3), np.float16)
+    points[:, 0] = halves
+    scene = farcull.Scene.from_arrays(points, [[0, 0, 0]])
+    assert np.array_equal(scene.vertices[:, 0], halves.astype(float))
+
+
+def layouts(array):
+    wide = np.zeros((2 * len(array), 7), array.dtype)
+    wide[::2, 1:6:2] = array
+    packed = np.zeros(len(array), [("pad", "u1"), ("row", array.dtype, 3)])
+    packed["row"] = array
+    read_only = array.copy()
+    read_only.flags.writeable = False
+    return {
+        "columns first": np.asfortranarray(array),
+        "every second": wide[::2, 1:6:2],
+        "backwards": array[::-1].copy()[::-1],
+        "columns backwards": array[:, ::-1].copy()[:, ::-1],
+        "not aligned": packed["row"],
+        "read-only": read_only,
+        "list": array.tolist(),
+    }
+
+
+@pytest.mark.parametrize("name", layouts(V))
+def test_every_layout_answers_the_same(name):
+    assert farcull.collide(layouts(V)[name], F, OBJECTS).pairs.tolist() == [[0, 1]]
+    assert farcull.collide(V, layouts(F)[name], OBJECTS).pairs.tolist() == [[0, 1]]
+
+
+def test_arrays_that_fit_are_not_copied(monkeypatch):
+    from farcull import _arguments
+
+    indices = F.astype(np.uint32)
+    assert _arguments.array("vertices", V) is V
+    assert _arguments.array("triangles", indices) is indices
+    assert _arguments.array("vertices", V.tolist()) is not V
+
+
+def test_an_answer_outlives_its_collider_and_its_input():
+    vertices = V.copy()
+    collider = farcull.Collider()
+    pairs = collider.find(vertices, F, OBJECTS).pairs
+    vertices[:] = 0
+    del collider
+    assert pairs.tolist() == [[0, 1]]
+
+
+def bad_arguments():
+    nan, huge = V.copy(), V.copy()
+    nan[4, 1] = math.nan
+    huge[2, 2] = math.inf
+    far = F.astype(np.uint64)
+    far[1, 1] = 2**64 - 1
+    return [
+        ("vertices", dict(V=nan)),
+        ("vertices", dict(V=huge)),
+        ("vertices", dict(V=V[:, :2])),
+        ("vertices", dict(V=V.ravel())),
+        ("vertices", dict(V=V[0, 0])),
+        ("vertices", dict(V=V[None])),
+        ("vertices", dict(V=V.astype(complex))),
+        ("vertices", dict(V=V.astype(np.longdouble))),
+        ("vertices", dict(V=V.astype(object))),
+        ("vertices", dict(V=V.astype(bool))),
+        ("vertices", dict(V=V.astype(str))),
+        ("vertices", dict(V=np.full((7, 3), 2**60))),
+        ("vertices", dict(V=np.ma.masked_less(V, 0))),
+        ("vertices", dict(V=[[0, 0, 0], [1]])),
+        ("vertices", dict(V=None)),
+        ("vertices", dict(V=[])),
+        ("triangles", dict(F=F - 1)),
+        ("triangles", dict(F=F + 1)),
+        ("triangles", dict(F=far)),
+        ("triangles", dict(F=F.astype(float))),
+        ("triangles", dict(F=F.astype(bool))),
+        ("triangles", dict(F=F[:, :2])),
+        ("triangles", dict(F="triangles")),
+        ("objects", dict(objects=[1, 2])),
+        ("objects", dict(objects=[0, 2, 1])),
+        ("objects", dict(objects=[0, 4])),
+        ("objects", dict(objects=[0, -1])),
+        ("objects", dict(objects=[0, 2**40])),
+        ("objects", dict(objects=np.array([0, 2**63], np.uint64))),
+        ("objects", dict(objects=[0.0, 1.0])),
+        ("objects", dict(objects=[[0, 1]])),
+        ("objects", dict(objects=None)),
+        ("objects", dict(objects=[])),
+        ("self", dict(self=[True])),
+        ("self", dict(self=1)),
+        ("self", dict(self="yes")),
+        ("clearance", dict(clearance=-1)),
+        ("clearance", dict(clearance=math.inf)),
+        ("clearance", dict(clearance=math.nan)),
+        ("clearance", dict(clearance="0")),
+        ("clearance", dict(clearance=10**400)),
+        ("neighbours", dict(neighbours=1)),
+        ("device", dict(device="toaster")),
+        ("device", dict(device=0)),
+        ("threads", dict(threads=-1)),
+        ("threads", dict(threads=1025)),
+        ("threads", dict(threads=2**70)),
+        ("threads", dict(threads=1.0)),
+    ]
+
+
+@pytest.mark.parametrize("where, change", bad_arguments())
+def test_an_argument_that_is_wrong_is_named(where, change):
+    arguments = dict(V=V, F=F, objects=OBJECTS)
+    error = error_of(farcull.collide, **{**arguments, **change})
+    assert isinstance(error, farcull.InputError) and isinstance(error, ValueError)
+    # An index beyond no vertices at all is the triangles' fault.
+    assert error.where == where or ("V" in change and error.where == "triangles")
+
+
+def test_nothing_at_all_is_an_answer():
+    empty = np.empty((0, 3))
+    result = farcull.collide(empty, empty.astype(int), [0, 0])
+    assert result.pairs.shape == (0, 2)
+    assert farcull.collide([], [], self=True).pairs.shape == (0, 2)
+
+
+def test_what_only_claims_to_be_an_array_is_refused():
+    class Liar:
+        __array_interface__ = {"shape": (10, 3), "typestr": "<f8", "version": 3, "data": "nowhere"}
+
+    class Thrower:
+        def __array__(self, *_):
+            raise RuntimeError("no")
+
+    for given in (Liar(), Thrower(), object(), {1, 2}, b"bytes"):
+        assert error_of(farcull.collide, given, F, OBJECTS).where == "vertices"
+        assert error_of(farcull.collide, V, given, OBJECTS).where == "triangles"
+
+
+def test_the_compiled_module_refuses_what_the_package_would_not_give_it():
+    from farcull import _farcull
+
+    collider = _farcull.Collider(
+        device="cpu",
+        threads=0,
+        all_objects=False,
+        self_objects=[],
+        clearance=0.0,
+        neighbours=True,
+        views="auto",
+        resolution=0,
+    )
+    starts = np.zeros(1, np.int64)
+    for vertices, triangles in (
+        (V.astype(object), F),
+        (V, F.astype(object)),
+        (V.astype(">f8"), F),
+        (V[:, :1], F),
+        (V, F.ravel()),
+        (np.zeros((0, 3), "V8"), F),
+    ):
+        error_of(collider.find, vertices, triangles, starts)
+    with pytest.raises(TypeError):
+        collider.find(None, None)
+
+
+def test_self_collision_of_one_object_and_of_some():
+    assert farcull.collide(V, F, self=True).pairs.tolist() == [[0, 1]]
+    assert farcull.collide(V, F, [0, 2], self=[True, False]).pairs.tolist() == [[0, 1]]
+    assert farcull.collide(V, F, [0, 2], self=[False, True]).pairs.tolist() == []
+
+
+def test_neighbours_are_apart():
+    folded = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.5, 0.25, 0]])
+    result = farcull.collide(folded, [[0, 1, 2], [0, 1, 3]], self=True)
+    assert result.pairs.tolist() == [] and result.neighbour_pairs.tolist() == [[0, 1]]
+    result = farcull.collide(folded, [[0, 1, 2], [0, 1, 3]], self=True, neighbours=False)
+    assert result.neighbour_pairs.tolist() == [] and result.report.neighbours == 1
+
+
+def test_clearance_is_a_distance_and_touching_counts():
+    apart = V + 0
+    apart[3:6, 2] += 1.5  # 0.5 above the first triangle
+    for clearance, expected in ((0, []), (0.49, []), (0.5, [[0, 1]])):
+        assert farcull.collide(apart, F, OBJECTS, clearance=clearance).pairs.tolist() == expected
+
+
+def test_frames_answer_as_single_calls():
+    rng = np.random.default_rng(20261124)
+    soup = rng.normal(size=(600, 3))
+    triangles = np.arange(600).reshape(-1, 3)
+    collider = farcull.Collider(self=True)
+    for frame in range(30):
+        soup[rng.integers(0, 600, 20)] += rng.normal(size=(20, 3)) * 0.1
+        if frame == 15:
+            triangles = triangles[:-5]  # another topology
+        kept = collider.find(soup, triangles)
+        fresh = farcull.collide(soup, triangles, self=True)
+        assert np.array_equal(kept.pairs, fresh.pairs) and len(kept.pairs) > 10
+
+
+def test_a_collider_works_after_an_error():
+    collider = farcull.Collider()
+    for _ in range(3):
+        error_of(collider.find, V * math.nan, F, OBJECTS)
+        assert collider.find(V, F, OBJECTS).pairs.tolist() == [[0, 1]]
+
+
+def test_a_collider_serves_one_thread_at_a_time():
+    collider = farcull.Collider(threads=1)
+    rng = np.random.default_rng(1)
+    soup = rng.normal(size=(4500, 3))
+    triangles = np.arange(4500).reshape(-1, 3)
+    refused, answers = [], []
+
+    def find():
+        try:
+            answers.append(len(collider.find(soup, triangles, [0, 750]).pairs))
+        except farcull.Error as error:
+            refused.append(error)
+
+    threads = [threading.Thread(target=find) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert answers and len(set(answers)) == 1 and len(answers) + len(refused) == 8
+    assert refused and {error.where for error in refused} == {"Collider"}
+
+
+def test_join_makes_one_scene_of_several_meshes():
+    vertices, triangles, objects = farcull.join((V[:3], [[0, 1, 2]]), (V[3:], [[0, 1, 2], [3, 3, 3]]))
+    assert objects.tolist() == [0, 1]
+    assert farcull.collide(vertices, triangles, objects).pairs.tolist() == [[0, 1]]
+    assert error_of(farcull.join).where == "meshes"
+    assert error_of(farcull.join, (V, F), V).where == "meshes"
+    assert error_of(farcull.join, (V[:2], F)).where == "triangles"
+    assert error_of(farcull.join, (V.astype(object), F)).where == "vertices"
+
+
+def test_distances():
+    apart = V + 0
+    apart[3:6, 2] += 1.5
+    first, second, third = farcull.distances(apart, F, OBJECTS)
+    assert first.objects == (0, 1) and first.distance == 0.5 and first.squared == "1/4"
+    assert first.points == ((1.0, 1.0, 0.0), (1.0, 1.0, 0.5))
+    assert second.objects == (0, 2) and third.objects == (1, 2)
+    assert len(farcull.distances(apart, F, OBJECTS, within=1)) == 1
+    assert len(farcull.distances(apart, F, OBJECTS, kind="all", within=100)) == 3
+    assert len(farcull.distances(apart, F, OBJECTS, kind="nearest", k=1)) == 2
+    for change in (
+        dict(kind="far"),
+        dict(k=0),
+        dict(k=-1),
+        dict(within=-1),
+        dict(within=math.nan),
+        dict(kind="all"),
+        dict(inside="no"),
+        dict(threads=-1),
+        dict(objects=None),
+        dict(V=V * math.nan),
+    ):
+        arguments = {**dict(V=apart, F=F, objects=OBJECTS), **change}
+        where = error_of(farcull.distances, **arguments).where
+        named = next(iter(change))
+        assert where == {"V": "vertices", "kind": "within"}.get(named, named) or where == named
