@@ -139,6 +139,8 @@ def words(**options: Any) -> List[str]:
             out.append(option)
             continue
         if isinstance(value, (list, tuple)):
+            if not value:
+                raise InputError(name, "is empty", "give a value, or leave it out")
             value = ",".join(_word(name, part) for part in value)
         out.append(f"{option}={_word(name, value)}")
     return out

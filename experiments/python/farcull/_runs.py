@@ -128,7 +128,8 @@ class Record:
 
 def run(
     scene: "Scene",
-    method: str = "far-pairs",
+    method: str,
+    /,
     *,
     verify: bool = True,
     threads: int = 0,
@@ -153,7 +154,9 @@ class Plan:
         return self.text
 
 
-def plan(scene: "Scene", method: str = "far-pairs", threads: int = 0, **options: Any) -> Plan:
+def plan(
+    scene: "Scene", /, method: str = "far-pairs", *, threads: int = 0, **options: Any
+) -> Plan:
     """What :meth:`Scene.run` would do with these options. Opens no device."""
     words = _words(method, options)
     text, table = _farcull.plan(_scene(scene), words, _arguments.threads(threads))

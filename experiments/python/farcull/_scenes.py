@@ -101,7 +101,7 @@ class Scene:
         """Which objects are tested against themselves."""
         return self._scene.self
 
-    def run(self, method: str = "far-pairs", **options: Any) -> "Record":
+    def run(scene, /, method: str = "far-pairs", **options: Any) -> "Record":
         """Culls the scene, tests what is left, and accounts for every pair.
 
         Options by name, as of ``farcull run``: ``resolution``, ``radius``, ``offset``, ``depth``,
@@ -112,7 +112,7 @@ class Scene:
         """
         from ._runs import run
 
-        return run(self, method, **options)
+        return run(scene, method, **options)
 
     def __repr__(self) -> str:
         return (

@@ -85,7 +85,7 @@ def test_what_cullide_misses_are_all_pairs_that_it_misses():
     assert len(missed) > 10  # more than a record names
     assert missed == truth - {tuple(pair) for pair in record.pairs}
     assert set(np.unique(record.bits)) <= {0, 1, 2, 3} and len(record.bits) == 20000
-    assert len(record.views) and record.views[0]["width"] <= 64
+    assert len(record.views) and 64 <= max(view["width"] for view in record.views) < 80
     # Every triangle of a missed pair, or the other one of the pair, is culled.
     kept = set(record.kept_triangles.tolist())
     assert all(a not in kept or b not in kept for a, b in missed)

@@ -1,0 +1,155 @@
+"""Random arguments: an answer that is right, or an exception that names what is wrong, never a crash.
+
+FARCULL_FUZZ_CALLS: how many calls (default 20,000); FARCULL_FUZZ_SEED: where they begin.
+"""
+
+import math
+import os
+import random
+
+import farcull
+import numpy as np
+from hypothesis import given, seed, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+CALLS = int(os.environ.get("FARCULL_FUZZ_CALLS", "20000"))
+SEED = int(os.environ.get("FARCULL_FUZZ_SEED", "20261124"))
+
+TYPES = "f2 f4 f8 g i1 i2 i4 i8 u1 u2 u4 u8 >f4 >f8 >i8 >u4 ? c16 S3 U2 O M8[s] m8[s] V5".split()
+VALUES = [0, 1, 2, 3, -1, 0.5, 1e308, -1e-308, math.nan, math.inf, 2**31, 2**32, 2**63, 2**64 - 1]
+SHAPES = [(0,), (3,), (0, 3), (3, 0), (1, 3), (2, 3), (4, 3), (7, 3), (2, 2), (2, 4), (2, 3, 3), ()]
+JUNK = [None, True, False, -1, 0, 1, 2, 1025, 2**70, 0.0, -0.5, 1e-9, math.nan, math.inf, "", "cpu"]
+JUNK += ["gl?", "objects", "all", "nearest", b"x", [], [True], [False, True], {}, object(), 1j]
+
+
+def random_array(rng):
+    shape = rng.choice(SHAPES)
+    kind = np.dtype(rng.choice(TYPES))
+    size = math.prod(shape)
+    with np.errstate(all="ignore"):
+        try:
+            flat = np.array([rng.choice(VALUES) for _ in range(size)], object).astype(kind)
+        except (ValueError, TypeError, OverflowError):
+            flat = np.frombuffer(rng.randbytes(size * kind.itemsize), "u1")
+            flat = flat.copy().view(kind) if kind.kind != "O" else np.full(size, None)
+    out = flat.reshape(shape)
+    return rng.choice([lambda a: a, laid_out, np.asfortranarray, read_only])(out)
+
+
+def laid_out(array):
+    """The same shape with other strides: backwards, with gaps, or one number for all."""
+    if array.ndim != 2 or not array.size:
+        return array
+    wide = np.zeros((3 * array.shape[0], 2 * array.shape[1] + 1), array.dtype)
+    wide[::3, 1::2] = array
+    return random.choice([wide[::3, 1::2], array[::-1, ::-1], np.broadcast_to(array[:1], array.shape)])
+
+
+def read_only(array):
+    array = array.copy()
+    array.flags.writeable = False
+    return array
+
+
+def good_vertices(rng):
+    return np.array([[rng.randint(-3, 3) for _ in range(3)] for _ in range(rng.randint(3, 12))], "f8")
+
+
+def good_triangles(rng, vertices):
+    count = rng.randint(0, 8)
+    return np.array([[rng.randrange(vertices) for _ in range(3)] for _ in range(count)]).reshape(-1, 3)
+
+
+def one_call(rng):
+    """Most of the arguments are good, so that each check is reached."""
+    vertices = good_vertices(rng)
+    triangles = good_triangles(rng, len(vertices)).astype(rng.choice(["i4", "i8", "u4", "u8"]))
+    objects = [0, rng.randint(0, len(triangles))]
+    arguments = {"V": vertices, "F": triangles, "objects": objects}
+    for name in ("V", "F", "objects"):
+        if rng.random() < 0.25:
+            arguments[name] = rng.choice([random_array, lambda r: r.choice(JUNK)])(rng)
+    call = rng.choice([farcull.collide, farcull.collide, farcull.distances])
+    options = {
+        farcull.collide: ("self", "clearance", "neighbours", "device", "threads"),
+        farcull.distances: ("self", "kind", "k", "within", "inside", "threads"),
+    }[call]
+    for name in options:
+        if rng.random() < 0.12:
+            arguments[name] = rng.choice(JUNK)
+    if arguments.get("device") == "gl":
+        del arguments["device"]
+    arguments.setdefault("threads", 1)
+    return call, arguments
+
+
+def require_clear(error):
+    assert error.where and error.reason and error.remedy, repr(error)
+
+
+def test_random_calls_answer_or_say_what_is_wrong():
+    rng = random.Random(SEED)
+    random.seed(SEED)
+    print(f"seed {SEED}")
+    answered = refused = 0
+    wheres = set()
+    for number in range(CALLS):
+        call, arguments = one_call(rng)
+        try:
+            answer = call(**arguments)
+        except farcull.InputError as error:
+            require_clear(error)
+            wheres.add(error.where)
+            refused += 1
+        except MemoryError:  # a view of no memory that claims to be large
+            refused += 1
+        except BaseException:
+            print(f"call {number}: {call.__name__}({arguments})")
+            raise
+        else:
+            answered += 1
+            if call is farcull.collide:
+                pairs = answer.pairs
+                count = len(np.asarray(arguments["F"]).reshape(-1, 3))
+                assert (pairs[:, 0] < pairs[:, 1]).all() and (pairs < count).all()
+    # Else the calls would show nothing.
+    assert min(answered, refused) > CALLS // 10, (answered, refused)
+    assert wheres >= {"vertices", "triangles", "objects", "self", "clearance", "threads", "kind"}
+
+
+any_array = arrays.arrays(
+    dtype=arrays.floating_dtypes() | arrays.integer_dtypes() | arrays.unsigned_integer_dtypes(),
+    shape=st.tuples(st.integers(0, 6), st.sampled_from([3, 3, 3, 2])),
+)
+
+
+@seed(SEED)
+@settings(max_examples=500, deadline=None, database=None)
+@given(any_array, any_array, st.none() | st.lists(st.integers(-1, 7), max_size=3), st.booleans())
+def test_arrays_of_any_type_and_shape(vertices, triangles, objects, self_collision):
+    try:
+        result = farcull.collide(vertices, triangles, objects, self=self_collision, threads=1)
+    except farcull.InputError as error:
+        require_clear(error)
+        return
+    # The answer is that of the same numbers as doubles, packed.
+    plain = np.array(vertices, np.float64, order="C")
+    again = farcull.collide(plain, triangles.astype(np.int64), objects, self=self_collision)
+    assert np.array_equal(result.pairs, again.pairs)
+    assert np.array_equal(result.neighbour_pairs, again.neighbour_pairs)
+
+
+soups = st.lists(st.tuples(*[st.integers(-2, 2)] * 9), min_size=2, max_size=9)
+
+
+@seed(SEED)
+@settings(max_examples=300, deadline=None, database=None)
+@given(soups, st.permutations(range(3)))
+def test_answers_do_not_depend_on_the_order_of_the_axes_or_of_the_corners(soup, axes):
+    corners = np.array(soup, float).reshape(-1, 3)
+    triangles = np.arange(len(corners)).reshape(-1, 3)
+    expected = farcull.collide(corners, triangles, [0, 1]).pairs
+    assert np.array_equal(farcull.collide(corners[:, axes], triangles, [0, 1]).pairs, expected)
+    assert np.array_equal(farcull.collide(corners, triangles[:, axes], [0, 1]).pairs, expected)
+    assert np.array_equal(farcull.collide(-4 * corners, triangles, [0, 1]).pairs, expected)
