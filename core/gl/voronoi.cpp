@@ -72,7 +72,6 @@ class GlVoronoi : public VoronoiDevice {
  public:
   GlVoronoi(const GlContext& context, const GlVoronoiOptions& options)
       : context_(context),
-        options_(options),
         block_(static_cast<std::size_t>(context.info().max_storage_block) - kTagBytes) {
     GLint blocks = 0;
     glGetIntegerv(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, &blocks);
@@ -88,7 +87,7 @@ class GlVoronoi : public VoronoiDevice {
          {GL_FRAGMENT_SHADER,
           {embedded::echo_glsl, embedded::voronoi_bounds_glsl, embedded::voronoi_frag}}});
     vertex_array_ = gl_make<GlVertexArray>(glGenVertexArrays);
-    list_.reserve(16 + 16 * std::max<std::size_t>(options_.list, 1), block_);
+    list_.reserve(16 + 16 * std::max<std::size_t>(options.list, 1), block_);
     check_gl("Voronoi diagram");
   }
 
@@ -103,7 +102,7 @@ class GlVoronoi : public VoronoiDevice {
   void start(const std::vector<GridTriangle>& triangles, const VoronoiGrid& grid) override {
     answer([&] {
       cells_ = grid.cells;
-      error_ = options_.error_share * voronoi_bounds::error(grid.longest());
+      error_ = voronoi_bounds::error(grid.longest());
       // A distance is at most 1.74 N, so a depth is below 1.
       const int exponent = std::ilogb(static_cast<double>(grid.longest())) + 2;
       scale_ = std::ldexp(1.0f, -exponent);
@@ -419,7 +418,6 @@ class GlVoronoi : public VoronoiDevice {
   }
 
   const GlContext& context_;
-  GlVoronoiOptions options_;
   std::size_t block_;  // bytes of data in a storage block
   bool failed_ = false;
   std::array<int, 3> cells_{};

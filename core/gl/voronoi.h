@@ -20,8 +20,6 @@ namespace farcull {
 struct GlVoronoiOptions {
   std::size_t list = std::size_t{1}
                      << 16;  // triangles near cells that a slice has room for at first
-  float error_share =
-      1;  // of voronoi_bounds::error(); less in the test that shows that it is needed
 };
 
 /// The context must outlive the result. Throws Error where the device lacks what this needs. Every

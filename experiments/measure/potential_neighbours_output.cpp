@@ -113,7 +113,7 @@ std::string diagram_table(const Scene& scene, const DiagramRecord& record) {
   out += fmt::format("diagram    {}, {} x {} x {} cells\n", to_string(record.options.form),
                      cells[0], cells[1], cells[2]);
   out += "device     " + (record.gl ? record.gl->renderer : "cpu") + "\n";
-  if (record.gl) out += "promise    " + record.probes + "\n";
+  if (record.gl) out += "probes     " + record.probes + "\n";
   out += "\n";
   out += objects_table(scene, record) + "\n";
   out += fmt::format("left       {} and {}\n",
