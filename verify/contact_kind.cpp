@@ -1,9 +1,15 @@
 // The common points of two triangles: the half-spaces that bound one cut the other (Sutherland,
-// Hodgman: Reentrant polygon clipping, 1974), in rational numbers, so that nothing is rounded. The
-// corners of what is left say how the triangles meet.
+// Hodgman: Reentrant polygon clipping, 1974). All of it in integers, points as numerators with a
+// common denominator, so that nothing is rounded. The corners of what is left say how the triangles
+// meet.
 #include "verify/contact_kind.h"
 
+#include <gmpxx.h>
+
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -11,36 +17,107 @@
 #include "verify/squared_distance.h"
 #include "verify/contact.h"
 #include "verify/exact.h"
-#include "verify/rational.h"
 
 namespace farcull {
 namespace {
 
-using rational::between;
-using rational::dot;
-using rational::minus;
-using rational::Q;
-using rational::Q3;
-
 using Corners = std::array<Vec3, 3>;
+using Integers = std::array<mpz_class, 3>;
 
 constexpr std::array<std::string_view, kContactKinds.size()> kNames = {
     "apart", "equal", "touch-vertex", "touch-edge", "coplanar", "crossing", "touch-face"};
 
-Q3 cross(const Q3& u, const Q3& v) {
+mpz_class dot(const Integers& u, const Integers& v) {
+  return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+}
+
+Integers minus(const Integers& u, const Integers& v) {
+  return {u[0] - v[0], u[1] - v[1], u[2] - v[2]};
+}
+
+Integers cross(const Integers& u, const Integers& v) {
   return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
 }
 
-bool is_zero(const Q3& u) { return sgn(u[0]) == 0 && sgn(u[1]) == 0 && sgn(u[2]) == 0; }
+bool is_zero(const Integers& u) { return sgn(u[0]) == 0 && sgn(u[1]) == 0 && sgn(u[2]) == 0; }
 
-bool less(const Vec3& p, const Vec3& q) {
-  return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
+// ---- doubles as integers ----
+
+/// x = mantissa 2^exponent; the mantissa is odd, or 0.
+struct Parts {
+  long mantissa = 0;
+  long exponent = 0;
+};
+Parts parts(double x) {
+  if (x == 0) return {};
+  int exponent = 0;
+  const auto digits = static_cast<long>(std::ldexp(std::frexp(x, &exponent), 53));
+  const int zeros = std::countr_zero(static_cast<unsigned long>(digits));
+  return {digits >> zeros, exponent - 53L + zeros};  // exact: the digits that go are 0
+}
+
+/// The largest power of two of which all coordinates are multiples; 0 where all of them are 0.
+long common_exponent(const Corners& a, const Corners& b) {
+  long least = std::numeric_limits<long>::max();
+  for (const Corners* t : {&a, &b}) {
+    for (const Vec3& p : *t) {
+      for (const double x : p) {
+        if (x != 0) least = std::min(least, parts(x).exponent);
+      }
+    }
+  }
+  return least == std::numeric_limits<long>::max() ? 0 : least;
+}
+
+/// p / 2^exponent. Precondition: these are integers.
+Integers scaled(const Vec3& p, long exponent) {
+  Integers out;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Parts x = parts(p[static_cast<Eigen::Index>(k)]);
+    out[k] = x.mantissa;
+    if (x.mantissa != 0) out[k] <<= static_cast<mp_bitcnt_t>(x.exponent - exponent);
+  }
+  return out;
+}
+
+// ---- points ----
+
+/// x / w, in units of a power of two; w > 0. Not in lowest terms.
+struct Point {
+  Integers x;
+  mpz_class w = 1;
+};
+
+/// The sign of p - q in the lexicographic order.
+int compare(const Point& p, const Point& q) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int sign = cmp(p.x[k] * q.w, q.x[k] * p.w);
+    if (sign != 0) return sign;
+  }
+  return 0;
+}
+
+/// q - p, times p.w q.w.
+Integers direction(const Point& p, const Point& q) {
+  Integers out;
+  for (std::size_t k = 0; k < 3; ++k) out[k] = q.x[k] * p.w - p.x[k] * q.w;
+  return out;
+}
+
+/// (s p.w p + t q.w q) / (s p.w + t q.w): between the two. Preconditions: s, t > 0.
+Point between(const Point& p, const mpz_class& s, const Point& q, const mpz_class& t) {
+  Point out;
+  for (std::size_t k = 0; k < 3; ++k) out.x[k] = s * p.x[k] + t * q.x[k];
+  out.w = s * p.w + t * q.w;
+  return out;
 }
 
 /// The corners of the set of points, sorted: three, two or one.
 std::vector<Vec3> corners_of(const Corners& t) {
   std::vector<Vec3> out(t.begin(), t.end());
-  std::sort(out.begin(), out.end(), less);
+  std::sort(out.begin(), out.end(), [](const Vec3& p, const Vec3& q) {
+    return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
+  });
   switch (shape(t)) {
     case Shape::point:
       out.resize(1);
@@ -54,37 +131,42 @@ std::vector<Vec3> corners_of(const Corners& t) {
   return out;
 }
 
-/// The points p with normal . (p - at) = 0, or those where it is not negative.
+/// The points p with normal . p = offset, or those where normal . p is not less.
 struct Bound {
-  Q3 normal;
-  Q3 at;
+  Integers normal;
+  mpz_class offset;
   bool plane;
 
-  Q value(const Q3& p) const { return dot(normal, minus(p, at)); }
+  Bound(const Integers& n, const Integers& at, bool is_plane)
+      : normal(n), offset(dot(n, at)), plane(is_plane) {}
+  /// normal . p - offset, times p.w.
+  mpz_class value(const Point& p) const { return dot(normal, p.x) - offset * p.w; }
 };
 
 /// A triangle, segment or point as the hull of its corners, and as the points within its bounds.
 class Hull {
  public:
-  explicit Hull(const Corners& t) {
-    for (const Vec3& p : corners_of(t)) corners_.push_back(rational::exact(p));
+  Hull(const Corners& t, long exponent) {
+    for (const Vec3& p : corners_of(t)) corners_.push_back(scaled(p, exponent));
     if (corners_.size() == 3) {
       bound_triangle();
     } else if (corners_.size() == 2) {
       bound_segment();
     } else {
-      for (int axis = 0; axis < 3; ++axis) bounds_.push_back({unit(axis), corners_[0], true});
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        bounds_.emplace_back(unit(axis), corners_[0], true);
     }
   }
 
-  const std::vector<Q3>& corners() const { return corners_; }
+  const std::vector<Integers>& corners() const { return corners_; }
   const std::vector<Bound>& bounds() const { return bounds_; }
   bool is_triangle() const { return corners_.size() == 3; }
-  bool is_corner(const Q3& p) const {
-    return std::find(corners_.begin(), corners_.end(), p) != corners_.end();
+  bool is_corner(const Point& p) const {
+    return std::any_of(corners_.begin(), corners_.end(),
+                       [&](const Integers& x) { return compare(p, {x}) == 0; });
   }
   /// Whether a point of the hull is on an edge. A segment is all edge.
-  bool on_edge(const Q3& p) const {
+  bool on_edge(const Point& p) const {
     return !is_triangle() || std::any_of(bounds_.begin(), bounds_.end(), [&](const Bound& bound) {
       return !bound.plane && sgn(bound.value(p)) == 0;
     });
@@ -92,74 +174,79 @@ class Hull {
   /// Precondition: is_triangle().
   bool plane_holds(const Hull& other) const {
     return std::all_of(other.corners_.begin(), other.corners_.end(),
-                       [&](const Q3& p) { return sgn(bounds_[0].value(p)) == 0; });
+                       [&](const Integers& x) { return sgn(bounds_[0].value({x})) == 0; });
   }
 
  private:
-  static Q3 unit(int axis) {
-    Q3 out;
+  static Integers unit(std::size_t axis) {
+    Integers out;
     out[axis] = 1;
     return out;
   }
   void bound_triangle() {
-    const Q3 n = cross(minus(corners_[1], corners_[0]), minus(corners_[2], corners_[0]));
-    bounds_.push_back({n, corners_[0], true});
-    for (int i = 0; i < 3; ++i) {
-      const Q3 edge = minus(corners_[(i + 1) % 3], corners_[i]);
-      bounds_.push_back({cross(n, edge), corners_[i], false});
+    const Integers n = cross(minus(corners_[1], corners_[0]), minus(corners_[2], corners_[0]));
+    bounds_.emplace_back(n, corners_[0], true);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Integers edge = minus(corners_[(i + 1) % 3], corners_[i]);
+      bounds_.emplace_back(cross(n, edge), corners_[i], false);
     }
   }
   /// Two planes through the segment's line, and one at each end. d x e is not 0 for a unit vector e
   /// along another axis than one in which d is not 0, and d x (d x e) is perpendicular to both.
   void bound_segment() {
-    const Q3 d = minus(corners_[1], corners_[0]);
-    int axis = 0;
+    const Integers d = minus(corners_[1], corners_[0]);
+    std::size_t axis = 0;
     while (sgn(d[axis]) == 0) ++axis;
-    const Q3 u = cross(d, unit((axis + 1) % 3));
-    bounds_.push_back({u, corners_[0], true});
-    bounds_.push_back({cross(d, u), corners_[0], true});
-    bounds_.push_back({d, corners_[0], false});
-    bounds_.push_back({minus(corners_[0], corners_[1]), corners_[1], false});
+    const Integers u = cross(d, unit((axis + 1) % 3));
+    bounds_.emplace_back(u, corners_[0], true);
+    bounds_.emplace_back(cross(d, u), corners_[0], true);
+    bounds_.emplace_back(d, corners_[0], false);
+    bounds_.emplace_back(minus(corners_[0], corners_[1]), corners_[1], false);
   }
 
-  std::vector<Q3> corners_;
+  std::vector<Integers> corners_;
   std::vector<Bound> bounds_;
 };
 
+// ---- the intersection ----
+
 /// The part of a convex polygon where sign * value >= 0. The polygon is the list of its corners in
 /// turn; two corners are a segment, one a point; a corner may stand there more than once.
-std::vector<Q3> cut(const std::vector<Q3>& polygon, const Bound& bound, int sign) {
-  std::vector<Q> values;
-  for (const Q3& p : polygon) values.push_back(sign * bound.value(p));
-  std::vector<Q3> out;
+std::vector<Point> cut(const std::vector<Point>& polygon, const Bound& bound, int sign) {
+  std::vector<mpz_class> values;
+  for (const Point& p : polygon) values.emplace_back(sign * bound.value(p));
+  std::vector<Point> out;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const std::size_t next = (k + 1) % polygon.size();
     if (sgn(values[k]) >= 0) out.push_back(polygon[k]);
-    if (sgn(values[k]) * sgn(values[next]) < 0) {
-      out.push_back(between(polygon[k], polygon[next], Q(values[k] / (values[k] - values[next]))));
-    }
+    // The value is linear, and each is times its w: with these weights it is 0.
+    if (sgn(values[k]) * sgn(values[next]) < 0)
+      out.push_back(between(polygon[k], abs(values[next]), polygon[next], abs(values[k])));
   }
   return out;
 }
 
 /// Corners of the intersection, sorted, each once.
-std::vector<Q3> common_points(const Hull& a, const Hull& b) {
-  std::vector<Q3> points = a.corners();
+std::vector<Point> common_points(const Hull& a, const Hull& b) {
+  std::vector<Point> points;
+  for (const Integers& x : a.corners()) points.push_back({x});
   for (const Bound& bound : b.bounds()) {
     points = cut(points, bound, 1);
     if (bound.plane) points = cut(points, bound, -1);
   }
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
+  const auto before = [](const Point& p, const Point& q) { return compare(p, q) < 0; };
+  const auto equal = [](const Point& p, const Point& q) { return compare(p, q) == 0; };
+  std::sort(points.begin(), points.end(), before);
+  points.erase(std::unique(points.begin(), points.end(), equal), points.end());
   return points;
 }
 
 /// Of sorted points. The first and the last of points on one line are its ends.
-int dimension_of(const std::vector<Q3>& points) {
+int dimension_of(const std::vector<Point>& points) {
   if (points.size() <= 2) return static_cast<int>(points.size()) - 1;
-  const Q3 along = minus(points.back(), points.front());
-  const bool line = std::all_of(points.begin(), points.end(), [&](const Q3& p) {
-    return is_zero(cross(along, minus(p, points.front())));
+  const Integers along = direction(points.front(), points.back());
+  const bool line = std::all_of(points.begin(), points.end(), [&](const Point& p) {
+    return is_zero(cross(along, direction(points.front(), p)));
   });
   return line ? 1 : 2;
 }
@@ -170,26 +257,26 @@ bool coplanar(const Hull& a, const Hull& b) {
   return !b.is_triangle() || b.plane_holds(a);
 }
 
-ContactKind kind_of(const Hull& a, const Hull& b, const std::vector<Q3>& common) {
+ContactKind kind_of(const Hull& a, const Hull& b, const std::vector<Point>& common) {
   if (common.empty()) return ContactKind::apart;
   if (a.corners() == b.corners()) return ContactKind::equal;
   if (common.size() == 1) {
-    const Q3& p = common.front();
+    const Point& p = common.front();
     if (a.is_corner(p) || b.is_corner(p)) return ContactKind::touch_vertex;
     return a.on_edge(p) && b.on_edge(p) ? ContactKind::touch_edge : ContactKind::crossing;
   }
   if (coplanar(a, b)) return ContactKind::coplanar;
   // Two triangles in two planes with a segment in common, on the line L of both planes. An edge
-  // that meets L in one point ends the triangle's part of L there, so that point is no middle of
-  // the segment. So if the middle is on an edge, the edge lies on L, and all of the segment is on
-  // it.
-  const Q3 middle = between(common.front(), common.back(), Q(1, 2));
-  return a.on_edge(middle) || b.on_edge(middle) ? ContactKind::touch_face : ContactKind::crossing;
+  // that meets L in one point ends the triangle's part of L there, so that point is inside no
+  // segment of both. So if an inner point is on an edge, the edge lies on L, and all of the segment
+  // is on it.
+  const Point inner = between(common.front(), 1, common.back(), 1);
+  return a.on_edge(inner) || b.on_edge(inner) ? ContactKind::touch_face : ContactKind::crossing;
 }
 
-Vec3 rounded_point(const Q3& p) {
-  const auto nearest = [](const Q& x) { return rounded_quotient(x.get_num(), x.get_den(), 0); };
-  return {nearest(p[0]), nearest(p[1]), nearest(p[2])};
+Vec3 rounded_point(const Point& p, long exponent) {
+  const auto nearest = [&](std::size_t k) { return rounded_quotient(p.x[k], p.w, exponent); };
+  return {nearest(0), nearest(1), nearest(2)};
 }
 
 /// answer(corners of a, corners of b) for each pair, on threads.
@@ -223,16 +310,18 @@ std::optional<ContactKind> parse_contact_kind(std::string_view name) {
 
 ContactKind contact_kind(const Corners& a, const Corners& b) {
   if (contact_of(a, b) == Contact::penetrating) return ContactKind::crossing;
-  const Hull s(a), t(b);
+  const long exponent = common_exponent(a, b);
+  const Hull s(a, exponent), t(b, exponent);
   return kind_of(s, t, common_points(s, t));
 }
 
 ContactShape contact_shape(const Corners& a, const Corners& b) {
-  const Hull s(a), t(b);
-  const std::vector<Q3> common = common_points(s, t);
+  const long exponent = common_exponent(a, b);
+  const Hull s(a, exponent), t(b, exponent);
+  const std::vector<Point> common = common_points(s, t);
   ContactShape out{.kind = kind_of(s, t, common), .dimension = dimension_of(common)};
   if (out.dimension == 0 || out.dimension == 1)
-    out.ends = {rounded_point(common.front()), rounded_point(common.back())};
+    out.ends = {rounded_point(common.front(), exponent), rounded_point(common.back(), exponent)};
   return out;
 }
 

@@ -55,7 +55,7 @@ struct ContactShape {
 /// (verify/contact.h) are answered from signs of determinants, all others as by contact_shape().
 ContactKind contact_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
-/// Exact but for the rounding of `ends`, by rational numbers alone. Symmetric; the order of corners
+/// Exact but for the rounding of `ends`, in integers alone. Symmetric; the order of corners
 /// does not matter.
 ContactShape contact_shape(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
