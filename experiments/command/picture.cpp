@@ -253,6 +253,7 @@ int PictureCommand::run() const {
   }
   TerminalProgress terminal;
   Lab lab(arguments.panels.front().device, terminal.callback());
+  if (html_) require_page_size(page_arguments, lab);
   const PictureResult result = make_picture(arguments, lab);
   if (outputs.picture) write_output(*outputs.picture, to_png(result.image, result.texts));
   PageResult page;

@@ -304,6 +304,11 @@ void require_three() {
               "install libjs-three (Debian) and build farcull again, or give -o alone");
 }
 
+void require_page_size(const PageArguments& arguments, Lab& lab) {
+  const Scene& scene = open_scene(arguments.picture, lab);
+  require_size(scene, scene.triangles.size());
+}
+
 PageResult make_page(const PageArguments& arguments, const PictureResult& flat, Lab& lab) {
   require_three();
   PageMaker maker(arguments, lab);

@@ -51,4 +51,8 @@ PageResult make_page(const PageArguments& arguments, const PictureResult& flat, 
 /// Throws Error naming --html where the program was built without three.js.
 void require_three();
 
+/// Throws Error naming --html where the scene of the page, or its first frame, has more triangles
+/// or objects than a page holds: before anything is run. Throws as open_scene() does.
+void require_page_size(const PageArguments& arguments, Lab& lab);
+
 }  // namespace farcull

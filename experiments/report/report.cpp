@@ -348,7 +348,7 @@ class Reporter {
   // Promises that the picture breaks become findings of the chapter.
   DrawnPicture draw(const Picture& picture, Chapter& chapter) {
     say("picture " + picture.name);
-    DrawnPicture out{.picture = picture};
+    DrawnPicture out{.picture = picture, .png = {}, .page = false, .left_out = {}};
     const std::string folder = root_ + "/pictures";
     std::error_code ignored;
     fs::create_directory(folder, ignored);

@@ -64,6 +64,7 @@ p 'an unknown device' '--device: ' --device nope --method cullide -o new.png
 p 'an unknown option' '--nope: ' --nope -o new.png
 p 's-cullide without self' 'two-spheres: ' --method s-cullide -o new.png
 bad 'a scene that does not move' '.*move' picture far-apart --frame 0 -o new.png
+bad 'too many objects for a page' '--html: .*70,000 objects.*65,536' picture crowd:70000 --html new.html
 bad 'zoom without a collision' '--zoom: ' picture far-apart --method exact --zoom -o new.png
 
 # --- what it says and writes -------------------------------------------------------------------

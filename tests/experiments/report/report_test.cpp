@@ -219,6 +219,18 @@ TEST(ReportPictures, SayWhatTheyShowThemselves) {
   EXPECT_THROW(add_counts(other, drawn), std::logic_error);
 }
 
+TEST(ReportPictures, LeadToTheirPageWhereThereIsOne) {
+  Page page = page_with({{.text = "fine"}});
+  DrawnPicture drawn{.picture = {}, .png = "PNG", .page = true, .left_out = {}};
+  drawn.picture.name = "accuracy-compare";
+  drawn.picture.arguments.scene = {"two-tori"};
+  drawn.picture.arguments.panels = {RunOptions{}};
+  page.chapters[0].pictures = {drawn};
+  EXPECT_NE(page_html(page).find("href=\"pages/accuracy-compare.html\""), std::string::npos);
+  page.chapters[0].pictures[0].page = false;
+  EXPECT_EQ(page_html(page).find("pages/"), std::string::npos);
+}
+
 TEST(ReportLatex, HasEveryFindingFigureAndTable) {
   Page page = page_with({{.text = "50 % of a_b & more"}});
   page.chapters[0].chapter.figures = {{.name = "f", .title = "t", .caption = "c", .panels = {}}};
