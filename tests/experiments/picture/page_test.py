@@ -389,7 +389,7 @@ def check_twins(b, page, pairs):
     def damaged(path):
         b.open(url(path))
         b.wait("document.getElementById('trouble') && !document.getElementById('trouble').hidden")
-        check(not b.problems, "a problem is told of")
+        check("cannot be shown" not in text(b, "trouble"), "the reader is told of damaged data")
 
     def misses(path):
         shown(b, path)
