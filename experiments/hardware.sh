@@ -79,7 +79,7 @@ step() {
   limit=$(($(left) / share))
   if ((limit < 600)); then limit=600; fi
   if (($(left) < limit)); then limit=$(left); fi
-  if ((limit < 10)); then
+  if ((limit < 5)); then
     spent+=("$name")
     return 0
   fi
