@@ -2,11 +2,15 @@
 // messages become the names of parameters: "--depth-format" is depth_format in Python.
 #include "experiments/python/call.h"
 
+#include <cxxabi.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <new>
+#include <mutex>
 #include <regex>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -20,6 +24,63 @@ namespace farcull::python {
 namespace {
 
 constexpr std::chrono::milliseconds kLook{50};  // between looks for signals
+
+// The calls that are running. At the end of the interpreter they are stopped, since they would use
+// what the process takes down.
+class Running {
+ public:
+  explicit Running(StoppableCall& call) : call_(call) {
+    const std::lock_guard lock(all().mutex);
+    all().calls.insert(&call);
+    if (all().ending) call.stop();
+  }
+  ~Running() {
+    const std::lock_guard lock(all().mutex);
+    all().calls.erase(&call_);
+  }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  static void end_all() {
+    const std::lock_guard lock(all().mutex);
+    all().ending = true;
+    if (::getpid() != all().process) return;  // forked: the threads of the calls are not here
+    for (StoppableCall* call : all().calls) call->stop();
+    for (StoppableCall* call : all().calls) {
+      while (!call->wait_for(kLook)) {
+      }
+    }
+  }
+
+ private:
+  struct All {
+    std::mutex mutex;
+    std::set<StoppableCall*> calls;
+    bool ending = false;
+    pid_t process = ::getpid();
+  };
+  // Never destroyed, since a thread of the interpreter may outlive it.
+  static All& all() {
+    static All& made = *new All;
+    return made;
+  }
+
+  StoppableCall& call_;
+};
+
+// Waits a moment without the lock of the interpreter. Whether the call has ended. Where the
+// interpreter ends meanwhile, it ends threads that ask for its lock; nothing of Python may be
+// touched any more, so such a thread waits here for the end of the process.
+bool ended(StoppableCall& call) {
+  PyThreadState* const state = PyEval_SaveThread();
+  const bool ended = call.wait_for(kLook);
+  try {
+    PyEval_RestoreThread(state);
+  } catch (const abi::__forced_unwind&) {
+    for (;;) ::pause();
+  }
+  return ended;
+}
 
 // "--depth-format" as depth_format.
 std::string as_parameters(const std::string& text) {
@@ -78,6 +139,8 @@ void translate(std::exception_ptr failure) {
     // Threads that cannot be started: each takes memory for its stack.
     if (error.code() != std::errc::resource_unavailable_try_again) throw;
     PyErr_SetString(PyExc_MemoryError, "farcull: no thread can be started");
+  } catch (const Stopped&) {
+    set("farcull", "the interpreter is ending", "wait for threads that call farcull", false);
   } catch (const std::length_error&) {
     PyErr_SetString(PyExc_MemoryError, "farcull: more than fits into memory");
   } catch (const std::logic_error& error) {
@@ -93,24 +156,20 @@ void beside(const std::function<void()>& work) {
     const FloatingPointGuard guard;
     work();
   });
+  const Running running(call);
   std::optional<py::error_already_set> interrupted;
-  for (;;) {
-    bool ended = false;
-    {
-      const py::gil_scoped_release released;
-      ended = call.wait_for(kLook);
-    }
-    if (ended) break;
-    if (PyErr_CheckSignals() == 0) continue;
+  while (!ended(call)) {
+    if (interrupted || PyErr_CheckSignals() == 0) continue;
     interrupted.emplace();
     call.stop();
-    const py::gil_scoped_release released;
-    while (!call.wait_for(kLook)) {
-    }
-    break;
   }
   if (interrupted) throw std::move(*interrupted);
   call.finish();
+}
+
+void end_calls() {
+  const py::gil_scoped_release released;
+  Running::end_all();
 }
 
 Progress stopping_progress() {

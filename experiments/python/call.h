@@ -29,6 +29,10 @@ auto answer_beside(const Work& work) {
   return std::move(*out);
 }
 
+/// Stops all calls that are running, and waits until they have ended. Calls that begin later are
+/// stopped as well. For the end of the interpreter. Precondition: the lock is held.
+void end_calls();
+
 /// Lets a run stop between its stages.
 Progress stopping_progress();
 

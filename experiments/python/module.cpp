@@ -19,7 +19,11 @@ void require_main_interpreter() {
 PYBIND11_MODULE(_farcull, module) {
   namespace python = farcull::python;
   python::require_main_interpreter();
+  // A module that is made already is given to another interpreter without a call of this function.
+  module.def("require_main_interpreter", &python::require_main_interpreter);
   python::register_exceptions();
+  python::py::module_::import("atexit").attr("register")(
+      python::py::cpp_function(&python::end_calls));
   python::add_collider(module);
   python::add_distances(module);
   python::add_scenes(module);

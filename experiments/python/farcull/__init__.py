@@ -15,7 +15,10 @@ MemoryError where there is no memory; there is no answer then.
 """
 
 from ._errors import Error, InputError
-from . import _farcull  # refuses an interpreter that is not the main one, before numpy is imported
+from . import _farcull
+
+_farcull.require_main_interpreter()  # before numpy is imported, which needs it as well
+
 from ._collide import Collider, Distance, Report, Result, collide, distances, join
 from ._runs import Check, Picture, Plan, Record, check, picture, plan
 from ._scenes import Frames, Scene, builtin_scenes

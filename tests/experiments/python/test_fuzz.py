@@ -1,19 +1,21 @@
 """Random arguments: an answer that is right, or an exception that names what is wrong, never a crash.
 
-FARCULL_FUZZ_CALLS: how many calls (default 20,000); FARCULL_FUZZ_SEED: where they begin.
+FARCULL_FUZZ_CALLS: how many calls (default 2,000); FARCULL_FUZZ_SEED: where they begin.
 """
 
 import math
 import os
 import random
+import warnings
 
 import farcull
 import numpy as np
+import pytest
 from hypothesis import given, seed, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-CALLS = int(os.environ.get("FARCULL_FUZZ_CALLS", "20000"))
+CALLS = int(os.environ.get("FARCULL_FUZZ_CALLS", "2000"))
 SEED = int(os.environ.get("FARCULL_FUZZ_SEED", "20261124"))
 
 TYPES = "f2 f4 f8 g i1 i2 i4 i8 u1 u2 u4 u8 >f4 >f8 >i8 >u4 ? c16 S3 U2 O M8[s] m8[s] V5".split()
@@ -84,6 +86,14 @@ def one_call(rng):
     return call, arguments
 
 
+@pytest.fixture(autouse=True)
+def quiet():
+    """Numbers that do not fit their type are meant."""
+    with np.errstate(all="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield
+
+
 def require_clear(error):
     assert error.where and error.reason and error.remedy, repr(error)
 
@@ -125,7 +135,7 @@ any_array = arrays.arrays(
 
 
 @seed(SEED)
-@settings(max_examples=500, deadline=None, database=None)
+@settings(max_examples=150, deadline=None, database=None)
 @given(any_array, any_array, st.none() | st.lists(st.integers(-1, 7), max_size=3), st.booleans())
 def test_arrays_of_any_type_and_shape(vertices, triangles, objects, self_collision):
     try:
@@ -144,7 +154,7 @@ soups = st.lists(st.tuples(*[st.integers(-2, 2)] * 9), min_size=2, max_size=9)
 
 
 @seed(SEED)
-@settings(max_examples=300, deadline=None, database=None)
+@settings(max_examples=100, deadline=None, database=None)
 @given(soups, st.permutations(range(3)))
 def test_answers_do_not_depend_on_the_order_of_the_axes_or_of_the_corners(soup, axes):
     corners = np.array(soup, float).reshape(-1, 3)
