@@ -26,6 +26,13 @@
 // computed length is below 4 R and off by less than 3 u of itself, and two sums follow: 20 u R. In
 // all 55 u R; `point` is 64 u.
 //
+// Triangles that meet. An edge from p to q passes through a triangle if p and q are strictly on two
+// sides of its plane, and the edge passes all three of its sides in the same sense: the signs of
+// five determinants of differences of points. A difference is off by u of itself. Each of the six
+// products of three then is within (1 + u)^8 of the exact one, two sums included: a determinant is
+// off by less than 8.1 u of the sum of the products' magnitudes. `determinant` is 16 u, which
+// covers the roundings of that sum. Then the triangles share a point, and 0 is an upper bound.
+//
 // Underflow: a product is off by at most 2^-1075, so a square of a length above 2^-900 is not
 // touched by it; shorter ones count as 2^-900 where the length shall be large enough, and give no
 // direction. Everything else that is lost that way is far below `absolute`.
@@ -40,6 +47,7 @@ namespace farcull::near {
 constexpr double kUnit = 0x1p-53;
 constexpr double kPoint = 64 * kUnit;
 constexpr double kGap = 16 * kUnit;
+constexpr double kDeterminant = 16 * kUnit;
 constexpr double kLeastSquare = 0x1p-900;
 constexpr double kAbsolute = 0x1p-900;
 /// Larger than the square of any gap of boxes, and finite: a missing box is beyond it.

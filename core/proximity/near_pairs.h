@@ -36,7 +36,7 @@ struct NearPairs {
   /// where they have none, or none within the limit asked for.
   double upper = std::numeric_limits<double>::infinity();
   /// All pairs of their triangles at the least distance are among these, where that distance is at
-  /// most the limit. Sorted, each once.
+  /// most the limit; where triangles meet, the first pair of those that meet. Sorted, each once.
   std::vector<TrianglePair> pairs;
 };
 
@@ -74,11 +74,20 @@ class ProximityTrees {
   /// can be nearest of them. No object is further away than `within`. Throws as near_pairs().
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
                                          const Progress& progress = {}) const;
-  /// The same with hints, in any order; of those for the same two objects the first one counts.
+  /// The same, but of others that are as near the lower objects are enough; and with hints, in any
+  /// order; of those for the same two objects the first one counts.
   /// Where k others are named with an object, these bound it from the start. No answer that exact
   /// arithmetic gives changes. What is no hint for near_pairs() is none here.
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
                                          std::span<const NearHint> hints,
+                                         const Progress& progress = {}) const;
+
+  /// All pairs of triangles at most `within` apart, of different objects, and of one that is `self`
+  /// where they are no neighbours; and few besides, whose distance is `within` but for roundings.
+  /// Sorted, each once. Precondition: within is finite. Throws std::logic_error for a limit that is
+  /// none, and Error where there are more than `most`: these take 8 bytes each, and no more is held
+  /// at any time but some megabytes.
+  std::vector<TrianglePair> pairs_within(double within, std::size_t most,
                                          const Progress& progress = {}) const;
 
   /// Of all calls so far.

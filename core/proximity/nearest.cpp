@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <queue>
 
+#include "core/proximity/approach.h"
 #include "core/proximity/bounds.h"
 #include "core/proximity/search.h"
 #include "core/proximity/split.h"
@@ -19,51 +19,6 @@ struct Found {
   double upper = 0;
   double limit = 0;  // of the search
   NearPairs near;
-};
-
-double square_of_gap(const Box& a, const Box& b) {
-  return (a.lo - b.hi).cwiseMax(b.lo - a.hi).cwiseMax(0).squaredNorm();
-}
-
-// Objects in the order of their boxes' gaps from a box.
-class Approach {
- public:
-  Approach(const SceneTrees& trees, const Box& box) : trees_(trees), box_(box) {
-    const BoxTree& tree = trees.objects();
-    if (tree.levels > 0) queue_.push({0, tree.levels, 0});
-  }
-  // False where none is left, or the squared gap is above the limit.
-  bool next(double square_limit, std::uint32_t& object) {
-    while (!queue_.empty() && queue_.top().square <= square_limit) {
-      const Node at = queue_.top();
-      queue_.pop();
-      if (at.height == 0) {
-        object = trees_.object(at.k);
-        return true;
-      }
-      const auto below = static_cast<std::size_t>(at.height - 1);
-      const WideBoxes& block = trees_.blocks()[trees_.objects().first[below] + at.k];
-      for (std::uint32_t lane = 0; lane < kWide; ++lane) {
-        const double square = square_of_gap(block.get(lane), box_);
-        if (square <= square_limit) queue_.push({square, at.height - 1, kWide * at.k + lane});
-      }
-    }
-    return false;
-  }
-
- private:
-  struct Node {
-    double square;
-    int height;
-    std::uint32_t k;
-    bool operator<(const Node& other) const {  // the nearest one is the top
-      if (square != other.square) return square > other.square;
-      return height != other.height ? height > other.height : k > other.k;
-    }
-  };
-  const SceneTrees& trees_;
-  Box box_;
-  std::priority_queue<Node> queue_;
 };
 
 // The searches that hints begin, sorted by objects.
@@ -87,10 +42,10 @@ double kth_least_upper(std::span<const Search> searches, std::size_t k) {
 }
 
 // The others that may be among the k nearest of an object. hints: those that name it,
-// sorted.
+// sorted. all: also those that are as near and have higher numbers.
 std::vector<Found> found_by(const SceneTrees& trees, std::uint32_t object, std::size_t k,
-                            double limit, std::span<const NearHint> hints, SearchMemory& memory,
-                            ProximityCounts& counts) {
+                            double limit, std::span<const NearHint> hints, bool all,
+                            SearchMemory& memory, ProximityCounts& counts) {
   std::vector<Found> out;
   std::vector<Search> begun = begun_by_hints(trees, hints, limit, memory);
   for (const Search& search : begun) counts.triangle_pairs += search.counts.triangle_pairs;
@@ -99,6 +54,7 @@ std::vector<Found> found_by(const SceneTrees& trees, std::uint32_t object, std::
   const auto bound = [&] { return least.size() < k ? limit : std::min(limit, least.front()); };
   Approach approach(trees, trees.box(object));
   std::uint32_t other = 0;
+  std::size_t meeting = 0;
   while (approach.next(near::square_limit(bound()), other)) {
     if (other == object) continue;
     const ObjectPair objects = {std::min(object, other), std::max(object, other)};
@@ -128,7 +84,11 @@ std::vector<Found> found_by(const SceneTrees& trees, std::uint32_t object, std::
       std::ranges::pop_heap(least);
       least.pop_back();
     }
+    // Others that overlap come in the order of their numbers. Once k of them meet this object,
+    // those that follow are not nearer, and have higher numbers.
+    meeting += found.upper == 0;
     out.push_back(std::move(found));
+    if (!all && meeting == k) break;
   }
   std::erase_if(out, [most = bound()](const Found& f) { return f.lower > most; });
   return out;
@@ -137,7 +97,7 @@ std::vector<Found> found_by(const SceneTrees& trees, std::uint32_t object, std::
 }  // namespace
 
 std::vector<NearPairs> nearest_objects(const SceneTrees& trees, std::size_t k, double limit,
-                                       std::span<const NearHint> hints, unsigned threads,
+                                       std::span<const NearHint> hints, bool all, unsigned threads,
                                        ProximityCounts& counts) {
   if (k == 0) return {};
   const std::size_t objects = trees.scene().objects.size();
@@ -151,22 +111,22 @@ std::vector<NearPairs> nearest_objects(const SceneTrees& trees, std::size_t k, d
   for_each_with_memory(objects, threads, [&](std::size_t o, SearchMemory& memory) {
     const auto object = static_cast<std::uint32_t>(o);
     if (trees.tree(object).levels == 0) return;
-    found[o] = found_by(trees, object, k, limit, hints_of[o], memory, parts[o]);
+    found[o] = found_by(trees, object, k, limit, hints_of[o], all, memory, parts[o]);
   });
-  std::vector<Found> all;
+  std::vector<Found> founds;
   for (std::size_t o = 0; o < objects; ++o) {
     counts.box_pairs += parts[o].box_pairs;
     counts.triangle_pairs += parts[o].triangle_pairs;
-    std::ranges::move(found[o], std::back_inserter(all));
+    std::ranges::move(found[o], std::back_inserter(founds));
   }
   // Two objects may both have found each other. An answer holds all nearest pairs only where they
   // are within its limit, which is so for one of them at least: so for that of the larger limit.
-  std::ranges::stable_sort(all, [](const Found& x, const Found& y) {
+  std::ranges::stable_sort(founds, [](const Found& x, const Found& y) {
     if (x.near.objects != y.near.objects) return x.near.objects < y.near.objects;
     return x.limit > y.limit;
   });
   std::vector<NearPairs> out;
-  for (Found& f : all) {
+  for (Found& f : founds) {
     if (!out.empty() && out.back().objects == f.near.objects) continue;
     counts.kept += f.near.pairs.size();
     out.push_back(std::move(f.near));

@@ -9,6 +9,7 @@
 
 #include "core/base/parallel.h"
 #include "core/proximity/nearest.h"
+#include "core/proximity/pairs_within.h"
 #include "core/proximity/scene_trees.h"
 #include "core/proximity/search.h"
 #include "core/proximity/split.h"
@@ -23,6 +24,8 @@ struct ProximityTrees::State {
   unsigned threads;
   mutable std::atomic<std::uint64_t> box_pairs = 0, triangle_pairs = 0, kept = 0;
 
+  std::vector<NearPairs> nearest(std::size_t k, double within, std::span<const NearHint> hints,
+                                 bool all, const Progress& progress) const;
   void add(const ProximityCounts& counts) const {
     box_pairs += counts.box_pairs;
     triangle_pairs += counts.triangle_pairs;
@@ -96,17 +99,12 @@ std::vector<NearPairs> ProximityTrees::near_pairs(
   return out;
 }
 
-std::vector<NearPairs> ProximityTrees::nearest_objects(std::size_t k, double within,
-                                                       const Progress& progress) const {
-  return nearest_objects(k, within, {}, progress);
-}
-
-std::vector<NearPairs> ProximityTrees::nearest_objects(std::size_t k, double within,
-                                                       std::span<const NearHint> hints,
-                                                       const Progress& progress) const {
+std::vector<NearPairs> ProximityTrees::State::nearest(std::size_t k, double within,
+                                                      std::span<const NearHint> hints, bool all,
+                                                      const Progress& progress) const {
   if (!(within >= 0)) throw std::logic_error("nearest_objects: within is not a distance");
   if (progress) progress("nearest objects");
-  const Scene& scene = state_->trees.scene();
+  const Scene& scene = trees.scene();
   std::vector<NearHint> good;
   for (const NearHint& hint : hints) {
     const ObjectPair& objects = hint.objects;
@@ -116,8 +114,31 @@ std::vector<NearPairs> ProximityTrees::nearest_objects(std::size_t k, double wit
   std::ranges::stable_sort(good, {}, &NearHint::objects);
   good.erase(std::ranges::unique(good, {}, &NearHint::objects).begin(), good.end());
   ProximityCounts counts;
-  std::vector<NearPairs> out = farcull::nearest_objects(
-      state_->trees, k, scaled_limit(state_->trees, within), good, state_->threads, counts);
+  std::vector<NearPairs> out =
+      farcull::nearest_objects(trees, k, scaled_limit(trees, within), good, all, threads, counts);
+  add(counts);
+  return out;
+}
+
+std::vector<NearPairs> ProximityTrees::nearest_objects(std::size_t k, double within,
+                                                       const Progress& progress) const {
+  return state_->nearest(k, within, {}, true, progress);
+}
+
+std::vector<NearPairs> ProximityTrees::nearest_objects(std::size_t k, double within,
+                                                       std::span<const NearHint> hints,
+                                                       const Progress& progress) const {
+  return state_->nearest(k, within, hints, false, progress);
+}
+
+std::vector<TrianglePair> ProximityTrees::pairs_within(double within, std::size_t most,
+                                                       const Progress& progress) const {
+  if (!(within >= 0) || !std::isfinite(within))
+    throw std::logic_error("pairs_within: within is not a distance");
+  if (progress) progress("near pairs");
+  ProximityCounts counts;
+  std::vector<TrianglePair> out = farcull::pairs_within(
+      state_->trees, scaled_limit(state_->trees, within), most, state_->threads, counts);
   state_->add(counts);
   return out;
 }

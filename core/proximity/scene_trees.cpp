@@ -34,6 +34,7 @@ void SceneTrees::make_trees(unsigned threads) {
     blocks += blocks_of_tree(run_count(static_cast<std::uint32_t>(o)));
   }
   blocks_.resize(blocks + blocks_of_tree(objects));
+  least_.resize(blocks);
   trees_.resize(objects);
   place_.resize(runs_.runs.size());
   const auto make = [&](std::size_t o) {
@@ -46,11 +47,34 @@ void SceneTrees::make_trees(unsigned threads) {
       leaves[k] = {box.lo * scale_, box.hi * scale_};
     }
     trees_[o] = make_tree(leaves, blocks_, first[o]);
+    find_least(static_cast<std::uint32_t>(o));
   };
   for_chunks(objects, chunks_for(objects, 1, threads),
              [&](std::size_t, std::size_t begin, std::size_t end) {
                for (std::size_t o = begin; o < end; ++o) make(o);
              });
+}
+
+void SceneTrees::find_least(std::uint32_t object) {
+  const BoxTree& tree = trees_[object];
+  std::vector<std::uint32_t> least(run_count(object), UINT32_MAX);
+  for (std::uint32_t leaf = 0; leaf < least.size(); ++leaf) {
+    const std::uint32_t at = run(object, leaf);
+    for (std::uint32_t k = 0; k < count(at); ++k)
+      least[leaf] = std::min(least[leaf], triangle(at, k));
+  }
+  for (std::size_t height = 0; height < static_cast<std::size_t>(tree.levels); ++height) {
+    const std::size_t n = (least.size() + kWide - 1) / kWide;
+    for (std::size_t block = 0; block < n; ++block) {
+      auto& of_block = least_[tree.first[height] + block];
+      of_block.fill(UINT32_MAX);
+      const std::size_t end = std::min(least.size() - kWide * block, std::size_t{kWide});
+      std::copy_n(least.begin() + static_cast<std::ptrdiff_t>(kWide * block), end,
+                  of_block.begin());
+      least[block] = *std::ranges::min_element(of_block);
+    }
+    least.resize(n);
+  }
 }
 
 void SceneTrees::make_object_tree() {

@@ -42,6 +42,13 @@ class SceneTrees {
     return scene_->vertices[scene_->triangles[triangle][k]] * scale_;
   }
   Box box(std::uint32_t object) const { return trees_[object].box; }
+  /// The least triangle below a node of an object's tree.
+  std::uint32_t least(std::uint32_t object, std::size_t height, std::uint32_t k) const {
+    const BoxTree& tree = trees_[object];
+    if (height == static_cast<std::size_t>(tree.levels))
+      return scene_->objects[object].first_triangle;
+    return least_[tree.first[height] + k / kWide][k % kWide];
+  }
 
   /// The tree over the objects that have triangles, and which object each leaf is.
   const BoxTree& objects() const { return objects_; }
@@ -50,6 +57,7 @@ class SceneTrees {
  private:
   void choose_scale();
   void make_trees(unsigned threads);
+  void find_least(std::uint32_t object);
   void make_object_tree();
 
   const Scene* scene_;
@@ -60,6 +68,7 @@ class SceneTrees {
   BoxTree objects_;
   std::vector<std::uint32_t> object_of_leaf_;
   UninitializedVector<WideBoxes> blocks_;
+  std::vector<std::array<std::uint32_t, kWide>> least_;  // of each box of blocks_
 };
 
 }  // namespace farcull

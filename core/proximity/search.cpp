@@ -52,16 +52,16 @@ class Searcher {
     while (!search_.open.empty() && looked_at < most) {
       const NodePair at = search_.open.back();
       search_.open.pop_back();
-      if (at.square > square_limit_) continue;
+      if (at.square > square_limit_ || is_behind(at)) continue;
       if (at.a_height == 0 && at.b_height == 0) {
         compare_runs(at);
         ++looked_at;
       } else {
         children_.clear();
         expand(at, square_limit_, children_);
-        std::ranges::sort(children_, [](const NodePair& x, const NodePair& y) {
+        std::ranges::sort(children_, [this](const NodePair& x, const NodePair& y) {
           if (x.square != y.square) return x.square > y.square;
-          return x.a != y.a ? x.a < y.a : x.b < y.b;
+          return comes_first(y, x);
         });
         search_.open.insert(search_.open.end(), children_.begin(), children_.end());
       }
@@ -70,6 +70,25 @@ class Searcher {
   }
 
  private:
+  // Of nodes as near, those with the lower triangles come first: where the objects meet, the first
+  // pair is the answer.
+  bool comes_first(const NodePair& x, const NodePair& y) const {
+    const TrianglePair p = least(x), q = least(y);
+    if (p != q) return p < q;
+    return x.a != y.a ? x.a > y.a : x.b > y.b;
+  }
+  TrianglePair least(const NodePair& at) const {
+    return {trees_.least(search_.objects.a, at.a_height, at.a),
+            trees_.least(search_.objects.b, at.b_height, at.b)};
+  }
+  // Whether all pairs of the nodes come behind one that meets for certain.
+  bool is_behind(const NodePair& at) const {
+    if (search_.first.a == UINT32_MAX) return false;
+    const TrianglePair lowest = least(at);
+    // Of one object either node may hold the lower triangle.
+    return self_ ? search_.is_behind({std::min(lowest.a, lowest.b), 0}) : search_.is_behind(lowest);
+  }
+
   // Down to the pair of runs that seems nearest, and from their nearest corners to a first bound.
   void descend() {
     NodePair at = search_.open.back();
@@ -225,7 +244,7 @@ class Searcher {
     const std::uint32_t first = a.triangle[i], second = b.triangle[j];
     // The bounds of two triangles depend on their order in the last digits.
     if (first > second) return add(b, j, a, i);
-    if (!counts(first, second)) return;
+    if (search_.is_behind({first, second}) || !counts(first, second)) return;
     PairBatch& batch = memory_.batch;
     for (std::size_t k = 0; k < 9; ++k) {
       batch.a[k][batch.count] = a.corner[k][i];
@@ -243,6 +262,7 @@ class Searcher {
         batch.b[3 * corner + axis][0] = q[static_cast<Eigen::Index>(axis)];
       }
     }
+    batch.pairs[0] = hint;
     batch.count = 1;
   }
 
@@ -256,6 +276,7 @@ class Searcher {
     const double before = search_.upper;
     std::size_t best = kBatch;
     for (std::size_t k = 0; k < batch.count; ++k) {
+      if (bounds.upper[k] == 0) search_.first = std::min(search_.first, batch.pairs[k]);
       if (!(bounds.upper[k] < search_.upper)) continue;
       search_.upper = bounds.upper[k];
       best = k;
@@ -275,7 +296,7 @@ class Searcher {
   void keep(const BatchBounds& bounds) {
     const double bound = search_.bound();
     for (std::size_t k = 0; k < memory_.batch.count; ++k) {
-      if (bounds.lower[k] > bound) continue;
+      if (bounds.lower[k] > bound || search_.is_behind(memory_.batch.pairs[k])) continue;
       search_.kept.push_back({memory_.batch.pairs[k], bounds.lower[k], bounds.upper[k]});
     }
     if (search_.kept.size() <= search_.kept_most) return;
@@ -347,7 +368,9 @@ void go_on(const SceneTrees& trees, std::size_t most, Search& search, SearchMemo
 }
 
 void Search::filter() {
-  std::erase_if(kept, [most = bound()](const KeptPair& k) { return k.lower > most; });
+  std::erase_if(kept, [this, most = bound()](const KeptPair& k) {
+    return k.lower > most || is_behind(k.pair);
+  });
 }
 
 }  // namespace farcull

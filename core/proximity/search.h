@@ -37,14 +37,18 @@ struct Search {
   ObjectPair objects;
   double limit = 0;  // scaled: what is farther apart is not looked for
   double upper = std::numeric_limits<double>::infinity();  // the least one of a pair so far
-  Vec3 direction = Vec3::Zero();                           // of that pair; 0: none
-  std::vector<NodePair> open;                              // to be looked at, the last one first
+  /// The first pair so far that meets for certain. Then a pair behind it is no answer.
+  TrianglePair first = {UINT32_MAX, UINT32_MAX};
+  Vec3 direction = Vec3::Zero();  // of that pair; 0: none
+  std::vector<NodePair> open;     // to be looked at, the last one first
   std::vector<KeptPair> kept;
+  bool everything = false;       // what is within the limit is kept, near or not
   std::size_t kept_most = 1024;  // more than this: those that cannot be nearest are dropped first
   ProximityCounts counts;
 
-  double bound() const { return std::min(upper, limit); }
-  /// Drops what cannot be nearest.
+  double bound() const { return everything ? limit : std::min(upper, limit); }
+  bool is_behind(const TrianglePair& pair) const { return !everything && pair > first; }
+  /// Drops what cannot be the answer.
   void filter();
 };
 

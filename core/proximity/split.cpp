@@ -20,6 +20,7 @@ std::vector<Search> divide(Search& search) {
     part.objects = search.objects;
     part.limit = search.limit;
     part.upper = search.upper;
+    part.first = search.first;
     part.direction = search.direction;
   }
   // The last one is looked at first, in each part as well.
@@ -37,6 +38,7 @@ void join(Search& part, Search& search) {
     search.upper = part.upper;
     search.direction = part.direction;
   }
+  search.first = std::min(search.first, part.first);
   search.open.insert(search.open.end(), part.open.begin(), part.open.end());
   search.kept.insert(search.kept.end(), part.kept.begin(), part.kept.end());
   search.counts.box_pairs += part.counts.box_pairs;

@@ -226,6 +226,63 @@ class Proof {
   Point most_;
 };
 
+/// The sign of a determinant where it is certain.
+struct Sign {
+  Mask positive, negative;
+};
+HWY_INLINE Sign sign_of_determinant(const Point& a, const Point& b, const Point& c) {
+  const auto products = [](const Point& p, const Point& q, const Point& r, auto join) {
+    const auto term = [&](Number x, Number y, Number z, Number v, Number w) {
+      return hn::Mul(x, join(hn::Mul(y, z), hn::Mul(v, w)));
+    };
+    return hn::Add(hn::Add(term(p.x, q.y, r.z, q.z, r.y), term(p.y, q.z, r.x, q.x, r.z)),
+                   term(p.z, q.x, r.y, q.y, r.x));
+  };
+  const auto magnitude = [](const Point& p) {
+    return Point{hn::Abs(p.x), hn::Abs(p.y), hn::Abs(p.z)};
+  };
+  const Number value = products(a, b, c, [](Number x, Number y) { return hn::Sub(x, y); });
+  const Number sum = products(magnitude(a), magnitude(b), magnitude(c),
+                              [](Number x, Number y) { return hn::Add(x, y); });
+  const Number doubt = hn::Add(hn::Mul(sum, number(near::kDeterminant)), number(near::kAbsolute));
+  return {hn::Gt(value, doubt), hn::Lt(value, hn::Neg(doubt))};
+}
+
+/// Where an edge of one triangle passes through the other one for certain.
+HWY_INLINE Mask meet_for_certain(const PairBatch& batch, std::size_t from) {
+  Point a[3], b[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    a[k] = LaneTriangle::load(batch.a, k, from);
+    b[k] = LaneTriangle::load(batch.b, k, from);
+  }
+  Sign a_side[3], b_side[3], passes[3][3];
+  for (int k = 0; k < 3; ++k) {
+    a_side[k] = sign_of_determinant(a[k] - b[0], b[1] - b[0], b[2] - b[0]);
+    b_side[k] = sign_of_determinant(b[k] - a[0], a[1] - a[0], a[2] - a[0]);
+    for (int j = 0; j < 3; ++j) {
+      // In which sense edge k of a passes edge j of b, and so edge j of b edge k of a.
+      passes[k][j] = sign_of_determinant(a[(k + 1) % 3] - a[k], b[j] - a[k], b[(j + 1) % 3] - a[k]);
+    }
+  }
+  const auto across = [](const Sign& p, const Sign& q) {
+    return hn::Or(hn::And(p.positive, q.negative), hn::And(p.negative, q.positive));
+  };
+  const auto inside = [](const Sign& p, const Sign& q, const Sign& r) {
+    return hn::Or(hn::And(p.positive, hn::And(q.positive, r.positive)),
+                  hn::And(p.negative, hn::And(q.negative, r.negative)));
+  };
+  const Number zero = number(0);
+  Mask out = hn::Lt(zero, zero);
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    out = hn::Or(out, hn::And(across(a_side[k], a_side[next]),
+                              inside(passes[k][0], passes[k][1], passes[k][2])));
+    out = hn::Or(out, hn::And(across(b_side[k], b_side[next]),
+                              inside(passes[0][k], passes[1][k], passes[2][k])));
+  }
+  return out;
+}
+
 /// Bounds of the pairs of a batch. The numbers behind them are any.
 HWY_INLINE void bound_batch(const PairBatch& batch, BatchBounds& out) {
   const Numbers n;
@@ -247,6 +304,7 @@ HWY_INLINE void bound_batch(const PairBatch& batch, BatchBounds& out) {
       proof.bound(piercing, piercing_lower, piercing_upper);
       lower = hn::IfThenElse(apart, lower, piercing_lower);
       upper = hn::IfThenElse(apart, upper, piercing_upper);
+      upper = hn::IfThenElse(hn::AndNot(apart, meet_for_certain(batch, from)), number(0), upper);
       d = {hn::IfThenElse(apart, d.x, piercing.x), hn::IfThenElse(apart, d.y, piercing.y),
            hn::IfThenElse(apart, d.z, piercing.z)};
     }

@@ -19,7 +19,8 @@ struct alignas(64) PairBatch {
   std::size_t count = 0;  // of pairs; what stands behind them is any finite numbers
 };
 
-/// The distance of the exact triangles is at least `lower` and at most `upper`, in scaled units.
+/// The distance of the exact triangles is at least `lower` and at most `upper`, in scaled units. It
+/// is certain that they meet where upper is 0.
 /// direction: from about the closest point of a to that of b.
 struct alignas(64) BatchBounds {
   std::array<double, kBatch> lower, upper;

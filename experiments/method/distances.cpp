@@ -1,5 +1,5 @@
-// Distances: what can be nearest comes from trees of boxes (core/proximity), pairs of triangles
-// within a distance from FAR pairs with that clearance; exact arithmetic decides both.
+// Distances: what can be nearest, and which pairs can be within a distance, comes from trees of
+// boxes (core/proximity); exact arithmetic decides both.
 #include "experiments/method/distances.h"
 
 #include <algorithm>
@@ -12,7 +12,6 @@
 #include "core/base/floating_point.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
-#include "experiments/method/run.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -52,6 +51,15 @@ std::vector<ObjectPair> every_two_objects(const Scene& scene) {
     }
   }
   return out;
+}
+
+std::uint64_t count_of_questions(const Scene& scene) {
+  std::uint64_t objects = 0, themselves = 0;
+  for (const Object& object : scene.objects) {
+    objects += object.triangle_count > 0;
+    themselves += object.triangle_count > 0 && object.self;
+  }
+  return objects * (objects > 0 ? objects - 1 : 0) / 2 + themselves;
 }
 
 std::vector<std::optional<TrianglePair>> hints_for(std::span<const ObjectPair> questions,
@@ -192,29 +200,34 @@ void find_insides(const Scene& scene, const Progress& progress, DistanceRecord& 
 // All pairs of triangles within the distance that are no neighbours.
 void between_triangles(const Scene& scene, const Progress& progress, DistanceRecord& record) {
   const DistanceOptions& options = record.options;
-  const RunOptions run{.method = Method::far_pairs,
-                       .device = "native",
-                       .clearance = options.within,
-                       .verify = false,
-                       .neighbours = false};
-  Session session(run.device, options.threads, {});
-  const Plan planned = plan(scene, run, options.threads, progress);
-  Candidates found = find(scene, planned, session, progress);
-  record.trace = planned.trace;
-  record.trace.insert(record.trace.end(), found.trace.begin(), found.trace.end());
   Stopwatch watch;
+  if (progress) progress("boxes");
+  // Some are a little farther apart, as exact arithmetic tells.
+  const std::size_t room = options.most_pairs + options.most_pairs / 4;
+  const ProximityTrees trees(scene, options.threads);
+  const std::vector<TrianglePair> near = trees.pairs_within(options.within, room, progress);
+  record.counts = trees.counts();
+  record.trace.push_back({.kind = StageKind::near,
+                          .ran = true,
+                          .reason = Reason::near_boxes,
+                          .n = count_of_questions(scene),
+                          .m = record.counts.box_pairs,
+                          .ms = watch.ms(),
+                          .in = record.counts.triangle_pairs,
+                          .out = near.size(),
+                          .unit = Unit::pairs});
+  watch = Stopwatch();
   if (progress) progress("exact tests");
   const unsigned threads =
       options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   const std::vector<TrianglePair> pairs =
-      decide(scene, found.pairs,
-             {.clearance = options.within, .threads = threads, .neighbours = false})
+      decide(scene, near, {.clearance = options.within, .threads = threads, .neighbours = false})
           .pairs;
   record.trace.push_back({.kind = StageKind::exact,
                           .ran = true,
                           .reason = Reason::predicates,
                           .ms = watch.ms(),
-                          .in = found.count,
+                          .in = near.size(),
                           .out = pairs.size(),
                           .unit = Unit::pairs});
   if (pairs.size() > options.most_pairs) {

@@ -33,7 +33,7 @@ struct DistanceOptions {
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
   bool verify = false;   // accounts for every pair that was culled
   /// With `all`: the most pairs of triangles that are answered; more are an error, since each takes
-  /// some hundreds of bytes.
+  /// some hundreds of bytes. They are counted while they are listed.
   std::size_t most_pairs = std::size_t{1} << 22;
 };
 
