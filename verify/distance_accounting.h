@@ -32,8 +32,8 @@ struct DistanceAccounting {
   std::uint64_t nearer = 0;            // missed
   std::uint64_t earlier = 0;           // the answer is not the first of the nearest pairs
   std::vector<TrianglePair> examples;  // the first missed ones
-  /// Answers whose distance, nearest points or features are not those of their triangles, or that
-  /// are beyond `within`, or not asked for.
+  /// Answers whose distance, nearest points or features are not those of their triangles, whose
+  /// `inside` is not that of their objects, or that are beyond `within`, or not asked for.
   std::uint64_t wrong = 0;
   double ms = 0;
   /// True iff the classes sum to pairs_total. Not so by construction: the total is computed.

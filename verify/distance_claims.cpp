@@ -61,7 +61,11 @@ bool is_rounded_root(double distance, const Fraction& square) {
 
 DistanceClaims::DistanceClaims(const Scene& scene, std::span<const ClaimedDistance> answers,
                                const DistanceQuestion& question)
-    : scene_(scene), answers_(answers), question_(question), squares_(answers.size()) {
+    : scene_(scene),
+      answers_(answers),
+      question_(question),
+      squares_(answers.size()),
+      insides_(scene) {
   using Kind = DistanceQuestion::Kind;
   if (!(question.within >= 0) || (question.kind == Kind::all && !std::isfinite(question.within)))
     throw std::logic_error("account_distances: no such distance");
@@ -129,6 +133,13 @@ Threshold DistanceClaims::threshold(std::uint32_t a, std::uint32_t b) const {
   return {Length(most), before ? Bound::at_most : Bound::below};
 }
 
+bool DistanceClaims::wrong_inside(const ClaimedDistance& claim, const Fraction& squared) const {
+  const bool has_answer = question_.inside && question_.kind != DistanceQuestion::Kind::all &&
+                          claim.a != claim.b && squared.over != 0;
+  if (!has_answer) return claim.inside != InsideClaim::unknown;
+  return insides_.which(claim.a, claim.b) != claim.inside;
+}
+
 bool DistanceClaims::wrong(std::size_t answer) const {
   const ClaimedDistance& x = answers_[answer];
   const std::optional<Fraction>& squared = squares_[answer];
@@ -140,6 +151,7 @@ bool DistanceClaims::wrong(std::size_t answer) const {
   if (exact.squared != *squared || exact.features != x.features ||
       !is_rounded(x.points[0], exact.points[0]) || !is_rounded(x.points[1], exact.points[1]))
     return true;
+  if (wrong_inside(x, *squared)) return true;
   if (question_.kind != DistanceQuestion::Kind::nearest) return false;
   // Neither object has it among its k nearest.
   const auto beyond = [&](const Farthest& of, std::uint32_t other) {

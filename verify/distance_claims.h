@@ -9,6 +9,7 @@
 
 #include "core/scene/scene.h"
 #include "verify/certificate/fraction.h"
+#include "verify/certificate/integer_inside.h"
 #include "verify/distance_question.h"
 
 namespace farcull {
@@ -47,6 +48,7 @@ class DistanceClaims {
   };
   void find_farthest();
   bool wrong(std::size_t answer) const;
+  bool wrong_inside(const ClaimedDistance& claim, const Fraction& squared) const;
 
   const Scene& scene_;
   std::span<const ClaimedDistance> answers_;
@@ -54,6 +56,7 @@ class DistanceClaims {
   Threshold within_;
   std::vector<std::optional<Fraction>> squares_;  // of the answers
   std::vector<Farthest> farthest_;                // of each object; of `nearest`
+  IntegerInside insides_;
 };
 
 }  // namespace farcull

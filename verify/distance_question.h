@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/scene/scene.h"
+#include "verify/certificate/integer_inside.h"
 
 namespace farcull {
 
@@ -20,8 +21,9 @@ struct ClaimedDistance {
   double distance = 0;         // the root, rounded to the nearest double
   std::string squared;         // its square, "numerator/denominator" in lowest terms
   std::array<Vec3, 2> points;  // two nearest points, of a and of b, each coordinate rounded once
-  std::array<std::uint8_t, 2> features{};  // on which they lie, numbered as in
-                                           // verify/certificate/integer_distance.h
+  std::array<std::uint8_t, 2> features{};     // on which they lie, numbered as in
+                                              // verify/certificate/integer_distance.h
+  InsideClaim inside = InsideClaim::unknown;  // unknown where the objects meet or are one
 };
 
 /// What was asked.
@@ -34,6 +36,7 @@ struct DistanceQuestion {
   std::size_t k = 1;
   /// Nothing that is farther apart is asked for. World units, >= 0; finite with `all`.
   double within = std::numeric_limits<double>::infinity();
+  bool inside = false;   // of objects that do not meet, whether one is inside; not with `all`
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
 };
 

@@ -271,6 +271,7 @@ void verify(const Scene& scene, const Progress& progress, DistanceRecord& record
                                           {.kind = options.pairs,
                                            .k = options.k,
                                            .within = options.within,
+                                           .inside = options.inside,
                                            .threads = options.threads});
   record.trace.push_back({.kind = StageKind::verify,
                           .ran = true,
@@ -298,14 +299,14 @@ std::vector<ClaimedDistance> claims_of(const DistanceRecord& record) {
   std::vector<ClaimedDistance> out;
   out.reserve(record.distances.size());
   for (const Distance& d : record.distances) {
-    out.push_back(
-        {.a = d.objects.a,
-         .b = d.objects.b,
-         .pair = d.triangles,
-         .distance = d.closest.distance,
-         .squared = d.closest.squared.text(),
-         .points = d.closest.points,
-         .features = {number_of(d.closest.features[0]), number_of(d.closest.features[1])}});
+    out.push_back({.a = d.objects.a,
+                   .b = d.objects.b,
+                   .pair = d.triangles,
+                   .distance = d.closest.distance,
+                   .squared = d.closest.squared.text(),
+                   .points = d.closest.points,
+                   .features = {number_of(d.closest.features[0]), number_of(d.closest.features[1])},
+                   .inside = claim_of(d.inside)});
   }
   return out;
 }

@@ -80,6 +80,22 @@ const char* to_string(WhichInside inside) {
   return "";
 }
 
+InsideClaim claim_of(WhichInside inside) {
+  switch (inside) {
+    case WhichInside::unknown:
+      return InsideClaim::unknown;
+    case WhichInside::none:
+      return InsideClaim::none;
+    case WhichInside::a:
+      return InsideClaim::a;
+    case WhichInside::b:
+      return InsideClaim::b;
+    case WhichInside::not_closed:
+      return InsideClaim::not_closed;
+  }
+  throw std::logic_error("claim_of: no such answer");
+}
+
 struct Insides::OfObject {
   Box box;
   std::once_flag closed_found, parts_found;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/scene/scene.h"
+#include "verify/certificate/integer_inside.h"
 
 namespace farcull {
 
@@ -15,6 +16,9 @@ namespace farcull {
 enum class WhichInside : std::uint8_t { unknown, none, a, b, not_closed };
 /// "unknown", "none", "a", "b" or "not closed".
 const char* to_string(WhichInside inside);
+
+/// As certificates and the accounting take it.
+InsideClaim claim_of(WhichInside inside);
 
 /// Answers for one scene, which has to stay as it is. What is found out about an object is kept.
 class Insides {

@@ -29,6 +29,7 @@ DistanceCertificate certificate_of(const Scene& scene, const DistanceRecord& rec
     out.distances.push_back(
         entry_of(scene, d.triangles, d.closest.squared.text(),
                  {number_of(d.closest.features[0]), number_of(d.closest.features[1])}));
+    out.distances.back().inside = claim_of(d.inside);
   }
   return out;
 }

@@ -414,6 +414,40 @@ TEST(DistanceAccounting, ZerosHaveNoSign) {
   EXPECT_EQ(account_distances(scene, std::array{claim}, {}).wrong, 1u);
 }
 
+/// A tetrahedron and a small one in it, of which one face may be missing.
+Scene nested(bool closed) {
+  Scene scene;
+  for (const double at : {0.0, 1.0}) {
+    const auto v = static_cast<std::uint32_t>(scene.vertices.size());
+    const double size = at == 0 ? 9 : 1;
+    const Vec3 corner(at, at, at);
+    for (const Vec3& p : {Vec3(0, 0, 0), Vec3(size, 0, 0), Vec3(0, size, 0), Vec3(0, 0, size)})
+      scene.vertices.push_back(p + corner);
+    const auto first = static_cast<std::uint32_t>(scene.triangles.size());
+    scene.triangles.insert(scene.triangles.end(), {{v, v + 1, v + 2}, {v, v + 3, v + 1}});
+    scene.triangles.insert(scene.triangles.end(), {{v, v + 2, v + 3}, {v + 1, v + 3, v + 2}});
+    if (!closed && at == 0) scene.triangles.back() = {v, v, v};
+    scene.objects.push_back({.name = "", .first_triangle = first, .triangle_count = 4});
+  }
+  scene.source_face.resize(scene.triangles.size());
+  return scene;
+}
+
+TEST(DistanceAccounting, FindsAnInsideThatIsNotSo) {
+  for (const bool closed : {true, false}) {
+    const Scene scene = nested(closed);
+    const InsideClaim right = closed ? InsideClaim::b : InsideClaim::not_closed;
+    std::vector<ClaimedDistance> claims = right_answers(scene, {.pairs = Kind::objects});
+    ASSERT_EQ(claims.size(), 1u);
+    for (const InsideClaim inside : {InsideClaim::unknown, InsideClaim::none, InsideClaim::a,
+                                     InsideClaim::b, InsideClaim::not_closed}) {
+      claims[0].inside = inside;
+      EXPECT_EQ(account_distances(scene, claims, {.inside = true}).wrong, inside != right);
+      EXPECT_EQ(account_distances(scene, claims, {}).wrong, inside != InsideClaim::unknown);
+    }
+  }
+}
+
 // Of objects that meet all pairs behind the first one that meets are settled.
 TEST(DistanceAccounting, OfObjectsThatMeetTheAnswerIsTheFirstPairThatMeets) {
   Scene scene = points({0, 5, 5, 5, 7, 5});

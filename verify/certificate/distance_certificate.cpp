@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 using Pairs = DistanceCertificate::Pairs;
 
 constexpr const char* kFormat = "farcull-distances";
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 constexpr const char* kRemedy =
     "give a file that `farcull distance ... --certificate` wrote; docs/certificate.md is the "
     "format";
@@ -31,8 +31,17 @@ std::array<Value, 2> two(const JsonReader& reader, const Json& value, const std:
   return {read(value[0], place + "[0]"), read(value[1], place + "[1]")};
 }
 
+InsideClaim read_inside(const JsonReader& reader, const Json& value, const std::string& place) {
+  const std::string text = reader.text(value, place);
+  for (const InsideClaim claim :
+       {InsideClaim::none, InsideClaim::a, InsideClaim::b, InsideClaim::not_closed}) {
+    if (text == inside_text(claim)) return claim;
+  }
+  reader.fail(place + " is none of null, none, a, b and not closed");
+}
+
 DistanceEntry read_entry(const JsonReader& reader, const Json& value, const std::string& place) {
-  reader.object(value, place, {"objects", "triangles", "squared", "features"});
+  reader.object(value, place, {"objects", "triangles", "squared", "features", "inside"});
   const auto index = [&](const Json& number, const std::string& at) {
     const std::uint64_t x = reader.count(number, at);
     if (x > std::numeric_limits<std::uint32_t>::max())
@@ -55,6 +64,8 @@ DistanceEntry read_entry(const JsonReader& reader, const Json& value, const std:
                 std::to_string(kMostDigits) + " digits in each part");
   }
   entry.features = two<std::uint8_t>(reader, value["features"], place + ".features", feature);
+  if (const Json& inside = value["inside"]; !inside.is_null())
+    entry.inside = read_inside(reader, inside, place + ".inside");
   return entry;
 }
 
@@ -89,6 +100,22 @@ std::string to_string(DistanceCertificate::Pairs pairs) {
       break;
   }
   return "all";
+}
+
+std::string inside_text(InsideClaim inside) {
+  switch (inside) {
+    case InsideClaim::unknown:
+      break;
+    case InsideClaim::none:
+      return "none";
+    case InsideClaim::a:
+      return "a";
+    case InsideClaim::b:
+      return "b";
+    case InsideClaim::not_closed:
+      return "not closed";
+  }
+  return "";
 }
 
 std::string feature_text(std::uint8_t feature) {
@@ -134,7 +161,9 @@ std::string to_text(const DistanceCertificate& certificate) {
         {"objects", entry.objects},
         {"triangles", entry.triangles},
         {"squared", entry.squared},
-        {"features", {feature_text(entry.features[0]), feature_text(entry.features[1])}}};
+        {"features", {feature_text(entry.features[0]), feature_text(entry.features[1])}},
+        {"inside",
+         entry.inside == InsideClaim::unknown ? Json(nullptr) : Json(inside_text(entry.inside))}};
     out += std::exchange(first, false) ? "\n    " : ",\n    ";
     out += line.dump();
   }

@@ -16,6 +16,7 @@
 
 #include "core/scene/scene.h"
 #include "verify/certificate/certificate.h"
+#include "verify/certificate/integer_inside.h"
 
 namespace farcull {
 
@@ -28,6 +29,7 @@ struct DistanceEntry {
   std::array<std::uint8_t, 2> features{};    // where the nearest points lie, one of each triangle:
                                            // 0 to 2 corners, 3 to 5 the edge from corner 0 to 2 to
                                            // the next, 6 the face; the first that hold two
+  InsideClaim inside = InsideClaim::unknown;  // of objects that do not meet; unknown: not claimed
   bool operator==(const DistanceEntry&) const = default;
 };
 
@@ -55,6 +57,9 @@ std::string to_string(DistanceCertificate::Pairs pairs);
 /// std::logic_error where the scene has no such triangle.
 DistanceEntry entry_of(const Scene& scene, const TrianglePair& pair, std::string squared,
                        std::array<std::uint8_t, 2> features);
+
+/// "none", "a", "b" or "not closed"; empty for unknown.
+std::string inside_text(InsideClaim inside);
 
 /// "vertex 2", "edge 0" or "face".
 std::string feature_text(std::uint8_t feature);
@@ -86,14 +91,17 @@ struct DistanceCheck {
 };
 
 /// Decides in integers whether the answers are right and complete.
-/// - refuted: a distance is not that of its triangles, or a pair of triangles is nearer than the
+/// - refuted: a distance is not that of its triangles, or it is not so that one object is inside
+/// the
+///   other as an entry says, or a pair of triangles is nearer than the
 ///   one that is listed for its objects, or belongs to the answer and is not listed, or does not
 ///   belong to it and is listed. The pair is named, with its exact squared distance. Of several
 ///   pairs that refute the first one is named: first what is wrong in an entry by itself, then
 ///   what is nearer than an entry, then what is not listed; each by objects, then by triangles.
 /// - not_proved: the certificate is of another scene, and nothing was decided; or nothing refutes,
 ///   but entries are not in order or there twice, an entry is of a
-///   pair that does not count, a pair as near comes before the one that is named, or the nearest
+///   pair that does not count, an entry of triangles or of one object or with distance 0 says what
+///   is inside, a pair as near comes before the one that is named, or the nearest
 ///   points lie on other features.
 /// - proved: neither.
 /// Throws Error naming `name` where the certificate names an object or a triangle that the scene

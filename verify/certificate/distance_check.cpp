@@ -1,5 +1,5 @@
-// The checker of distances: fraction, integer_distance, near_boxes, box_pairs and this file, and
-// what they include of this folder, are all that has to be right.
+// The checker of distances: fraction, integer_distance, integer_inside, near_boxes, box_pairs and
+// this file, and what they include of this folder, are all that has to be right.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -13,6 +13,7 @@
 #include "verify/certificate/far_proof.h"
 #include "verify/certificate/fraction.h"
 #include "verify/certificate/integer_distance.h"
+#include "verify/certificate/integer_inside.h"
 #include "verify/certificate/listed_distances.h"
 #include "verify/certificate/near_boxes.h"
 
@@ -120,11 +121,35 @@ class Checker {
            entry.triangles[0] < entry.triangles[1] && !are_neighbours(listed_[i].pair);
   }
 
+  /// Whether it says what is inside where that is not asked.
+  bool says_needlessly_what_is_inside(std::size_t i) const {
+    const DistanceEntry& entry = certificate_.distances[i];
+    if (entry.inside == InsideClaim::unknown) return false;
+    return certificate_.pairs == Pairs::all || entry.objects[0] == entry.objects[1] ||
+           listed_[i].length.squared.over == 0;
+  }
+
+  /// Empty where the entry says of no object falsely that it is inside another. That the objects do
+  /// not meet is proved by their distance.
+  static std::string wrong_inside(const IntegerInside& insides, const DistanceEntry& entry) {
+    const auto& [a, b] = entry.objects;
+    if (entry.inside == InsideClaim::unknown || a == b) return "";
+    const std::optional<InsideClaim> found = insides.which(a, b);
+    if (found == entry.inside) return "";
+    const std::string is = found ? "\"" + inside_text(*found) + "\"" : "nothing: the objects meet";
+    return " says that `inside` is \"" + inside_text(entry.inside) + "\", and it is " + is;
+  }
+
   void check_entries() {
     std::vector<IntegerDistance> found(listed_.size());
+    std::vector<std::string> inside(listed_.size());
+    const IntegerInside insides(scene_);
     for_chunks(listed_.size(), chunks_for(listed_.size(), kPerThread),
                [&](std::size_t, std::size_t begin, std::size_t end) {
-                 for (std::size_t i = begin; i < end; ++i) found[i] = exact(listed_[i].pair);
+                 for (std::size_t i = begin; i < end; ++i) {
+                   found[i] = exact(listed_[i].pair);
+                   inside[i] = wrong_inside(insides, certificate_.distances[i]);
+                 }
                });
     for (std::size_t i = 0; i < listed_.size(); ++i) {
       const TrianglePair& pair = listed_[i].pair;
@@ -134,6 +159,13 @@ class Checker {
                        pair, found[i]);
       } else if (within_ && found[i].squared > within_->squared) {
         report_.refute(place + " is farther apart than the distance asked for", pair, found[i]);
+      } else if (!inside[i].empty()) {
+        report_.refute(place + inside[i], pair, found[i]);
+      } else if (says_needlessly_what_is_inside(i)) {
+        report_.leave_unproved(place +
+                                   " says what is inside, of triangles, of one object, or of "
+                                   "objects that meet",
+                               pair, found[i]);
       } else if (!counts(i)) {
         report_.leave_unproved(
             place +

@@ -127,7 +127,8 @@ void forge_claims(Forger& f) {
     j["distances"][2] = {{"objects", {0, 3}},
                          {"triangles", {0, 3}},
                          {"squared", "317/4"},
-                         {"features", {"vertex 1", "vertex 0"}}};
+                         {"features", {"vertex 1", "vertex 0"}},
+                         {"inside", nullptr}};
   });
   f.expect("another pair that is as near", Outcome::not_proved, objects, [&](Json& j) {
     const DistanceEntry other = f.right.entry({1, 3});
@@ -147,8 +148,23 @@ void forge_claims(Forger& f) {
     j["distances"].insert(j["distances"].begin(), Json{{"objects", {0, 0}},
                                                        {"triangles", {0, 1}},
                                                        {"squared", "0/1"},
-                                                       {"features", {"vertex 1", "vertex 1"}}});
+                                                       {"features", {"vertex 1", "vertex 1"}},
+                                                       {"inside", nullptr}});
   });
+}
+
+// Of objects 0 and 1, whose boxes do not hold each other.
+void forge_insides(Forger& f) {
+  Json objects = f.json(Pairs::objects, kInfinity);
+  entry(objects, 0, 1)["inside"] = "none";
+  for (const char* const claim : {"a", "b", "not closed"}) {
+    f.expect(std::string("inside: ") + claim, Outcome::refuted, objects,
+             [&](Json& j) { entry(j, 0, 1)["inside"] = claim; });
+  }
+  f.expect("inside of one object", Outcome::not_proved, objects,
+           [](Json& j) { entry(j, 3, 3)["inside"] = "none"; });
+  f.expect("inside of triangles", Outcome::not_proved, f.json(Pairs::all, 2),
+           [](Json& j) { j["distances"][0]["inside"] = "none"; });
 }
 
 void forge_completeness(Forger& f) {
@@ -197,20 +213,23 @@ void forge_completeness(Forger& f) {
     list.insert(list.end() - 1, Json{{"objects", {3, 3}},
                                      {"triangles", {0, 1}},
                                      {"squared", "0/1"},
-                                     {"features", {"vertex 1", "vertex 1"}}});
+                                     {"features", {"vertex 1", "vertex 1"}},
+                                     {"inside", nullptr}});
   });
   f.expect("inside an object that is not self", Outcome::not_proved, all, [](Json& j) {
     j["distances"].insert(j["distances"].begin(), Json{{"objects", {0, 0}},
                                                        {"triangles", {0, 1}},
                                                        {"squared", "0/1"},
-                                                       {"features", {"vertex 1", "vertex 1"}}});
+                                                       {"features", {"vertex 1", "vertex 1"}},
+                                                       {"inside", nullptr}});
   });
   f.expect("a triangle and itself", Outcome::not_proved, all, [](Json& j) {
     Json& list = j["distances"];
     list.push_back({{"objects", {3, 3}},
                     {"triangles", {3, 3}},
                     {"squared", "0/1"},
-                    {"features", {"vertex 0", "vertex 0"}}});
+                    {"features", {"vertex 0", "vertex 0"}},
+                    {"inside", nullptr}});
   });
 }
 
@@ -245,9 +264,12 @@ void forge_form(Forger& f) {
       [](Json& j) { j["distances"][0]["features"][0] = "vertex 3"; });
   bad("a feature as a number", [](Json& j) { j["distances"][0]["features"][0] = 0; });
   bad("one feature", [](Json& j) { j["distances"][0]["features"].erase(0); });
-  bad("a key too many", [](Json& j) { j["distances"][0]["inside"] = true; });
+  bad("a key too many", [](Json& j) { j["distances"][0]["depth"] = true; });
+  bad("an inside that there is not", [](Json& j) { j["distances"][0]["inside"] = "c"; });
+  bad("an inside that is no text", [](Json& j) { j["distances"][0]["inside"] = true; });
+  bad("no inside", [](Json& j) { j["distances"][0].erase("inside"); });
   bad("a key missing", [](Json& j) { j["distances"][0].erase("features"); });
-  bad("another version", [](Json& j) { j["version"] = 2; });
+  bad("another version", [](Json& j) { j["version"] = 1; });
   bad("another format", [](Json& j) { j["format"] = "farcull-certificate"; });
   bad("another kind of query", [](Json& j) { j["query"]["pairs"] = "some"; });
   bad("a k without nearest", [](Json& j) { j["query"]["k"] = 1; });
@@ -273,6 +295,7 @@ void forge_form(Forger& f) {
 TEST(DistanceCertificate, ForgeriesOfFiftyKindsAreNotProved) {
   Forger forger;
   forge_claims(forger);
+  forge_insides(forger);
   forge_completeness(forger);
   forge_form(forger);
   EXPECT_GE(forger.kinds(), 50u);
