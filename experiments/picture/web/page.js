@@ -79,6 +79,8 @@ function nameOf(triangle) {
   return `triangle ${digits.format(triangle - first)} of object ${o}, ${name}`;
 }
 
+function counted(n, one, more) { return `${digits.format(n)} ${n === 1 ? one : more}`; }
+
 function css(colour) { return `rgb(${colour.join(", ")})`; }
 
 function element(tag, text, properties) {
@@ -91,12 +93,12 @@ function showLegend() {
   const step = answer.step, c = about.colours;
   const idle = c.objects[0].map((x, i) => Math.round(x + (c.idle[i] - x) * c.idlePart));
   const pairs = frame.a.length;
-  const rows = [[c.found, `collide and found: ${digits.format(pairs - step.missedPairs)} pairs`]];
+  const rows = [[c.found, `collide and found: ${counted(pairs - step.missedPairs, "pair", "pairs")}`]];
   if (step.missedPairs > 0) {
     rows.push([c.missed,
-      `missed: ${digits.format(step.missedPairs)} pairs of ${digits.format(step.missedTriangles)} triangles`]);
+      `missed: ${counted(step.missedPairs, "pair", "pairs")} of ${counted(step.missedTriangles, "triangle", "triangles")}`]);
   }
-  if (step.culls) rows.push([idle, `kept, collide with nothing: ${digits.format(step.idle)} triangles`]);
+  if (step.culls) rows.push([idle, `kept, collide with nothing: ${counted(step.idle, "triangle", "triangles")}`]);
   byId("legend").replaceChildren(...rows.map(([colour, text]) => {
     const row = element("li"), box = element("i");
     box.style.background = css(colour);
@@ -129,8 +131,9 @@ function showChosen() {
   const told = [element("p", name[0].toUpperCase() + name.slice(1))];
   told.push(element("p", pairs.length === 0
     ? (isKept(state.triangle) ? "It collides with nothing, and the method kept it." : "It collides with nothing.")
-    : `It collides with ${digits.format(pairs.length)} ${pairs.length === 1 ? "triangle" : "triangles"}` +
-      (lost > 0 ? `; ${answer.step.title} misses ${digits.format(lost)} of these pairs:` : ":"),
+    : `It collides with ${counted(pairs.length, "triangle", "triangles")}` +
+      (lost === 0 ? ":" : pairs.length === 1 ? `; ${answer.step.title} misses this pair:`
+        : `; ${answer.step.title} misses ${digits.format(lost)} of these pairs:`),
     { className: lost > 0 ? "missed" : "" }));
   if (pairs.length > 0) told.push(list);
   if (pairs.length > MOST_SHOWN)

@@ -1,4 +1,4 @@
-# A screenshot of a page of `farcull picture --html`, as docs/pictures/page.png was made:
+# A screenshot of a page of `farcull picture --html`. docs/pictures/page.png was made so:
 #   farcull picture two-bunnies --compare cullide,far --html bunnies.html
 #   python3 tests/experiments/picture/page_picture.py bunnies.html docs/pictures/page.png \
 #     '#method=cullide&px=512'
