@@ -248,8 +248,8 @@ int PictureCommand::run() const {
   const Outputs outputs = checked_outputs(output_, html_, scene_files(arguments.scene, range));
   PageArguments page_arguments;
   if (html_) {
-    require_three();
     page_arguments = this->page_arguments(arguments);
+    require_three();
   }
   TerminalProgress terminal;
   Lab lab(arguments.panels.front().device, terminal.callback());

@@ -241,7 +241,7 @@ def check_objects(b):
     after = look(b)
     check(after != before and b.run("[...farcull.state.hidden]") == [0], "object 0 is not hidden")
     picked = b.run("(() => { const out = new Set(); const f = farcull.frame;"
-                   f"for (let x = 5; x < {width}; x += 40) for (let y = 5; y < {height}; y += 40)"
+                   f"for (let x = 5; x < {width}; x += 60) for (let y = 5; y < {height}; y += 60)"
                    "{ const t = farcull.view.pick(x, y); if (t >= 0) out.add(f.owner[t]); } return [...out]; })()")
     check(picked == [1], f"with object 0 hidden, objects {picked} are seen")
     b.run("document.getElementById('show-all').click()")
@@ -304,7 +304,7 @@ def check_looks(b, page):
         for theme in ("light", "dark"):
             b.size(width, height)
             b.media(prefers_color_scheme=theme)
-            shown(b, page)
+            drawn(b)
             over = b.run("document.documentElement.scrollWidth - innerWidth")
             check(over <= 0, f"at {width} px the page is {over} px too wide")
             check(b.run("document.getElementById('canvas').clientHeight") > 300, f"at {width} px the scene is small")
