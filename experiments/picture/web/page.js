@@ -323,15 +323,15 @@ function collidingCorners() {
   return out;
 }
 
-let playing = 0;
-function play() {
-  if (playing) {
-    clearInterval(playing);
-    playing = 0;
-  } else {
-    playing = setInterval(() => setFrame((state.frame + 1) % about.frames.length), 200);
+// Frame after frame; a frame that takes long to unpack holds up the next one. Odd: it plays.
+let plays = 0;
+async function play() {
+  const turn = ++plays;
+  byId("play").textContent = turn % 2 === 1 ? "Stop" : "Play the frames";
+  while (turn % 2 === 1 && turn === plays) {
+    await setFrame((state.frame + 1) % about.frames.length);
+    await new Promise((done) => setTimeout(done, 200));
   }
-  byId("play").textContent = playing ? "Stop" : "Play the frames";
 }
 
 // ---- the address --------------------------------------------------------------------------------
@@ -360,6 +360,7 @@ function addressOf() {
 
 let writing = 0, written = location.hash;
 function writeAddress() {
+  if (!answer) return;  // nothing is shown yet
   clearTimeout(writing);
   writing = setTimeout(() => {
     written = addressOf();
@@ -537,9 +538,9 @@ async function start() {
   } catch (error) {
     standIn(error.message);
   }
+  await update();
   connectControls();
   document.addEventListener("keydown", onKey);
-  await update();
   if (view) {
     connectCanvas();
     resetView();
