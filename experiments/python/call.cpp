@@ -9,7 +9,6 @@
 #include <array>
 #include <chrono>
 #include <mutex>
-#include <regex>
 #include <set>
 #include <stdexcept>
 #include <string_view>
@@ -82,19 +81,20 @@ bool ended(StoppableCall& call) {
   return ended;
 }
 
-// "--depth-format" as depth_format.
+// Each "--depth-format" in the text as depth_format.
 std::string as_parameters(const std::string& text) {
-  static const std::regex option("--([a-z]+(-[a-z]+)*)");
+  const auto letter = [](char c) { return c >= 'a' && c <= 'z'; };
   std::string out;
-  auto at = text.begin();
-  for (std::sregex_iterator m(text.begin(), text.end(), option), end; m != end; ++m) {
-    out.append(at, (*m)[0].first);
-    std::string name = (*m)[1];
-    std::replace(name.begin(), name.end(), '-', '_');
-    out += name;
-    at = (*m)[0].second;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text.compare(at, 2, "--") != 0 || at + 2 >= text.size() || !letter(text[at + 2])) {
+      out += text[at];
+      continue;
+    }
+    for (at += 2; at < text.size() && (letter(text[at]) || text[at] == '-'); ++at)
+      out += text[at] == '-' ? '_' : text[at];
+    --at;
   }
-  return out.append(at, text.end());
+  return out;
 }
 
 // Of the library's errors, where they name what the caller gave.

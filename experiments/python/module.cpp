@@ -5,27 +5,45 @@ namespace farcull::python {
 namespace {
 
 // pybind11 and numpy keep what they know in variables of the process, which interpreters in one
-// process would share.
-void require_main_interpreter() {
-  if (PyInterpreterState_Get() == PyInterpreterState_Main()) return;
-  throw py::import_error(
-      "farcull: interpreter: is not the main one of the process; import farcull there, or in a "
-      "process of its own");
+// process would share. pybind11 waits for ever where another one is the first that it sees.
+constexpr const char* kNotMain =
+    "farcull: interpreter: is not the main one of the process; import farcull there, or in a "
+    "process of its own";
+
+bool in_main_interpreter() { return PyInterpreterState_Get() == PyInterpreterState_Main(); }
+
+void fill(py::module_& module) {
+  // A module that is made already is given to another interpreter without a call of its maker.
+  module.def("require_main_interpreter", [] {
+    if (!in_main_interpreter()) throw py::import_error(kNotMain);
+  });
+  register_exceptions();
+  py::module_::import("atexit").attr("register")(py::cpp_function(&end_calls));
+  add_collider(module);
+  add_distances(module);
+  add_scenes(module);
+  add_runs(module);
 }
+
+py::module_::module_def definition;
 
 }  // namespace
 }  // namespace farcull::python
 
-PYBIND11_MODULE(_farcull, module) {
+// As PYBIND11_MODULE does it, but that asks for the interpreter first.
+extern "C" PYBIND11_EXPORT PyObject* PyInit__farcull();
+extern "C" PYBIND11_EXPORT PyObject* PyInit__farcull() {
   namespace python = farcull::python;
-  python::require_main_interpreter();
-  // A module that is made already is given to another interpreter without a call of this function.
-  module.def("require_main_interpreter", &python::require_main_interpreter);
-  python::register_exceptions();
-  python::py::module_::import("atexit").attr("register")(
-      python::py::cpp_function(&python::end_calls));
-  python::add_collider(module);
-  python::add_distances(module);
-  python::add_scenes(module);
-  python::add_runs(module);
+  if (!python::in_main_interpreter()) {
+    PyErr_SetString(PyExc_ImportError, python::kNotMain);
+    return nullptr;
+  }
+  pybind11::detail::get_internals();
+  auto module =
+      pybind11::module_::create_extension_module("_farcull", nullptr, &python::definition);
+  try {
+    python::fill(module);
+    return module.ptr();
+  }
+  PYBIND11_CATCH_INIT_EXCEPTIONS
 }

@@ -147,13 +147,14 @@ py::tuple picture_of(const KeptScene& kept, const std::vector<Words>& panels,
                      const std::optional<std::string>& depth_view, int width, int height,
                      const std::string& device, unsigned threads) {
   const PictureResult result = answer_beside([&] {
-    PictureArguments arguments{.scene = {"scene"},
-                               .view = view,
-                               .up = up,
-                               .zoom = zoom,
-                               .depth_view = depth_view,
-                               .width = width,
-                               .height = height};
+    PictureArguments arguments;
+    arguments.scene = {"scene"};
+    arguments.view = view;
+    arguments.up = up;
+    arguments.zoom = zoom;
+    arguments.depth_view = depth_view;
+    arguments.width = width;
+    arguments.height = height;
     for (const Words& words : panels) arguments.panels.push_back(parse_run_options(words));
     validate(arguments);
     Lab lab(device, stopping_progress(), threads);

@@ -16,7 +16,7 @@ def python(code, **options):
         capture_output=True,
         text=True,
         check=False,
-        timeout=300,
+        timeout=120,
         **options,
     )
     assert done.returncode == 0, f"status {done.returncode}\n{done.stdout}\n{done.stderr}"

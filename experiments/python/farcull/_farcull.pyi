@@ -1,0 +1,100 @@
+"""The compiled module. It is no interface for users: the package around it is."""
+
+from typing import Any, List, Optional, Sequence, Tuple
+
+from numpy import float64, int64, uint8, uint32
+from numpy.typing import NDArray
+
+def require_main_interpreter() -> None: ...
+
+class Collider:
+    def __init__(
+        self,
+        *,
+        device: str,
+        threads: int,
+        all_objects: bool,
+        self_objects: Sequence[bool],
+        clearance: float,
+        neighbours: bool,
+        views: str,
+        resolution: int,
+    ) -> None: ...
+    def find(
+        self, vertices: NDArray[Any], triangles: NDArray[Any], starts: NDArray[int64]
+    ) -> dict[str, Any]: ...
+
+def distances(
+    vertices: NDArray[Any],
+    triangles: NDArray[Any],
+    starts: NDArray[int64],
+    kind: str,
+    k: int,
+    within: float,
+    all_objects: bool,
+    self_objects: Sequence[bool],
+    inside: bool,
+    threads: int,
+) -> List[dict[str, Any]]: ...
+
+class Scene:
+    name: str
+    vertices: NDArray[float64]
+    triangles: NDArray[uint32]
+    objects: NDArray[int64]
+    names: List[str]
+    self: List[bool]
+
+def scene_of_arrays(
+    vertices: NDArray[Any],
+    triangles: NDArray[Any],
+    starts: NDArray[int64],
+    name: str,
+    names: Sequence[str],
+    all_objects: bool,
+    self_objects: Sequence[bool],
+) -> Scene: ...
+def scene_of_names(names: Sequence[str], all_objects: bool) -> Scene: ...
+def builtin_scenes() -> List[str]: ...
+
+class Frames:
+    first: int
+    last: int
+    def __init__(self, names: Sequence[str], frames: str, all_objects: bool) -> None: ...
+    def at(self, frame: int) -> Scene: ...
+
+class Record:
+    pairs: NDArray[int64]
+    neighbour_pairs: NDArray[int64]
+    bits: NDArray[uint8]
+    kept_triangles: NDArray[uint32]
+    candidates: int
+    views: List[dict[str, Any]]
+    promises: bool
+    promises_reason: str
+    accounting: Optional[dict[str, Any]]
+    def missed(self) -> Optional[NDArray[int64]]: ...
+    def json(self) -> str: ...
+    def table(self) -> str: ...
+    def certificate(self) -> str: ...
+
+def run(scene: Scene, words: Sequence[str], threads: int) -> Record: ...
+def plan(scene: Scene, words: Sequence[str], threads: int) -> Tuple[str, str]: ...
+def check(
+    scene: Scene,
+    certificate: Optional[str],
+    pairs: Optional[NDArray[Any]],
+    clearance: Optional[float],
+) -> dict[str, Any]: ...
+def picture(
+    scene: Scene,
+    panels: Sequence[Sequence[str]],
+    view: str,
+    up: str,
+    zoom: bool,
+    depth_view: Optional[str],
+    width: int,
+    height: int,
+    device: str,
+    threads: int,
+) -> Tuple[NDArray[uint8], List[dict[str, Any]]]: ...
