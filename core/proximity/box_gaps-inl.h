@@ -39,11 +39,12 @@ struct OneBox {
         z1(number(box.hi[2])) {}
 };
 
-/// The squared gaps from a box to those of a block; returns which are at most `limit`, as bits.
-HWY_INLINE std::uint32_t near_boxes(const WideBoxes& block, const OneBox& box, double limit,
+/// The squared gaps from a box to those of a block; returns which are at most `square_limit`,
+/// as bits.
+HWY_INLINE std::uint32_t near_boxes(const WideBoxes& block, const OneBox& box, double square_limit,
                                     Gaps& squares) {
   const Numbers n;
-  const Number zero = number(0), most = number(limit);
+  const Number zero = number(0), most = number(square_limit);
   const auto gap = [&](std::size_t axis, std::size_t from, Number lo, Number hi) {
     const Number x0 = hn::Load(n, &block.column[axis][from]);
     const Number x1 = hn::Load(n, &block.column[axis + 3][from]);

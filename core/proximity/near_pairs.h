@@ -58,26 +58,27 @@ class ProximityTrees {
   ProximityTrees(ProximityTrees&&) noexcept;
   ProximityTrees& operator=(ProximityTrees&&) noexcept;
 
-  /// For each of the questions, in their order. within: world units, >= 0, may be infinite: what is
-  /// farther apart need not be found. hints: empty, or for each question a pair of triangles of
-  /// these objects that is probably near, as the last frame's nearest one; it bounds the answer
-  /// from the start, and changes no nearest pair that is found. Triangles of other objects or in
-  /// the other order, and neighbours, are no hint. Throws std::logic_error for objects that the
-  /// scene does not have or in the other order, hints of another number, and a limit that is none;
-  /// Error where more than 100 million pairs of one question may be nearest.
+  /// Answers each question, in their order. within: world units, >= 0, may be infinite: pairs that
+  /// are farther apart need not be found. hints: empty, or one for each question: a pair of
+  /// triangles of these objects that is probably near, as the nearest one of the frame before. Its
+  /// distance bounds the answer from the start, and no nearest pair is lost by it. A pair of other
+  /// triangles, in the other order, or of neighbours is left aside. Throws std::logic_error for
+  /// objects that the scene does not have or in the other order, for another number of hints, and
+  /// for a limit that is negative or NaN; Error where one question leaves more than 100 million
+  /// pairs.
   std::vector<NearPairs> near_pairs(std::span<const ObjectPair> questions, double within,
                                     std::span<const std::optional<TrianglePair>> hints,
                                     const Progress& progress = {}) const;
 
-  /// The pairs of objects among which each object with triangles has its k nearest others (those of
-  /// its k least distances, all that share the kth least among them): sorted, each once, with what
-  /// can be nearest of them. No object is further away than `within`. Throws as near_pairs().
+  /// For each object with triangles its k nearest others: those at its k least distances, and all
+  /// that are as far as the kth of them. Returns the pairs of objects that this names, sorted, each
+  /// once, and perhaps more, with what can be nearest of them. Objects farther away than `within`
+  /// need not be found. Throws as near_pairs().
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
                                          const Progress& progress = {}) const;
-  /// The same, but of others that are as near the lower objects are enough; and with hints, in any
-  /// order; of those for the same two objects the first one counts.
-  /// Where k others are named with an object, these bound it from the start. No answer that exact
-  /// arithmetic gives changes. What is no hint for near_pairs() is none here.
+  /// The same, but of others that are equally far the lower ones are enough. hints: in any order;
+  /// of those for the same two objects the first one counts. Where hints name k others of an
+  /// object, their distances bound its answer from the start.
   std::vector<NearPairs> nearest_objects(std::size_t k, double within,
                                          std::span<const NearHint> hints,
                                          const Progress& progress = {}) const;
@@ -85,8 +86,8 @@ class ProximityTrees {
   /// All pairs of triangles at most `within` apart, of different objects, and of one that is `self`
   /// where they are no neighbours; and few besides, whose distance is `within` but for roundings.
   /// Sorted, each once. Precondition: within is finite. Throws std::logic_error for a limit that is
-  /// none, and Error where there are more than `most`: these take 8 bytes each, and no more is held
-  /// at any time but some megabytes.
+  /// none, and Error where there are more than `most`: these take some tens of bytes each at
+  /// most, and no others are held but some thousands.
   std::vector<TrianglePair> pairs_within(double within, std::size_t most,
                                          const Progress& progress = {}) const;
 

@@ -69,7 +69,7 @@ std::vector<Found> found_by(const SceneTrees& trees, std::uint32_t object, std::
       search = begin_search(trees, objects, most, nullptr, memory);
     }
     while (!search.open.empty()) {
-      go_on(trees, kShort, search, memory);
+      go_on(trees, kRunPairsAtOnce, search, memory);
       require_room(trees, search);
     }
     Found found = {.limit = most, .near = answer(trees, search)};
@@ -108,7 +108,7 @@ std::vector<NearPairs> nearest_objects(const SceneTrees& trees, std::size_t k, d
   }
   std::vector<std::vector<Found>> found(objects);
   std::vector<ProximityCounts> parts(objects);
-  for_each_with_memory(objects, threads, [&](std::size_t o, SearchMemory& memory) {
+  for_each_with_memory<SearchMemory>(objects, threads, [&](std::size_t o, SearchMemory& memory) {
     const auto object = static_cast<std::uint32_t>(o);
     if (trees.tree(object).levels == 0) return;
     found[o] = found_by(trees, object, k, limit, hints_of[o], all, memory, parts[o]);

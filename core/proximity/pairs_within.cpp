@@ -61,7 +61,7 @@ std::vector<TrianglePair> pairs_within(const SceneTrees& trees, double limit, st
   Count count(trees, most);
   std::vector<std::vector<TrianglePair>> found(objects);
   std::vector<ProximityCounts> parts(objects);
-  for_each_with_memory(objects, threads, [&](std::size_t o, SearchMemory& memory) {
+  for_each_with_memory<SearchMemory>(objects, threads, [&](std::size_t o, SearchMemory& memory) {
     const auto object = static_cast<std::uint32_t>(o);
     if (trees.tree(object).levels == 0) return;
     Approach approach(trees, trees.box(object));

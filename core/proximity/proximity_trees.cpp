@@ -1,5 +1,6 @@
-// Each question is a search (core/proximity/search.h). Searches go on side by side; one that takes
-// long is divided.
+// ProximityTrees of near_pairs.h, in a file of its own because what it is built from includes that
+// header. Each question is a search (core/proximity/search.h). Searches go on side by side; one
+// that takes long is divided.
 #include "core/proximity/near_pairs.h"
 
 #include <algorithm>
@@ -7,7 +8,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/base/parallel.h"
 #include "core/proximity/nearest.h"
 #include "core/proximity/pairs_within.h"
 #include "core/proximity/scene_trees.h"
@@ -75,19 +75,20 @@ std::vector<NearPairs> ProximityTrees::near_pairs(
   const double limit = scaled_limit(trees, within);
   std::vector<NearPairs> out(questions.size());
   std::vector<Search> long_ones(questions.size());
-  for_each_with_memory(questions.size(), state_->threads, [&](std::size_t k, SearchMemory& memory) {
-    const ObjectPair& objects = questions[k];
-    const TrianglePair* hint = hints.empty() || !hints[k] ? nullptr : &*hints[k];
-    if (hint != nullptr && !fits(trees.scene(), objects, *hint)) hint = nullptr;
-    Search search = begin_search(trees, objects, limit, hint, memory);
-    go_on(trees, kShort, search, memory);
-    if (search.open.empty()) {
-      out[k] = answer(trees, search);
-      state_->add(search.counts);
-    } else {
-      long_ones[k] = std::move(search);
-    }
-  });
+  for_each_with_memory<SearchMemory>(
+      questions.size(), state_->threads, [&](std::size_t k, SearchMemory& memory) {
+        const ObjectPair& objects = questions[k];
+        const TrianglePair* hint = hints.empty() || !hints[k] ? nullptr : &*hints[k];
+        if (hint != nullptr && !fits(trees.scene(), objects, *hint)) hint = nullptr;
+        Search search = begin_search(trees, objects, limit, hint, memory);
+        go_on(trees, kRunPairsAtOnce, search, memory);
+        if (search.open.empty()) {
+          out[k] = answer(trees, search);
+          state_->add(search.counts);
+        } else {
+          long_ones[k] = std::move(search);
+        }
+      });
   for (std::size_t k = 0; k < questions.size(); ++k) {
     Search& search = long_ones[k];
     if (search.open.empty()) continue;

@@ -65,9 +65,10 @@ void require_room(const SceneTrees& trees, const Search& search, std::size_t mos
 void go_on_divided(const SceneTrees& trees, unsigned threads, Search& search, std::size_t most) {
   while (!search.open.empty()) {
     std::vector<Search> parts = divide(search);
-    for_each_with_memory(parts.size(), threads, [&](std::size_t k, SearchMemory& memory) {
-      go_on(trees, kShort, parts[k], memory);
-    });
+    for_each_with_memory<SearchMemory>(parts.size(), threads,
+                                       [&](std::size_t k, SearchMemory& memory) {
+                                         go_on(trees, kRunPairsAtOnce, parts[k], memory);
+                                       });
     for (Search& part : parts) join(part, search);
     search.filter();
     require_room(trees, search, most);

@@ -1,18 +1,17 @@
 // Searches in all threads, and what they answer.
 #pragma once
 
-#include <algorithm>
-#include <atomic>
 #include <cstddef>
 
-#include "core/base/parallel.h"
+#include "core/base/shared_work.h"
 #include "core/proximity/near_pairs.h"
 #include "core/proximity/search.h"
 
 namespace farcull {
 
-/// Pairs of runs after which a search counts as long.
-constexpr std::size_t kShort = 4096;
+/// So many pairs of runs a search looks at before it is asked whether it goes on. One that does is
+/// long, and is divided.
+constexpr std::size_t kRunPairsAtOnce = 4096;
 
 /// A limit in world units, scaled and rounded up.
 double scaled_limit(const SceneTrees& trees, double within);
@@ -27,16 +26,5 @@ void require_room(const SceneTrees& trees, const Search& search, std::size_t mos
 /// where it keeps more than `most` pairs.
 void go_on_divided(const SceneTrees& trees, unsigned threads, Search& search,
                    std::size_t most = kMostKept);
-
-/// Calls work(k, memory) for k in 0 .. count - 1, in all threads, with a memory for each.
-template <class Work>
-void for_each_with_memory(std::size_t count, unsigned threads, const Work& work) {
-  const std::size_t chunks = chunks_for(count, 1, threads);
-  std::atomic<std::size_t> next = 0;
-  for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
-    SearchMemory memory;
-    for (std::size_t k = next++; k < count; k = next++) work(k, memory);
-  });
-}
 
 }  // namespace farcull

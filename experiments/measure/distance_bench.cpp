@@ -95,15 +95,14 @@ DistancePeer farcull_distances() {
   return {.name = kOurs, .library = "farcull", .missing = "", .run = ask_ours};
 }
 
-DistanceErrors errors_of(const std::vector<PeerDistance>& answer,
+DistanceErrors errors_of(DistanceTask task, const std::vector<PeerDistance>& answer,
                          const std::vector<PeerDistance>& exact) {
   DistanceErrors out{.answers = answer.size()};
   const auto nearest_by = [](const PeerDistance& x, const PeerDistance& y) {
     return std::tie(x.a, x.b) < std::tie(y.a, y.b);
   };
   // With `nearest` there is one for each object, and the other object may differ.
-  bool one_each = true;
-  for (std::size_t i = 1; i < exact.size(); ++i) one_each &= exact[i].a != exact[i - 1].a;
+  const bool one_each = task == DistanceTask::nearest;
   auto at = answer.begin();
   for (const PeerDistance& truth : exact) {
     const auto before = [&](const PeerDistance& x) {
@@ -164,10 +163,11 @@ DistanceBenchResult bench_distances(const Scene& given, const DistanceBenchOptio
         const double took = watch.ms();
         if (round < 0) {
           if (i == 0) exact = answer.distances;
-          result.rows.push_back({.name = one.name,
-                                 .library = one.library,
-                                 .peer = i > 0,
-                                 .errors = errors_of(answer.distances, exact)});
+          result.rows.push_back(
+              {.name = one.name,
+               .library = one.library,
+               .peer = i > 0,
+               .errors = errors_of(options.question.task, answer.distances, exact)});
         }
         if (round >= 0 || took > rounds.limit_ms) {
           build[i].push_back(answer.build_ms);

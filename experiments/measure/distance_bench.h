@@ -64,7 +64,7 @@ DistancePeer farcull_distances();
 std::vector<PeerDistance> as_peer(const DistanceRecord& record);
 
 /// `answer` beside exact ones of the same question; both sorted.
-DistanceErrors errors_of(const std::vector<PeerDistance>& answer,
+DistanceErrors errors_of(DistanceTask task, const std::vector<PeerDistance>& answer,
                          const std::vector<PeerDistance>& exact);
 
 nlohmann::ordered_json to_json(const Scene& scene, const DistanceBenchOptions& options,

@@ -3,14 +3,13 @@
 #include "experiments/method/distances.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
-#include "core/base/parallel.h"
+#include "core/base/shared_work.h"
 #include "core/base/stopwatch.h"
 #include "verify/exact.h"
 
@@ -19,16 +18,6 @@ namespace {
 
 // Pairs of triangles that one thread decides at a time.
 constexpr std::size_t kTogether = 256;
-
-// work(k) for each k below count, the next one by whichever thread is free.
-template <class Work>
-void for_each_on_all_threads(std::size_t count, unsigned threads, const Work& work) {
-  const std::size_t chunks = chunks_for(count, 1, threads);
-  std::atomic<std::size_t> next = 0;
-  for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
-    for (std::size_t k = next++; k < count; k = next++) work(k);
-  });
-}
 
 void check(const DistanceOptions& options) {
   if (!(options.within >= 0))
@@ -100,8 +89,8 @@ std::vector<Distance> nearest_of(const Scene& scene, std::span<const NearPairs> 
     }
   }
   std::vector<std::optional<NearestPair>> of_part(parts.size());
-  for_each_on_all_threads(parts.size(), options.threads,
-                          [&](std::size_t k) { of_part[k] = nearest_pair(scene, parts[k].pairs); });
+  for_each_shared(parts.size(), options.threads,
+                  [&](std::size_t k) { of_part[k] = nearest_pair(scene, parts[k].pairs); });
   std::vector<Distance> out;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const ObjectPair& objects = near[parts[k].question].objects;
@@ -184,7 +173,7 @@ void find_insides(const Scene& scene, const Progress& progress, DistanceRecord& 
   if (progress) progress("inside");
   const Stopwatch watch;
   const Insides insides(scene);
-  for_each_on_all_threads(record.distances.size(), record.options.threads, [&](std::size_t k) {
+  for_each_shared(record.distances.size(), record.options.threads, [&](std::size_t k) {
     Distance& d = record.distances[k];
     if (d.objects.a != d.objects.b && !d.closest.squared.is_zero())
       d.inside = insides.which(d.objects.a, d.objects.b);
@@ -243,7 +232,7 @@ void between_triangles(const Scene& scene, const Progress& progress, DistanceRec
   const std::vector<std::uint32_t> owner = owners(scene);
   record.distances.resize(pairs.size());
   const std::size_t parts = (pairs.size() + kTogether - 1) / kTogether;
-  for_each_on_all_threads(parts, options.threads, [&](std::size_t part) {
+  for_each_shared(parts, options.threads, [&](std::size_t part) {
     const std::size_t end = std::min(pairs.size(), (part + 1) * kTogether);
     for (std::size_t k = part * kTogether; k < end; ++k) {
       const TrianglePair& pair = pairs[k];

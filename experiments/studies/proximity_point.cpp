@@ -148,7 +148,7 @@ PointResult measure_distances(const DistancePoint& point, const DistancePeer& co
     const Stopwatch watch;
     const PeerDistances answer = contestant.run(exact.scene, question, kThreads);
     const double ms = watch.ms();
-    DistanceCounts counts{.errors = errors_of(answer.distances, exact.distances),
+    DistanceCounts counts{.errors = errors_of(point.task, answer.distances, exact.distances),
                           .asked = exact.distances.size(),
                           .triangles = exact.scene.triangles.size(),
                           .objects = exact.scene.objects.size(),

@@ -78,25 +78,27 @@ TEST(DistancePeers, RefuseDegenerateTriangles) {
 
 TEST(DistanceBench, EachErrorIsCountedAsWhatItIs) {
   const Distances exact = {{0, 1, 1}, {0, 2, 0}, {1, 2, 4}, {1, 3, 8}};
-  EXPECT_EQ(errors_of(exact, exact).exact, 4u);
-  EXPECT_EQ(errors_of(exact, exact).largest_relative, 0);
+  EXPECT_EQ(errors_of(DistanceTask::objects, exact, exact).exact, 4u);
+  EXPECT_EQ(errors_of(DistanceTask::objects, exact, exact).largest_relative, 0);
   // One lacks, one is not asked for, one is called apart, one is off by an eighth.
   const Distances answer = {{0, 2, 1e-9}, {0, 3, 5}, {1, 2, 4.5}, {1, 3, 8}};
-  const DistanceErrors errors = errors_of(answer, exact);
+  const DistanceErrors errors = errors_of(DistanceTask::objects, answer, exact);
   EXPECT_EQ(errors.answers, 4u);
   EXPECT_EQ(errors.lacking, 1u);
   EXPECT_EQ(errors.beyond_it, 1u);
   EXPECT_EQ(errors.other_zero, 1u);
   EXPECT_EQ(errors.exact, 1u);
   EXPECT_EQ(errors.largest_relative, 0.125);
-  EXPECT_EQ(errors_of({}, exact).lacking, 4u);
-  EXPECT_EQ(errors_of(exact, {}).beyond_it, 4u);
+  EXPECT_EQ(errors_of(DistanceTask::objects, {}, exact).lacking, 4u);
+  EXPECT_EQ(errors_of(DistanceTask::objects, exact, {}).beyond_it, 4u);
 }
 
 TEST(DistanceBench, AnotherNearestObjectIsAnErrorIfItIsNotAsNear) {
   const Distances exact = {{0, 1, 1}, {1, 0, 1}, {2, 1, 2}};
-  EXPECT_EQ(errors_of({{0, 1, 1}, {1, 0, 1}, {2, 0, 2}}, exact).other_object, 0u);
-  const DistanceErrors errors = errors_of({{0, 1, 1}, {1, 0, 1}, {2, 0, 2.5}}, exact);
+  EXPECT_EQ(errors_of(DistanceTask::nearest, {{0, 1, 1}, {1, 0, 1}, {2, 0, 2}}, exact).other_object,
+            0u);
+  const DistanceErrors errors =
+      errors_of(DistanceTask::nearest, {{0, 1, 1}, {1, 0, 1}, {2, 0, 2.5}}, exact);
   EXPECT_EQ(errors.other_object, 1u);
   EXPECT_EQ(errors.largest_relative, 0.25);
 }
