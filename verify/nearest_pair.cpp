@@ -26,16 +26,12 @@
 #include "verify/closest.h"
 #include "verify/filter.h"
 #include "verify/filter_of_distance.h"
+#include "verify/tie_rounding.h"
 
 namespace farcull {
 namespace {
 
 using filters::DistanceBounds;
-
-constexpr double kTie = 8 * 0x1p-53;
-constexpr double kTiePoints = 2 * 0x1p-53;
-constexpr double kTieSubnormal = 0x1p-1070;
-constexpr double kTieAbsolute = 0x1p-1000;
 
 using Corners = std::array<Vec3, 3>;
 

@@ -24,7 +24,7 @@ struct Bound {
 };
 
 std::vector<Bound> filter_bounds();    // verify/filter_of_planes.h
-std::vector<Bound> distance_bounds();  // verify/filter_of_distance.h
+std::vector<Bound> distance_bounds();  // verify/filter_of_distance.h, verify/tie_rounding.h
 std::vector<Bound> map_bounds();       // core/view: the map to pixels, clipping, the budget
 std::vector<Bound> fit_bounds();       // offsets/fit.inl
 std::vector<Bound> slab_bounds();      // offsets/slab.glsl

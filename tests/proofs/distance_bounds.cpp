@@ -1,12 +1,14 @@
-// The filter of distances: two points near each other, and the direction between them. R is the
-// largest |coordinate| of the corners relative to one of them, exactly; its computed value is one
-// rounding off.
+// The filter of distances: two points near each other, and the direction between them; and the test
+// whether two pairs have the same closest points (verify/nearest_pair.cpp). R is the largest
+// |coordinate| of the corners relative to one of them, exactly; its computed value is one rounding
+// off.
 #include <array>
 
 #include "tests/proofs/bounds.h"
 #include "tests/proofs/number.h"
 #include "tests/proofs/raw.h"
 #include "verify/filter_bounds.h"
+#include "verify/tie_rounding.h"
 
 namespace farcull::proofs {
 namespace {
@@ -130,11 +132,56 @@ std::string needed(double rounding) {
       exact_difference(exact_sum(beyond, script.between("1b-1001", "1b-1001")), exact));
 }
 
+// distance_bounds(): the gap, at most the exact one before its own rounding, over the computed
+// length of d, times 1 - rounding. Each of three results is rounded; relative to the distance.
+std::string lower(double rounding) {
+  return raw_script("",
+                    bounded({"a", "b", "c"}, "1b-53") + " /\\ " + bounded({"e"}, literal(kRoot)),
+                    "(1 + a) * (1 + b) * (1 + c) * (1 - " + literal(rounding) + ") / (1 + e) <= 1");
+}
+
+// SamePoints: w . (x - p) is below 0 where the computed one is below minus its bound. Per axis: W
+// is the magnitude of the computed w, P and Q those of the rounded points, F that of the computed
+// x - p.
+std::string same_points(double tie, double points, double subnormal, double absolute) {
+  Script script(kDouble);
+  std::array<Number, 3> computed, exact, bound;
+  const char* const axes[3] = {"X", "Y", "Z"};
+  for (int i = 0; i < 3; ++i) {
+    const std::string axis = axes[i];
+    const Number w_size = script.magnitude("W" + axis), p_size = script.magnitude("P" + axis),
+                 q_size = script.magnitude("Q" + axis), from_size = script.magnitude("F" + axis);
+    const Number w = script.within("W" + axis), from = script.within("F" + axis);
+    computed[i] = script.rounded_product(exact_product(w, from));
+    // Each point is off by u of its rounded coordinate, or by half of the last bit of a subnormal.
+    const Number off_points =
+        exact_sum(exact_product(p_size, script.part(u)), exact_product(q_size, script.part(u)));
+    const Number off = exact_sum(off_points, script.between("-1b-1074", "1b-1074"));
+    exact[i] = exact_product(exact_sum(script.perturbed(w), off), script.perturbed(from));
+    const Number of_points =
+        script.rounded_product(exact_product(points, script.perturbed(exact_sum(p_size, q_size))));
+    const Number of_axis = script.perturbed(exact_sum(
+        script.perturbed(exact_sum(script.rounded_product(exact_product(tie, w_size)), of_points)),
+        Number(subnormal)));
+    bound[i] = script.rounded_product(exact_product(of_axis, from_size));
+  }
+  const auto all = [](const std::array<Number, 3>& x) {
+    return exact_sum(exact_sum(x[0], x[1]), x[2]);
+  };
+  const auto any = [&](const std::array<Number, 3>& x) {
+    return script.sum_in_any_order(x[0], x[1], x[2]);
+  };
+  const Number whole = script.perturbed(exact_sum(any(bound), Number(absolute)));
+  const Number error = exact_difference(all(exact), any(computed));
+  return script.claims_not_negative(exact_difference(whole, error));
+}
+
 }  // namespace
 
 std::vector<Bound> distance_bounds() {
   using B = FilterBounds;
-  const std::string file = "verify/filter_bounds.h", here = "tests/proofs/distance_bounds.cpp";
+  const std::string file = "verify/filter_bounds.h", here = "tests/proofs/distance_bounds.cpp",
+                    tie = "verify/tie_rounding.h";
   return {
       {"distance.weights", "the weights of three corners sum to 1 within this", "kWeights", here,
        kWeights, "u", weights, 0.125},
@@ -147,8 +194,8 @@ std::vector<Bound> distance_bounds() {
       {"distance.length", "the length of that difference, in R", "kLengthOff", here, kLengthOff,
        "u", length_of_difference},
       {"distance.root", "a computed length, relative to it", "kRoot", here, kRoot, "u", root},
-      {"distance.point", "what is called near is as near", "FilterBounds::point", file, B::point,
-       "u", [](double x) { return near(x, B::absolute); }},
+      {"distance.point", "what is called near is as near: an upper bound of the distance",
+       "FilterBounds::point", file, B::point, "u", [](double x) { return near(x, B::absolute); }},
       {"distance.point_underflow", "the same, where products underflow", "FilterBounds::absolute",
        file, B::absolute, "", [](double x) { return near(B::point, x); }, 0},
       {"distance.gap", "the gap along a direction is as large, but for the doubt",
@@ -157,6 +204,19 @@ std::vector<Bound> distance_bounds() {
        file, B::absolute, "", [](double x) { return far(B::gap, x); }},
       {"distance.needed", "a clearance times a length is not too small", "kNeededRounding", file,
        kNeededRounding, "u", needed},
+      {"distance.lower", "a gap over a length, less that part, is at most the distance",
+       "kNeededRounding", file, kNeededRounding, "u", lower},
+      {"distance.tie", "a corner is behind the plane through a closest point, in the difference",
+       "kTie", tie, kTie, "u",
+       [](double x) { return same_points(x, kTiePoints, kTieSubnormal, kTieAbsolute); }},
+      {"distance.tie_points", "the same, for the rounding of the two points", "kTiePoints", tie,
+       kTiePoints, "u", [](double x) { return same_points(kTie, x, kTieSubnormal, kTieAbsolute); }},
+      {"distance.tie_subnormal", "the same, where a coordinate is subnormal", "kTieSubnormal", tie,
+       kTieSubnormal, "", [](double x) { return same_points(kTie, kTiePoints, x, kTieAbsolute); },
+       0},
+      {"distance.tie_absolute", "the same, where products underflow", "kTieAbsolute", tie,
+       kTieAbsolute, "", [](double x) { return same_points(kTie, kTiePoints, kTieSubnormal, x); },
+       0},
   };
 }
 

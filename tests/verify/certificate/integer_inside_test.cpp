@@ -109,7 +109,7 @@ bool meet(const Scene& scene) {
 TEST(IntegerInside, IsThatOfTetrahedraOfWholeNumbers) {
   rational::Draws random(31);
   int in = 0, out = 0, twin_wrong = 0;
-  for (int n = 0; n < trials(6'000); ++n) {
+  for (int n = 0; n < trials(1'200); ++n) {
     std::vector<Tetrahedron> outer = {random_tetrahedron(random, 0, 13)};
     if (random.below(3) == 0) outer.push_back(random_tetrahedron(random, 0, 13));
     Tetrahedron inner{};
@@ -134,9 +134,9 @@ TEST(IntegerInside, IsThatOfTetrahedraOfWholeNumbers) {
     (expected ? in : out) += 1;
     twin_wrong += naive != expected;
   }
-  EXPECT_GT(in, trials(100));
-  EXPECT_GT(out, trials(100));
-  EXPECT_GT(twin_wrong, trials(20));
+  EXPECT_GT(in, trials(20));
+  EXPECT_GT(out, trials(20));
+  EXPECT_GT(twin_wrong, trials(4));
 }
 
 Scene of_boxes(double unit) {
