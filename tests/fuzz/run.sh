@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fuzzes the readers of meshes and scene files and `check`, one target after the other, with clang's
+# Fuzzes the readers of meshes and scene files and `check` of both kinds of certificates, one target after the other, with clang's
 # libFuzzer and the address and undefined behaviour sanitizers:
 #   tests/fuzz/run.sh [SECONDS]   seconds per target (default: 60)
 # It starts from tests/fuzz/corpus and from what earlier runs added to build-fuzz/corpus.
@@ -19,7 +19,7 @@ fi
 
 farcull_packages+=(clang libclang-rt-dev)
 farcull_setup
-farcull_build_beside build-fuzz "fuzz_mesh fuzz_scene_file fuzz_check" -DFARCULL_FUZZ=ON \
+farcull_build_beside build-fuzz "fuzz_mesh fuzz_scene_file fuzz_check fuzz_distances" -DFARCULL_FUZZ=ON \
   -DFARCULL_TESTS=OFF -DCMAKE_CXX_COMPILER=clang++ \
   -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE="-O1 -g1"
 
@@ -45,4 +45,5 @@ status=0
 fuzz fuzz_mesh mesh || status=1
 fuzz fuzz_scene_file scene || status=1
 fuzz fuzz_check check || status=1
+fuzz fuzz_distances distances || status=1
 exit "$status"
