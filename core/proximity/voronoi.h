@@ -13,8 +13,8 @@
 // loses none. docs/voronoi.md has definitions and proofs.
 //
 // Both walk down a tree of blocks of cells, where the published form fills slice after slice. A
-// block is left out where no cell in it can add to the answer. voronoi_device.h has both forms slice
-// after slice, on a device.
+// block is left out where no cell in it can add to the answer. voronoi_device.h has both forms
+// slice after slice, on a device.
 #pragma once
 
 #include <array>
