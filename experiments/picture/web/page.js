@@ -311,9 +311,20 @@ function isDark() {
   return state.theme ? state.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
 }
 
+// Where the camera is; and where it was put to show everything, which a new size of the window asks
+// for again while the reader has not moved it.
+const cameraText = () => JSON.stringify([view.camera.position, view.controls.target, view.camera.zoom]);
+let fitted = "";
+
 function resetView() {
   const points = about.zoom ? collidingCorners() : view.cornersOfBoxes();
   view.fit(points.length > 0 ? points : view.cornersOfBoxes(), new THREE.Vector3().fromArray(about.forward).negate());
+  fitted = cameraText();
+}
+
+function onResize() {
+  if (!view) return;
+  if (cameraText() === fitted) resetView(); else view.resize();
 }
 
 function collidingCorners() {
@@ -513,7 +524,7 @@ function connectCanvas() {
     e.preventDefault();
     standIn("The browser took the graphics away. Load the page again to look around.");
   });
-  new ResizeObserver(() => view && view.resize()).observe(byId("stage"));
+  new ResizeObserver(onResize).observe(byId("stage"));
 }
 
 // The flat picture in place of the scene, and why.

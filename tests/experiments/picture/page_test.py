@@ -201,6 +201,7 @@ def check_colours(b):
 
 def check_view(b):
     """Orbit, pan, zoom, by mouse and keys; each changes the picture, and the reset brings it back."""
+    b.run("document.getElementById('canvas').focus()")
     b.key("0")
     before = look(b)
     left, top, width, height = place_of_canvas(b)
@@ -309,6 +310,8 @@ def check_looks(b, page):
             drawn(b)
             over = b.run("document.documentElement.scrollWidth - innerWidth")
             check(over <= 0, f"at {width} px the page is {over} px too wide")
+            check(b.run("farcull.view.cornersOfBoxes().every((p) => { p.project(farcull.view.camera);"
+                        "return Math.abs(p.x) <= 1 && Math.abs(p.y) <= 1; })"), f"at {width} px not all of the scene is seen")
             check(b.run("document.getElementById('canvas').clientHeight") > 300, f"at {width} px the scene is small")
             if os.environ.get("FARCULL_PAGE_SHOTS"):
                 drawn(b)
