@@ -224,7 +224,7 @@ section() {
 }
 # shellcheck disable=SC2016 # the backticks are those of the page
 {
-  printf '# %s\n\nMade by `bash experiments/hardware.sh` with %s, on %s, with a budget of %s minutes.\n' \
+  printf '# %s\n\nMade by `bash experiments/hardware.sh` with %s, on %s; the budget of the last call was %s minutes.\n' \
     "$renderer" "$version" "$(date -u +%F)" "$minutes"
   printf '%s, %d threads, %s MiB of memory, %s.\n' "$processor" "$cores" \
     "$(awk '/^MemTotal/ { print int($2 / 1024) }' /proc/meminfo)" "$(sed -n 's/^PRETTY_NAME="\(.*\)"/\1/p' /etc/os-release 2>/dev/null)"
