@@ -33,15 +33,18 @@ farcull_packages=(
   libsqlitecpp-dev libsqlite3-dev libpng-dev libfreetype-dev fonts-dejavu-core gnuplot-nox
   # pages of pictures; the build works without
   libjs-three
+  # the Python module; the build works without
+  python3-dev pybind11-dev python3-numpy
   # libraries that farcull bench compares with, and benchmarks of kernels; the build works without
   libfcl-dev libembree-dev libbullet-dev libode-dev libtbb-dev libbenchmark-dev
 )
 # What only tests need, which skip what is missing and name it: the test of the report opens the page
 # in a browser, prints it, reads the PDF, and compiles its LaTeX (39 MB to fetch, 124 MB on the disk;
 # the browser alone takes 290 MB); another one makes the paper a PDF (32 MB to fetch, 202 MB on the
-# disk); another one reads the manual and tries completion; gappa proves the bounds of rounding errors.
+# disk); another one reads the manual and tries completion; gappa proves the bounds of rounding errors;
+# those of the Python module take pytest and hypothesis, and install it into a virtual environment.
 farcull_test_packages=(gappa chromium python3 poppler-utils sqlite3 texlive-latex-base pandoc texlive-latex-recommended
-  librsvg2-bin mandoc groff-base man-db zsh fish)
+  librsvg2-bin mandoc groff-base man-db zsh fish python3-pytest python3-hypothesis python3-venv python3-pip)
 
 # Prints those of farcull_packages that are not completely installed, one per line.
 farcull_missing() {

@@ -47,6 +47,7 @@ experiments/picture        experiments/measure
 experiments/report/chapters experiments/studies experiments/picture
 experiments/report         experiments/report/chapters
 experiments/command        experiments/report experiments/library
+experiments/python         experiments/command
 tests                      *
 '
 
@@ -67,7 +68,7 @@ GMP/MPFR   ^(gmp|gmpxx|mpfr)\.h$           verify verify/certificate tests
 zlib       ^zlib\.h$                       experiments/scenes/mesh tests
 '
 
-export most_folders=18 # in experiments/
+export most_folders=20 # in experiments/
 ours=(core offsets verify experiments tests)
 top=(CMakeLists.txt README.md docs "${ours[@]}")
 source_names=(-name '*.h' -o -name '*.cpp' -o -name '*.glsl' -o -name '*.vert' -o -name '*.frag'
