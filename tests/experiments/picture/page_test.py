@@ -303,11 +303,13 @@ def check_looks(b, page):
     check(seen == ["none", "none", "none", "block"], f"printed: {seen}")
     check(b.run("document.getElementById('flat').naturalWidth") > 1000, "the flat picture is not printed")
     b.media("", prefers_color_scheme="light")
+    shown(b, page)  # the button's choice is forgotten
     for width, height in ((360, 740), (1024, 768), (1920, 1080)):
         for theme in ("light", "dark"):
             b.size(width, height)
             b.media(prefers_color_scheme=theme)
-            drawn(b)
+            paper = DARK if theme == "dark" else PAPER
+            check(pixel(b, 3, 3) == paper, f"{theme} at {width} px is {pixel(b, 3, 3)}")
             over = b.run("document.documentElement.scrollWidth - innerWidth")
             check(over <= 0, f"at {width} px the page is {over} px too wide")
             check(b.run("farcull.view.cornersOfBoxes().every((p) => { p.project(farcull.view.camera);"
