@@ -20,19 +20,18 @@ constexpr std::size_t kBetweenCounts = 64;
 /// What all threads have found. Throws where it is too much.
 class Count {
  public:
-  Count(const SceneTrees& trees, std::size_t most) : trees_(trees), most_(most) {}
+  explicit Count(std::size_t most) : most_(most) {}
   void add(std::size_t pairs) {
     if (found_.fetch_add(pairs) + pairs <= most_) return;
     throw Error(
-        trees_.scene().name,
-        "more than " + std::to_string(most_) +
-            " pairs of triangles are within the distance that is asked for",
+        "within",
+        "has more than " + std::to_string(most_) +
+            " pairs of triangles, which are too many to list",
         "give a smaller distance, or ask for the pairs without their distances: farcull run "
         "--clearance");
   }
 
  private:
-  const SceneTrees& trees_;
   std::size_t most_;
   std::atomic<std::size_t> found_ = 0;
 };
@@ -58,7 +57,7 @@ std::vector<TrianglePair> pairs_within(const SceneTrees& trees, double limit, st
                                        unsigned threads, ProximityCounts& counts) {
   const Scene& scene = trees.scene();
   const std::size_t objects = scene.objects.size();
-  Count count(trees, most);
+  Count count(most);
   std::vector<std::vector<TrianglePair>> found(objects);
   std::vector<ProximityCounts> parts(objects);
   for_each_with_memory<SearchMemory>(objects, threads, [&](std::size_t o, SearchMemory& memory) {
