@@ -4,7 +4,7 @@
 #   bash experiments/paper.sh [--figures FARCULL_FIGURES] [--out FILE.pdf]
 #     --figures  the program that draws them; without it, it is built in build/
 #     --out      the PDF; the figures are then drawn beside it and docs/ stays as it is
-# It needs pandoc, texlive-latex-base, texlive-latex-recommended and librsvg2-bin. Without --figures it
+# It needs pandoc, texlive-latex-base, texlive-latex-recommended, lmodern and librsvg2-bin. Without --figures it
 # installs them, as experiments/setup.sh does. Where one is missing the figures are drawn, what is
 # missing is named, and the status is 77.
 set -euo pipefail
@@ -26,7 +26,7 @@ if [[ -z $figures ]]; then
   # shellcheck source-path=SCRIPTDIR source=setup.sh
   source "$root/experiments/setup.sh"
   cd "$root"
-  farcull_packages+=(pandoc texlive-latex-base texlive-latex-recommended librsvg2-bin)
+  farcull_packages+=(pandoc texlive-latex-base texlive-latex-recommended lmodern librsvg2-bin)
   farcull_setup
   farcull_build farcull_figures
   figures=$root/build/farcull_figures
@@ -40,10 +40,15 @@ fi
 "$figures" "$root/tests/cases/crossings-beside-pixel-corners.obj" "$folder"
 for tool in pandoc pdflatex rsvg-convert; do
   if ! command -v "$tool" >/dev/null; then
-    echo "paper: NOT RUN: $tool is missing (Debian: pandoc texlive-latex-base texlive-latex-recommended librsvg2-bin)"
+    echo "paper: NOT RUN: $tool is missing (Debian: pandoc texlive-latex-base texlive-latex-recommended lmodern librsvg2-bin)"
     exit 77
   fi
 done
+# The fonts that pandoc's template asks for. texlive-base only recommends them.
+if ! kpsewhich lmodern.sty >/dev/null; then
+  echo "paper: NOT RUN: lmodern.sty is missing (Debian: lmodern)"
+  exit 77
+fi
 
 export SOURCE_DATE_EPOCH=0 FORCE_SOURCE_DATE=1 # the same text gives the same PDF
 work=$(mktemp -d)

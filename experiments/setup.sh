@@ -43,7 +43,7 @@ farcull_packages=(
 # the browser alone takes 290 MB); another one makes the paper a PDF (32 MB to fetch, 202 MB on the
 # disk); another one reads the manual and tries completion; gappa proves the bounds of rounding errors;
 # those of the Python module take pytest and hypothesis, and install it into a virtual environment.
-farcull_test_packages=(gappa chromium python3 poppler-utils sqlite3 texlive-latex-base pandoc texlive-latex-recommended
+farcull_test_packages=(gappa chromium python3 poppler-utils sqlite3 texlive-latex-base pandoc texlive-latex-recommended lmodern
   librsvg2-bin mandoc groff-base man-db zsh fish python3-pytest python3-hypothesis python3-venv python3-pip)
 
 # Prints those of farcull_packages that are not completely installed, one per line.

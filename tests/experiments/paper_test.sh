@@ -3,7 +3,7 @@
 # nothing stands off the page. Then papers that must not pass.
 #   paper_test.sh FIGURES    the program farcull_figures
 # Status 77: not run, for want of pandoc or LaTeX (Debian: pandoc texlive-latex-base
-# texlive-latex-recommended librsvg2-bin) or of the tools that read the PDF (poppler-utils).
+# texlive-latex-recommended lmodern librsvg2-bin) or of the tools that read the PDF (poppler-utils).
 # Dollars in single quotes are those of sed.
 # shellcheck disable=SC2016
 set -euo pipefail
@@ -11,7 +11,11 @@ set -euo pipefail
 figures=$(realpath "$1")
 root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
 # shellcheck source-path=SCRIPTDIR source=script_lab.sh
-source "$(dirname -- "${BASH_SOURCE[0]}")/script_lab.sh" paper pandoc pdflatex rsvg-convert pdfinfo pdftotext
+source "$(dirname -- "${BASH_SOURCE[0]}")/script_lab.sh" paper pandoc pdflatex rsvg-convert pdfinfo pdftotext kpsewhich
+if ! kpsewhich lmodern.sty >/dev/null; then
+  echo "paper: NOT RUN: lmodern.sty is missing (experiments/setup.sh installs it)"
+  exit 77
+fi
 
 # paper OF TO: the paper of the checkout OF as TO/paper.pdf; what is said in TO/said.
 paper() {
