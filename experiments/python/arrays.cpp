@@ -16,6 +16,8 @@ namespace farcull::python {
 namespace {
 
 constexpr std::size_t kStopEvery = std::size_t{1} << 20;  // rows between looks for a stop
+constexpr std::size_t kBlock = 256;                       // rows that are converted at once
+static_assert(kStopEvery % kBlock == 0);
 
 [[noreturn]] void refuse(const std::string& name, const std::string& reason,
                          const std::string& remedy) {
@@ -76,6 +78,21 @@ std::uint32_t index_of(In value, const std::string& name, std::size_t row) {
               "give indices from 0 to the number of vertices - 1");
 }
 
+// Whether all numbers of a block of indices, which lie one after the other, fit. If they do, they
+// are at `to`. No branch is in the loop, so that the compiler can convert several numbers at a
+// time: of each number that does not fit, a bit above the lower 32 is set, also of a negative one,
+// whose sign fills them.
+template <class In>
+bool block_fits(const std::byte* from, std::uint32_t* to) {
+  std::uint64_t bits = 0;
+  for (std::size_t k = 0; k < 3 * kBlock; ++k) {
+    const auto wide = static_cast<std::uint64_t>(read<In>(from + k * sizeof(In)));
+    bits |= wide;
+    to[k] = static_cast<std::uint32_t>(wide);
+  }
+  return bits <= std::numeric_limits<std::uint32_t>::max();
+}
+
 // Calls with a value of the type.
 template <class Call>
 void with_integer(char kind, std::size_t size, const Call& call) {
@@ -127,6 +144,14 @@ void Rows::copy(std::vector<Out>& memory) const {
   for (std::size_t row = 0; row < rows_; ++row) {
     if (row % kStopEvery == 0) stop_point();
     const std::byte* from = data_ + static_cast<std::ptrdiff_t>(row) * row_stride_;
+    if constexpr (std::is_same_v<Out, std::uint32_t>) {
+      // One that does not fit is named below.
+      if (packed(sizeof(In)) && row + kBlock <= rows_ && block_fits<In>(from, to)) {
+        row += kBlock - 1;
+        to += 3 * kBlock;
+        continue;
+      }
+    }
     for (int k = 0; k < 3; ++k, from += column_stride_) {
       if constexpr (std::is_same_v<Out, double>) {
         *to++ = double_of(read<In>(from), name_, row);
@@ -177,8 +202,8 @@ Given::Given(const py::array& vertices, const py::array& triangles, const py::ar
   }
 }
 
-ColliderInput Given::input() {
-  return {vertices_.doubles(vertex_memory_), triangles_.indices(triangle_memory_), starts_};
+ColliderInput Given::input(Copies& copies) const {
+  return {vertices_.doubles(copies.vertices), triangles_.indices(copies.triangles), starts_};
 }
 
 std::vector<TrianglePair> pairs_of(const py::array& array, const std::string& name,

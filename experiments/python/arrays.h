@@ -43,18 +43,24 @@ class Rows {
   std::size_t size_ = 8;                               // bytes of a number
 };
 
+/// Copies of arrays that the library cannot take as they are. Kept from call to call, no call but
+/// the first has to ask the system for memory.
+struct Copies {
+  std::vector<double> vertices;
+  std::vector<std::uint32_t> triangles;
+};
+
 /// What a call is about. Only its construction and its end need the interpreter.
 class Given {
  public:
   Given(const py::array& vertices, const py::array& triangles, const py::array& object_starts);
-  /// Copies the arrays where the library cannot take them as they are. To be called once.
-  ColliderInput input();
+  /// Overwrites `copies` where the library cannot take the arrays as they are. The input is valid
+  /// as long as this object and the copies are, and the copies are not changed.
+  ColliderInput input(Copies& copies) const;
 
  private:
   Rows vertices_, triangles_;
   std::vector<std::uint32_t> starts_;
-  std::vector<double> vertex_memory_;
-  std::vector<std::uint32_t> triangle_memory_;
 };
 
 /// (k, 2), whatever the type of the pairs, which have a and b.
@@ -66,6 +72,15 @@ py::array_t<std::int64_t> pair_array(const Pairs& pairs) {
     *to++ = pair.a;
     *to++ = pair.b;
   }
+  return out;
+}
+
+/// (k): the code of each contact's kind, which is its place in farcull.KINDS.
+template <class Contacts>
+py::array_t<std::uint8_t> kind_array(const Contacts& contacts) {
+  py::array_t<std::uint8_t> out(static_cast<py::ssize_t>(contacts.size()));
+  std::uint8_t* to = out.mutable_data();
+  for (const auto& contact : contacts) *to++ = static_cast<std::uint8_t>(contact.kind);
   return out;
 }
 

@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 #include <unistd.h>
 
+#include <array>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "experiments/python/arrays.h"
 #include "experiments/python/parts.h"
+#include "verify/contact_kind.h"
 
 namespace farcull::python {
 namespace {
@@ -52,16 +54,21 @@ py::dict report_of(const ColliderReport& report) {
   out["exact_ms"] = report.exact_ms;
   out["candidates"] = report.candidates;
   out["neighbours"] = report.neighbours;
+  out["decided"] = report.decided;
+  out["contacts_ms"] = report.contacts_ms;
   out["callers_arithmetic"] = report.callers_arithmetic;
   out["views"] = std::move(views);
   out["stages"] = std::move(stages);
   return out;
 }
 
-py::dict result_of(const ColliderResult& result) {
+py::dict result_of(const ColliderResult& result, bool kinds) {
   py::dict out;
   out["pairs"] = pair_array(result.pairs);
   out["neighbour_pairs"] = pair_array(result.neighbour_pairs);
+  out["kinds"] = kinds ? py::object(kind_array(result.contacts)) : py::none();
+  out["neighbour_kinds"] = kinds ? py::object(kind_array(result.neighbour_contacts)) : py::none();
+  out["complete"] = result.complete;
   out["report"] = report_of(result.report);
   return out;
 }
@@ -70,7 +77,8 @@ py::dict result_of(const ColliderResult& result) {
 // its device.
 class KeptCollider {
  public:
-  explicit KeptCollider(const ColliderOptions& options) : process_(::getpid()) {
+  explicit KeptCollider(const ColliderOptions& options)
+      : process_(::getpid()), kinds_(options.contacts != ColliderContacts::none) {
     beside([&] { collider_ = std::make_unique<Collider>(options); });
   }
 
@@ -83,13 +91,16 @@ class KeptCollider {
     if (!busy) {
       raise("Collider", "is in use by another thread", "make one for each thread", false);
     }
-    Given given(vertices, triangles, starts);
-    const ColliderResult result = answer_beside([&] { return collider_->find(given.input()); });
-    return result_of(result);
+    const Given given(vertices, triangles, starts);
+    const ColliderResult result =
+        answer_beside([&] { return collider_->find(given.input(copies_)); });
+    return result_of(result, kinds_);
   }
 
  private:
   pid_t process_;
+  bool kinds_;
+  Copies copies_;
   std::mutex mutex_;
   std::unique_ptr<Collider> collider_;
 };
@@ -128,9 +139,11 @@ py::list distances_of(const py::array& vertices, const py::array& triangles,
                                       .self_objects = self_objects,
                                       .inside = inside,
                                       .threads = threads};
-  Given given(vertices, triangles, starts);
-  const std::vector<DistanceAnswer> answers =
-      answer_beside([&] { return distances(given.input(), options); });
+  const Given given(vertices, triangles, starts);
+  const std::vector<DistanceAnswer> answers = answer_beside([&] {
+    Copies copies;
+    return distances(given.input(copies), options);
+  });
   py::list out;
   for (const DistanceAnswer& d : answers) {
     py::dict answer;
@@ -152,20 +165,32 @@ void add_collider(py::module_& module) {
   py::class_<KeptCollider>(module, "Collider")
       .def(py::init([](const std::string& device, unsigned threads, bool self,
                        const std::vector<bool>& self_objects, double clearance, bool neighbours,
-                       const std::string& views, int resolution) {
+                       bool kinds, const std::vector<std::array<std::uint32_t, 2>>& ignore,
+                       std::uint64_t limit, const std::string& views, int resolution) {
+             const ColliderContacts contacts =
+                 kinds ? ColliderContacts::kinds : ColliderContacts::none;
              return std::make_unique<KeptCollider>(ColliderOptions{.device = device_of(device),
                                                                    .threads = threads,
                                                                    .self = self,
                                                                    .self_objects = self_objects,
                                                                    .clearance = clearance,
                                                                    .neighbours = neighbours,
+                                                                   .contacts = contacts,
+                                                                   .ignore = ignore,
+                                                                   .limit = limit,
                                                                    .views = views,
                                                                    .resolution = resolution});
            }),
            py::kw_only(), py::arg("device"), py::arg("threads"), py::arg("all_objects"),
-           py::arg("self_objects"), py::arg("clearance"), py::arg("neighbours"), py::arg("views"),
-           py::arg("resolution"))
+           py::arg("self_objects"), py::arg("clearance"), py::arg("neighbours"), py::arg("kinds"),
+           py::arg("ignore"), py::arg("limit"), py::arg("views"), py::arg("resolution"))
       .def("find", &KeptCollider::find);
+  // Codes of kinds are places in this tuple, whichever of the two enumerations they come from.
+  static_assert(static_cast<int>(ColliderContactKind::touch_face) + 1 == kContactKinds.size());
+  py::tuple kinds(kContactKinds.size());
+  for (std::size_t k = 0; k < kContactKinds.size(); ++k)
+    kinds[k] = to_string(static_cast<ColliderContactKind>(k));
+  module.attr("kinds") = kinds;
 }
 
 void add_distances(py::module_& module) { module.def("distances", &distances_of); }

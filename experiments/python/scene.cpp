@@ -24,10 +24,11 @@ using Kept = std::unique_ptr<KeptScene>;
 Kept from_arrays(const py::array& vertices, const py::array& triangles, const py::array& starts,
                  const std::string& name, const std::vector<std::string>& names, bool self,
                  const std::vector<bool>& self_objects) {
-  Given given(vertices, triangles, starts);
+  const Given given(vertices, triangles, starts);
   return answer_beside([&] {
     Scene scene;
-    take(given.input(), self, self_objects, scene);
+    Copies copies;
+    take(given.input(copies), self, self_objects, scene);
     scene.name = name;
     if (!names.empty() && names.size() != scene.objects.size()) {
       throw Error("names",

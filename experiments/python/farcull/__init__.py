@@ -19,7 +19,7 @@ from . import _farcull
 
 _farcull.require_main_interpreter()  # before numpy is imported, which needs it as well
 
-from ._collide import Collider, Distance, Report, Result, collide, distances, join
+from ._collide import KINDS, Collider, Distance, Report, Result, collide, distances, join
 from ._runs import Check, Picture, Plan, Record, check, picture, plan
 from ._scenes import Frames, Scene, builtin_scenes
 
@@ -30,6 +30,7 @@ __all__ = [
     "Error",
     "Frames",
     "InputError",
+    "KINDS",
     "Picture",
     "Plan",
     "Record",

@@ -128,6 +128,39 @@ def require_something(objects: int, all_objects: bool, each: List[bool]) -> None
         )
 
 
+def ignored(given: Any) -> List[List[int]]:
+    """Pairs of different objects, by their numbers; None stands for no pair."""
+    if given is None:
+        return []
+    remedy = "give rows of two numbers of objects, as in [(0, 1), (0, 2)]"
+    try:
+        rows = np.asarray(given)
+    except MemoryError:
+        raise
+    except Exception as error:
+        raise InputError("ignore", f"cannot be read as an array ({error})", remedy) from error
+    if rows.size == 0:
+        return []
+    if rows.ndim != 2 or rows.shape[1] != 2 or rows.dtype.kind not in "iu":
+        raise InputError("ignore", "are no rows of two whole numbers", remedy)
+    out = rows.tolist()
+    for k, (a, b) in enumerate(out):
+        if not (0 <= min(a, b) and max(a, b) < 2**32):
+            raise InputError("ignore", f"row {k} names objects {a} and {b}", remedy)
+        if a == b:
+            raise InputError(
+                "ignore",
+                f"row {k} names object {a} twice",
+                "give two different objects; self says which are tested against themselves",
+            )
+    return out
+
+
+def limit(given: Any) -> int:
+    """How many pairs at most; None, as 0 for the library, stands for all."""
+    return 0 if given is None else integer("limit", given, 1, 2**64 - 1)
+
+
 def words(**options: Any) -> List[str]:
     """Options as on the command line. None and False are left out."""
     out = []

@@ -1,13 +1,25 @@
 """Pairs of triangles that collide, and distances of objects."""
 
 from dataclasses import dataclass
-from typing import Any, Dict, List, Sequence, Tuple, Union
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _arguments, _farcull
 from ._errors import InputError
+
+KINDS: Tuple[str, ...] = _farcull.kinds
+"""How two triangles A and B meet: the first that is true.
+
+- "apart": no point in common, and within the clearance;
+- "equal": the same set of points;
+- "touch-vertex": one point in common, which is a corner of A or of B;
+- "touch-edge": one point in common, which is on an edge of A and on an edge of B;
+- "coplanar": in one plane, and more than one point in common;
+- "crossing": a point in common that is on no edge of A and on no edge of B;
+- "touch-face": a segment in common that is on an edge of A or of B.
+"""
 
 
 @dataclass(frozen=True)
@@ -20,8 +32,10 @@ class Report:
     promises_reason: str
     candidates_ms: float  # wall clock, from the input to the candidates
     exact_ms: float  # wall clock of the exact tests
-    candidates: int
-    neighbours: int  # candidates that are neighbours, colliding or not
+    candidates: int  # without those of ignored objects
+    decided: int  # candidates that exact tests decided; fewer where the limit was reached before
+    neighbours: int  # of those decided, neighbours, colliding or not
+    contacts_ms: float  # wall clock of the kinds of contact
     callers_arithmetic: str  # how the calling thread computes, where that is unusual; else empty
     views: List[Dict[str, Any]]
     stages: List[Dict[str, Any]]
@@ -37,6 +51,13 @@ class Result:
     neighbour_pairs: NDArray[np.int64]
     """The same of neighbours: triangles of one object that share a vertex position, and that meet in
     more than the shared positions and the edge between them."""
+    kinds: Optional[NDArray[np.uint8]]
+    """(k,): how each of ``pairs`` meets, as its place in :data:`KINDS`; None unless asked for."""
+    neighbour_kinds: Optional[NDArray[np.uint8]]
+    """The same of ``neighbour_pairs``."""
+    complete: bool
+    """False: the limit was reached, and there may be more pairs behind the last one. Before it none is
+    missing."""
     report: Report
 
 
@@ -52,6 +73,11 @@ class Collider:
     - ``self``: every object is tested against itself as well; or one truth value for each object.
     - ``clearance``: pairs at this distance or less collide too. World units, finite, 0 or more.
     - ``neighbours``: False: neighbours are counted, not decided.
+    - ``kinds``: True: say of each pair how the two triangles meet (:data:`KINDS`).
+    - ``ignore``: (k, 2) pairs of different objects, by their numbers from 0, that are not tested
+      against each other.
+    - ``limit``: only the first so many pairs, neighbours among them, in the order of the rows; 1 or
+      more. None: all.
     - ``device``: "cpu"; "gl" (OpenGL 4.3 through EGL, without a window); or "best": the CPU where
       boxes of runs decide, else gl if hardware answers, else the CPU.
     - ``threads``: up to 1024; 0: one for each core.
@@ -70,6 +96,9 @@ class Collider:
         neighbours: bool = True,
         device: str = "cpu",
         threads: int = 0,
+        kinds: bool = False,
+        ignore: Optional[ArrayLike] = None,
+        limit: Optional[int] = None,
         views: str = "auto",
         resolution: int = 0,
     ) -> None:
@@ -81,6 +110,9 @@ class Collider:
             self_objects=collider._each,
             clearance=_arguments.number("clearance", clearance),
             neighbours=_arguments.flag("neighbours", neighbours),
+            kinds=_arguments.flag("kinds", kinds),
+            ignore=_arguments.ignored(ignore),
+            limit=_arguments.limit(limit),
             views=_arguments.text("views", views),
             resolution=_arguments.integer("resolution", resolution, 0, 16384),
         )
@@ -93,18 +125,15 @@ class Collider:
         - ``objects``: the number of the first triangle of each object, ascending from 0. None: all
           triangles are one object, which has to be tested against itself.
 
-        Raises InputError for arrays that are not so, Error for a fault of the device, and MemoryError.
+        Raises InputError for arrays that are not so, and where ``ignore`` names an object that is not
+        there; Error for a fault of the device, and MemoryError.
         The collider can be used again after each, and after Ctrl-C.
         """
         triangles = _arguments.array("triangles", F)
         starts = _arguments.starts(objects, triangles)
         _arguments.require_something(len(starts), self._all, self._each)
         found = self._collider.find(_arguments.array("vertices", V), triangles, starts)
-        return Result(
-            pairs=found["pairs"],
-            neighbour_pairs=found["neighbour_pairs"],
-            report=Report(**found["report"]),
-        )
+        return Result(**{**found, "report": Report(**found["report"])})
 
 
 def collide(
@@ -116,6 +145,9 @@ def collide(
     neighbours: bool = True,
     device: str = "cpu",
     threads: int = 0,
+    kinds: bool = False,
+    ignore: Optional[ArrayLike] = None,
+    limit: Optional[int] = None,
 ) -> Result:
     """All pairs of triangles that collide: of different objects, and of one that is tested against
     itself. The parameters are those of :class:`Collider` and :meth:`Collider.find`.
@@ -123,7 +155,14 @@ def collide(
     For many frames, keep a Collider.
     """
     collider = Collider(
-        self=self, clearance=clearance, neighbours=neighbours, device=device, threads=threads
+        self=self,
+        clearance=clearance,
+        neighbours=neighbours,
+        device=device,
+        threads=threads,
+        kinds=kinds,
+        ignore=ignore,
+        limit=limit,
     )
     return collider.find(V, F, objects)
 

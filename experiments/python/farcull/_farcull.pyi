@@ -5,6 +5,8 @@ from typing import Any, List, Optional, Sequence, Tuple
 from numpy import float64, int64, uint8, uint32
 from numpy.typing import NDArray
 
+kinds: Tuple[str, ...]
+
 def require_main_interpreter() -> None: ...
 
 class Collider:
@@ -17,6 +19,9 @@ class Collider:
         self_objects: Sequence[bool],
         clearance: float,
         neighbours: bool,
+        kinds: bool,
+        ignore: Sequence[Sequence[int]],
+        limit: int,
         views: str,
         resolution: int,
     ) -> None: ...

@@ -38,6 +38,26 @@ def test_every_type_of_triangles_answers_the_same(kind):
     assert farcull.collide(V, F.astype(kind), OBJECTS).pairs.tolist() == [[0, 1]]
 
 
+@pytest.mark.parametrize("kind", ["i1", "i2", "i4", "i8", "u1", "u2", "u4", "u8"])
+def test_many_triangles_of_every_type_are_read_exactly(kind):
+    # More rows than are converted at once, and some that are left over.
+    rng = np.random.default_rng(20261124)
+    most = min(np.iinfo(kind).max, 999)
+    given = rng.integers(0, most + 1, (1000, 3)).astype(kind)
+    for rows in (0, 1, 255, 256, 257, 1000):
+        scene = farcull.Scene.from_arrays(np.zeros((1000, 3)), given[:rows])
+        assert np.array_equal(scene.triangles, given[:rows])
+
+
+@pytest.mark.parametrize("row", [0, 255, 256, 511, 700, 999])
+@pytest.mark.parametrize("value", [-1, 2**32, 2**32 + 1, 2**63 - 1, -(2**63), -(2**32)])
+def test_an_index_that_does_not_fit_is_named_with_its_row(row, value):
+    given = np.zeros((1000, 3), np.int64)
+    given[row, row % 3] = value
+    error = error_of(farcull.collide, V, given, self=True)
+    assert error.where == "triangles" and error.reason == f"triangle {row} names vertex {value}"
+
+
 def test_half_precision_is_read_exactly():
     # Every finite number of half precision, subnormal ones too, as the x of a point.
     halves = np.arange(1 << 16, dtype=np.uint16).view(np.float16)
@@ -139,6 +159,24 @@ def bad_arguments():
         ("clearance", dict(clearance="0")),
         ("clearance", dict(clearance=10**400)),
         ("neighbours", dict(neighbours=1)),
+        ("kinds", dict(kinds=1)),
+        ("kinds", dict(kinds="crossing")),
+        ("ignore", dict(ignore=[(0, 3)])),
+        ("ignore", dict(ignore=[(0, 1), (1, 1)])),
+        ("ignore", dict(ignore=[(-1, 0)])),
+        ("ignore", dict(ignore=[(0, 2**32)])),
+        ("ignore", dict(ignore=[(0, 2**70)])),
+        ("ignore", dict(ignore=[(0.0, 1.0)])),
+        ("ignore", dict(ignore=[(0, 1, 2)])),
+        ("ignore", dict(ignore=[(0, 1), (2,)])),
+        ("ignore", dict(ignore=[("base", "hand")])),
+        ("ignore", dict(ignore="0:1")),
+        ("ignore", dict(ignore=True)),
+        ("limit", dict(limit=0)),
+        ("limit", dict(limit=-1)),
+        ("limit", dict(limit=2**64)),
+        ("limit", dict(limit=1.0)),
+        ("limit", dict(limit=True)),
         ("device", dict(device="toaster")),
         ("device", dict(device=0)),
         ("threads", dict(threads=-1)),
@@ -187,6 +225,9 @@ def test_the_compiled_module_refuses_what_the_package_would_not_give_it():
         self_objects=[],
         clearance=0.0,
         neighbours=True,
+        kinds=False,
+        ignore=[],
+        limit=0,
         views="auto",
         resolution=0,
     )

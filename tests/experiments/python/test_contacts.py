@@ -1,0 +1,148 @@
+"""Kinds of contact, ignored objects and limits, against the program's own answers.
+
+FARCULL_PROGRAM names the program.
+"""
+
+import csv
+import json
+import os
+import subprocess
+
+import farcull
+import numpy as np
+import pytest
+
+PROGRAM = os.environ["FARCULL_PROGRAM"]
+OBJECTS = [0, 40, 80, 120]
+ALL = dict(self=True, kinds=True)
+
+
+def tangled(seed):
+    """Four objects of triangles between the points of a grid: many touch, are neighbours, lie in one
+    plane, or are degenerate."""
+    print("seed", seed)
+    grid = np.stack(np.meshgrid(range(4), range(4), range(4)), -1).reshape(-1, 3).astype(float)
+    return grid, np.random.default_rng(seed).integers(0, len(grid), (160, 3))
+
+
+class Program:
+    """The scene of `tangled` as mesh files, and what the program says of it."""
+
+    def __init__(self, folder, V, F):
+        self.folder = folder
+        points = "".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in V.tolist())
+        for o, first in enumerate(OBJECTS):
+            faces = "".join(f"3 {a} {b} {c}\n" for a, b, c in F[first : first + 40].tolist())
+            (folder / f"o{o}.off").write_text(f"OFF\n{len(V)} 40 0\n{points}{faces}")
+
+    def rows(self, *words):
+        """(a, b, whether neighbours, kind) of each pair in the program's order; and its record."""
+        pairs = self.folder / "pairs.csv"
+        out = subprocess.run(
+            [PROGRAM, "run", *sorted(self.folder.glob("*.off")), "--self", "--contacts"]
+            + ["--pairs", pairs, "--json", "-", "--no-verify", *words],
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        rows = []
+        for row in csv.DictReader(pairs.read_text().splitlines()):
+            a, b = (OBJECTS[int(row[f"object_{x}"])] + int(row[f"triangle_{x}"]) for x in "ab")
+            rows.append((a, b, row["neighbours"] == "1", row["contact"]))
+        return rows, json.loads(out)
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    V, F = tangled(20261124)
+    return V, F, Program(tmp_path_factory.mktemp("tangled"), V, F)
+
+
+def rows_of(result, names=None):
+    """The answer as the program's rows."""
+    out = []
+    for pairs, kinds, neighbours in (
+        (result.pairs, result.kinds, False),
+        (result.neighbour_pairs, result.neighbour_kinds, True),
+    ):
+        assert kinds.dtype == np.uint8 and kinds.shape == (len(pairs),)
+        named = np.array(names or farcull.KINDS)[kinds].tolist()
+        out += [(a, b, neighbours, kind) for (a, b), kind in zip(pairs.tolist(), named)]
+    return sorted(out)
+
+
+def test_kinds_are_those_of_the_program(scene):
+    V, F, program = scene
+    seen = set()
+    for clearance in (0, 0.5):
+        truth, _ = program.rows("--clearance", str(clearance))
+        result = farcull.collide(V, F, OBJECTS, clearance=clearance, **ALL)
+        assert rows_of(result) == truth and result.complete
+        seen |= {kind for *_, kind in truth}
+        assert min(len(result.pairs), len(result.neighbour_pairs)) > 100
+        # Twins: two names exchanged, and one kind changed, are noticed.
+        wrong = list(farcull.KINDS)
+        wrong[2], wrong[3] = wrong[3], wrong[2]
+        assert rows_of(result, wrong) != truth
+        result.neighbour_kinds[50] = (result.neighbour_kinds[50] + 1) % 7
+        assert rows_of(result) != truth
+    assert seen == set(farcull.KINDS) and len(farcull.KINDS) == 7
+
+
+def test_kinds_are_said_where_they_are_asked_for(scene):
+    V, F, _ = scene
+    asked, silent = farcull.collide(V, F, OBJECTS, **ALL), farcull.collide(V, F, OBJECTS, self=True)
+    assert silent.kinds is None and silent.neighbour_kinds is None
+    assert np.array_equal(asked.pairs, silent.pairs)
+    assert np.array_equal(asked.neighbour_pairs, silent.neighbour_pairs)
+    none = farcull.collide(V, F[:2], [0, 1], neighbours=False, kinds=True)
+    assert none.neighbour_kinds.shape == (0,)
+
+
+def test_ignored_objects_are_those_of_the_program(scene):
+    V, F, program = scene
+    whole, _ = program.rows()
+    owner = np.repeat(range(4), 40)
+    for pairs in ([(0, 2), (3, 1)], [(1, 0), (0, 1)], [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]):
+        truth, record = program.rows("--ignore", ",".join(f"o{a}:o{b}" for a, b in pairs))
+        result = farcull.collide(V, F, OBJECTS, ignore=np.array(pairs), **ALL)
+        assert rows_of(result) == truth
+        assert result.report.candidates == record["candidate_pairs"]
+        left = [r for r in whole if not {(owner[r[0]], owner[r[1]]), (owner[r[1]], owner[r[0]])} & set(pairs)]
+        assert truth == left and len(left) < len(whole)
+        # Twin: other objects, and none.
+        assert rows_of(farcull.collide(V, F, OBJECTS, ignore=[(1, 2)], **ALL)) != truth
+        for nothing in (None, [], np.empty((0, 2), int)):
+            assert rows_of(farcull.collide(V, F, OBJECTS, ignore=nothing, **ALL)) == whole
+
+
+def test_limits_are_those_of_the_program(scene):
+    V, F, program = scene
+    whole, _ = program.rows()
+    count = len(whole)
+    for limit in (1, 7, 500, count - 1, count, count + 1, 2**64 - 1):
+        truth, record = program.rows("--limit", str(limit))
+        result = farcull.collide(V, F, OBJECTS, limit=limit, **ALL)
+        assert rows_of(result) == truth == whole[:limit]
+        assert result.complete == record["complete"]
+        assert result.report.decided == record["decided_pairs"]
+        assert result.complete or limit <= count
+        assert not result.complete or limit >= count
+    assert farcull.collide(V, F, OBJECTS, limit=None, self=True).complete
+
+
+def test_frames_of_one_collider_answer_as_single_calls(scene):
+    V, F, _ = scene
+    options = dict(ALL, ignore=[(0, 1)], limit=300)
+    collider = farcull.Collider(**options)
+    for seed in range(5):
+        V, F = tangled(seed)
+        for types in (np.int64, np.uint32, np.int16):  # with copies and without
+            kept = collider.find(V, F.astype(types), OBJECTS)
+            assert rows_of(kept) == rows_of(farcull.collide(V, F, OBJECTS, **options))
+            assert len(rows_of(kept)) == 300 and not kept.complete
+    # An object that is not there is an error of one call alone.
+    with pytest.raises(farcull.InputError) as caught:
+        collider.find(V, F)
+    assert caught.value.where == "ignore"
+    assert len(rows_of(collider.find(V, F, OBJECTS))) == 300
