@@ -22,7 +22,7 @@
 #include "experiments/picture/three.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"
-#include "verify/contact.h"
+#include "verify/contact_kind.h"
 
 namespace farcull {
 namespace {
@@ -109,13 +109,13 @@ class PageMaker {
     json entry = geometry(scene);
     entry["frame"] = frame ? json(*frame) : json();
     std::vector<std::uint32_t> a, b;
-    std::string contacts;
     for (const TrianglePair& pair : pairs) {
       a.push_back(pair.a);
       b.push_back(pair.b);
-      const Contact contact = contact_of(scene.corners(pair.a), scene.corners(pair.b));
-      contacts += contact == Contact::penetrating ? '\1' : '\0';
     }
+    // A byte each: its place in `contacts` of finish().
+    std::string contacts;
+    for (const ContactKind kind : contact_kinds(scene, pairs)) contacts += static_cast<char>(kind);
     entry["pairs"] = pairs.size();
     entry["a"] = blocks_.add(packed_numbers(a));
     entry["b"] = blocks_.add(packed_numbers(b));
@@ -136,6 +136,8 @@ class PageMaker {
     const double largest = extent.maxCoeff();
     json objects = json::array();
     for (const Rgba& c : kObjectColours) objects.push_back(colour(c));
+    json contacts = json::array();
+    for (const ContactKind kind : kContactKinds) contacts.push_back(name_of(kind));
     const json about = {{"title", flat.scene},
                         {"hash", flat.scene_hash},
                         {"commit", FARCULL_COMMIT},
@@ -147,7 +149,7 @@ class PageMaker {
                         {"forward", vector(view.rows.row(2))},
                         {"worldUp", vector(world_up())},
                         {"zoom", arguments_.picture.zoom},
-                        {"contacts", {"touching", "penetrating"}},
+                        {"contacts", contacts},
                         {"colours",
                          {{"missed", colour(kMissedColour)},
                           {"found", colour(kFoundColour)},

@@ -1,6 +1,7 @@
 # Drives the page of `farcull picture two-tori --compare cullide,far,exact` in a browser.
-#   page_test.py PAGE SAID PAIRS MOTION SAID_OF_MOTION
-# SAID: what the command printed; PAIRS: all pairs as CSV; MOTION: the page of a scene that moves
+#   page_test.py PAGE SAID PAIRS MOTION SAID_OF_MOTION KINDS PAIRS_OF_KINDS
+# SAID: what the command printed; PAIRS: all pairs with their kinds of contact as CSV; MOTION: the page of a scene
+# that moves; KINDS: that of a triangle with a pair of each kind
 import csv
 import os
 import re
@@ -118,14 +119,14 @@ def check_steps(b, said):
 
 
 def partners(path):
-    """All partners of each triangle (object, triangle) in the CSV of --pairs."""
+    """Of each triangle (object, triangle) in the CSV of --pairs all partners, each with the kind of contact."""
     out = {}
     with open(path, encoding="utf-8") as file:
         for row in csv.DictReader(file):
             a = (int(row["object_a"]), int(row["triangle_a"]))
             b = (int(row["object_b"]), int(row["triangle_b"]))
-            out.setdefault(a, set()).add(b)
-            out.setdefault(b, set()).add(a)
+            out.setdefault(a, {})[b] = row["contact"]
+            out.setdefault(b, {})[a] = row["contact"]
     return out
 
 
@@ -164,9 +165,7 @@ def check_click(b, pairs, times=3):
         if got is None:
             continue
         listed = b.run("[...document.querySelectorAll('#chosen button')].map((e) => e.textContent)")
-        check({named(line) for line in listed} == pairs.get(got, set()), f"{got} has the pairs {listed}")
-        check(all(re.search(r": (penetrating|touching), (missed|found)$", line) for line in listed),
-              f"kinds of {listed}")
+        check(listed_pairs(b) == pairs.get(got), f"{got} has the pairs {listed}")
         check(any(line.endswith("missed") for line in listed), f"a missed triangle without a miss: {listed}")
         tried += got == wanted
         # A button chooses the partner.
@@ -178,6 +177,22 @@ def check_click(b, pairs, times=3):
     check(tried > 0, "no click found the triangle that was aimed at")
     b.key("Escape")
     b.key("0")
+
+
+def listed_pairs(b):
+    """The partners of the chosen triangle that the page lists, each with the kind of contact."""
+    lines = b.run("[...document.querySelectorAll('#chosen button')].map((e) => e.textContent)")
+    return {named(line): re.search(r": ([a-z-]+), (?:missed|found)$", line)[1] for line in lines}
+
+
+def check_kinds(b, page, pairs):
+    """Triangle 0 meets others in each kind of contact that there is without a clearance."""
+    shown(b, page)
+    b.run("choose(0)")
+    drawn(b)
+    listed = listed_pairs(b)
+    check(listed == pairs[0, 0], f"kinds are {listed}")
+    check(len(set(listed.values())) == 6, f"the case lacks kinds: {listed}")
 
 
 def check_colours(b):
@@ -373,9 +388,9 @@ def spoiled(page, old, new):
     return "spoiled.html"
 
 
-def check_twins(b, page, pairs):
+def check_twins(b, page, pairs, kinds):
     """Faults that the checks have to catch: each must leave a problem or a failure."""
-    def caught(what, old, new, act):
+    def caught(what, old, new, act, page=page):
         global failures, in_twin
         kept, failures, b.problems, in_twin = failures, [], [], True
         try:
@@ -409,6 +424,8 @@ def check_twins(b, page, pairs):
     caught("an exception", START, "\nsetTimeout(() => nothing_of_this_name());start().catch(", looks)
     caught("a block that is damaged", 'id="block-0">', 'id="block-0">AAAA', damaged)
     caught("misses in another colour", "if (part == 2) colour = missed;", "if (part == 2) colour = found;", misses)
+    caught("kinds of contact by other names", '"coplanar","crossing"', '"crossing","coplanar"',
+           lambda path: check_kinds(b, path, kinds[1]), kinds[0])
     caught("a click beside", "int id = number + 1;", "int id = number + 2;", click)
 
 
@@ -425,7 +442,9 @@ def main():
             print(f"picture.page: {time.monotonic() - begun:.1f} s", flush=True)
         check(not b.problems, f"the page has problems: {b.problems}")
         check_frames(b, sys.argv[4], open(sys.argv[5], encoding="utf-8").read().splitlines())
-        check_twins(b, page, pairs)
+        kinds = (sys.argv[6], partners(sys.argv[7]))
+        check_kinds(b, *kinds)
+        check_twins(b, page, pairs, kinds)
     with Browser("--disable-3d-apis") as b:
         shown(b, page)
         check(b.run("getComputedStyle(document.getElementById('flat')).display") == "block" and

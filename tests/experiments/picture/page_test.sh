@@ -21,5 +21,13 @@ fi
 ((status == 0)) || { cat errors >&2; exit 1; }
 "$farcull" picture two-spheres --compare cullide:64,far-pairs --frames 3:6 --size 200x160 \
   --html spheres.html >said-of-frames || exit 1
-"$farcull" run two-tori --method exact --no-verify --pairs pairs.csv >/dev/null || exit 1
-PYTHONDONTWRITEBYTECODE=1 python3 "$here/page_test.py" tori.html said pairs.csv spheres.html said-of-frames || exit 1
+"$farcull" run two-tori --method exact --no-verify --pairs pairs.csv --contacts >/dev/null || exit 1
+# Triangles that meet the one of a.off: equal, crossing, touch-vertex, touch-edge, coplanar, touch-face.
+printf '%s\n' OFF '3 1 0' '0 0 0' '8 0 0' '0 8 0' '3 0 1 2' >a.off
+printf '%s\n' OFF '18 6 0' '0 0 0' '8 0 0' '0 8 0' '1 1 -1' '1 1 1' '1 3 0.5' '4 2 0' '4 2 3' '5 2 3' \
+  '2 0 -1' '2 0 1' '2 -3 0' '1 1 0' '2 1 0' '1 2 0' '1 1 0' '3 1 0' '2 1 5' \
+  '3 0 1 2' '3 3 4 5' '3 6 7 8' '3 9 10 11' '3 12 13 14' '3 15 16 17' >b.off
+"$farcull" picture a.off b.off --compare exact --size 200x160 --html kinds.html >/dev/null || exit 1
+"$farcull" run a.off b.off --no-verify --pairs kinds.csv --contacts >/dev/null || exit 1
+PYTHONDONTWRITEBYTECODE=1 python3 "$here/page_test.py" tori.html said pairs.csv spheres.html said-of-frames \
+  kinds.html kinds.csv || exit 1
