@@ -2,6 +2,7 @@
 // of the same names do.
 #include <pybind11/stl.h>
 
+#include <array>
 #include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/scene/ignored.h"
 #include "experiments/command/run_options.h"
 #include "experiments/measure/lab.h"
 #include "experiments/picture/picture.h"
@@ -41,22 +43,35 @@ struct KeptRecord {
     if (known.false_negatives <= known.examples.size()) return known.examples;
     return account(*scene, pairs_left(record),
                    {.clearance = record.options.clearance,
-                    .max_examples = static_cast<std::size_t>(known.false_negatives)})
+                    .max_examples = static_cast<std::size_t>(known.false_negatives),
+                    .ignored = record.options.ignored})
         .examples;
   }
 };
 
-KeptRecord run_of(const KeptScene& kept, const Words& words, unsigned threads) {
+// ignore: pairs of two different objects of the scene; limit: 0 for none.
+KeptRecord run_of(const KeptScene& kept, const Words& words, unsigned threads, bool kinds,
+                  const std::vector<std::array<std::uint32_t, 2>>& ignore, std::uint64_t limit) {
   return answer_beside([&] {
-    const RunOptions options = parse_run_options(words);
+    RunOptions options = parse_run_options(words);
+    options.contacts = kinds ? ContactDetail::kinds : ContactDetail::none;
+    for (const auto& [a, b] : ignore) options.ignored.push_back({a, b});
+    options.ignored = in_order(std::move(options.ignored));
+    options.limit = limit;
     Session session(options.device, threads, Say());
     return KeptRecord{kept.scene, run(*kept.scene, options, session, stopping_progress())};
   });
 }
 
+py::object kinds_of(const KeptRecord& kept, const std::vector<ContactShape>& contacts) {
+  if (kept.record.options.contacts == ContactDetail::none) return py::none();
+  return kind_array(contacts);
+}
+
 py::dict accounting_of(const Accounting& accounting) {
   py::dict out;
   out["pairs_total"] = accounting.pairs_total;
+  out["ignored"] = accounting.ignored;
   out["pairs_kept"] = accounting.pairs_kept;
   out["certified_by_boxes"] = accounting.certified_by_boxes;
   out["neighbours"] = accounting.neighbours;
@@ -188,6 +203,12 @@ void add_runs(py::module_& module) {
       .def_property_readonly(
           "neighbour_pairs",
           [](const KeptRecord& k) { return pair_array(k.record.collisions.neighbour_pairs); })
+      .def_property_readonly("kinds",
+                             [](const KeptRecord& k) { return kinds_of(k, k.record.contacts); })
+      .def_property_readonly(
+          "neighbour_kinds",
+          [](const KeptRecord& k) { return kinds_of(k, k.record.neighbour_contacts); })
+      .def_property_readonly("complete", [](const KeptRecord& k) { return k.record.complete; })
       .def_property_readonly("bits",
                              [](py::object self) {
                                const auto& bits = self.cast<const KeptRecord&>().record.found.bits;
@@ -224,6 +245,10 @@ void add_runs(py::module_& module) {
              return answer_beside([&] { return run_table(*k.scene, k.record); });
            })
       .def("certificate", [](const KeptRecord& k) {
+        if (k.record.options.limit > 0 || !k.record.options.ignored.empty()) {
+          raise("certificate", "is about all colliding pairs of all objects",
+                "run without ignore and limit", true);
+        }
         return answer_beside([&] { return to_text(certificate_of(*k.scene, k.record)); });
       });
   module.def("run", &run_of);

@@ -71,6 +71,9 @@ class Frames:
 class Record:
     pairs: NDArray[int64]
     neighbour_pairs: NDArray[int64]
+    kinds: Optional[NDArray[uint8]]
+    neighbour_kinds: Optional[NDArray[uint8]]
+    complete: bool
     bits: NDArray[uint8]
     kept_triangles: NDArray[uint32]
     candidates: int
@@ -83,7 +86,14 @@ class Record:
     def table(self) -> str: ...
     def certificate(self) -> str: ...
 
-def run(scene: Scene, words: Sequence[str], threads: int) -> Record: ...
+def run(
+    scene: Scene,
+    words: Sequence[str],
+    threads: int,
+    kinds: bool,
+    ignore: Sequence[Sequence[int]],
+    limit: int,
+) -> Record: ...
 def plan(scene: Scene, words: Sequence[str], threads: int) -> Tuple[str, str]: ...
 def check(
     scene: Scene,

@@ -73,6 +73,21 @@ class Record:
         return self._record.neighbour_pairs
 
     @property
+    def kinds(self) -> Optional[NDArray[np.uint8]]:
+        """How each of ``pairs`` meets, as in :class:`Result`; None without kinds=True."""
+        return self._record.kinds
+
+    @property
+    def neighbour_kinds(self) -> Optional[NDArray[np.uint8]]:
+        """The same of ``neighbour_pairs``."""
+        return self._record.neighbour_kinds
+
+    @property
+    def complete(self) -> bool:
+        """False: the limit was reached, and there may be more pairs behind the last one."""
+        return self._record.complete
+
+    @property
     def candidates(self) -> int:
         """How many pairs culling left to the exact tests."""
         return self._record.candidates
@@ -112,7 +127,8 @@ class Record:
         return self._record.missed()
 
     def certificate(self) -> str:
-        """Evidence for every pair, as ``farcull run --certificate`` writes it; see :func:`check`."""
+        """Evidence for every pair, as ``farcull run --certificate`` writes it; see :func:`check`.
+        Raises InputError after a run with ``ignore`` or ``limit``."""
         return self._record.certificate()
 
     def json(self) -> Dict[str, Any]:
@@ -133,14 +149,23 @@ def run(
     *,
     verify: bool = True,
     threads: int = 0,
+    kinds: bool = False,
+    ignore: Optional[Any] = None,
+    limit: Optional[int] = None,
     **options: Any,
 ) -> Record:
     words = _words(method, options)
     if not _arguments.flag("verify", verify):
         words.append("--no-verify")
-    return Record(
-        _farcull.run(_scene(scene), words, _arguments.threads(threads)), scene, method
+    made = _farcull.run(
+        _scene(scene),
+        words,
+        _arguments.threads(threads),
+        _arguments.flag("kinds", kinds),
+        _arguments.ignored(ignore, scene.names),
+        _arguments.limit(limit),
     )
+    return Record(made, scene, method)
 
 
 @dataclass(frozen=True)

@@ -107,7 +107,9 @@ class Scene:
         Options by name, as of ``farcull run``: ``resolution``, ``radius``, ``offset``, ``depth``,
         ``depth_format``, ``query``, ``clusters``, ``views``, ``rounds``, ``clear``, ``level``,
         ``conservative``, ``device``, ``clearance``, ``full``; and ``verify`` (default True: account
-        for every pair) and ``threads``. Raises InputError naming the option that is wrong, and Error
+        for every pair) and ``threads``. ``kinds``, ``ignore`` and ``limit`` are those of
+        :func:`collide`; ``ignore`` takes names as well, as in [("base", "hand")]: every two different
+        objects with these names. Raises InputError naming the option that is wrong, and Error
         for a fault of the device.
         """
         from ._runs import run

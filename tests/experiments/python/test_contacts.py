@@ -131,6 +131,65 @@ def test_limits_are_those_of_the_program(scene):
     assert farcull.collide(V, F, OBJECTS, limit=None, self=True).complete
 
 
+def test_runs_of_scenes_answer_the_same(scene):
+    V, F, program = scene
+    files = sorted(program.folder.glob("*.off"))
+    read = farcull.Scene(*files, self=True)
+    starts = read.objects.tolist()
+    assert starts == OBJECTS and read.names == ["o0", "o1", "o2", "o3"]
+    for method in ("far-pairs", "exact"):
+        record = read.run(method, kinds=True)
+        whole, _ = program.rows()
+        assert rows_of(record) == whole and record.complete
+        for pairs in ([(0, 2), (3, 1)], [("o0", "o2"), ("o3", "o1")]):
+            truth, _ = program.rows("--ignore", "o0:o2,o3:o1")
+            record = read.run(method, kinds=True, ignore=pairs)
+            assert rows_of(record) == truth != whole
+            counted = record.accounting
+            assert counted["ignored"] == 2 * 40 * 40 and counted["false_negatives"] == 0
+            ms, total = counted.pop("ms"), counted.pop("pairs_total")
+            assert ms > 0 and sum(counted.values()) == total and len(record.missed()) == 0
+        limited = read.run(method, kinds=True, limit=50, verify=False)
+        assert rows_of(limited) == whole[:50] and not limited.complete
+        assert read.run(method, verify=False).kinds is None
+        for partial in (record, limited):
+            with pytest.raises(farcull.InputError) as caught:
+                partial.certificate()
+            assert caught.value.where == "certificate"
+
+
+def test_all_missed_pairs_are_without_those_of_ignored_objects():
+    tori = farcull.Scene("two-tori")
+    (V, F), second = (tori.vertices, tori.triangles), tori.objects[1]
+    V, F, objects = farcull.join((V, F[:second]), (V, F[second:]), (V, F[second:]))
+    three = farcull.Scene.from_arrays(V, F, objects)
+    options = dict(resolution=64, device="cpu")
+    record = three.run("cullide", ignore=[(2, 0), (1, 2)], **options)
+    missed = record.missed()
+    assert len(missed) == record.accounting["false_negatives"] > 10  # more than a record names
+    assert (missed < objects[2]).all()
+    # Twin: without `ignore` there are such pairs.
+    assert (three.run("cullide", **options).missed() >= objects[2]).any()
+
+
+def test_names_of_ignored_objects():
+    V, F = tangled(1)
+    twins = farcull.Scene.from_arrays(V, F, OBJECTS, names=["a", "a", "b:c", "d"])
+    owner = np.repeat(range(4), 40)
+
+    def objects(ignore):
+        return {(owner[a], owner[b]) for a, b in twins.run(ignore=ignore, verify=False).pairs}
+
+    every = {(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)}
+    assert objects(None) == every
+    assert objects([("b:c", "a")]) == every - {(0, 2), (1, 2)}
+    assert objects([("a", "a"), ("d", "b:c")]) == every - {(0, 1), (2, 3)}
+    for wrong in ([("a", "e")], [("d", "d")], [("a", 4)], [(0, 4)], [(1, 1)], ["ab"], [("a",)]):
+        with pytest.raises(farcull.InputError) as caught:
+            twins.run(ignore=wrong)
+        assert caught.value.where == "ignore"
+
+
 def test_frames_of_one_collider_answer_as_single_calls(scene):
     V, F, _ = scene
     options = dict(ALL, ignore=[(0, 1)], limit=300)
