@@ -14,9 +14,9 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "verify/squared_distance.h"
 #include "verify/contact.h"
 #include "verify/exact.h"
+#include "verify/squared_distance.h"
 
 namespace farcull {
 namespace {
