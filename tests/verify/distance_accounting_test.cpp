@@ -236,7 +236,8 @@ Counted counted(const Scene& scene, const ClaimedDistance& claim) {
 TEST(DistanceAccounting, MissedPairsAreThoseOfRationalNumbers) {
   rational::Draws random(17);
   std::uint64_t nearer = 0, before = 0, behind = 0;
-  for (const Case& one : cases(Kind::objects, trials(16))) {
+  // Few scenes have ties, so that all of them are needed under sanitizers too.
+  for (const Case& one : cases(Kind::objects, 16)) {
     // Each answer names any pair of its objects, with its own distance; or the last of the nearest.
     std::vector<ClaimedDistance> claims = right_answers(one.scene, {.pairs = Kind::objects});
     Counted expected;
@@ -261,10 +262,10 @@ TEST(DistanceAccounting, MissedPairsAreThoseOfRationalNumbers) {
     nearer += expected.nearer;
     before += expected.before;
   }
-  EXPECT_GT(nearer, static_cast<std::uint64_t>(trials(50)));
-  EXPECT_GT(before, static_cast<std::uint64_t>(trials(10)));
+  EXPECT_GT(nearer, 50u);
+  EXPECT_GT(before, 10u);
   // The twin: to count pairs behind the answer as well would be noticed.
-  EXPECT_GT(behind, static_cast<std::uint64_t>(trials(10)));
+  EXPECT_GT(behind, 10u);
 }
 
 Scene three_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
