@@ -107,6 +107,7 @@ class SameObject {
 constexpr std::size_t kAhead = 8;
 // Enough work for each turn to pay for the shared counter, little enough to balance.
 constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kFirstStep = 2 * kBlock;  // candidates that decide_first() begins with
 
 /// Decides up to kBlock pairs at a time, in memory of its own.
 ///
@@ -242,8 +243,9 @@ FirstCollisions decide_first(const Scene& scene, std::span<const TrianglePair> c
   require_clearance("decide_first", question.clearance);
   require_pairs(scene, candidates);
   if (limit == 0) throw std::logic_error("decide_first: the limit is 0");
-  // As many candidates more each time: where few of them collide, threads have enough to do.
-  std::size_t step = kBlock * std::max(question.threads, 1u);
+  // As many candidates more each time: where few of them collide, threads have enough to do. The
+  // number of threads decides nothing, so that `decided` and `complete` are the same for any.
+  std::size_t step = kFirstStep;
   FirstCollisions out;
   Collisions& all = out.collisions;
   while (out.decided < candidates.size() && all.pairs.size() + all.neighbour_pairs.size() < limit) {

@@ -13,7 +13,7 @@
 namespace farcull {
 namespace {
 
-// What an object found out about another one.
+// Bounds of the distance of one other object.
 struct Found {
   double lower = 0;  // scaled, of the distance
   double upper = 0;

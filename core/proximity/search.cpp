@@ -196,7 +196,7 @@ class Searcher {
     }
   }
 
-  // Which lanes are not too far from the place along the direction.
+  // Bits of the triangles that begin at most gap_limit behind `place` along the direction.
   HWY_INLINE std::uint32_t before(const std::array<double, kBatch>& extreme, double place,
                                   double gap_limit) const {
     const Numbers n;
@@ -230,7 +230,7 @@ class Searcher {
     run.direction = direction_;
   }
 
-  // The run, from the memory or put there.
+  // The run from the cache; it is loaded first where it is missing.
   RunCorners& load(std::vector<RunCorners>& memory, std::uint32_t run) const {
     RunCorners& out = memory[run % SearchMemory::kRuns];
     if (out.run != run) load_run(trees_, run, out);
@@ -272,6 +272,7 @@ class Searcher {
     if (batch.count == 0) return;
     BatchBounds bounds;
     bound_batch(batch, bounds);
+    find_common_corners(bounds);
     search_.counts.triangle_pairs += batch.count;
     const double before = search_.upper;
     std::size_t best = kBatch;
@@ -292,6 +293,17 @@ class Searcher {
     }
     if (!probing_) keep(bounds);
     batch.count = 0;
+  }
+  // Triangles of two objects that have a corner in common meet. No edge need pierce a face then, as
+  // of equal objects and of fans, so that bounds do not tell.
+  void find_common_corners(BatchBounds& bounds) const {
+    if (self_) return;
+    const PairBatch& batch = memory_.batch;
+    for (std::size_t k = 0; k < batch.count; ++k) {
+      const auto& [a, b] = batch.pairs[k];
+      if (bounds.lower[k] == 0 && bounds.upper[k] != 0 && share_position(trees_.scene(), a, b))
+        bounds.upper[k] = 0;
+    }
   }
   void keep(const BatchBounds& bounds) {
     const double bound = search_.bound();

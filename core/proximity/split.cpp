@@ -32,7 +32,7 @@ std::vector<Search> divide(Search& search) {
   return out;
 }
 
-// Puts a part back.
+// Adds what a part found, and what it left open, to the search that it came from.
 void join(Search& part, Search& search) {
   if (part.upper < search.upper) {
     search.upper = part.upper;

@@ -8,9 +8,9 @@
 // cell names both. A cell that lies between the nearest points of two objects may have its centre
 // nearer to a third one, so this loses neighbours.
 //
-// The reliable form beside it keeps in each cell every triangle that is nearest to some point of
-// the cell, or second nearest, as far as half a diagonal of a cell and the float error allow. It
-// loses none. docs/voronoi.md has definitions and proofs.
+// The reliable form beside it keeps in each cell every triangle that may hold an end of a shortest
+// segment between two objects whose middle lies in the cell (theorem V9). It loses none.
+// docs/voronoi.md has definitions and proofs.
 //
 // Both walk down a tree of blocks of cells, where the published form fills slice after slice. A
 // block is left out where no cell in it can add to the answer. voronoi_device.h has both forms

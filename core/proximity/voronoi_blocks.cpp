@@ -1,4 +1,4 @@
-// What both forms of the diagram share, beside the walk.
+// Checks of options that both forms of the diagram share.
 #include "core/proximity/voronoi_blocks.h"
 
 #include "core/base/error.h"

@@ -31,7 +31,7 @@ struct Block {
   std::size_t first, count;
 
   bool is_cell() const { return fits(1); }
-  // Whether no side is longer.
+  // True if no side is longer than `side`.
   bool fits(int side) const {
     return to[0] - from[0] <= side && to[1] - from[1] <= side && to[2] - from[2] <= side;
   }

@@ -89,7 +89,7 @@ class Reliable {
 
   // ---- cells of which a device computes the distances ----
 
-  // The blocks that are left, and forgets them.
+  // Moves out the blocks that are left, so that they take no memory while the device works.
   VoronoiBricks take_bricks() {
     VoronoiBricks out;
     for (const Block& block : last_.blocks)

@@ -7,7 +7,7 @@ namespace farcull {
 
 CLI::App* DoctorCommand::add_to(CLI::App& app) {
   CLI::App* command =
-      add_command(app, "doctor", "the devices, and what each assumption A1-A8 finds there");
+      add_command(app, "doctor", "the devices, and whether each keeps the assumptions A1-A8");
   add_option(*command, "--device", device_, "DEVICE", kDeviceHelp);
   add_option(*command, "--json", json_, "FILE", kJsonHelp);
   add_footer(

@@ -89,8 +89,8 @@ int SuiteCommand::run() const {
       check_ ? check_suite(folder_, progress) : write_suite(folder_, settings, progress);
   terminal.clear();
   write_output("-", pairs_table(summary.families) + "\n" + meshes_table(summary.meshes) +
-                        fmt::format("\n{} {}, seed {}, {}\nsum {}\n",
-                                    check_ ? "every label is right:" : "written:", folder_,
+                        fmt::format("\n{} {}: seed {}, size {}\nsum {}\n",
+                                    check_ ? "every label is right in" : "written to", folder_,
                                     summary.index.seed, summary.index.size, summary.index.sum));
   return kExitDone;
 }

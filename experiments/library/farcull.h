@@ -148,8 +148,8 @@ struct ColliderResult {
   std::vector<ColliderContact> contacts;            // one for each of `pairs`, and
   std::vector<ColliderContact> neighbour_contacts;  // of `neighbour_pairs`; empty without
                                                     // ColliderOptions::contacts
-  /// False: ColliderOptions::limit was reached, and there may be more pairs behind the last one.
-  /// Before it none is missing.
+  /// False: there may be more pairs behind the last one, since ColliderOptions::limit ended the
+  /// search. Before it none is missing.
   bool complete = true;
   ColliderReport report;
 };
@@ -212,9 +212,11 @@ class ColliderStream {
   /// those of one triangle more for each thread, so that the caller can stop between two calls.
   /// Throws std::bad_alloc without memory; each later call then throws ColliderError.
   bool next(std::vector<ColliderFound>& pairs);
-  /// Candidates that exact tests have decided up to now.
+  /// Candidates that exact tests have decided up to now. Unlike the pairs it may depend on the
+  /// number of threads.
   std::uint64_t decided() const;
-  /// After the end: as in ColliderResult.
+  /// After the end: as in ColliderResult. Where exactly as many pairs collide as the limit allows,
+  /// it may depend on the number of threads.
   bool complete() const;
 
  private:
@@ -273,7 +275,8 @@ class DistanceFinder {
 
   /// Sorted by objects, then by triangles. No answer about an object without triangles. Throws
   /// ColliderError for input that is not as ColliderInput says, for self_objects of another number,
-  /// and where `all` has more than 4,194,304 answers; std::bad_alloc without memory. The
+  /// where `all` has more than 4,194,304 answers, and where `objects` has more pairs of objects
+  /// than these (four times as many where `within` is finite); std::bad_alloc without memory. The
   /// floating-point environment is treated as by Collider::find().
   std::vector<DistanceAnswer> find(const ColliderInput& input);
 

@@ -51,6 +51,17 @@ std::uint64_t count_of_questions(const Scene& scene) {
   return objects * (objects > 0 ? objects - 1 : 0) / 2 + themselves;
 }
 
+// Each pair of objects takes memory from the start, and more where it is answered.
+void require_few(std::uint64_t questions, const DistanceOptions& options) {
+  const std::uint64_t most = options.most_pairs * (std::isfinite(options.within) ? 4 : 1);
+  if (questions <= most) return;
+  throw Error("objects",
+              "the scene has " + std::to_string(questions) + " pairs of objects, and at most " +
+                  std::to_string(most) + " are answered",
+              "ask for the nearest objects of each (--pairs nearest), or for the triangles within "
+              "a distance (--pairs all --within D)");
+}
+
 std::vector<std::optional<TrianglePair>> hints_for(std::span<const ObjectPair> questions,
                                                    const DistanceMemory* memory) {
   if (memory == nullptr || memory->objects.empty()) return {};
@@ -136,6 +147,7 @@ void between_objects(const Scene& scene, const Progress& progress, DistanceMemor
   if (options.pairs == DistancePairs::nearest) {
     near = trees.nearest_objects(options.k, options.within, hints_of(memory), progress);
   } else {
+    require_few(count_of_questions(scene), options);
     const std::vector<ObjectPair> questions = every_two_objects(scene);
     near = trees.near_pairs(questions, options.within, hints_for(questions, memory), progress);
   }

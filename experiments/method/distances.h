@@ -32,8 +32,9 @@ struct DistanceOptions {
   bool inside = true;    // tells where an object lies inside another
   unsigned threads = 0;  // 0: as many as there are cores; changes no answer
   bool verify = false;   // accounts for every pair that was culled
-  /// With `all`: the most pairs of triangles that are answered; more are an error, since each takes
-  /// some hundreds of bytes. They are counted while they are listed.
+  /// The most answers; more are an error, since each takes some hundreds of bytes. With `all`:
+  /// pairs of triangles, which are counted while they are listed. With `objects`: pairs of objects,
+  /// which are counted at the start; four times as many where `within` is finite.
   std::size_t most_pairs = std::size_t{1} << 22;
 };
 
@@ -80,9 +81,9 @@ std::string nothing_asked(const Scene& scene, const DistanceOptions& options);
 /// What the record claims, for account_distances().
 std::vector<ClaimedDistance> claims_of(const DistanceRecord& record);
 
-/// Throws Error for options that are bad, for a scene in which nothing is asked, and where `all`
-/// has more than most_pairs answers; std::logic_error where the scene breaks validate(). memory: of
-/// the frame before, and then of this one; may be null.
+/// Throws Error for options that are bad, for a scene in which nothing is asked, and where there
+/// are more answers than most_pairs allows; std::logic_error where the scene breaks validate().
+/// memory: of the frame before, and then of this one; may be null.
 DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
                          const Progress& progress = {}, DistanceMemory* memory = nullptr);
 

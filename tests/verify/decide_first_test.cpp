@@ -56,6 +56,28 @@ TEST(DecideFirst, GivesAPrefixOfAllThatCollide) {
   }
 }
 
+// Exactly as many pairs collide as the limit allows, and the last of them stands before many
+// candidates that do not.
+TEST(DecideFirst, NumberOfThreadsDecidesNothing) {
+  const Tangle all = tangle(120);
+  const std::vector<TrianglePair> meet = decide(all.scene, all.pairs).all();
+  const TrianglePair one = meet.front();
+  std::vector<TrianglePair> candidates;
+  for (const TrianglePair& pair : all.pairs) {
+    if (pair == one || (one < pair && !std::ranges::binary_search(meet, pair)))
+      candidates.push_back(pair);
+  }
+  ASSERT_GT(candidates.size(), 3000u);
+  const FirstCollisions first = decide_first(all.scene, candidates, 1, {.threads = 1});
+  EXPECT_EQ(first.collisions.all(), std::vector<TrianglePair>{one});
+  EXPECT_FALSE(first.complete);
+  for (const unsigned threads : {2u, 3u, 16u}) {
+    const FirstCollisions other = decide_first(all.scene, candidates, 1, {.threads = threads});
+    EXPECT_EQ(other.decided, first.decided);
+    EXPECT_EQ(other.complete, first.complete);
+  }
+}
+
 TEST(DecideFirst, OfNoCandidatesIsComplete) {
   const Tangle all = tangle(3);
   const FirstCollisions none = decide_first(all.scene, {}, 1);

@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "experiments/scenes/scene_file.h"
 #include "tests/core/base/trials.h"
 #include "tests/verify/hard_pairs.h"
 #include "tests/verify/reference.h"
@@ -219,6 +220,29 @@ TEST(Inside, AnOpenMeshHasNone) {
   const Scene twice = scene_of({last, last});
   EXPECT_TRUE(is_closed(twice, 0));
   EXPECT_EQ(inside(twice, 0, {1, 1, 1}), Inside::no);
+}
+
+// Whatever the direction of a ray, it does not tell on which side it passes a segment on whose line
+// it begins. No ray in general position crosses a segment.
+TEST(Inside, IsDecidedOnTheLineOfATriangleThatIsASegment) {
+  for (const Vec3& d : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 1), Vec3(1, 0.5, -0.25)}) {
+    std::vector<Triangle> triangles = cube(Vec3(-5, -5, -5), Vec3(5, 5, 5));
+    const Triangle segment = {d, 2 * d, 3 * d};
+    triangles.insert(triangles.end(), {segment, segment});
+    const Scene scene = scene_of(triangles);
+    ASSERT_TRUE(is_closed(scene, 0));
+    EXPECT_EQ(inside(scene, 0, {0, 0, 0}), Inside::yes);
+    EXPECT_EQ(inside(scene, 0, 4 * d), Inside::yes);
+    EXPECT_EQ(inside(scene, 0, 2.5 * d), Inside::on);
+    EXPECT_EQ(inside(scene, 0, 6 * d), Inside::no);
+    EXPECT_EQ(inside(scene, 0, -6 * d), Inside::no);
+  }
+  const Scene kept =
+      load_scene({std::string(FARCULL_TEST_DIR) + "/cases/inside-on-the-line-of-a-segment.json"});
+  ASSERT_EQ(kept.objects.size(), 2u);
+  EXPECT_TRUE(is_closed(kept, 0));
+  EXPECT_EQ(inside(kept, 0, kept.corners(kept.objects[1].first_triangle)[0]), Inside::no);
+  EXPECT_EQ(inside(kept, 0, {3.5, 0.25, 0.5}), Inside::yes);
 }
 
 TEST(Inside, ZerosOfEitherSignAreOnePosition) {

@@ -23,7 +23,11 @@ void expect_same(const std::vector<DistanceAnswer>& found, const DistanceRecord&
     EXPECT_EQ(x.distance, y.closest.distance);
     EXPECT_EQ(x.squared, y.closest.squared.text());
     EXPECT_EQ(x.feature_a, to_string(y.closest.features[0]));
-    EXPECT_EQ(x.point_b[2], y.closest.points[1].z());
+    EXPECT_EQ(x.feature_b, to_string(y.closest.features[1]));
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(x.point_a[axis], y.closest.points[0][axis]);
+      EXPECT_EQ(x.point_b[axis], y.closest.points[1][axis]);
+    }
     EXPECT_EQ(static_cast<int>(x.inside), static_cast<int>(y.inside));
   }
 }

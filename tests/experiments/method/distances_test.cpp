@@ -151,7 +151,40 @@ TEST(Distances, RefuseBadOptions) {
   EXPECT_THROW(distances(scene, {.pairs = all}), Error);
   EXPECT_THROW(distances(scene, {.pairs = nearest, .k = 0}), Error);
   EXPECT_THROW(distances(scene, {.pairs = all, .within = 1, .most_pairs = 10}), Error);
+  // Of all pairs of objects; four times as many within a distance.
+  const Scene soup = make_builtin_scene("random-soup");
+  const std::size_t questions = soup.objects.size() * (soup.objects.size() - 1) / 2;
+  EXPECT_THROW(distances(soup, {.most_pairs = questions - 1}), Error);
+  EXPECT_NO_THROW(distances(soup, {.most_pairs = questions}));
+  EXPECT_NO_THROW(distances(soup, {.within = 1, .most_pairs = questions / 4 + 1}));
+  EXPECT_THROW(distances(soup, {.within = 1, .most_pairs = questions / 4 - 1}), Error);
   EXPECT_NO_THROW(distances(scene, {.pairs = nearest, .k = SIZE_MAX}));
+}
+
+// Equal triangles, and a fan about one corner: no edge passes through a face, so that bounds alone
+// would leave each object to be compared with all others.
+TEST(Distances, NearestOfObjectsWithACornerInCommonTakesFewSearches) {
+  for (const bool equal : {true, false}) {
+    Scene scene;
+    constexpr std::uint32_t kObjects = 200;
+    for (std::uint32_t k = 0; k < kObjects; ++k) {
+      const double x = equal ? 1 : 1 + k;
+      for (const Vec3& p : {Vec3(0, 0, 0), Vec3(x, 1, 0), Vec3(x, 1, 1)})
+        scene.vertices.push_back(p);
+      scene.triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+      scene.source_face.push_back(0);
+      scene.objects.push_back(
+          {.name = std::to_string(k), .first_triangle = k, .triangle_count = 1});
+    }
+    const DistanceRecord record = distances(scene, {.pairs = nearest, .verify = true});
+    EXPECT_LT(record.counts.triangle_pairs, 8 * kObjects);
+    EXPECT_TRUE(record.verification->holds());
+    ASSERT_EQ(record.distances.size(), kObjects - 1);  // of 0 with each other one
+    for (const Distance& d : record.distances) {
+      EXPECT_EQ(d.objects.a, 0u);
+      EXPECT_EQ(d.closest.distance, 0);
+    }
+  }
 }
 
 TEST(Distances, AnswerWhatIsNearestOfEachObject) {
