@@ -268,7 +268,8 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
 }
 
 std::string pairs_header(const Scene& scene, const PairColumns& columns) {
-  std::string header = pair_list_header(scene);
+  std::string header =
+      columns.numbers ? pair_list_header(columns.numbers->self) : pair_list_header(scene);
   header.pop_back();
   if (columns.contacts) header += ",contact";
   if (columns.segments) header += ",x0,y0,z0,x1,y1,z1";
@@ -278,7 +279,7 @@ std::string pairs_header(const Scene& scene, const PairColumns& columns) {
 
 std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before,
                        const PairColumns& columns) {
-  const PairListRows rows(scene);
+  const PairListRows rows(scene, columns.numbers);
   std::string out;
   const auto add = [&](const std::vector<TrianglePair>& pairs,
                        const std::vector<ContactShape>& contacts, std::size_t k) {

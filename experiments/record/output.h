@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/method/run.h"
+#include "verify/certificate/pair_list.h"
 
 namespace farcull {
 
@@ -36,7 +37,8 @@ struct PairColumns {
   bool contacts = false;  // contact: the kind; of a record that has the kinds
   bool segments = false;  // x0,y0,z0,x1,y1,z1: the ends of what the triangles have in common, world
                           // units; empty where that is a polygon or nothing. Of a record with them
-  std::vector<ContactKind> kinds = {};  // pairs of these kinds alone; empty: all
+  std::vector<ContactKind> kinds = {};   // pairs of these kinds alone; empty: all
+  const ListNumbers* numbers = nullptr;  // where the scene is a part of another one; else null
 };
 
 /// The colliding pairs as verify/certificate/pair_list.h writes them, sorted, each once; neighbours

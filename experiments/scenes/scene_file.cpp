@@ -15,11 +15,13 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "experiments/scenes/builtin/field.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/foreign.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
+#include "experiments/scenes/scene_stream.h"
 
 namespace farcull {
 namespace {
@@ -89,7 +91,8 @@ class SceneFile {
  public:
   SceneFile(std::string path, MeshCache& meshes) : path_(std::move(path)), meshes_(meshes) {}
 
-  Scene read(const json& root) {
+  // `added` is called after each object.
+  SceneBuilder read(const json& root, const std::function<void(SceneBuilder&)>& added = {}) {
     require(root.is_object(), "", "the file must be a JSON object", "write {\"objects\": [...]}");
     check_keys(root, "", {"name", "objects"});
     const std::string name = root.contains("name") ? text(root["name"], "name") : mesh_stem(path_);
@@ -101,8 +104,9 @@ class SceneFile {
     SceneBuilder builder(clean_name(name), path_);
     for (std::size_t i = 0; i < objects.size(); ++i) {
       add_object(objects[i], fmt::format("objects[{}]", i), builder);
+      if (added) added(builder);
     }
-    return builder.finish();
+    return builder;
   }
 
  private:
@@ -229,7 +233,8 @@ std::string extension(const std::string& path) {
   return text;
 }
 
-Scene parse(const std::string& text, const std::string& path, MeshCache& meshes) {
+// The text as JSON, or an Error for its syntax.
+json parsed(const std::string& text, const std::string& path) {
   const std::string remedy = "correct the JSON";
   if (text.empty()) throw Error(path, "the file is empty", "write {\"objects\": [...]}");
   Syntax syntax;
@@ -242,11 +247,34 @@ Scene parse(const std::string& text, const std::string& path, MeshCache& meshes)
     throw Error(path, "the key " + quote_token(syntax.twice) + " occurs twice in one object",
                 "delete one of them");
   }
-  return SceneFile(path, meshes).read(json::parse(text));
+  return json::parse(text);
 }
 
-Scene scene_of_meshes(const std::vector<std::string>& paths, MeshCache& meshes) {
-  // Every extension first, so that nothing is read for minutes before the last argument is refused.
+Scene parse(const std::string& text, const std::string& path, MeshCache& meshes) {
+  return SceneFile(path, meshes).read(parsed(text, path)).finish();
+}
+
+// Meshes that a streamed scene file keeps.
+constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
+
+void stream_file(const std::string& path, const TakePart& take) {
+  MeshCache meshes;
+  std::size_t bytes = 0;  // of the parts since the cache was empty, at least those of its meshes
+  SceneFile(path, meshes)
+      .read(parsed(read_file(path, kMaxSceneFileBytes), path), [&](SceneBuilder& builder) {
+        Scene part = builder.take_part();
+        bytes += part.vertices.size() * sizeof(Vec3) + part.triangles.size() * 20;
+        if (bytes > kKeptBytes) {
+          meshes = MeshCache();
+          bytes = 0;
+        }
+        take(part);
+      });
+}
+
+// The builder of a scene of mesh files. Every extension is looked at first, so that nothing is read
+// for minutes before the last argument is refused.
+SceneBuilder builder_of_meshes(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     if (is_scene_file(path) || is_builtin_scene(path)) {
       throw Error(path, "a scene stands among other arguments",
@@ -257,10 +285,25 @@ Scene scene_of_meshes(const std::vector<std::string>& paths, MeshCache& meshes) 
   std::string name = mesh_stem(paths[0]);
   for (std::size_t i = 1; i < paths.size() && i < 3; ++i) name += "+" + mesh_stem(paths[i]);
   if (paths.size() > 3) name += fmt::format("+{} more", paths.size() - 3);
-  SceneBuilder builder(clean_name(name), paths[0]);
+  return {clean_name(name), paths[0]};
+}
+
+Scene scene_of_meshes(const std::vector<std::string>& paths, MeshCache& meshes) {
+  SceneBuilder builder = builder_of_meshes(paths);
   for (const std::string& path : paths)
     builder.add(meshes.get(path), mesh_stem(path), Split::kNone, {});
   return builder.finish();
+}
+
+void stream_meshes(const std::vector<std::string>& paths, const TakePart& take) {
+  SceneBuilder builder = builder_of_meshes(paths);
+  for (const std::string& path : paths) {
+    MeshCache meshes;
+    builder.add(meshes.get(path), mesh_stem(path), Split::kNone, {});
+    meshes = MeshCache();  // to make room
+    Scene part = builder.take_part();
+    take(part);
+  }
 }
 
 Scene load_any_scene(const std::vector<std::string>& arguments, MeshCache& meshes) {
@@ -293,6 +336,22 @@ Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes) {
     throw Error(arguments[0], "the scene does not fit into memory",
                 "give fewer or smaller objects, or use a larger machine");
   }
+}
+
+void stream_scene(const std::vector<std::string>& arguments, const TakePart& take) {
+  if (arguments.size() == 1 && is_builtin_scene(arguments[0])) {
+    const SceneRequest request = parse_scene_name(arguments[0]);
+    if (request.entry->name == "field" && request.suffixes.empty()) {
+      const std::uint64_t seed = request.parameters.seed.value_or(*request.entry->seed);
+      return stream_field(request.parameters, seed, arguments[0], take);
+    }
+  } else if (arguments.size() == 1 && is_scene_file(arguments[0])) {
+    return stream_file(arguments[0], take);
+  } else if (arguments.size() > 1 || (arguments.size() == 1 && has_mesh_extension(arguments[0]))) {
+    return stream_meshes(arguments, take);
+  }
+  Scene whole = load_scene(arguments);
+  take(whole);
 }
 
 bool is_scene_file(const std::string& name) { return extension(name) == ".json"; }

@@ -29,19 +29,29 @@ bool share_corner(const Scene& scene, const TrianglePair& pair) {
 
 }  // namespace
 
-std::string pair_list_header(const Scene& scene) {
-  return std::string("object_a,triangle_a,object_b,triangle_b") +
-         (has_self(scene) ? ",neighbours\n" : "\n");
+std::string pair_list_header(const Scene& scene) { return pair_list_header(has_self(scene)); }
+
+std::string pair_list_header(bool self) {
+  return std::string("object_a,triangle_a,object_b,triangle_b") + (self ? ",neighbours\n" : "\n");
 }
 
-PairListRows::PairListRows(const Scene& scene)
-    : scene_(scene), owner_(owners(scene)), self_(has_self(scene)) {}
+PairListRows::PairListRows(const Scene& scene, const ListNumbers* numbers)
+    : scene_(scene),
+      numbers_(numbers),
+      owner_(owners(scene)),
+      self_(numbers ? numbers->self : has_self(scene)) {}
 
 void PairListRows::append(const TrianglePair& pair, std::string& text) const {
   const std::uint32_t a = owner_[pair.a];
   const std::uint32_t b = owner_[pair.b];
-  for (const std::uint32_t number :
-       {a, pair.a - scene_.objects[a].first_triangle, b, pair.b - scene_.objects[b].first_triangle})
+  const auto object = [&](std::uint32_t o) -> std::uint64_t {
+    return numbers_ ? numbers_->objects[o] : o;
+  };
+  const auto triangle = [&](std::uint32_t t, std::uint32_t o) -> std::uint64_t {
+    return numbers_ ? numbers_->triangles[t] : t - scene_.objects[o].first_triangle;
+  };
+  for (const std::uint64_t number :
+       {object(a), triangle(pair.a, a), object(b), triangle(pair.b, b)})
     text.append(std::to_string(number)).push_back(',');
   if (self_) {
     text += a == b && share_corner(scene_, pair) ? "1\n" : "0\n";

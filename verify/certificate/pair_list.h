@@ -18,18 +18,29 @@ namespace farcull {
 /// object_a,triangle_a,object_b,triangle_b, and a fifth column `neighbours` where an object of the
 /// scene is tested against itself; each line ends with a single newline.
 std::string pair_list_header(const Scene& scene);
+/// The same where it is known whether an object is tested against itself.
+std::string pair_list_header(bool self);
+
+/// How lists name the objects and triangles of a scene that is a part of another one: by the
+/// numbers of the whole.
+struct ListNumbers {
+  std::vector<std::uint64_t> objects;    // per object: its number in the whole scene, ascending
+  std::vector<std::uint32_t> triangles;  // per triangle: its number within its whole object
+  bool self = false;                     // an object of the whole scene is tested against itself
+};
 
 /// The lines of a list, pair after pair: 0-based, in decimal, triangles counted within their
 /// object; `neighbours` is 1 for triangles of one object that share a vertex position, else 0.
 class PairListRows {
  public:
-  /// The scene must outlive the object.
-  explicit PairListRows(const Scene& scene);
+  /// The scene must outlive the object, and so must the numbers; null: those of the scene itself.
+  explicit PairListRows(const Scene& scene, const ListNumbers* numbers = nullptr);
   /// Appends the line of a pair to `text`. Precondition: both triangles are of the scene.
   void append(const TrianglePair& pair, std::string& text) const;
 
  private:
   const Scene& scene_;
+  const ListNumbers* numbers_;
   std::vector<std::uint32_t> owner_;
   bool self_;
 };

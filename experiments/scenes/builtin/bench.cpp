@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "experiments/scenes/builtin/field.h"
 #include "experiments/scenes/builtin/generators.h"
-#include "experiments/scenes/builtin/motion.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/shapes.h"
 
@@ -81,49 +81,6 @@ Scene make_needles_layers(std::uint64_t seed) {
 Scene make_needles_crossed(std::uint64_t seed) {
   return layers_of_needles("needles-crossed", {frame_of({3, 2.6, 2.2}), frame_of({-2.3, 2.9, 1.7})},
                            {5000, 5000}, seed);
-}
-
-// size: triangles. Blobs of kFieldBlob triangles, as near as their number comes, at least one.
-BuiltScene make_field(const SceneParameters& parameters, std::uint64_t seed) {
-  constexpr std::uint64_t kFieldBlob = 320;  // triangles of one blob
-  constexpr double kSpacing = 1.8;           // of the cells, a blob in each
-  constexpr double kJitter = 0.3;            // of a blob in its cell, along each axis
-  constexpr std::size_t kShapes = 16;
-  Random random(seed);
-  std::vector<Mesh> shapes;
-  for (std::size_t i = 0; i < kShapes; ++i) shapes.push_back(blob(2, random));
-
-  const std::uint64_t blobs =
-      std::max<std::uint64_t>(1, (parameters.size + kFieldBlob / 2) / kFieldBlob);
-  std::uint64_t cells = 1;  // along each axis of the cube that the blobs fill from below
-  while (cells * cells * cells < blobs) ++cells;
-
-  Scene scene;
-  scene.name = "field";
-  scene.objects.reserve(blobs);
-  scene.vertices.reserve(blobs * shapes[0].vertices.size());
-  scene.triangles.reserve(blobs * shapes[0].triangles.size());
-  scene.source_face.reserve(scene.triangles.capacity());
-  for (std::uint64_t i = 0; i < blobs; ++i) {
-    const Vec3 cell(static_cast<double>(i % cells), static_cast<double>(i / cells % cells),
-                    static_cast<double>(i / cells / cells));
-    Placement placement = random.anywhere(kSpacing * cell + random.in_cube(kJitter));
-    placement.scale = Vec3::Constant(random.between(0.5, 1));
-    const Mesh& shape = shapes[random.below(kShapes)];
-    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-    const std::vector<Vec3> placed = place(shape.vertices, placement);
-    scene.objects.push_back({"blob" + std::to_string(i),
-                             static_cast<std::uint32_t>(scene.triangles.size()),
-                             static_cast<std::uint32_t>(shape.triangles.size())});
-    scene.vertices.insert(scene.vertices.end(), placed.begin(), placed.end());
-    for (const auto& [a, b, c] : shape.triangles)
-      scene.triangles.push_back({first + a, first + b, first + c});
-    scene.source_face.insert(scene.source_face.end(), shape.source_face.begin(),
-                             shape.source_face.end());
-  }
-  validate(scene, scene.name);
-  const Motion motion = drift(scene);
-  return {std::move(scene), motion};
 }
 
 }  // namespace

@@ -160,9 +160,11 @@ void SceneBuilder::add(const Mesh& mesh, const std::string& name, Split split,
   }
 }
 
-Scene SceneBuilder::finish() {
+Scene SceneBuilder::take_part() {
   validate(scene_, where_);
-  return std::move(scene_);
+  Scene next;
+  next.name = scene_.name;
+  return std::exchange(scene_, std::move(next));
 }
 
 Box bounds(const Scene& scene) {

@@ -48,8 +48,10 @@ class SceneBuilder {
   /// finite or the scene would have more than 2^32 - 1 triangles or vertices.
   void add(const Mesh& mesh, const std::string& name, Split split, const Placement& placement,
            bool self = false);
+  /// What was added since the last part, as a scene of its own, validated. Names stay in use.
+  Scene take_part();
   /// The scene, validated; the builder is spent.
-  Scene finish();
+  Scene finish() { return take_part(); }
 
  private:
   std::string free_name(const std::string& name);
