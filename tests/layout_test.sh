@@ -37,6 +37,7 @@ experiments/scenes         experiments/scenes/builtin
 experiments/method         core/gl core/proximity offsets verify
 experiments/library        experiments/method
 experiments/record         experiments/method experiments/system
+experiments/tiles          experiments/scenes experiments/record
 experiments/measure/peers  experiments/scenes verify
 experiments/measure        experiments/scenes experiments/record experiments/measure/peers
 experiments/lemma          experiments/scenes experiments/record
@@ -46,7 +47,7 @@ experiments/studies        experiments/measure experiments/lemma experiments/con
 experiments/picture        experiments/measure
 experiments/report/chapters experiments/studies experiments/picture
 experiments/report         experiments/report/chapters
-experiments/command        experiments/report experiments/library
+experiments/command        experiments/report experiments/library experiments/tiles
 experiments/python         experiments/command
 tests                      *
 '

@@ -69,6 +69,7 @@ constexpr const char* kRunExamples =
     "  farcull run robot.json --ignore 'link*:base,hand:cup' --limit 100\n"
     "  farcull run 'cloth_%04d.obj' body.obj --frames 1:100 --no-verify\n"
     "  farcull run two-spheres --frames 10 --certificate c_%04d.json\n"
+    "  farcull run field:3000000 --tiles 2/4 --json t2.json --pairs t2.csv\n"
     "  farcull run scene.json --json - | jq .verification\n"
     "  farcull run two-spheres --method far --radius published --depth fixed --depth-format 24\n"
     "  farcull run two-tori --method cullide --rounds 1 --views x,-x,y,-y,z,-z\n\n"
@@ -91,7 +92,8 @@ constexpr const char* kPlanExamples =
     "Examples:\n"
     "  farcull plan two-bunnies\n"
     "  farcull plan two-bunnies --method far --offset exact\n"
-    "  farcull plan bunnies-far-apart --json -\n\n"
+    "  farcull plan bunnies-far-apart --json -\n"
+    "  farcull plan field:3000000 --tiles 4\n\n"
     "The same scene and options give the same plan. farcull run --full leaves nothing out.";
 
 }  // namespace
@@ -121,6 +123,9 @@ CLI::App* RunCommand::add_to(CLI::App& app) {
   if (kind_ != Kind::verify)
     add_flag(*command, "--no-verify", no_verify_, "leave out the accounting of all pairs");
   if (kind_ == Kind::plan) {
+    add_option(*command, "--tiles", tiles_, "N",
+               "where run --tiles K/N cuts the scene, how many\ntriangles each tile has and about "
+               "how much memory it\ntakes");
     add_option(*command, "--json", outputs_.json, "FILE", kJsonHelp);
   } else {
     add_outputs(*command);
@@ -183,6 +188,12 @@ void RunCommand::add_outputs(CLI::App& command) {
       "meshes with %d or %04d in their names, or of a\n"
       "built-in scene that moves (see farcull scenes), where\n"
       "30:59 is the second half of 60");
+  if (kind_ == Kind::run) {
+    add("--tiles", tiles_, "K/N",
+        "only the Kth of N parts of the scene, which is read\ntwice and never held; far-pairs "
+        "only. "
+        "With --json and\n--pairs farcull merge joins all parts");
+  }
   add("--pairs", outputs_.pairs, "FILE",
       "write the colliding pairs as CSV to this file (- for\n"
       "standard output, without the table): object_a,\n"
@@ -343,7 +354,8 @@ std::string RunCommand::verdict_line(const Accounting& accounting) const {
 int RunCommand::run() const {
   const RunOptions options = parse();
   check_scene(scene_);
-  if (kind_ == Kind::plan) return plan(options);
+  if (kind_ == Kind::plan) return tiles_ ? plan_tiles(options) : plan(options);
+  if (tiles_) return run_tile(options);
   refuse_outputs();
   columns();
   std::optional<FrameRange> range;

@@ -8,6 +8,7 @@
 #include "experiments/command/options.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/frames.h"
+#include "experiments/tiles/census.h"
 
 namespace farcull {
 
@@ -35,6 +36,12 @@ class RunCommand {
   std::string with_self() const;
   /// Of verify: the verdict, green or red on a terminal; else empty.
   std::string verdict_line(const Accounting& accounting) const;
+  /// The scene part by part.
+  SceneSource source() const;
+  /// Throws Error where an option cannot be answered tile by tile.
+  void refuse_with_tiles(const RunOptions& options) const;
+  int run_tile(const RunOptions& options) const;
+  int plan_tiles(const RunOptions& options) const;
   int plan(const RunOptions& options) const;
   int run_once(const RunOptions& options, const Outputs& outputs) const;
   int run_frames(const RunOptions& options, const Outputs& outputs, FrameRange range) const;
@@ -44,7 +51,7 @@ class RunCommand {
   Text method_, resolution_, radius_, offset_, depth_, depth_format_, query_, clusters_, views_,
       device_;
   Text rounds_, clear_, level_;
-  Text clearance_, frames_, ignore_, ignore_file_, limit_, kinds_;
+  Text clearance_, frames_, ignore_, ignore_file_, limit_, kinds_, tiles_;
   Outputs outputs_;
   bool self_ = false, no_verify_ = false, full_ = false, faces_ = false, conservative_ = false;
   bool contacts_ = false, segments_ = false;

@@ -22,6 +22,7 @@
 #include "experiments/suite/reader.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
+#include "experiments/tiles/merge_tiles.h"
 
 namespace farcull {
 namespace {
@@ -225,22 +226,58 @@ int StudiesCommand::run_on(StudiesRequest request, const std::string& name) cons
 }
 
 CLI::App* MergeCommand::add_to(CLI::App& app) {
-  CLI::App* command = add_command(app, "merge", "join what shards of an experiment measured");
+  CLI::App* command =
+      add_command(app, "merge", "join what shards of an experiment, or tiles of a scene, gave");
   add_option(*command, "SHARDS", sources_, "",
-             fmt::format("the folder of the shards, or their files; default\n{}", kResultsFolder));
+             fmt::format("the folder of the shards, or their files; default\n{}. Or the records "
+                         "(--json) of\nall tiles of a scene, with their lists beside them",
+                         kResultsFolder));
   add_option(*command, "-o,--out", out_, "FILE",
-             "the file to write; default results.sqlite in the\nfolder of the shards");
+             "the file to write; default results.sqlite, or of tiles\npairs.csv, in the folder of "
+             "the first file");
+  add_option(*command, "--json", json_, "FILE", "of tiles: write the record of the whole");
   add_footer(*command,
              "Examples:\n"
              "  farcull merge results\n"
              "  farcull merge node1/results-1-of-2.sqlite node2/results-2-of-2.sqlite -o "
-             "results.sqlite\n\n"
+             "results.sqlite\n"
+             "  farcull merge tile-*.json -o pairs.csv --json whole.json\n\n"
              "Refuses shards that are there twice, points without a row, and shards of different\n"
-             "commits, grids, seeds or versions of a library.");
+             "commits, grids, seeds or versions of a library. Of tiles: refuses a tile that is\n"
+             "missing or there twice, other scenes, cuts, options or commits, and a list that was\n"
+             "cut short or changed. Exit status 1: an accounting of a tile found a missed pair.");
   return command;
 }
 
+int MergeCommand::run_tiles() const {
+  for (const std::string& file : sources_) {
+    if (!is_tile_record(file))
+      throw Error(file, "is no record of a tile, as the others are", "merge shards on their own");
+  }
+  const std::string folder = std::filesystem::path(sources_.front()).parent_path().string();
+  const std::string out = out_ ? *out_ : (folder.empty() ? "." : folder) + "/pairs.csv";
+  std::vector<NamedFile> inputs;
+  for (const std::string& file : sources_) inputs.push_back({"SHARDS", file});
+  std::vector<NamedFile> outputs = {{"-o", out}};
+  if (json_) outputs.push_back({"--json", *json_});
+  require_apart(inputs, outputs);
+  if (json_) check_output(*json_);
+  const MergedTiles merged = merge_tiles(sources_, out);
+  if (json_) write_output(*json_, merged.json);
+  if (json_ != "-") {
+    write_output("-", fmt::format("{} of {}: {}\n", counted(merged.rows, "pair", "pairs"),
+                                  counted(merged.tiles, "tile", "tiles"), out));
+    if (!merged.verified) write_output("-", "not verified: a tile was run with --no-verify\n");
+  }
+  if (merged.false_negatives == 0) return kExitDone;
+  complain_broken(fmt::format("culled pairs that collide: {}", grouped(merged.false_negatives)));
+  return kExitBroken;
+}
+
 int MergeCommand::run() {
+  if (std::ranges::any_of(sources_, is_tile_record)) return run_tiles();
+  if (json_)
+    throw Error("--json", "is about tiles of a scene", "leave it out, or name records of tiles");
   std::vector<std::string> files = sources_;
   if (files.empty()) files = {kResultsFolder};
   std::string folder = std::filesystem::path(files.front()).parent_path().string();

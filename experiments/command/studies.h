@@ -42,8 +42,10 @@ class MergeCommand {
   int run();
 
  private:
+  int run_tiles() const;
+
   std::vector<std::string> sources_;
-  Text out_;
+  Text out_, json_;
 };
 
 }  // namespace farcull

@@ -14,6 +14,7 @@
 
 #include "core/base/error.h"
 #include "experiments/system/signals.h"
+#include "experiments/system/streamed_output.h"
 
 namespace farcull {
 namespace {
@@ -64,6 +65,8 @@ extern "C" void remove_half_written(int signal) {
   SignalGuard::end_by(signal);
 }
 
+}  // namespace
+
 // A file that is being written. It is removed unless it is renamed into place: by the destructor,
 // or by the handler where a signal ends the program. One at a time.
 class HalfWritten {
@@ -92,6 +95,8 @@ class HalfWritten {
   SignalGuard signals_;
   bool in_place_ = false;
 };
+
+namespace {
 
 // Writes all of the text and closes the file; 0 or the errno of the first failure.
 int write_and_close(std::FILE* file, const std::string& text, bool to_disk) {
@@ -162,6 +167,36 @@ void write_output(const std::string& path, const std::string& text) {
     failure = replace_file(target.path, text);
   }
   if (failure != 0) refuse(path, failure);
+}
+
+StreamedOutput::StreamedOutput(const std::string& path) : path_(path) {
+  check_output(path);
+  const Target target = target_of(path);
+  if (path == "-" || target.direct) {
+    throw Error(path == "-" ? "standard output" : path, "cannot appear whole or not at all",
+                "name a file");
+  }
+  place_ = target.path;
+  const std::string beside = place_ + ".part-" + std::to_string(::getpid());
+  if (beside.size() >= sizeof half_written) refuse(path_, ENAMETOOLONG);
+  part_ = std::make_unique<HalfWritten>(beside);
+  file_ = std::fopen(beside.c_str(), "wb");
+  if (file_ == nullptr) refuse(path_, errno);
+  if (target.exists) ::fchmod(::fileno(file_), target.mode & 07777);
+}
+
+StreamedOutput::~StreamedOutput() {
+  if (file_ != nullptr) std::fclose(file_);
+}
+
+void StreamedOutput::add(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) refuse(path_, errno);
+}
+
+void StreamedOutput::put() {
+  int failure = write_and_close(std::exchange(file_, nullptr), "", true);
+  if (failure == 0) failure = part_->put(place_);
+  if (failure != 0) refuse(path_, failure);
 }
 
 void write_help(const std::string& text) {

@@ -1,0 +1,359 @@
+// The lists are sorted, and so are their pairs taken together: the least of the next lines of all
+// lists is the next line of the whole.
+#include "experiments/tiles/merge_tiles.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <queue>
+#include <string_view>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "experiments/system/streamed_output.h"
+#include "verify/certificate/sha256.h"
+
+namespace farcull {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kRecordRemedy =
+    "give the files that farcull run SCENE --tiles K/N --json FILE --pairs LIST wrote";
+constexpr const char* kAgain = "run the tile again";
+
+// A record, as far as it has to fit to the others.
+struct Source {
+  std::string path;
+  Json json;
+  std::uint64_t k = 0, n = 0, rows = 0, home = 0;
+  std::string list, columns, sha256;
+};
+
+[[noreturn]] void no_record(const std::string& path, const std::string& reason) {
+  throw Error(path, reason, kRecordRemedy);
+}
+
+// The value at a place such as /tile/k. Throws Error where it is of another kind.
+template <class Value>
+Value at(const Source& source, const char* place) {
+  try {
+    return source.json.at(nlohmann::ordered_json::json_pointer(place)).get<Value>();
+  } catch (const nlohmann::json::exception&) {
+    no_record(source.path, fmt::format("is no record of a tile: {} is missing or wrong", place));
+  }
+}
+
+std::string text_of(const std::string& path) {
+  std::error_code code;
+  if (!fs::exists(path, code)) no_record(path, "does not exist");
+  std::FILE* const file = std::fopen(path.c_str(), "rb");
+  if (file == nullptr) no_record(path, "cannot be read");
+  std::string out;
+  std::array<char, 1 << 16> buffer{};
+  for (std::size_t n; (n = std::fread(buffer.data(), 1, buffer.size(), file)) > 0;)
+    out.append(buffer.data(), n);
+  const bool failed = std::ferror(file) != 0;
+  std::fclose(file);
+  if (failed) no_record(path, "cannot be read to its end");
+  return out;
+}
+
+Source read_record(const std::string& path) {
+  Source out{.path = path, .json = Json::parse(text_of(path), nullptr, false)};
+  if (out.json.is_discarded()) no_record(path, "is no JSON, or was cut short");
+  if (!out.json.is_object() || !out.json.contains("tile"))
+    no_record(path, "is no record of a tile: it has no entry `tile`");
+  out.k = at<std::uint64_t>(out, "/tile/k");
+  out.n = at<std::uint64_t>(out, "/tile/n");
+  out.home = at<std::uint64_t>(out, "/tile/home_triangles");
+  if (out.k < 1 || out.k > out.n)
+    no_record(path, fmt::format("says that it is tile {} of {}", out.k, out.n));
+  if (at<Json>(out, "/tile/list").is_null()) {
+    throw Error(path, "has no list: the tile was run without --pairs FILE",
+                "run it again with --pairs FILE and --json FILE");
+  }
+  out.rows = at<std::uint64_t>(out, "/tile/list/rows");
+  out.columns = at<std::string>(out, "/tile/list/columns");
+  out.sha256 = at<std::string>(out, "/tile/list/sha256");
+  const fs::path list(at<std::string>(out, "/tile/list/file"));
+  out.list = (fs::path(path).parent_path() / list).string();
+  if (!fs::exists(out.list)) {
+    throw Error(out.list, fmt::format("does not exist, and {} names it", path),
+                "put the list where it was, beside the record");
+  }
+  return out;
+}
+
+// Refuses two records that are not of one scene, asked in one way.
+void require_alike(const Source& first, const Source& other) {
+  const std::pair<const char*, const char*> places[] = {
+      {"/scene", "is of another scene"},
+      {"/tile/n", "is of another number of tiles"},
+      {"/tile/axis", "is cut along another axis"},
+      {"/tile/cuts", "is cut elsewhere"},
+      {"/method", "is of another method"},
+      {"/tile/asked", "was run with other options"},
+      {"/tile/list/columns", "has other columns in its list"},
+      {"/tile/list/kinds", "has other kinds of contact in its list"},
+      {"/commit", "is of another version of farcull"}};
+  for (const auto& [place, what] : places) {
+    if (at<Json>(first, place) == at<Json>(other, place)) continue;
+    throw Error(other.path, fmt::format("{} than {}", what, first.path),
+                "run all tiles of one scene with one program and the same options");
+  }
+}
+
+// Refuses a tile that is there twice or not at all, and triangles that are in no tile.
+void require_whole(const std::vector<Source>& sources) {
+  const Source& first = sources.front();
+  std::vector<const Source*> tiles(first.n, nullptr);
+  for (const Source& source : sources) {
+    const Source*& place = tiles.at(source.k - 1);
+    if (place != nullptr) {
+      throw Error(source.path,
+                  fmt::format("is tile {} of {}, and so is {}", source.k, source.n, place->path),
+                  "leave one of them out");
+    }
+    place = &source;
+  }
+  std::string missing;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < tiles.size(); ++k) {
+    if (tiles[k] != nullptr) continue;
+    if (++count <= 5) missing += fmt::format("{}{}", missing.empty() ? "" : ", ", k + 1);
+  }
+  if (count > 0) {
+    throw Error(first.path,
+                fmt::format("of its {} tiles {} missing: {}{}", first.n,
+                            count == 1 ? "one is" : fmt::format("{} are", count), missing,
+                            count > 5 ? ", ..." : ""),
+                fmt::format("run them too, as --tiles {}/{}, and name all records",
+                            missing.substr(0, missing.find(',')), first.n));
+  }
+  std::uint64_t home = 0;
+  for (const Source& source : sources) home += source.home;
+  const auto all = at<std::uint64_t>(first, "/scene/triangles");
+  if (home != all) {
+    throw Error(first.path, fmt::format("the tiles together hold {} of {} triangles", home, all),
+                kAgain);
+  }
+}
+
+// A list, read once from its beginning to its end. It is open only while it is read, so that their
+// number is not limited.
+class List {
+ public:
+  List(const Source& source, std::size_t buffer) : source_(source), buffer_(buffer) {
+    if (!next_line() || line_ != source.columns) fail("does not begin as its record says");
+  }
+
+  // The next row; false at the end, where the whole is what the record says.
+  bool next() {
+    const std::array<std::uint64_t, 4> before = key_;
+    if (!next_line()) {
+      if (rows_ != source_.rows || hash_.digest() != source_.sha256)
+        fail("is not the list that the tile wrote: it was cut short or changed");
+      return false;
+    }
+    read_key();
+    if (rows_++ > 0 && !(before < key_)) fail("is not sorted");
+    return true;
+  }
+  const std::array<std::uint64_t, 4>& key() const { return key_; }  // object, triangle, twice
+  std::string_view line() const { return line_; }                   // without its end
+  const std::string& path() const { return source_.list; }
+
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw Error(source_.list, reason, kAgain, static_cast<long>(lines_));
+  }
+
+ private:
+  bool next_line() {
+    for (;;) {
+      const std::size_t end = text_.find('\n', at_);
+      if (end != std::string::npos) {
+        line_.assign(text_, at_, end - at_);
+        at_ = end + 1;
+        ++lines_;
+        return true;
+      }
+      text_.erase(0, at_);
+      at_ = 0;
+      if (!read_on()) break;
+    }
+    if (!text_.empty()) fail("ends within a line: it was cut short");
+    return false;
+  }
+
+  bool read_on() {
+    std::FILE* const file = std::fopen(source_.list.c_str(), "rb");
+    if (file == nullptr) fail("cannot be read");
+    const std::size_t before = text_.size();
+    text_.resize(before + buffer_);
+    std::size_t n = 0;
+    const bool good = ::fseeko(file, static_cast<off_t>(offset_), SEEK_SET) == 0 &&
+                      ((n = std::fread(text_.data() + before, 1, buffer_, file)) == buffer_ ||
+                       std::ferror(file) == 0);
+    std::fclose(file);
+    if (!good) fail("cannot be read to its end");
+    text_.resize(before + n);
+    offset_ += n;
+    hash_.add(std::string_view(text_).substr(before));
+    return n > 0;
+  }
+
+  void read_key() {
+    std::string_view rest = line_;
+    for (std::size_t i = 0; i < key_.size(); ++i) {
+      if (i > 0 && !rest.starts_with(',')) fail("holds a line that is no pair");
+      if (i > 0) rest.remove_prefix(1);
+      const auto number = take_number<std::uint64_t>(rest);
+      if (!number) fail("holds a line that is no pair");
+      key_[i] = *number;
+    }
+    if (!rest.empty() && rest.front() != ',') fail("holds a line that is no pair");
+  }
+
+  const Source& source_;
+  std::size_t buffer_;
+  std::string text_, line_;  // read and not used up; the line that next() gave
+  std::size_t at_ = 0;       // in text_
+  std::uint64_t offset_ = 0, rows_ = 0, lines_ = 0;
+  std::array<std::uint64_t, 4> key_{};
+  Sha256 hash_;
+};
+
+// Writes all rows in order; returns how many, and the SHA-256 of the list.
+std::pair<std::uint64_t, std::string> merge_lists(const std::vector<Source>& sources,
+                                                  const std::string& out) {
+  StreamedOutput file(out);
+  Sha256 hash;
+  std::string piece = sources.front().columns + "\n";
+  const auto flush = [&] {
+    hash.add(piece);
+    file.add(piece);
+    piece.clear();
+  };
+  const std::size_t buffer =
+      std::clamp<std::size_t>((std::size_t{64} << 20) / sources.size(), 4096, std::size_t{1} << 20);
+  std::vector<std::unique_ptr<List>> lists;
+  const auto later = [&](std::size_t a, std::size_t b) {
+    return lists[a]->key() > lists[b]->key();
+  };
+  std::priority_queue<std::size_t, std::vector<std::size_t>, decltype(later)> next(later);
+  for (const Source& source : sources) {
+    lists.push_back(std::make_unique<List>(source, buffer));
+    if (lists.back()->next()) next.push(lists.size() - 1);
+  }
+  std::uint64_t rows = 0;
+  std::optional<std::array<std::uint64_t, 4>> last;
+  while (!next.empty()) {
+    const std::size_t index = next.top();
+    next.pop();
+    List& list = *lists[index];
+    if (last == list.key()) list.fail("holds a pair that the list of another tile holds as well");
+    last = list.key();
+    piece.append(list.line()).push_back('\n');
+    ++rows;
+    if (piece.size() >= (std::size_t{1} << 20)) flush();
+    if (list.next()) next.push(index);
+  }
+  flush();
+  file.put();
+  return {rows, hash.digest()};
+}
+
+// The sum of a count over all records.
+std::uint64_t sum_of(const std::vector<Source>& sources, const char* place) {
+  std::uint64_t sum = 0;
+  for (const Source& source : sources) sum += at<std::uint64_t>(source, place);
+  return sum;
+}
+
+double largest_of(const std::vector<Source>& sources, const char* place) {
+  double most = 0;
+  for (const Source& source : sources) most = std::max(most, at<double>(source, place));
+  return most;
+}
+
+// Sums of the kinds of contact, or null where they were not asked for.
+Json contacts_of(const std::vector<Source>& sources) {
+  Json sum = at<Json>(sources.front(), "/contacts");
+  if (!sum.is_object()) return nullptr;
+  for (const auto& kind : sum.items())
+    kind.value() = sum_of(sources, ("/contacts/" + kind.key()).c_str());
+  return sum;
+}
+
+bool all_verified(const std::vector<Source>& sources) {
+  return std::ranges::all_of(
+      sources, [](const Source& source) { return at<Json>(source, "/verification").is_object(); });
+}
+
+void require_other_files(const std::vector<Source>& sources, const std::string& out) {
+  for (const Source& source : sources) {
+    for (const std::string& read : {source.path, source.list}) {
+      std::error_code code;
+      if (fs::equivalent(read, out, code)) {
+        throw Error(out, "is " + read + ", which is read, and would be overwritten",
+                    "name another file with -o");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+bool is_tile_record(const std::string& path) { return fs::path(path).extension() == ".json"; }
+
+MergedTiles merge_tiles(const std::vector<std::string>& records, const std::string& out) {
+  std::vector<Source> sources;
+  for (const std::string& record : records) {
+    sources.push_back(read_record(record));
+    require_alike(sources.front(), sources.back());
+  }
+  if (sources.empty()) throw Error("SHARDS", "no record is named", kRecordRemedy);
+  require_whole(sources);
+  require_other_files(sources, out);
+  std::ranges::sort(sources, {}, &Source::k);
+  MergedTiles merged{.tiles = sources.size(), .verified = all_verified(sources)};
+  const std::array counts = {"candidate_pairs", "colliding_pairs", "neighbour_pairs",
+                             "all_colliding_pairs"};
+  Json json = {{"scene", at<Json>(sources.front(), "/scene")},
+               {"method", at<Json>(sources.front(), "/method")},
+               {"tiles", merged.tiles},
+               {"axis", at<Json>(sources.front(), "/tile/axis")},
+               {"cuts", at<Json>(sources.front(), "/tile/cuts")},
+               {"asked", at<Json>(sources.front(), "/tile/asked")}};
+  for (const char* count : counts)
+    json[count] = sum_of(sources, (std::string("/") + count).c_str());
+  json["contacts"] = contacts_of(sources);
+  if (merged.verified) merged.false_negatives = sum_of(sources, "/verification/false_negatives");
+  json["false_negatives"] = merged.verified ? Json(merged.false_negatives) : Json(nullptr);
+  std::uint64_t largest = 0;
+  for (const Source& source : sources)
+    largest = std::max(largest, at<std::uint64_t>(source, "/tile/triangles"));
+  json["triangles_of_largest_tile"] = largest;
+  json["peak_memory_mib"] = largest_of(sources, "/tile/peak_memory_mib");
+  double ms = 0;
+  for (const Source& source : sources)
+    ms += at<double>(source, "/time_ms/total") + at<double>(source, "/tile/read_ms");
+  json["time_ms"] = ms;
+  const auto [rows, sha256] = merge_lists(sources, out);
+  merged.rows = rows;
+  json["list"] = {{"rows", rows}, {"sha256", sha256}};
+  json["commit"] = at<Json>(sources.front(), "/commit");
+  merged.json = json.dump(2) + "\n";
+  return merged;
+}
+
+}  // namespace farcull

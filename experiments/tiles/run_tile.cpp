@@ -1,0 +1,197 @@
+// The stages of experiments/method/run.h, with one more: candidates of other tiles are removed
+// before the exact tests, and after the accounting.
+#include "experiments/tiles/run_tile.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <thread>
+
+#include "core/base/error.h"
+#include "core/base/stopwatch.h"
+#include "core/base/text.h"
+#include "core/scene/members.h"
+
+namespace farcull {
+namespace {
+
+// Pairs of objects of the whole scene as those of the part; those of which one is elsewhere can
+// have no pair here.
+std::vector<ObjectPair> in_part(const std::vector<ObjectPair>& whole, const ListNumbers& numbers) {
+  const auto place = [&](std::uint32_t object) -> std::optional<std::uint32_t> {
+    const auto found = std::ranges::lower_bound(numbers.objects, object);
+    if (found == numbers.objects.end() || *found != object) return std::nullopt;
+    return static_cast<std::uint32_t>(found - numbers.objects.begin());
+  };
+  std::vector<ObjectPair> out;
+  for (const ObjectPair& pair : whole) {
+    const auto a = place(pair.a), b = place(pair.b);
+    if (a && b) out.push_back({*a, *b});
+  }
+  return out;
+}
+
+// The objects by their names alone.
+Scene names_of(const Census& census) {
+  Scene out;
+  out.name = census.name;
+  for (const std::string& name : census.names) out.objects.push_back({.name = name});
+  return out;
+}
+
+// Accounts for every pair of the part: kept are the candidates of all tiles.
+void account_for_part(const Scene& scene, Record& record) {
+  Stage stage{.kind = StageKind::verify, .reason = Reason::not_asked, .unit = Unit::pairs};
+  if (record.options.verify) {
+    record.verification = account(scene, record.found.pairs,
+                                  {.clearance = record.options.clearance,
+                                   .max_examples = std::numeric_limits<std::size_t>::max(),
+                                   .ignored = record.options.ignored});
+    Accounting& accounting = *record.verification;
+    if (record.options.clearance == 0) record.missed = count_contacts(scene, accounting.examples);
+    accounting.examples.resize(std::min(accounting.examples.size(), kExamples));
+    stage.ran = true;
+    stage.reason = Reason::every_pair;
+    stage.ms = accounting.ms;
+    stage.in = accounting.pairs_total;
+    stage.out = accounting.false_negatives;
+  }
+  record.trace.push_back(stage);
+}
+
+void decide_own(const Scene& scene, Record& record) {
+  const Stopwatch watch;
+  record.collisions =
+      decide(scene, record.found.pairs,
+             {.clearance = record.options.clearance, .neighbours = record.options.neighbours});
+  record.decided = record.found.pairs.size();
+  record.ms.exact = watch.ms();
+  record.trace.push_back(
+      {.kind = StageKind::exact,
+       .ran = true,
+       .reason = Reason::predicates,
+       .ms = record.ms.exact,
+       .in = record.decided,
+       .out = record.collisions.pairs.size() + record.collisions.neighbour_pairs.size(),
+       .unit = Unit::pairs});
+}
+
+// The potentially colliding set of the candidates that are left.
+void count_kept(const Scene& scene, Candidates& found) {
+  found.count = found.pairs.size();
+  found.triangles = members_of(found.pairs, scene.triangles.size());
+  found.triangle_count = found.triangles.size();
+  found.object_count = count_objects(scene, found.triangles);
+}
+
+Record run_part(const TileScene& part, const RunOptions& options, const Slab& slab,
+                Session& session, const Progress& progress, std::uint64_t& elsewhere) {
+  const FloatingPointGuard guard;
+  const Scene& scene = part.scene;
+  Record record;
+  record.callers = callers_floating_point();
+  record.options = options;
+  record.scene_hash = part.hash;
+  record.degenerate_triangles = degenerate_triangles(scene);
+  {
+    const Plan planned = plan(scene, options, session.threads(), progress);
+    record.plan = planned.stages();
+    record.trace = planned.trace;
+    record.ms.cull = planned.ms;
+    record.found = find(scene, planned, session, progress);
+  }  // the plan goes, to make room
+  record.trace.insert(record.trace.end(), record.found.trace.begin(), record.found.trace.end());
+  try {
+    record.promise = promise_of(options, record.found.device, session);
+  } catch (...) {
+    session.forget_device();
+    throw;
+  }
+  record.ms.setup = record.found.setup_ms;
+  record.ms.cull += record.found.ms;
+  if (progress && options.verify) progress("accounting for every pair");
+  account_for_part(scene, record);
+  elsewhere = std::erase_if(record.found.pairs, [&](const TrianglePair& pair) {
+    return !owns(slab, scene, pair, options.clearance);
+  });
+  count_kept(scene, record.found);
+  if (progress) progress("exact tests");
+  decide_own(scene, record);
+  record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
+  if (options.contacts != ContactDetail::none) {
+    const Stopwatch watch;
+    const unsigned threads =
+        session.threads() > 0 ? session.threads() : std::thread::hardware_concurrency();
+    record.contacts = contacts_of(scene, record.collisions.pairs, options.contacts, threads);
+    record.neighbour_contacts =
+        contacts_of(scene, record.collisions.neighbour_pairs, options.contacts, threads);
+    record.ms.contacts = watch.ms();
+  }
+  require_proved("arithmetic");  // a driver's code ran in this thread too
+  record.used = floating_point();
+  return record;
+}
+
+}  // namespace
+
+std::size_t parse_tiles(const std::string& text) {
+  const std::optional<std::size_t> n = parse_number<std::size_t>(text);
+  if (n && *n >= 1 && *n <= kMostTiles) return *n;
+  throw Error("--tiles", "'" + text + "' is no number of tiles",
+              fmt::format("give a whole number, 1 to {}", kMostTiles));
+}
+
+TileNumber parse_tile(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  if (slash != std::string::npos) {
+    const auto k = parse_number<std::size_t>(std::string_view(text).substr(0, slash));
+    const auto n = parse_number<std::size_t>(std::string_view(text).substr(slash + 1));
+    if (k && n && *k >= 1 && *k <= *n && *n <= kMostTiles) return {*k, *n};
+  }
+  throw Error("--tiles", "'" + text + "' is no tile",
+              fmt::format("give K/N with 1 <= K <= N <= {}, such as 2/4", kMostTiles));
+}
+
+TileRun run_tile(const SceneSource& source, const TileQuestion& question, Session& session,
+                 const Progress& progress) {
+  if (question.options.method != Method::far_pairs || question.options.limit > 0)
+    throw std::logic_error("run_tile: a tile is of far-pairs, without a limit");
+  const double clearance = question.options.clearance;
+  const Stopwatch reading;
+  if (progress) progress("reading the scene for the cuts");
+  TileRun out{.tile = question.tile,
+              .census = take_census(source, clearance, static_cast<bool>(question.ignored)),
+              .cuts = {},
+              .slab = {},
+              .part = {},
+              .record = {},
+              .ignored = question.ignored_text};
+  out.cuts = choose_cuts(out.census, question.tile.n);
+  out.slab = slab_of(out.cuts.axis, out.cuts.at, question.tile.k - 1);
+  if (progress) progress("reading the triangles of the tile");
+  out.part = gather_tile(source, out.census, out.slab, clearance);
+  out.part.scene.name += fmt::format(" (tile {} of {})", out.tile.k, out.tile.n);
+  out.read_ms = reading.ms();
+  RunOptions options = question.options;
+  if (question.ignored)
+    options.ignored = in_part(question.ignored(names_of(out.census)), out.part.numbers);
+  out.record = run_part(out.part, options, out.slab, session, progress, out.elsewhere);
+  return out;
+}
+
+std::string tile_list(const TileRun& run, PairColumns columns) {
+  columns.numbers = &run.part.numbers;
+  return pairs_header(run.part.scene, columns) +
+         pairs_rows(run.part.scene, run.record, "", columns);
+}
+
+double peak_memory_mib() {
+  struct rusage usage = {};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;  // Linux counts in KiB
+}
+
+}  // namespace farcull

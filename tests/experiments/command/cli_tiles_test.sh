@@ -1,0 +1,110 @@
+#!/usr/bin/env bash
+# Tiles on the command line: the built-in scenes in tiles give the lists of one run, with every option
+# that tiles take; the others are refused; and what is merged is whole or not there.
+#   cli_tiles_test.sh FARCULL_BINARY
+set -euo pipefail
+
+program=$(realpath -- "$1")
+work=$(mktemp -d)
+trap 'rm -rf -- "$work"' EXIT
+cd "$work"
+failed=0
+wrong() {
+  echo "FAILED $*"
+  failed=$((failed + 1))
+}
+
+# same N SCENE OPTIONS...: N tiles, merged, against one run.
+same() {
+  local -i n=$1 k
+  shift
+  rm -f t[0-9]*.json ./*.csv
+  "$program" run "$@" --no-verify --pairs one.csv >out.txt
+  for ((k = 1; k <= n; ++k)); do
+    "$program" run "$@" --no-verify --tiles "$k/$n" --json "t$k.json" --pairs "t$k.csv" >out.txt
+  done
+  "$program" merge t[0-9]*.json -o merged.csv --json whole.json >out.txt
+  cmp -s one.csv merged.csv || wrong "$n tiles of $*: another list than that of one run"
+}
+
+# refused REASON ARGUMENTS...: status 2, and a line with the reason.
+refused() {
+  local reason=$1 status=0
+  shift
+  "$program" "$@" >out.txt 2>err.txt || status=$?
+  ((status == 2)) && grep -qF -- "$reason" err.txt || wrong "$*: status $status, $(cat err.txt)"
+}
+
+# The built-in scenes, the large ones of a smaller size, in 1 to 5 tiles.
+n=0
+for scene in two-spheres two-tori random-soup needles degenerate ground crowd:60 far-apart field:3000 crumpled:2000 \
+  rope:3000 spheres:2000 fans:2000 funnel:5000 cylinders:20 torii:500 tree-leaves:20 shells cloth:1000 slivers stack \
+  mixed gap; do
+  same $((n++ % 5 + 1)) "$scene"
+done
+# Those of packaged meshes, where they are.
+if "$program" run bunny --no-verify >out.txt 2>&1; then
+  for scene in two-bunnies mannequin-devil; do same 2 "$scene"; done
+fi
+
+# Options that tiles take.
+same 3 two-tori --clearance 0.05
+same 4 cloth:1000 --self --contacts --faces
+same 2 two-spheres --self --clearance 0.01 --segments
+same 3 degenerate --kinds crossing,coplanar
+same 3 crowd --ignore '*1:*2,*3:*4'
+same 3 two-spheres --views x,y
+same 2 field:3000@seed9
+
+# Scenes from files, with meshes that are named several times and divided.
+"$program" scenes crowd:40 --write crowd >out.txt
+same 3 crowd/scene.json
+same 3 crowd/scene.json --self
+mesh=$(find crowd -type f ! -name '*.json' | sort | sed -n 1p)
+cat >again.json <<END
+{"name": "again", "objects": [{"mesh": "$mesh", "self": true}, {"mesh": "$mesh", "translate": [0.1, 0, 0]},
+  {"mesh": "$mesh", "split": "components", "scale": 1.5}]}
+END
+same 2 again.json
+same 2 "$mesh" "$mesh"
+
+# The plan cuts where the runs cut, and counts what they read.
+"$program" plan field:30000 --tiles 3 --json plan.json >out.txt
+grep -qE '^ *3/3 ' out.txt || wrong "plan --tiles 3: $(cat out.txt)"
+# tile_of INDENT: interval and counts among the lines of JSON.
+tile_of() { sed -nE "s/^ {$1}(\"(from|to|triangles|home_triangles)\": [^,]*),?\$/\1/p"; }
+for k in 1 2 3; do
+  "$program" run field:30000 --no-verify --tiles "$k/3" --json - | sed -n '/^  "tile": {/,/^  }/p' | tile_of 4 >tile.txt
+  sed -n "/\"k\": $k,/,/}/p" plan.json | tile_of 6 | cmp -s - tile.txt || wrong "the plan says of tile $k something else"
+  (($(wc -l <tile.txt) == 4)) || wrong "the record of tile $k lacks an entry: $(cat tile.txt)"
+done
+"$program" run field:30000 --tiles 2/3 >out.txt
+for word in 'tile       2 of 3' 'pairs of other tiles are not covered' 'memory     ' 'accounted  '; do
+  grep -qF "$word" out.txt || wrong "the table lacks '$word'"
+done
+
+# What cannot be answered in tiles, and values that are none.
+refused "--tiles: are of far-pairs" run two-spheres --tiles 1/2 --method far
+refused "--limit: cannot be answered in tiles" run two-spheres --tiles 1/2 --limit 5
+refused "--frames: cannot be answered in tiles" run two-spheres --tiles 1/2 --frames 3
+refused "--certificate: cannot be answered in tiles" run two-spheres --tiles 1/2 --certificate c.json
+refused "'3/2' is no tile" run two-spheres --tiles 3/2
+refused "'1/2' is no number of tiles" plan two-spheres --tiles 1/2
+refused "no object is called so" run crowd --tiles 1/2 --ignore 'nobody:*'
+[[ ! -e c.json ]] || wrong "a certificate was written"
+
+# merge: what is missing, and that nothing is written then.
+same 3 two-tori
+rm merged.csv
+refused "of its 3 tiles one is missing: 2" merge t1.json t3.json -o merged.csv
+refused "is no record of a tile, as the others are" merge t1.json results.sqlite -o merged.csv
+head -c 100 t2.csv >short.csv
+mv short.csv t2.csv
+refused "it was cut short" merge t1.json t2.json t3.json -o merged.csv
+[[ ! -e merged.csv ]] || wrong "a list was written although a tile is cut short"
+
+if ((failed > 0)); then
+  echo "$failed cases of tiles failed"
+  exit 1
+fi
+echo "tiles: the lists of one run, and errors where they cannot be"

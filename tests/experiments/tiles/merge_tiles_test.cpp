@@ -1,0 +1,196 @@
+// What is merged is the list of one run; whatever is missing, doubled, foreign or cut short is
+// refused, and then no file is written.
+#include "experiments/tiles/merge_tiles.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "experiments/scenes/scene_file.h"
+#include "experiments/tiles/run_tile.h"
+
+namespace farcull {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::string read(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write(const fs::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+constexpr std::size_t kTiles = 3;
+
+class MergeTiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("farcull-tiles-" + std::to_string(::getpid()));
+    fs::remove_all(folder_);
+    fs::create_directory(folder_);
+    for (std::size_t k = 1; k <= kTiles; ++k) run(k, kTiles, "field:9000");
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string record(std::size_t k) const {
+    return (folder_ / ("t" + std::to_string(k) + ".json")).string();
+  }
+  fs::path list(std::size_t k) const { return folder_ / ("t" + std::to_string(k) + ".csv"); }
+  std::string out() const { return (folder_ / "all.csv").string(); }
+
+  void run(std::size_t k, std::size_t n, const std::string& scene, double clearance = 0) {
+    TileQuestion question{.options = {.device = "native", .clearance = clearance}, .tile = {k, n}};
+    const SceneSource source = [&](const TakePart& take) { stream_scene({scene}, take); };
+    const TileRun tile = run_tile(source, question, session_);
+    const TileList text{
+        .text = tile_list(tile, {}), .file = list(k).filename().string(), .columns = {}};
+    write(list(k), text.text);
+    write(record(k), tile_json(tile, &text).dump());
+  }
+
+  void change(std::size_t k, const std::function<void(Json&)>& how) {
+    Json json = Json::parse(read(record(k)));
+    how(json);
+    write(record(k), json.dump());
+  }
+
+  // The reason for which the records are refused; nothing is left in the folder then.
+  std::string refusal(const std::vector<std::string>& records) {
+    const auto files = [&] {
+      return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+    };
+    const auto before = files();
+    try {
+      merge_tiles(records, out());
+    } catch (const Error& error) {
+      EXPECT_EQ(files(), before);
+      return error.what();
+    }
+    ADD_FAILURE() << "was merged";
+    return "";
+  }
+  std::string refusal() { return refusal({record(1), record(2), record(3)}); }
+  void expect_refused(const std::string& reason) {
+    EXPECT_NE(refusal().find(reason), std::string::npos) << refusal();
+  }
+
+  fs::path folder_;
+  Session session_{"native"};
+};
+
+TEST_F(MergeTiles, GiveTheListOfOneRunInAnyOrder) {
+  const Scene scene = load_scene({"field:9000"});
+  const Record whole = farcull::run(scene, {.device = "native"}, session_);
+  const MergedTiles merged = merge_tiles({record(3), record(1), record(2)}, out());
+  EXPECT_EQ(read(out()), pairs_csv(scene, whole));
+  EXPECT_EQ(merged.tiles, kTiles);
+  EXPECT_EQ(merged.rows, whole.collisions.pairs.size());
+  EXPECT_GT(merged.rows, 100);
+  EXPECT_TRUE(merged.verified);
+  EXPECT_EQ(merged.false_negatives, 0);
+  const Json json = Json::parse(merged.json);
+  EXPECT_EQ(json["scene"]["hash"], whole.scene_hash);
+  EXPECT_EQ(json["colliding_pairs"], whole.collisions.pairs.size());
+  EXPECT_EQ(json["list"]["rows"], merged.rows);
+}
+
+TEST_F(MergeTiles, RefuseTilesThatAreMissingOrThereTwice) {
+  EXPECT_NE(refusal({record(1), record(3)}).find("of its 3 tiles one is missing: 2"),
+            std::string::npos);
+  EXPECT_NE(refusal({record(2)}).find("2 are missing: 1, 3"), std::string::npos);
+  EXPECT_NE(refusal({record(1), record(2), record(2)}).find("is tile 2 of 3, and so is"),
+            std::string::npos);
+  EXPECT_NE(refusal({record(1), record(2), record(4)}).find("does not exist"), std::string::npos);
+  fs::remove(list(2));
+  expect_refused("does not exist, and");
+}
+
+TEST_F(MergeTiles, RefuseWhatIsNotOfOneScene) {
+  run(2, kTiles, "field:9000@seed8");
+  expect_refused("is of another scene");
+  run(2, kTiles, "field:9000", 1e-3);
+  expect_refused("is cut elsewhere");
+  run(2, 4, "field:9000");
+  expect_refused("is of another number of tiles");
+  run(2, kTiles, "field:9000");
+  change(2, [](Json& json) { json["commit"] = "0123456"; });
+  expect_refused("is of another version");
+  run(2, kTiles, "field:9000");
+  change(2, [](Json& json) { json["tile"]["asked"]["clearance"] = 1; });
+  expect_refused("was run with other options");
+}
+
+TEST_F(MergeTiles, NoticeATriangleThatNoTileHas) {
+  change(1, [](Json& json) {
+    json["tile"]["home_triangles"] = json["tile"]["home_triangles"].get<int>() - 1;
+  });
+  expect_refused("the tiles together hold");
+}
+
+TEST_F(MergeTiles, RefuseListsThatWereCutShortOrChanged) {
+  const std::string whole = read(list(2));
+  write(list(2), whole.substr(0, whole.size() - 3));
+  expect_refused("ends within a line");
+  write(list(2), whole.substr(0, whole.rfind('\n', whole.size() - 2) + 1));
+  expect_refused("it was cut short or changed");
+  write(list(2), whole + whole.substr(whole.rfind('\n', whole.size() - 2) + 1));
+  expect_refused("is not sorted");
+  std::string other = whole;
+  other[other.size() - 2] = other[other.size() - 2] == '9' ? '8' : '9';
+  write(list(2), other);
+  EXPECT_FALSE(refusal().empty());
+  write(list(2), "");
+  expect_refused("does not begin as its record says");
+  write(list(2), whole);
+  EXPECT_EQ(merge_tiles({record(1), record(2), record(3)}, out()).tiles, kTiles);
+}
+
+TEST_F(MergeTiles, RefuseAPairThatTwoTilesHave) {
+  // As if tile 2 were tile 1 once more: all is consistent but for the pairs.
+  write(list(2), read(list(1)));
+  const Json one = Json::parse(read(record(1)));
+  change(2, [&](Json& json) {
+    json["tile"]["list"]["rows"] = one["tile"]["list"]["rows"];
+    json["tile"]["list"]["sha256"] = one["tile"]["list"]["sha256"];
+  });
+  expect_refused("holds a pair that the list of another tile holds as well");
+}
+
+TEST_F(MergeTiles, RefuseWhatIsNoRecord) {
+  write(record(2), "{\"tile\": ");
+  expect_refused("is no JSON, or was cut short");
+  write(record(2), "{}");
+  expect_refused("it has no entry `tile`");
+  run(2, kTiles, "field:9000");
+  change(2, [](Json& json) { json["tile"].erase("k"); });
+  expect_refused("/tile/k is missing or wrong");
+  run(2, kTiles, "field:9000");
+  change(2, [](Json& json) { json["tile"]["list"] = nullptr; });
+  expect_refused("without --pairs FILE");
+}
+
+TEST_F(MergeTiles, DoNotWriteOverWhatIsRead) {
+  const std::string before = read(list(1));
+  EXPECT_THROW(merge_tiles({record(1), record(2), record(3)}, list(1).string()), Error);
+  EXPECT_EQ(read(list(1)), before);
+}
+
+TEST_F(MergeTiles, AddUpMissedPairs) {
+  change(2, [](Json& json) { json["verification"]["false_negatives"] = 2; });
+  change(3, [](Json& json) { json["verification"]["false_negatives"] = 1; });
+  EXPECT_EQ(merge_tiles({record(1), record(2), record(3)}, out()).false_negatives, 3);
+  change(1, [](Json& json) { json["verification"] = nullptr; });
+  EXPECT_FALSE(merge_tiles({record(1), record(2), record(3)}, out()).verified);
+}
+
+}  // namespace
+}  // namespace farcull
