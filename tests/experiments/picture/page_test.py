@@ -1,12 +1,13 @@
 # Drives the page of `farcull picture two-tori --compare cullide,far,exact` in a browser.
-#   page_test.py PAGE SAID PAIRS MOTION SAID_OF_MOTION KINDS PAIRS_OF_KINDS
+#   page_test.py PAGE SAID PAIRS MOTION SAID_OF_MOTION KINDS PAIRS_OF_KINDS FLAT
 # SAID: what the command printed; PAIRS: all pairs with their kinds of contact as CSV; MOTION: the page of a scene
-# that moves; KINDS: that of a triangle with a pair of each kind
+# that moves; KINDS: that of a triangle with a pair of each kind; FLAT: the flat picture of cullide at 256 px
 import csv
 import os
 import re
 import sys
 import time
+from collections import Counter
 
 from browser import Browser, Pixels
 
@@ -35,9 +36,20 @@ def shown(b, path, fragment=""):
     b.wait(READY, SECONDS)
 
 
+# The answer that the state asks for is shown, and one more frame was drawn. "done" after 30 s either way: what is
+# seen then is no answer, and fails.
+DRAWN = """new Promise((done) => {
+  const end = performance.now() + 30000;
+  const is_shown = () => answer && answer.step === currentStep() && shownFrame === state.frame;
+  const look = () => is_shown() || performance.now() > end
+    ? requestAnimationFrame(() => requestAnimationFrame(() => done(1))) : setTimeout(look, 5);
+  look();
+})"""
+
+
 def drawn(b):
     """After the next frame, and once no answer is being loaded."""
-    b.run("new Promise((done) => setTimeout(() => requestAnimationFrame(() => requestAnimationFrame(() => done(1))), 60))")
+    b.run(DRAWN)
 
 
 def text(b, name):
@@ -88,7 +100,8 @@ def set_value(b, name, value, event="input"):
 
 
 def hash_of(b):
-    time.sleep(0.4)  # the page writes its address a quarter of a second after the last change
+    # The page writes its address a quarter of a second after the last change.
+    b.wait("written === addressOf() && location.hash === written")
     return b.run("location.hash")
 
 
@@ -214,6 +227,52 @@ def check_colours(b):
     check(pixel(b, 3, 3) == PAPER, f"the paper is {pixel(b, 3, 3)}")
 
 
+def classes_of(rows, known={}):
+    """Of each pixel of rows of colours what is seen there: paper, a colour of the legend or of an object, lit, or what
+    is mixed of two."""
+    colours = {"found": FOUND, "first": (176, 190, 210), "second": (218, 214, 206)}
+    for colour in set().union(*rows) - known.keys():
+        known[colour] = ("paper" if colour == PAPER else "missed" if colour == MISSED else
+                         next((name for name, full in colours.items() if is_lit(colour, full)), "mixed"))
+    return [[known[colour] for colour in row] for row in rows]
+
+
+def shares_of(rows):
+    """Of each class that is seen: its share of the pixels that are not paper, and that of its pixels at an edge, which
+    is where a neighbour is of another class."""
+    seen, edges, classes = {}, {}, classes_of(rows)
+    for above, row in zip([classes[0]] + classes, classes):
+        for left, up, here in zip([row[0]] + row, above, row):
+            seen[here] = seen.get(here, 0) + 1
+            for other in (left, up):
+                if other != here:
+                    edges[here] = edges.get(here, 0) + 1
+                    edges[other] = edges.get(other, 0) + 1
+    coloured = sum(seen.values()) - seen.get("paper", 0)
+    return {name: (count / coloured, edges.get(name, 0) / coloured) for name, count in seen.items() if name != "paper"}
+
+
+def check_flat(b, page, flat):
+    """The page shows what the flat picture of the same view shows, at another size. A pixel that is at no edge stands
+    for its whole area, in both pictures. So the share of a class differs by no more than its edges do."""
+    shown(b, page, "#method=cullide&px=256")
+    drawn(b)
+    b.run("document.getElementById('legend').style.visibility = 'hidden'")
+    left, top, width, height = place_of_canvas(b)
+    # Without the ring of the focus.
+    here = shares_of(Pixels(b.screenshot((left + 3, top + 3, width - 6, height - 6))).as_rows())
+    rows = flat.as_rows()
+    frame = [y for y, row in enumerate(rows) if Counter(row).most_common(1)[0][0] != PAPER]
+    check(len(frame) == 2, f"the flat picture has {len(frame)} lines of a frame")
+    inside = [x for x, colour in enumerate(rows[frame[0]]) if colour != PAPER]
+    there = shares_of([row[inside[0] + 1:inside[-1]] for row in rows[frame[0] + 1:frame[1]]])
+    check({"missed", "first", "second"} <= there.keys(), f"the flat picture shows {there}")
+    for name in there.keys() | here.keys():
+        (a, edges_a), (c, edges_c) = there.get(name, (0, 0)), here.get(name, (0, 0))
+        check(abs(a - c) <= edges_a + edges_c,
+              f"{name} is {c:.4f} of the page, and {a:.4f} of the flat picture; edges are {edges_c:.4f} and {edges_a:.4f}")
+
+
 def check_view(b):
     """Orbit, pan, zoom, by mouse and keys; each changes the picture, and the reset brings it back."""
     b.run("document.getElementById('canvas').focus()")
@@ -259,7 +318,7 @@ def check_objects(b):
     after = look(b)
     check(after != before and b.run("[...farcull.state.hidden]") == [0], "object 0 is not hidden")
     picked = b.run("(() => { const out = new Set(); const f = farcull.frame;"
-                   f"for (let x = 5; x < {width}; x += 60) for (let y = 5; y < {height}; y += 60)"
+                   f"for (let x = 5; x < {width}; x += 90) for (let y = 5; y < {height}; y += 90)"
                    "{ const t = farcull.view.pick(x, y); if (t >= 0) out.add(f.owner[t]); } return [...out]; })()")
     check(picked == [1], f"with object 0 hidden, objects {picked} are seen")
     b.run("document.getElementById('show-all').click()")
@@ -388,7 +447,7 @@ def spoiled(page, old, new):
     return "spoiled.html"
 
 
-def check_twins(b, page, pairs, kinds):
+def check_twins(b, page, pairs, kinds, flat):
     """Faults that the checks have to catch: each must leave a problem or a failure."""
     def caught(what, old, new, act, page=page):
         global failures, in_twin
@@ -419,11 +478,16 @@ def check_twins(b, page, pairs, kinds):
         shown(b, path)
         check_click(b, pairs, 1)
 
-    caught("a line on the console", START, "\nconsole.log('made up');start().catch(", looks)
-    caught("a request", START, "\nfetch('https://example.org/').catch(() => {});start().catch(", looks)
-    caught("an exception", START, "\nsetTimeout(() => nothing_of_this_name());start().catch(", looks)
-    caught("a block that is damaged", 'id="block-0">', 'id="block-0">AAAA', damaged)
+    small = kinds[0]
+    caught("a line on the console", START, "\nconsole.log('made up');start().catch(", looks, small)
+    caught("a request", START, "\nfetch('https://example.org/').catch(() => {});start().catch(", looks, small)
+    caught("an exception", START, "\nsetTimeout(() => nothing_of_this_name());start().catch(", looks, small)
+    caught("a block that is damaged", 'id="block-0">', 'id="block-0">AAAA', damaged, small)
     caught("misses in another colour", "if (part == 2) colour = missed;", "if (part == 2) colour = found;", misses)
+    caught("objects in other colours", "colours.objects.map(shareOf)", "colours.objects.map(shareOf).reverse()",
+           lambda path: check_flat(b, path, flat))
+    caught("no misses beside the flat picture", "place.w > 0.5 ?", "place.w > 0.5 || part == 2 ?",
+           lambda path: check_flat(b, path, flat))
     caught("kinds of contact by other names", '"coplanar","crossing"', '"crossing","coplanar"',
            lambda path: check_kinds(b, path, kinds[1]), kinds[0])
     caught("a click beside", "int id = number + 1;", "int id = number + 2;", click)
@@ -442,9 +506,12 @@ def main():
             print(f"picture.page: {time.monotonic() - begun:.1f} s", flush=True)
         check(not b.problems, f"the page has problems: {b.problems}")
         check_frames(b, sys.argv[4], open(sys.argv[5], encoding="utf-8").read().splitlines())
+        with open(sys.argv[8], "rb") as file:
+            flat = Pixels(file.read())
+        check_flat(b, page, flat)
         kinds = (sys.argv[6], partners(sys.argv[7]))
         check_kinds(b, *kinds)
-        check_twins(b, page, pairs, kinds)
+        check_twins(b, page, pairs, kinds, flat)
     with Browser("--disable-3d-apis") as b:
         shown(b, page)
         check(b.run("getComputedStyle(document.getElementById('flat')).display") == "block" and

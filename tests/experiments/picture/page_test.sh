@@ -19,6 +19,7 @@ if grep -q 'three.js' errors; then
   exit 77
 fi
 ((status == 0)) || { cat errors >&2; exit 1; }
+"$farcull" picture two-tori --method cullide --resolution 256 --size 400x340 -o flat.png >/dev/null || exit 1
 "$farcull" picture two-spheres --compare cullide:64,far-pairs --frames 3:6 --size 200x160 \
   --html spheres.html >said-of-frames || exit 1
 "$farcull" run two-tori --method exact --no-verify --pairs pairs.csv --contacts >/dev/null || exit 1
@@ -30,4 +31,4 @@ printf '%s\n' OFF '18 6 0' '0 0 0' '8 0 0' '0 8 0' '1 1 -1' '1 1 1' '1 3 0.5' '4
 "$farcull" picture a.off b.off --compare exact --size 200x160 --html kinds.html >/dev/null || exit 1
 "$farcull" run a.off b.off --no-verify --pairs kinds.csv --contacts >/dev/null || exit 1
 PYTHONDONTWRITEBYTECODE=1 python3 "$here/page_test.py" tori.html said pairs.csv spheres.html said-of-frames \
-  kinds.html kinds.csv || exit 1
+  kinds.html kinds.csv flat.png || exit 1

@@ -11,17 +11,21 @@ set -euo pipefail
 farcull=$1
 fixture=$2
 # shellcheck source-path=SCRIPTDIR source=../script_lab.sh
-source "$(dirname -- "${BASH_SOURCE[0]}")/../script_lab.sh" report.browser chromium pdftotext pdfinfo gnuplot
+source "$(dirname -- "${BASH_SOURCE[0]}")/../script_lab.sh" report.browser chromium python3 pdftotext pdfinfo gnuplot
 
-# browse URL OPTIONS...: stdout as the browser gives it, its log in $work/log. No host resolves.
+# One browser for all pages (browse.py).
+here=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
+coproc BROWSER { PYTHONDONTWRITEBYTECODE=1 exec python3 "$here/browse.py"; }
+
+# browse QUESTION...: what the browser says to it.
 browse() {
-  local url=$1
-  shift
-  timeout 120 chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage \
-    --user-data-dir="$work/profile" --no-first-run --disable-background-networking \
-    --disable-component-update --disable-sync --disable-extensions \
-    --host-resolver-rules='MAP * ~NOTFOUND' --hide-scrollbars --allow-file-access-from-files \
-    --enable-logging=stderr --log-level=0 "$@" "$url" 2>"$work/log"
+  local line
+  printf '%s\n' "$*" >&"${BROWSER[1]}"
+  while IFS= read -r line <&"${BROWSER[0]}"; do
+    if [[ $line == END ]]; then return; fi
+    printf '%s\n' "$line"
+  done
+  echo "FAILED: the browser has ended"
 }
 
 # The page measures itself, by a script that only the copy has: what it shows, what failed to load,
@@ -83,14 +87,9 @@ check_page() {
   with_probe "$page" "$copy"
   local pixels
   for pixels in "${widths[@]}"; do
-    if ! browse "file://$copy" --window-size="$pixels,900" --dump-dom >"$work/dom"; then
-      echo "$pixels px: the browser failed"
-      continue
-    fi
-    grep -F 'CONSOLE' "$work/log" | sed "s/^/$pixels px: console: /" || true
-    sed -n '/id="probe-results"/,/^END/p' "$work/dom" >"$said"
-    grep -q '^END' "$said" || echo "$pixels px: the page did not load"
-    grep '^PROBLEM' "$said" | sed "s/^/$pixels px: /" || true
+    browse probe "$pixels" "$copy" >"$said"
+    grep -E '^(PROBLEM|console|FAILED)' "$said" | sed "s/^/$pixels px: /" || true
+    grep -q '^WIDTH' "$said" || echo "$pixels px: the page did not load"
     for id in "$@"; do
       if ! read -r _ _ width height marks text < <(grep "^FIGURE $id " "$said"); then
         echo "$pixels px: figure $id is missing"
@@ -157,15 +156,15 @@ wrong=$(check_page "$page" "${ids[@]}" && check_links "$page")
 [[ -z $wrong ]] || fail "the page: $wrong"
 if grep -q '<script' "$page"; then fail "the page has a script"; fi
 
-browse "file://$page" --no-pdf-header-footer --print-to-pdf="$work/page.pdf" >/dev/null ||
-  fail "printing"
+wrong=$(browse pdf "$page" "$work/page.pdf")
+[[ -z $wrong ]] || fail "printing: $wrong"
 wrong=$(check_pdf "$page" "$work/page.pdf")
 [[ -z $wrong ]] || fail "the PDF: $wrong"
 
 if [[ -n ${FARCULL_REPORT_SHOTS:-} ]]; then
   mkdir -p "$FARCULL_REPORT_SHOTS"
-  browse "file://$page" --window-size=1280,12000 --screenshot="$FARCULL_REPORT_SHOTS/1280.png" >/dev/null
-  browse "file://$page" --window-size=500,12000 --screenshot="$FARCULL_REPORT_SHOTS/500.png" >/dev/null
+  browse shot 1280 "$page" "$FARCULL_REPORT_SHOTS/1280.png"
+  browse shot 500 "$page" "$FARCULL_REPORT_SHOTS/500.png"
   cp "$work/page.pdf" "$FARCULL_REPORT_SHOTS/"
 fi
 
@@ -202,7 +201,7 @@ sed 's|<h2>Contents</h2>|&<img src="https://example.org/a.png" alt="far away">|'
 caught "a page that needs a network" 'PROBLEM resource https://example.org/a.png' check_page "$broken/network.html" "$first"
 caught "a link to a network" 'leads to a network' check_links "$broken/network.html"
 sed 's|</style>|@media print { figcaption { display: none; } }&|' "$page" >"$broken/captions.html"
-browse "file://$broken/captions.html" --print-to-pdf="$work/captions.pdf" >/dev/null
+browse pdf "$broken/captions.html" "$work/captions.pdf"
 caught "a PDF without captions" 'not in the PDF' check_pdf "$page" "$work/captions.pdf"
 
 # ---- stores that are not whole ----
