@@ -262,7 +262,7 @@ int MergeCommand::run_tiles() const {
   if (json_) outputs.push_back({"--json", *json_});
   require_apart(inputs, outputs);
   if (json_) check_output(*json_);
-  const MergedTiles merged = merge_tiles(sources_, out);
+  const MergedTiles merged = merge_tiles(sources_, out, json_.value_or(""));
   if (json_) write_output(*json_, merged.json);
   if (json_ != "-") {
     write_output("-", fmt::format("{} of {}: {}\n", counted(merged.rows, "pair", "pairs"),

@@ -68,7 +68,9 @@ std::string text_of(const std::string& path) {
 }
 
 Source read_record(const std::string& path) {
-  Source out{.path = path, .json = Json::parse(text_of(path), nullptr, false)};
+  Source out;
+  out.path = path;
+  out.json = Json::parse(text_of(path), nullptr, false);
   if (out.json.is_discarded()) no_record(path, "is no JSON, or was cut short");
   if (!out.json.is_object() || !out.json.contains("tile"))
     no_record(path, "is no record of a tile: it has no entry `tile`");
@@ -305,7 +307,7 @@ void require_other_files(const std::vector<Source>& sources, const std::string& 
       std::error_code code;
       if (fs::equivalent(read, out, code)) {
         throw Error(out, "is " + read + ", which is read, and would be overwritten",
-                    "name another file with -o");
+                    "choose another place for it");
       }
     }
   }
@@ -315,7 +317,8 @@ void require_other_files(const std::vector<Source>& sources, const std::string& 
 
 bool is_tile_record(const std::string& path) { return fs::path(path).extension() == ".json"; }
 
-MergedTiles merge_tiles(const std::vector<std::string>& records, const std::string& out) {
+MergedTiles merge_tiles(const std::vector<std::string>& records, const std::string& out,
+                        const std::string& other) {
   std::vector<Source> sources;
   for (const std::string& record : records) {
     sources.push_back(read_record(record));
@@ -324,8 +327,11 @@ MergedTiles merge_tiles(const std::vector<std::string>& records, const std::stri
   if (sources.empty()) throw Error("SHARDS", "no record is named", kRecordRemedy);
   require_whole(sources);
   require_other_files(sources, out);
+  require_other_files(sources, other);
   std::ranges::sort(sources, {}, &Source::k);
-  MergedTiles merged{.tiles = sources.size(), .verified = all_verified(sources)};
+  MergedTiles merged;
+  merged.tiles = sources.size();
+  merged.verified = all_verified(sources);
   const std::array counts = {"candidate_pairs", "colliding_pairs", "neighbour_pairs",
                              "all_colliding_pairs"};
   Json json = {{"scene", at<Json>(sources.front(), "/scene")},

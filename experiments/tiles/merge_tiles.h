@@ -26,6 +26,8 @@ struct MergedTiles {
 /// cut short or changed since; where a tile is there twice or not at all; where two records differ
 /// in scene, number of tiles, cuts, options, columns or commit; where the tiles do not hold all
 /// triangles of the scene; and where `out` cannot be written or is a file that is read.
-MergedTiles merge_tiles(const std::vector<std::string>& records, const std::string& out);
+/// other: a path to which the caller will write, which must not be a file that is read either.
+MergedTiles merge_tiles(const std::vector<std::string>& records, const std::string& out,
+                        const std::string& other = "");
 
 }  // namespace farcull

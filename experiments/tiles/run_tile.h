@@ -27,7 +27,7 @@ inline constexpr std::size_t kMostTiles = 10'000;
 
 struct TileQuestion {
   RunOptions options;  // of far-pairs, without a limit; `ignored` is empty
-  TileNumber tile;
+  TileNumber tile = {};
   /// Which objects are ignored, as pairs of the objects of a scene that has the names alone; empty:
   /// none.
   std::function<std::vector<ObjectPair>(const Scene& names)> ignored = {};

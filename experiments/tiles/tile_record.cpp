@@ -47,7 +47,8 @@ Json list_json(const TileList& list) {
           {"sha256", hash.digest()}};
 }
 
-// Bytes of memory for each triangle of a tile, measured (docs/tiles.md).
+// Bytes of memory for each triangle of a tile without the accounting: more than was measured on
+// large tiles (docs/tiles.md).
 constexpr double kBytesPerTriangle = 100;
 
 double expected_mib(const TileCount& count) {

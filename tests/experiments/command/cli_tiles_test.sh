@@ -32,7 +32,7 @@ refused() {
   local reason=$1 status=0
   shift
   "$program" "$@" >out.txt 2>err.txt || status=$?
-  ((status == 2)) && grep -qF -- "$reason" err.txt || wrong "$*: status $status, $(cat err.txt)"
+  if ((status != 2)) || ! grep -qF -- "$reason" err.txt; then wrong "$*: status $status, $(cat err.txt)"; fi
 }
 
 # The built-in scenes, the large ones of a smaller size, in 1 to 5 tiles.
