@@ -97,6 +97,8 @@ std::string name_of(const Stage& stage) {
 
 std::string reason_of(const Stage& stage) {
   const std::string n = grouped(stage.n), m = grouped(stage.m);
+  // Of boxes of objects: "ignored ones", where some are.
+  const std::string apart = stage.detail.empty() ? "" : ", " + stage.detail + " apart";
   switch (stage.reason) {
     case Reason::none:
       return "";
@@ -105,7 +107,7 @@ std::string reason_of(const Stage& stage) {
     case Reason::regions:
       return counted(stage.n, "pair of objects' boxes overlaps", "pairs of objects' boxes overlap");
     case Reason::meetings:
-      return "pairs of objects whose boxes overlap: " + n +
+      return "pairs of objects whose boxes overlap" + apart + ": " + n +
              "; objects tested against themselves: " + m;
     case Reason::crowded:
       return "pairs of objects whose boxes overlap: too many to list, so all objects take part "
@@ -118,7 +120,7 @@ std::string reason_of(const Stage& stage) {
     case Reason::only_runs:
       return "boxes of runs decide: no view is needed";
     case Reason::no_boxes_overlap:
-      return "no two objects' boxes overlap, none is tested against itself";
+      return "no two objects' boxes overlap" + apart + ", none is tested against itself";
     case Reason::no_triangle_meets:
       return "no triangle meets the box of another object";
     case Reason::nothing_to_look_at:

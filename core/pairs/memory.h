@@ -22,6 +22,7 @@ struct PairMemory {
   Patience patience;
   double clearance = 0;
   bool neighbours = true;
+  std::vector<ObjectPair> ignored;
   bool complete = false;  // the frame was planned and found, and runs decided all of it
   /// Of the last frame, with all triangles of scattered objects in order; null: not made yet. Its
   /// plan has it too, until it is destroyed.

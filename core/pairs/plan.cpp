@@ -112,7 +112,7 @@ LastFrame last_frame(const Scene& scene, const PairSettings& settings, PairMemor
   }
   const bool known = memory.moved.update(scene) && complete &&
                      memory.clearance == settings.clearance &&
-                     memory.neighbours == settings.neighbours;
+                     memory.neighbours == settings.neighbours && memory.ignored == settings.ignored;
   if (known) {
     const bool worth_while = mostly_unmoved(scene, memory.moved, memory.pairs);
     memory.patience.tell(worth_while);
@@ -120,8 +120,14 @@ LastFrame last_frame(const Scene& scene, const PairSettings& settings, PairMemor
   }
   memory.clearance = settings.clearance;
   memory.neighbours = settings.neighbours;
+  memory.ignored = settings.ignored;
   memory.runs.reset();
   return LastFrame::unknown;
+}
+
+// What a stage of boxes leaves out.
+std::string apart(const PairSettings& settings) {
+  return settings.ignored.empty() ? "" : "ignored ones";
 }
 
 // Splits the meetings of a scene into those that boxes of runs decide and those that views do, and
@@ -132,8 +138,9 @@ void split_and_choose(const Scene& scene, unsigned threads, PairMemory* memory, 
   const LastFrame last = memory ? last_frame(scene, settings, *memory) : LastFrame::ignored;
   plan.remembers = last != LastFrame::ignored;
   const auto split = [&](bool all) {
-    return last == LastFrame::known ? split_next_frame(scene, threads, all, *memory)
-                                    : split_meetings(scene, settings.clearance, threads, all);
+    return last == LastFrame::known
+               ? split_next_frame(scene, threads, all, *memory)
+               : split_meetings(scene, settings.clearance, threads, all, settings.ignored);
   };
   PairParts parts = split(false);
   const double split_ms = planning.ms();
@@ -155,6 +162,7 @@ void split_and_choose(const Scene& scene, unsigned threads, PairMemory* memory, 
   plan.trace.push_back({.kind = StageKind::boxes,
                         .ran = true,
                         .reason = plan.regions.crowded ? Reason::crowded : Reason::meetings,
+                        .detail = apart(settings),
                         .n = plan.regions.pairs,
                         .m = plan.regions.self,
                         .ms = split_ms,
@@ -165,6 +173,7 @@ void split_and_choose(const Scene& scene, unsigned threads, PairMemory* memory, 
     plan.trace.push_back(
         {.kind = StageKind::views,
          .reason = plan.runs.empty() ? Reason::no_boxes_overlap : Reason::only_runs,
+         .detail = plan.runs.empty() ? apart(settings) : "",
          .ms = choosing.ms(),
          .unit = Unit::pairs});
     return;
@@ -183,12 +192,13 @@ void split_and_choose(const Scene& scene, unsigned threads, PairMemory* memory, 
 void leave_to_views(const Scene& scene, unsigned threads, PairPlan& plan) {
   const PairSettings& settings = plan.settings;
   const Stopwatch planning;
-  plan.regions = pair_regions(scene, settings.clearance, settings.full, threads);
+  plan.regions = pair_regions(scene, settings.clearance, settings.full, threads, settings.ignored);
   plan.trace.push_back({.kind = StageKind::boxes,
                         .ran = true,
                         .reason = settings.full          ? Reason::full
                                   : plan.regions.crowded ? Reason::crowded
                                                          : Reason::meetings,
+                        .detail = settings.full ? "" : apart(settings),
                         .n = settings.full ? 0 : plan.regions.pairs,
                         .m = settings.full ? 0 : plan.regions.self,
                         .ms = planning.ms(),
@@ -196,8 +206,10 @@ void leave_to_views(const Scene& scene, unsigned threads, PairPlan& plan) {
                         .out = plan.regions.triangles.size(),
                         .unit = Unit::triangles});
   if (plan.regions.triangles.empty()) {
-    plan.trace.push_back(
-        {.kind = StageKind::views, .reason = Reason::no_boxes_overlap, .unit = Unit::pairs});
+    plan.trace.push_back({.kind = StageKind::views,
+                          .reason = Reason::no_boxes_overlap,
+                          .detail = apart(settings),
+                          .unit = Unit::pairs});
     return;
   }
   const Stopwatch choosing;

@@ -26,6 +26,9 @@ struct PairSettings {
   bool full = false;     // leave nothing out: every triangle takes part, three views are looked at
   bool runs = true;      // false: views decide everything
   bool neighbours = true;  // false: pairs of one object that share a vertex index are left out
+  /// Objects that are not tested against each other, as in_order() gives them. What culling would
+  /// spend on them is saved; the candidates may still have such pairs.
+  std::vector<ObjectPair> ignored = {};
 };
 
 /// Everything about a scene that needs no pixels: who takes part, and which views are looked at.

@@ -37,7 +37,7 @@ struct Meetings {
 };
 constexpr std::size_t kMeetingsPerRun = 8;
 
-Meetings meetings_of(const Scene& scene, const Runs& runs) {
+Meetings meetings_of(const Scene& scene, const Runs& runs, std::span<const ObjectPair> ignored) {
   std::vector<std::uint32_t> objects(runs.objects.size());
   std::iota(objects.begin(), objects.end(), 0u);
   const std::size_t most = kMeetingsPerRun * runs.runs.size();
@@ -45,6 +45,7 @@ Meetings meetings_of(const Scene& scene, const Runs& runs) {
   const std::vector<TrianglePair> pairs = box_join(runs.objects, objects, objects, most);
   if (pairs.size() > most) return {.all = {}, .crowded = true};
   for (const auto& [a, b] : pairs) {
+    if (std::ranges::binary_search(ignored, ObjectPair{std::min(a, b), std::max(a, b)})) continue;
     const bool ordered = runs.count(a) <= runs.count(b);
     out.all.push_back({ordered ? a : b, ordered ? b : a});
   }
@@ -388,9 +389,10 @@ std::vector<TrianglePair> pairs_of_sample(const Scene& scene, const RunMeetings&
 
 }  // namespace
 
-PairRegions pair_regions(const Scene& scene, double clearance, bool full, unsigned threads) {
+PairRegions pair_regions(const Scene& scene, double clearance, bool full, unsigned threads,
+                         std::span<const ObjectPair> ignored) {
   const Runs runs = make_runs(scene, clearance, threads);
-  const Meetings meetings = meetings_of(scene, runs);
+  const Meetings meetings = meetings_of(scene, runs, ignored);
   PairRegions out = regions_in(
       runs, full || meetings.crowded ? runs.objects : boxes_of_meetings(runs, meetings.all));
   count_meetings(scene, meetings, out);
@@ -442,11 +444,13 @@ void keep_unmoved(const Scene& scene, std::span<const std::uint8_t> moved,
 
 }  // namespace
 
-PairParts split_meetings(const Scene& scene, double clearance, unsigned threads, bool all) {
+PairParts split_meetings(const Scene& scene, double clearance, unsigned threads, bool all,
+                         std::span<const ObjectPair> ignored) {
   ScatteredBoxes scattered;
   const auto runs = std::make_shared<Runs>(make_runs(scene, clearance, threads, &scattered));
-  const Meetings meetings = meetings_of(scene, *runs);
-  if (meetings.crowded) return {.runs = {}, .rest = pair_regions(scene, clearance, false, threads)};
+  const Meetings meetings = meetings_of(scene, *runs, ignored);
+  if (meetings.crowded)
+    return {.runs = {}, .rest = pair_regions(scene, clearance, false, threads, ignored)};
   const std::vector<Box> regions = boxes_of_meetings(*runs, meetings.all);
   gather_scattered(scene, clearance, regions, threads, scattered, *runs);
   scattered = {};  // to make room
@@ -493,8 +497,9 @@ PairParts split_next_frame(const Scene& scene, unsigned threads, bool all, PairM
     }
   });
   if (ordered) update_boxes(scene, clearance, moved, threads, runs);
-  const Meetings meetings = meetings_of(scene, runs);
-  if (meetings.crowded) return {.runs = {}, .rest = pair_regions(scene, clearance, false, threads)};
+  const Meetings meetings = meetings_of(scene, runs, memory.ignored);
+  if (meetings.crowded)
+    return {.runs = {}, .rest = pair_regions(scene, clearance, false, threads, memory.ignored)};
   PairParts out = split(scene, meetings, boxes_of_meetings(runs, meetings.all), clearance, threads,
                         all, memory.runs);
   if (out.rest.triangles.empty() && !out.runs.empty()) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/pairs/memory.h"
@@ -18,14 +19,17 @@ struct PairRegions {
   std::vector<Box>
       objects;  // per object: contains all its points that can belong to a pair; empty: none
   Box reach = Box::empty();  // of all their triangles, grown by half the clearance
-  std::uint64_t pairs = 0;   // of objects whose boxes, grown by half the clearance, overlap
+  std::uint64_t pairs = 0;   // of objects whose boxes, grown by half the clearance, overlap, and
+                             // that are not ignored
   std::uint64_t self = 0;    // objects that collide with themselves
   bool crowded = false;  // so many boxes of objects overlap that they were not counted; pairs is 0
   std::vector<std::uint32_t> triangles;  // ascending: contains those that can meet anything
 };
 /// full: every object can meet anything, anywhere. threads: 0 for as many as there are cores.
+/// ignored: objects that are not tested against each other, as in_order() gives them. Two objects
+/// of a pair have no region where they meet, but each can be in the region of a third one.
 PairRegions pair_regions(const Scene& scene, double clearance, bool full = false,
-                         unsigned threads = 0);
+                         unsigned threads = 0, std::span<const ObjectPair> ignored = {});
 
 /// Pairs of runs whose boxes overlap. Two triangles that are at most the clearance apart have grown
 /// boxes with a common point, which lies in the boxes of their runs: so their runs are a pair here,
@@ -53,10 +57,12 @@ struct PairParts {
 /// are decided by runs: where boxes are compact, no view is as cheap. None is where a sample shows
 /// more than kOverlapsPerTriangle pairs of boxes for each triangle, neighbours apart, since a view
 /// then takes many away. all: nothing is left to views. threads: 0 for as many as there are cores.
+/// ignored: as pair_regions(); the runs of two such objects are never a pair.
 PairParts split_meetings(const Scene& scene, double clearance, unsigned threads = 0,
-                         bool all = false);
+                         bool all = false, std::span<const ObjectPair> ignored = {});
 /// The same for the frame that comes after the one in `memory`. Preconditions: memory.moved says
-/// what moved since that frame; it was complete; its clearance and neighbours are those of now.
+/// what moved since that frame; it was complete; its clearance, neighbours and ignored objects are
+/// those of now.
 PairParts split_next_frame(const Scene& scene, unsigned threads, bool all, PairMemory& memory);
 /// Where boxes of objects overlap more than eight times for each run, all is left to views,
 /// whatever `all` says.

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/base/error.h"
+
 namespace farcull {
 
 std::vector<ObjectPair> in_order(std::vector<ObjectPair> pairs) {
@@ -39,6 +41,12 @@ bool IgnoredObjects::operator()(const TrianglePair& pair) const {
   const auto [a, b] = std::minmax(owner_[pair.a], owner_[pair.b]);
   const std::uint32_t* const list = others_.data();
   return std::binary_search(list + first_[b], list + first_[b + 1], a);
+}
+
+void require_nothing_ignored(const Scene& scene, const std::string& who) {
+  if (scene.ignored.empty()) return;
+  throw Error(scene.name, "the scene ignores pairs of objects, and " + who + " answers about all",
+              "leave ignore out of the scene file");
 }
 
 std::uint64_t remove_ignored(const Scene& scene, std::span<const ObjectPair> ignored,

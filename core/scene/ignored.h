@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/scene/object_pair.h"
@@ -18,6 +19,10 @@ std::vector<ObjectPair> in_order(std::vector<ObjectPair> pairs);
 /// Throws std::logic_error where it names an object that the scene does not have.
 std::uint64_t remove_ignored(const Scene& scene, std::span<const ObjectPair> ignored,
                              std::vector<TrianglePair>& pairs);
+
+/// Throws Error where objects of the scene are ignored. who: it answers about all objects, as in
+/// "farcull distance".
+void require_nothing_ignored(const Scene& scene, const std::string& who);
 
 /// Asks of one pair of triangles after the other.
 class IgnoredObjects {

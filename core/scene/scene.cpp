@@ -65,6 +65,15 @@ void validate(const Scene& scene, const std::string& where) {
     throw Error(where, "the objects do not cover the triangles",
                 "give objects contiguous ranges of triangles");
   }
+  for (std::size_t k = 0; k < scene.ignored.size(); ++k) {
+    const ObjectPair& pair = scene.ignored[k];
+    if (pair.a < pair.b && pair.b < scene.objects.size() &&
+        (k == 0 || scene.ignored[k - 1] < pair)) {
+      continue;
+    }
+    throw Error(where, "the pairs of ignored objects are not two objects each, sorted",
+                "give each pair once, its lower object first");
+  }
 }
 
 std::vector<Box> triangle_boxes(const Scene& scene) {

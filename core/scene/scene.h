@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "core/scene/object_pair.h"
+
 namespace farcull {
 
 using Vec3 = Eigen::Vector3d;
@@ -46,6 +48,8 @@ struct Scene {
   std::vector<std::uint32_t>
       source_face;  // per triangle: 0-based face of its file before triangulation
   std::vector<Object> objects;
+  std::vector<ObjectPair> ignored = {};  // objects that are not tested against each other; as
+                                         // in_order() of core/scene/ignored.h gives them
 
   std::array<Vec3, 3> corners(std::uint32_t triangle) const;
 };
@@ -89,7 +93,8 @@ std::vector<Box> object_boxes(const Scene& scene, std::span<const Box> triangle_
 std::vector<std::uint32_t> owners(const Scene& scene);
 
 /// 16 hex digits: FNV-1a over the sizes of the objects, whether they are `self`, and the bits of
-/// the coordinates of all triangles, in order. Names do not count.
+/// the coordinates of all triangles, in order. Names do not count, nor do the ignored objects,
+/// which a record tells of by itself.
 std::string scene_hash(const Scene& scene);
 
 }  // namespace farcull

@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/scene/ignored.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
@@ -148,6 +149,7 @@ int BenchCommand::run() {
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
   Scene scene = load_scene(scene_);
+  require_nothing_ignored(scene, "farcull bench");
   if (options.self) {
     for (Object& object : scene.objects) object.self = true;
   }

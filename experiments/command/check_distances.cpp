@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/scene/ignored.h"
 #include "experiments/command/frame_checks.h"
 #include "experiments/command/options.h"
 #include "experiments/record/check_result.h"
@@ -29,6 +30,7 @@ constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30;  // of a certificate
 
 CheckedDistances checked(const std::string& path, DistanceCertificate certificate,
                          const Scene& scene) {
+  require_nothing_ignored(scene, "a check");
   CheckedDistances out{clean_name(path), std::move(certificate), {}};
   out.result = check_distances(out.certificate, scene, out.file);
   return out;

@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/scene/ignored.h"
 #include "experiments/measure/frames.h"
 #include "experiments/record/distance_certificate.h"
 #include "experiments/record/distances.h"
@@ -249,6 +250,7 @@ void DistanceCommand::require_no_distances() const {
 }
 
 void DistanceCommand::require_question(const Scene& scene, const DistanceOptions& options) const {
+  require_nothing_ignored(scene, "farcull distance");
   const std::string reason = nothing_asked(scene, options);
   if (reason.empty()) return;
   std::string remedy = "name two objects or more";

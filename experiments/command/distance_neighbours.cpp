@@ -8,6 +8,7 @@
 #include "core/base/count.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/scene/ignored.h"
 #include "experiments/method/distances.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
@@ -63,6 +64,7 @@ int run_neighbours(const std::vector<std::string>& words, const DiagramOptions& 
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
   const Scene scene = load_scene(words);
+  require_nothing_ignored(scene, "farcull distance");
   const std::string nothing = nothing_asked(scene, {.pairs = DistancePairs::nearest});
   if (!nothing.empty()) throw Error("SCENE", nothing, "name two objects or more");
   const DiagramRecord record = potential_neighbours(scene, options, progress);

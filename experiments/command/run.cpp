@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/scene/ignored.h"
 #include "experiments/measure/frames.h"
 #include "experiments/record/certificate.h"
 #include "experiments/record/output.h"
@@ -385,6 +386,7 @@ int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) cons
   if (progress) progress("reading the scene");
   Scene scene = load_scene(scene_);
   if (self_) make_self(scene);
+  if (outputs.certificate) require_nothing_ignored(scene, "a certificate");
   RunOptions all = options;
   all.ignored = ignored_objects(scene, ignored());
   Session session(options.device);

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "experiments/command/ignore.h"
 #include "experiments/command/options.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/frames.h"
+#include "experiments/scenes/ignore.h"
 #include "experiments/tiles/census.h"
 
 namespace farcull {

@@ -96,7 +96,7 @@ const Scene& Lab::scene(const std::string& name, const std::function<Scene()>& m
 const Truth& Lab::truth() {
   if (!truth_) {
     if (progress_) progress_("exact tests of every pair");
-    ExactResult result = all_colliding_pairs(*current_, {});
+    ExactResult result = all_colliding_pairs(*current_, {}, current_->ignored);
     truth_.emplace();
     std::merge(result.pairs.begin(), result.pairs.end(), result.neighbour_pairs.begin(),
                result.neighbour_pairs.end(), std::back_inserter(truth_->pairs));

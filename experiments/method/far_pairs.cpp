@@ -15,7 +15,8 @@ void plan_far_pairs(const Scene& scene, unsigned threads, const Progress&, Plan&
                         .full = options.full,
                         // Who names a GL device wants it to look.
                         .runs = options.device.empty() || is_cpu(options.device),
-                        .neighbours = options.neighbours};
+                        .neighbours = options.neighbours,
+                        .ignored = options.ignored};
   if (!views_of(options).empty()) settings.views = parse_views(views_of(options));
   PairPlan pairs = plan_pairs(scene, settings, threads, plan.memory);
   plan.trace = pairs.trace;
@@ -51,7 +52,10 @@ Candidates find_far_pairs(const Scene& scene, const Plan& plan, Session& session
   Candidates out;
   out.by = std::vector<PairView>();
   if (pairs.nothing_can_meet()) {
-    out.device.note = "no two objects' boxes overlap, and none is tested against itself";
+    out.device.note = plan.options.ignored.empty()
+                          ? "no two objects' boxes overlap, and none is tested against itself"
+                          : "no two objects' boxes overlap, ignored ones apart, and none is tested "
+                            "against itself";
     out.trace.push_back({.kind = StageKind::setup, .reason = Reason::nothing_to_look_at});
     return out;
   }

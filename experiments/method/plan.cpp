@@ -1,9 +1,13 @@
 // The method plans its own part; the exact tests and the accounting are the same for all.
 #include "experiments/method/plan.h"
 
+#include <utility>
+#include <vector>
+
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
+#include "core/scene/ignored.h"
 #include "core/scene/members.h"
 
 namespace farcull {
@@ -22,6 +26,11 @@ Plan plan(const Scene& scene, const RunOptions& options, unsigned threads, const
   require_scene(scene, options.method);
   if (progress) progress("planning");
   Plan out{.options = options, .work = {}, .trace = {}, .ahead = {}};
+  if (!scene.ignored.empty()) {
+    std::vector<ObjectPair>& all = out.options.ignored;
+    all.insert(all.end(), scene.ignored.begin(), scene.ignored.end());
+    all = in_order(std::move(all));
+  }
   out.memory = memory;
   const Traits& method = traits(options.method);
   method.plan(scene, threads, progress, out);

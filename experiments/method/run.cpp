@@ -151,6 +151,7 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   record.callers = callers_floating_point();
   record.options = options;
   const Plan planned = plan(scene, options, session.threads(), progress, session.pair_memory());
+  record.options.ignored = planned.options.ignored;
   record.plan = planned.stages();
   record.trace = planned.trace;
   record.scene_hash = scene_hash(scene);

@@ -10,13 +10,15 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/base/stoppable.h"
 
 namespace farcull::python {
 namespace {
 
-constexpr std::size_t kStopEvery = std::size_t{1} << 20;  // rows between looks for a stop
-constexpr std::size_t kBlock = 256;                       // rows that are converted at once
+constexpr std::size_t kStopEvery = std::size_t{1} << 20;     // rows between looks for a stop
+constexpr std::size_t kBlock = 256;                          // rows that are converted at once
+constexpr std::size_t kRowsOfThread = std::size_t{1} << 15;  // at least
 static_assert(kStopEvery % kBlock == 0);
 
 [[noreturn]] void refuse(const std::string& name, const std::string& reason,
@@ -140,13 +142,21 @@ bool Rows::packed(std::size_t size) const {
 template <class Out, class In>
 void Rows::copy(std::vector<Out>& memory) const {
   memory.resize(3 * rows_);
-  Out* to = memory.data();
-  for (std::size_t row = 0; row < rows_; ++row) {
+  // Of several errors the one of the lowest row is thrown.
+  for_chunks(rows_, chunks_for(rows_, kRowsOfThread),
+             [&](std::size_t, std::size_t begin, std::size_t end) {
+               copy_rows<Out, In>(begin, end, memory.data() + 3 * begin);
+             });
+}
+
+template <class Out, class In>
+void Rows::copy_rows(std::size_t begin, std::size_t end, Out* to) const {
+  for (std::size_t row = begin; row < end; ++row) {
     if (row % kStopEvery == 0) stop_point();
     const std::byte* from = data_ + static_cast<std::ptrdiff_t>(row) * row_stride_;
     if constexpr (std::is_same_v<Out, std::uint32_t>) {
       // One that does not fit is named below.
-      if (packed(sizeof(In)) && row + kBlock <= rows_ && block_fits<In>(from, to)) {
+      if (packed(sizeof(In)) && row + kBlock <= end && block_fits<In>(from, to)) {
         row += kBlock - 1;
         to += 3 * kBlock;
         continue;

@@ -32,6 +32,8 @@ class Rows {
  private:
   template <class Out, class In>
   void copy(std::vector<Out>& memory) const;
+  template <class Out, class In>
+  void copy_rows(std::size_t begin, std::size_t end, Out* to) const;
   bool packed(std::size_t size) const;
 
   py::array kept_;

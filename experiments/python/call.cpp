@@ -167,6 +167,11 @@ void beside(const std::function<void()>& work) {
   call.finish();
 }
 
+Turn::Turn(std::atomic_flag& used, const char* name) : used_(used) {
+  if (used_.test_and_set())
+    raise(name, "is in use by another thread or call", "make one for each thread", false);
+}
+
 void end_calls() {
   const py::gil_scoped_release released;
   Running::end_all();

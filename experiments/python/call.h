@@ -3,6 +3,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <atomic>
 #include <functional>
 #include <optional>
 #include <string>
@@ -28,6 +29,19 @@ auto answer_beside(const Work& work) {
   beside([&] { out.emplace(work()); });
   return std::move(*out);
 }
+
+/// Marks what one call at a time may use, as long as this lives. Throws farcull.Error where it is
+/// marked: by another thread, or by a call of this one, which a signal handler interrupts.
+class Turn {
+ public:
+  Turn(std::atomic_flag& used, const char* name);
+  ~Turn() { used_.clear(); }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  std::atomic_flag& used_;
+};
 
 /// Stops all calls that are running, and waits until they have ended. Calls that begin later are
 /// stopped as well. For the end of the interpreter. Precondition: the lock is held.

@@ -3,8 +3,8 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -87,10 +87,7 @@ class KeptCollider {
       raise("Collider", "was made by another process, which this one was forked from",
             "make one in each process", false);
     }
-    const std::unique_lock busy(mutex_, std::try_to_lock);
-    if (!busy) {
-      raise("Collider", "is in use by another thread", "make one for each thread", false);
-    }
+    const Turn turn(used_, "Collider");
     const Given given(vertices, triangles, starts);
     const ColliderResult result =
         answer_beside([&] { return collider_->find(given.input(copies_)); });
@@ -101,7 +98,7 @@ class KeptCollider {
   pid_t process_;
   bool kinds_;
   Copies copies_;
-  std::mutex mutex_;
+  std::atomic_flag used_;
   std::unique_ptr<Collider> collider_;
 };
 
@@ -123,7 +120,7 @@ const char* name_of(DistanceInside inside) {
     case DistanceInside::b:
       return "b";
     case DistanceInside::not_closed:
-      return "not-closed";
+      return "not closed";
   }
   return "unknown";
 }

@@ -20,6 +20,7 @@ void fill(py::module_& module) {
   register_exceptions();
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_calls));
   add_collider(module);
+  add_stream(module);
   add_distances(module);
   add_scenes(module);
   add_runs(module);

@@ -9,5 +9,6 @@ void add_collider(py::module_& module);
 void add_distances(py::module_& module);
 void add_scenes(py::module_& module);
 void add_runs(py::module_& module);
+void add_stream(py::module_& module);
 
 }  // namespace farcull::python

@@ -49,15 +49,21 @@ struct KeptRecord {
   }
 };
 
+using Ignored = std::vector<std::array<std::uint32_t, 2>>;
+
 // ignore: pairs of two different objects of the scene; limit: 0 for none.
+void add_asked(const Ignored& ignore, std::uint64_t limit, RunOptions& options) {
+  for (const auto& [a, b] : ignore) options.ignored.push_back({a, b});
+  options.ignored = in_order(std::move(options.ignored));
+  options.limit = limit;
+}
+
 KeptRecord run_of(const KeptScene& kept, const Words& words, unsigned threads, bool kinds,
-                  const std::vector<std::array<std::uint32_t, 2>>& ignore, std::uint64_t limit) {
+                  const Ignored& ignore, std::uint64_t limit) {
   return answer_beside([&] {
     RunOptions options = parse_run_options(words);
     options.contacts = kinds ? ContactDetail::kinds : ContactDetail::none;
-    for (const auto& [a, b] : ignore) options.ignored.push_back({a, b});
-    options.ignored = in_order(std::move(options.ignored));
-    options.limit = limit;
+    add_asked(ignore, limit, options);
     Session session(options.device, threads, Say());
     return KeptRecord{kept.scene, run(*kept.scene, options, session, stopping_progress())};
   });
@@ -104,9 +110,11 @@ py::list views_of(const Candidates& found) {
   return out;
 }
 
-py::tuple plan_of(const KeptScene& kept, const Words& words, unsigned threads) {
+py::tuple plan_of(const KeptScene& kept, const Words& words, unsigned threads,
+                  const Ignored& ignore, std::uint64_t limit) {
   const auto [json, table] = answer_beside([&] {
-    const RunOptions options = parse_run_options(words);
+    RunOptions options = parse_run_options(words);
+    add_asked(ignore, limit, options);
     const Plan planned = plan(*kept.scene, options, threads, stopping_progress());
     return std::pair(plan_json(*kept.scene, planned).dump(), plan_table(*kept.scene, planned));
   });

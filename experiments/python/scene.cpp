@@ -1,8 +1,9 @@
 // Scenes, and scenes that move, as the program reads them.
 #include <pybind11/stl.h>
 
+#include <array>
+#include <atomic>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "experiments/python/scene.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/frames.h"
+#include "experiments/scenes/ignore.h"
 #include "experiments/scenes/scene_file.h"
 
 namespace farcull::python {
@@ -68,14 +70,13 @@ class Frames {
   Kept at(long frame) {
     if (frame < range_.first || frame > range_.last)
       raise("frame", std::to_string(frame) + " is none of the frames", "give one of them", true);
-    const std::unique_lock busy(mutex_, std::try_to_lock);
-    if (!busy) raise("Frames", "is in use by another thread", "make one for each thread", false);
+    const Turn turn(used_, "Frames");
     return answer_beside([&] { return std::make_unique<KeptScene>(source_->at(frame)); });
   }
 
  private:
   FrameRange range_;
-  std::mutex mutex_;
+  std::atomic_flag used_;
   std::unique_ptr<FrameSource> source_;
 };
 
@@ -85,6 +86,19 @@ py::array_t<std::int64_t> object_starts(const KeptScene& kept) {
   for (std::size_t o = 0; o < objects.size(); ++o)
     out.mutable_at(static_cast<py::ssize_t>(o)) = objects[o].first_triangle;
   return out;
+}
+
+// The objects that two patterns of names name, as the program takes them. what: for errors.
+std::vector<std::array<std::uint32_t, 2>> pairs_named(const KeptScene& kept,
+                                                      const std::string& first,
+                                                      const std::string& second,
+                                                      const std::string& what) {
+  return answer_beside([&] {
+    std::vector<std::array<std::uint32_t, 2>> out;
+    for (const ObjectPair& pair : pairs_between(*kept.scene, first, second, "ignore", what))
+      out.push_back({pair.a, pair.b});
+    return out;
+  });
 }
 
 template <class Member>
@@ -115,6 +129,9 @@ void add_scenes(py::module_& module) {
                                    {static_cast<py::ssize_t>(scene.triangles.size()), 3}, self);
                              })
       .def_property_readonly("objects", &object_starts)
+      .def_property_readonly("ignored",
+                             [](const KeptScene& k) { return pair_array(k.scene->ignored); })
+      .def("pairs_named", &pairs_named)
       .def_property_readonly("names",
                              [](const KeptScene& k) { return of_objects(k, &Object::name); })
       .def_property_readonly("self",

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/error.h"
+
 namespace farcull {
 namespace {
 
@@ -31,8 +33,14 @@ const std::vector<std::string>& assumptions() {
 }  // namespace
 
 Certificate certificate_of(const Scene& scene, const Record& record) {
-  const std::vector<TrianglePair> kept = pairs_left(record);
   const RunOptions& options = record.options;
+  if (!options.ignored.empty() || options.limit > 0) {
+    throw Error(options.ignored.empty() ? "--limit" : scene.name,
+                options.ignored.empty() ? "was given, and a certificate is about all pairs"
+                                        : "objects are ignored, and a certificate is about all",
+                "ask for no certificate, or leave no pair out");
+  }
+  const std::vector<TrianglePair> kept = pairs_left(record);
   Certificate::Run run;
   run.method = to_string(options.method);
   run.offset = fattens(options.method) ? options.offset : "none";

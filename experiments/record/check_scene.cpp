@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/stopwatch.h"
+#include "core/scene/ignored.h"
 
 namespace farcull {
 namespace {
@@ -64,6 +65,7 @@ void compare_list(const Scene& scene, const GivenList& list, std::span<const Lis
 SceneCheck check_scene_with(double clearance, const std::string& file,
                             const std::optional<Certificate>& certificate, const Scene& scene,
                             const GivenList* list, std::span<const ListedPair> rows) {
+  require_nothing_ignored(scene, "a check");
   SceneCheck out;
   out.clearance = clearance;
   if (certificate) {

@@ -9,14 +9,17 @@
 #include <cstdlib>
 #include <filesystem>
 #include <initializer_list>
+#include <iterator>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
 #include "core/base/error.h"
+#include "core/scene/ignored.h"
 #include "experiments/scenes/builtin/field.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/ignore.h"
 #include "experiments/scenes/mesh/foreign.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
@@ -33,10 +36,42 @@ constexpr std::uint64_t kMaxSceneFileBytes = std::uint64_t{64} << 20;
 // std::filesystem::path.
 constexpr std::size_t kMaxPathBytes = 4096;
 
+// The characters of a text, which tell on what line the one stands that was read last.
+class Reading {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  // line: set at each step.
+  Reading(const char* at, long* line) : at_(at), line_(line) {}
+  reference operator*() const { return *at_; }
+  Reading& operator++() {
+    if (*at_++ == '\n') ++*line_;
+    return *this;
+  }
+  Reading operator++(int) {
+    const Reading before = *this;
+    ++*this;
+    return before;
+  }
+  bool operator==(const Reading& other) const { return at_ == other.at_; }
+  bool operator!=(const Reading& other) const { return at_ != other.at_; }
+
+ private:
+  const char* at_;
+  long* line_;
+};
+
 // Reads a text for its syntax alone: the place of the first error, which json::parse does not tell
-// for every error, and keys that occur twice, of which json::parse silently keeps the last.
+// for every error, keys that occur twice, of which json::parse silently keeps the last, and the
+// lines of the pairs of ignored objects.
 class Syntax : public nlohmann::json_sax<json> {
  public:
+  // line: of the character that was read last.
+  explicit Syntax(const long& line) : line_(line) {}
   bool null() override { return true; }
   bool boolean(bool) override { return true; }
   bool number_integer(number_integer_t) override { return true; }
@@ -44,8 +79,14 @@ class Syntax : public nlohmann::json_sax<json> {
   bool number_float(number_float_t, const string_t&) override { return true; }
   bool string(string_t&) override { return true; }
   bool binary(binary_t&) override { return true; }
-  bool start_array(std::size_t) override { return true; }
-  bool end_array() override { return true; }
+  bool start_array(std::size_t) override {
+    if (++arrays_ == 2 && keys_.size() == 1 && last_ == "ignore") ignore_lines.push_back(line_);
+    return true;
+  }
+  bool end_array() override {
+    --arrays_;
+    return true;
+  }
   bool start_object(std::size_t) override {
     keys_.emplace_back();
     return true;
@@ -56,6 +97,7 @@ class Syntax : public nlohmann::json_sax<json> {
   }
   bool key(string_t& name) override {
     if (!keys_.back().insert(name).second && twice.empty()) twice = name;
+    if (keys_.size() == 1) last_ = name;
     return true;
   }
   bool parse_error(std::size_t position, const std::string&,
@@ -76,9 +118,13 @@ class Syntax : public nlohmann::json_sax<json> {
   std::string twice;   // a key that occurs twice in one object
   std::size_t at = 0;  // bytes read when the error was found, the offending one included
   std::string reason;
+  std::vector<long> ignore_lines;  // of the arrays in the array "ignore" of the file's object
 
  private:
+  const long& line_;
   std::vector<std::set<std::string>> keys_;
+  int arrays_ = 0;    // that are open
+  std::string last_;  // the last key of the file's object
 };
 
 // A mesh is named relative to the scene file.
@@ -89,12 +135,13 @@ std::string mesh_path(const std::string& scene_file, const std::string& mesh) {
 // The readers of values: each takes the value and its place in the file, as in objects[1].scale.
 class SceneFile {
  public:
-  SceneFile(std::string path, MeshCache& meshes) : path_(std::move(path)), meshes_(meshes) {}
+  SceneFile(std::string path, std::vector<long> ignore_lines, MeshCache& meshes)
+      : path_(std::move(path)), ignore_lines_(std::move(ignore_lines)), meshes_(meshes) {}
 
   // `added` is called after each object.
   SceneBuilder read(const json& root, const std::function<void(SceneBuilder&)>& added = {}) {
     require(root.is_object(), "", "the file must be a JSON object", "write {\"objects\": [...]}");
-    check_keys(root, "", {"name", "objects"});
+    check_keys(root, "", {"name", "objects", "ignore"});
     const std::string name = root.contains("name") ? text(root["name"], "name") : mesh_stem(path_);
     const std::string form = "write \"objects\": [{\"mesh\": FILE}, ...]";
     require(root.contains("objects"), "objects", "is missing", form);
@@ -107,6 +154,24 @@ class SceneFile {
       if (added) added(builder);
     }
     return builder;
+  }
+
+  // Precondition: the scene is that of the file.
+  std::vector<ObjectPair> read_ignored(const json& pairs, const Scene& scene) const {
+    const std::string form = "write \"ignore\": [[\"NAME\", \"NAME\"], ...]";
+    require(pairs.is_array(), "ignore", "must be an array", form);
+    std::vector<ObjectPair> out;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const std::string place = fmt::format("ignore[{}]", k);
+      const json& pair = pairs[k];
+      require(pair.is_array() && pair.size() == 2 && pair[0].is_string() && pair[1].is_string(),
+              place, "must be an array of two names", form);
+      const std::vector<ObjectPair> named =
+          pairs_between(scene, pair[0].get<std::string>(), pair[1].get<std::string>(), path_, place,
+                        ignore_lines_.at(k));
+      out.insert(out.end(), named.begin(), named.end());
+    }
+    return in_order(std::move(out));
   }
 
  private:
@@ -224,6 +289,7 @@ class SceneFile {
   }
 
   std::string path_;
+  std::vector<long> ignore_lines_;
   MeshCache& meshes_;
 };
 
@@ -233,12 +299,20 @@ std::string extension(const std::string& path) {
   return text;
 }
 
-// The text as JSON, or an Error for its syntax.
-json parsed(const std::string& text, const std::string& path) {
+/// The text as JSON, and the lines of what it ignores.
+struct Parsed {
+  json root;
+  std::vector<long> ignore_lines;
+};
+
+// Throws Error for its syntax.
+Parsed parsed(const std::string& text, const std::string& path) {
   const std::string remedy = "correct the JSON";
   if (text.empty()) throw Error(path, "the file is empty", "write {\"objects\": [...]}");
-  Syntax syntax;
-  if (!json::sax_parse(text, &syntax)) {
+  long at = 1;
+  Syntax syntax(at);
+  const Reading begin(text.data(), &at), end(text.data() + text.size(), &at);
+  if (!json::sax_parse(begin, end, &syntax)) {
     const std::size_t before = std::min(syntax.at - (syntax.at > 0), text.size());
     const long line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(before), '\n');
     throw Error(path, clean_name(syntax.reason), remedy, line);
@@ -247,11 +321,15 @@ json parsed(const std::string& text, const std::string& path) {
     throw Error(path, "the key " + quote_token(syntax.twice) + " occurs twice in one object",
                 "delete one of them");
   }
-  return json::parse(text);
+  return {json::parse(text), syntax.ignore_lines};
 }
 
 Scene parse(const std::string& text, const std::string& path, MeshCache& meshes) {
-  return SceneFile(path, meshes).read(parsed(text, path)).finish();
+  const Parsed file = parsed(text, path);
+  SceneFile reader(path, file.ignore_lines, meshes);
+  Scene scene = reader.read(file.root).finish();
+  if (file.root.contains("ignore")) scene.ignored = reader.read_ignored(file.root["ignore"], scene);
+  return scene;
 }
 
 // Meshes that a streamed scene file keeps.
@@ -260,16 +338,20 @@ constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
 void stream_file(const std::string& path, const TakePart& take) {
   MeshCache meshes;
   std::size_t bytes = 0;  // of the parts since the cache was empty, at least those of its meshes
-  SceneFile(path, meshes)
-      .read(parsed(read_file(path, kMaxSceneFileBytes), path), [&](SceneBuilder& builder) {
-        Scene part = builder.take_part();
-        bytes += part.vertices.size() * sizeof(Vec3) + part.triangles.size() * 20;
-        if (bytes > kKeptBytes) {
-          meshes = MeshCache();
-          bytes = 0;
-        }
-        take(part);
-      });
+  const Parsed file = parsed(read_file(path, kMaxSceneFileBytes), path);
+  if (file.root.contains("ignore")) {
+    throw Error(path, "ignores pairs of objects, which a run of a part (--tiles) does not know",
+                "delete \"ignore\" and name the pairs by --ignore, or run without --tiles");
+  }
+  SceneFile(path, file.ignore_lines, meshes).read(file.root, [&](SceneBuilder& builder) {
+    Scene part = builder.take_part();
+    bytes += part.vertices.size() * sizeof(Vec3) + part.triangles.size() * 20;
+    if (bytes > kKeptBytes) {
+      meshes = MeshCache();
+      bytes = 0;
+    }
+    take(part);
+  });
 }
 
 // The builder of a scene of mesh files. Every extension is looked at first, so that nothing is read

@@ -18,17 +18,21 @@ namespace farcull {
 ///       {"name": "a", "mesh": "bunny00.off"},
 ///       {"mesh": "bunny00.off", "scale": 1, "rotate": {"axis": [0, 0, 1], "angle": 0.7},
 ///        "translate": [0.02, 0.0026, 0.0014], "split": "none",
-///        "self": false}]}
+///        "self": false}],
+///      "ignore": [["a", "bunny00"], ["link*", "base"]]}
 ///   Only `objects` and `mesh` must be there. `mesh` is relative to the scene file. `scale` is a
 ///   number or an array of 3, none of them 0; negative ones mirror. Angles are in radians about an
 ///   axis through the origin. Scale, then rotate, then translate, in double; what is absent is left
 ///   out, so that the doubles of the mesh stay as they are. `split` is "none", "groups" (the groups
 ///   of an OBJ) or "components" (what is connected through shared vertices). `self` is true or
 ///   false (the default): whether the object's own triangles are tested against each other as well;
-///   with a split, each part's own. Triangles of different parts always are.
+///   with a split, each part's own. Triangles of different parts always are. `ignore` are pairs of
+///   objects that are not tested against each other, by the names that the scene gives them; a *
+///   stands for any characters, and then every object of such a name is meant (Scene::ignored).
 /// A mesh that is named several times is read once. Names are completed as SceneBuilder says.
 /// Throws Error for what cannot be read or is not of this form, naming the file and, in a scene
-/// file, the line (syntax) or the place as in objects[1].rotate.axis (contents).
+/// file, the line (syntax, and names of ignored objects) or the place as in
+/// objects[1].rotate.axis (contents).
 Scene load_scene(const std::vector<std::string>& arguments);
 /// The same with the meshes that `meshes` gives, and keeps.
 Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes);

@@ -17,6 +17,8 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/scene/ignored.h"
+#include "experiments/scenes/ignore.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {
@@ -166,8 +168,27 @@ Json object_json(const Object& object, const std::string& mesh) {
   return out;
 }
 
-std::string scene_text(const std::string& name, const Json& objects) {
-  return Json({{"name", name}, {"objects", objects}}).dump(2) + "\n";
+std::string scene_text(const std::string& name, const Json& objects,
+                       const std::vector<std::pair<std::string, std::string>>& ignored = {}) {
+  Json out = {{"name", name}, {"objects", objects}};
+  if (!ignored.empty()) out["ignore"] = ignored;
+  return out.dump(2) + "\n";
+}
+
+// The pairs of ignored objects by their names, which a scene file is read with.
+std::vector<std::pair<std::string, std::string>> ignored_names(const Scene& scene) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const ObjectPair& pair : scene.ignored) {
+    const std::string &a = scene.objects[pair.a].name, &b = scene.objects[pair.b].name;
+    if (pairs_between(scene, a, b, scene.name, "ignore") != std::vector{pair}) {
+      throw Error(
+          scene.name,
+          fmt::format("the names '{}' and '{}' of two ignored objects fit others too", a, b),
+          "give each object a name of its own, without *");
+    }
+    out.emplace_back(a, b);
+  }
+  return out;
 }
 
 WrittenScene write_groups(const std::function<const Scene&(long)>& at, FrameRange range,
@@ -184,6 +205,7 @@ WrittenScene write_groups(const std::function<const Scene&(long)>& at, FrameRang
       name = scene_name.substr(0, scene_name.find_first_of(":@"));
       self = !scene.objects.empty() && scene.objects[0].self;
     }
+    require_nothing_ignored(scene, "a scene of objects that come and go");
     for (const Object& object : scene.objects) {
       if (object.self == self) continue;
       throw Error(scene.name, "objects come and go and only some are tested against themselves",
@@ -206,6 +228,7 @@ class FrameFiles {
     if (frame == range_.first) {
       scene_name_ = scene.name;
       objects_ = scene.objects;
+      ignored_ = ignored_names(scene);
       names_ = file_names(scene);
       meshes_.resize(names_.size());
     }
@@ -213,7 +236,8 @@ class FrameFiles {
       return a.name == b.name && a.self == b.self;
     };
     if (!std::equal(objects_.begin(), objects_.end(), scene.objects.begin(), scene.objects.end(),
-                    same)) {
+                    same) ||
+        ignored_ != ignored_names(scene)) {
       throw std::logic_error("write_frames: the objects change");
     }
     for (std::size_t o = 0; o < objects_.size(); ++o)
@@ -231,7 +255,7 @@ class FrameFiles {
       if (!moves) out_.write(names_[o] + ".off", meshes_[o].first);
       list.push_back(object_json(objects_[o], names_[o] + (moves ? "_%04d.off" : ".off")));
     }
-    out_.write("scene.json", scene_text(scene_name_, list));
+    out_.write("scene.json", scene_text(scene_name_, list, ignored_));
     return out_.keep("scene.json");
   }
 
@@ -271,6 +295,7 @@ class FrameFiles {
   Parts parts_;
   std::string scene_name_;
   std::vector<Object> objects_;
+  std::vector<std::pair<std::string, std::string>> ignored_;
   std::vector<std::string> names_;
   std::vector<Mesh> meshes_;
 };
@@ -287,7 +312,7 @@ WrittenScene write_scene(const Scene& scene, const std::string& folder) {
     out.write(file, off_text(scene, parts.of(scene, scene.objects[o])));
     objects.push_back(object_json(scene.objects[o], file));
   }
-  out.write("scene.json", scene_text(scene.name, objects));
+  out.write("scene.json", scene_text(scene.name, objects, ignored_names(scene)));
   return out.keep("scene.json");
 }
 

@@ -19,7 +19,8 @@ from . import _farcull
 
 _farcull.require_main_interpreter()  # before numpy is imported, which needs it as well
 
-from ._collide import KINDS, Collider, Distance, Report, Result, collide, distances, join
+from ._collide import KINDS, Collider, Distance, Part, Report, Result, Stream
+from ._collide import collide, distances, join, stream
 from ._runs import Check, Picture, Plan, Record, check, picture, plan
 from ._scenes import Frames, Scene, builtin_scenes
 
@@ -31,12 +32,14 @@ __all__ = [
     "Frames",
     "InputError",
     "KINDS",
+    "Part",
     "Picture",
     "Plan",
     "Record",
     "Report",
     "Result",
     "Scene",
+    "Stream",
     "builtin_scenes",
     "check",
     "collide",
@@ -44,6 +47,7 @@ __all__ = [
     "join",
     "picture",
     "plan",
+    "stream",
 ]
 
 del _farcull

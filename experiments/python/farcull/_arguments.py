@@ -128,9 +128,10 @@ def require_something(objects: int, all_objects: bool, each: List[bool]) -> None
         )
 
 
-def ignored(given: Any, names: Optional[Sequence[str]] = None) -> List[List[int]]:
-    """Pairs of different objects, by their numbers, or by their names where the scene has names; None
-    stands for no pair. An object that arrays do not have is found later, by the library."""
+def ignored(given: Any, scene: Any = None) -> List[List[int]]:
+    """Pairs of different objects, by their numbers, or by patterns of their names where there is a
+    compiled scene; None stands for no pair. An object that arrays do not have is found later, by the
+    library."""
     if given is None:
         return []
     remedy = "give rows of two numbers of objects, as in [(0, 1), (0, 2)]"
@@ -142,13 +143,18 @@ def ignored(given: Any, names: Optional[Sequence[str]] = None) -> List[List[int]
         raise InputError("ignore", f"cannot be read as an array ({error})", remedy) from error
     if rows.size == 0:
         return []
-    if names is not None and rows.dtype.kind == "U" and rows.ndim == 2 and rows.shape[1] == 2:
-        return [pair for row in rows.tolist() for pair in _named_pairs(row, names)]
+    if scene is not None and rows.dtype.kind == "U" and rows.ndim == 2 and rows.shape[1] == 2:
+        return [
+            pair
+            for k, (a, b) in enumerate(rows.tolist())
+            for pair in scene.pairs_named(encoded("ignore", a), encoded("ignore", b), f"row {k}")
+        ]
     if rows.ndim != 2 or rows.shape[1] != 2 or rows.dtype.kind not in "iu":
         raise InputError("ignore", "are no rows of two whole numbers", remedy)
     out = rows.tolist()
+    objects = 2**32 if scene is None else len(scene.names)
     for k, (a, b) in enumerate(out):
-        if not (0 <= min(a, b) and max(a, b) < (2**32 if names is None else len(names))):
+        if not (0 <= min(a, b) and max(a, b) < objects):
             raise InputError("ignore", f"row {k} names objects {a} and {b}", remedy)
         if a == b:
             raise InputError(
@@ -156,23 +162,6 @@ def ignored(given: Any, names: Optional[Sequence[str]] = None) -> List[List[int]
                 f"row {k} names object {a} twice",
                 "give two different objects; self says which are tested against themselves",
             )
-    return out
-
-
-def _named_pairs(row: Sequence[str], names: Sequence[str]) -> List[List[int]]:
-    """Every two different objects with the two names; several objects can have one name."""
-    groups = [[o for o, name in enumerate(names) if name == one] for one in row]
-    for one, group in zip(row, groups):
-        if not group:
-            some = ", ".join(list(names)[:5]) + (", ..." if len(names) > 5 else "")
-            raise InputError("ignore", f"no object has the name {one!r}", f"the scene has {some}")
-    out = [[a, b] for a in groups[0] for b in groups[1] if a != b]
-    if not out:
-        raise InputError(
-            "ignore",
-            f"{row[0]!r} is one object",
-            "give two different objects; self says which are tested against themselves",
-        )
     return out
 
 

@@ -56,7 +56,7 @@ class Result:
     neighbour_kinds: Optional[NDArray[np.uint8]]
     """The same of ``neighbour_pairs``."""
     complete: bool
-    """False: the limit was reached, and there may be more pairs behind the last one. Before it none is
+    """False: there may be more pairs behind the last one, which the limit leaves out. Before it none is
     missing."""
     report: Report
 
@@ -167,6 +167,93 @@ def collide(
     return collider.find(V, F, objects)
 
 
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Pairs of a stream, which follow those of the part before."""
+
+    pairs: NDArray[np.int64]  # (k, 2), rows sorted, as in Result; neighbours among them
+    neighbours: NDArray[np.bool_]  # (k,): which pairs are of neighbours
+    kinds: Optional[NDArray[np.uint8]]  # (k,): places in KINDS; None unless asked for
+
+
+class Stream:
+    """The pairs of :func:`stream`, as an iterator over :class:`Part`. One thread at a time."""
+
+    __slots__ = ("_stream",)
+
+    def __init__(self, stream: Any) -> None:
+        self._stream = stream
+
+    def __iter__(self) -> "Stream":
+        return self
+
+    def __next__(self) -> Part:
+        while True:
+            found = self._stream.next()
+            if found is None:
+                raise StopIteration
+            part = Part(*found)
+            self._stream.taken = True
+            if len(part.pairs) > 0:
+                return part
+
+    @property
+    def decided(self) -> int:
+        """Candidates that exact tests have decided up to now."""
+        return self._stream.decided
+
+    @property
+    def complete(self) -> bool:
+        """After the end: False where there may be more pairs, which the limit leaves out."""
+        return self._stream.complete
+
+
+def stream(
+    V: ArrayLike,
+    F: ArrayLike,
+    objects: Any = None,
+    self: Union[bool, Sequence[bool]] = False,
+    clearance: float = 0.0,
+    neighbours: bool = True,
+    threads: int = 0,
+    kinds: bool = False,
+    ignore: Optional[ArrayLike] = None,
+    limit: Optional[int] = None,
+) -> Stream:
+    """The pairs of :func:`collide`, neighbours among them, some at a time and in the order of the
+    rows: where they are too many for the memory, or the first ones are wanted at once. ::
+
+        for part in farcull.stream(V, F, objects):
+            use(part.pairs)
+
+    The arrays are copied. Memory does not grow with the number of pairs; a part has at most about
+    2^16. It is slower than :func:`collide` where all pairs are wanted, and uses the CPU alone. The
+    loop can be left at any time. The parameters are those of :func:`collide`.
+
+    Raises as :func:`collide`. After an exception in a part, Ctrl-C among them, what that part had is
+    lost: the stream then raises Error, so that nobody takes what is left for all.
+    """
+    triangles = _arguments.array("triangles", F)
+    starts = _arguments.starts(objects, triangles)
+    all_objects, each = _arguments.selves(self)
+    _arguments.require_something(len(starts), all_objects, each)
+    return Stream(
+        _farcull.Stream(
+            _arguments.array("vertices", V),
+            triangles,
+            starts,
+            _arguments.threads(threads),
+            all_objects,
+            each,
+            _arguments.number("clearance", clearance),
+            _arguments.flag("neighbours", neighbours),
+            _arguments.flag("kinds", kinds),
+            _arguments.ignored(ignore),
+            _arguments.limit(limit),
+        )
+    )
+
+
 def join(
     *meshes: Tuple[ArrayLike, ArrayLike]
 ) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
@@ -205,7 +292,7 @@ class Distance:
     squared: str  # "numerator/denominator" in lowest terms, nothing rounded
     points: Tuple[Tuple[float, float, float], Tuple[float, float, float]]  # nearest points
     features: Tuple[str, str]  # where they lie: "vertex 2", "edge 0" or "face"
-    inside: str  # "none", "a" or "b": that object lies inside the other; "not-closed"; "unknown"
+    inside: str  # "none", "a" or "b": that object lies inside the other; "not closed"; "unknown"
 
 
 def distances(

@@ -2,7 +2,7 @@
 
 from typing import Any, List, Optional, Sequence, Tuple
 
-from numpy import float64, int64, uint8, uint32
+from numpy import bool_, float64, int64, uint8, uint32
 from numpy.typing import NDArray
 
 kinds: Tuple[str, ...]
@@ -29,6 +29,28 @@ class Collider:
         self, vertices: NDArray[Any], triangles: NDArray[Any], starts: NDArray[int64]
     ) -> dict[str, Any]: ...
 
+class Stream:
+    taken: bool
+    decided: int
+    complete: bool
+    def __init__(
+        self,
+        vertices: NDArray[Any],
+        triangles: NDArray[Any],
+        starts: NDArray[int64],
+        threads: int,
+        all_objects: bool,
+        self_objects: Sequence[bool],
+        clearance: float,
+        neighbours: bool,
+        kinds: bool,
+        ignore: Sequence[Sequence[int]],
+        limit: int,
+    ) -> None: ...
+    def next(
+        self,
+    ) -> Optional[Tuple[NDArray[int64], NDArray[bool_], Optional[NDArray[uint8]]]]: ...
+
 def distances(
     vertices: NDArray[Any],
     triangles: NDArray[Any],
@@ -47,8 +69,10 @@ class Scene:
     vertices: NDArray[float64]
     triangles: NDArray[uint32]
     objects: NDArray[int64]
+    ignored: NDArray[int64]
     names: List[str]
     self: List[bool]
+    def pairs_named(self, first: str, second: str, what: str) -> List[List[int]]: ...
 
 def scene_of_arrays(
     vertices: NDArray[Any],
@@ -94,7 +118,9 @@ def run(
     ignore: Sequence[Sequence[int]],
     limit: int,
 ) -> Record: ...
-def plan(scene: Scene, words: Sequence[str], threads: int) -> Tuple[str, str]: ...
+def plan(
+    scene: Scene, words: Sequence[str], threads: int, ignore: Sequence[Sequence[int]], limit: int
+) -> Tuple[str, str]: ...
 def check(
     scene: Scene,
     certificate: Optional[str],

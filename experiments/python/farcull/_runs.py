@@ -162,7 +162,7 @@ def run(
         words,
         _arguments.threads(threads),
         _arguments.flag("kinds", kinds),
-        _arguments.ignored(ignore, scene.names),
+        _arguments.ignored(ignore, scene._scene),
         _arguments.limit(limit),
     )
     return Record(made, scene, method)
@@ -180,11 +180,26 @@ class Plan:
 
 
 def plan(
-    scene: "Scene", /, method: str = "far-pairs", *, threads: int = 0, **options: Any
+    scene: "Scene",
+    /,
+    method: str = "far-pairs",
+    *,
+    threads: int = 0,
+    ignore: Optional[Any] = None,
+    limit: Optional[int] = None,
+    **options: Any,
 ) -> Plan:
-    """What :meth:`Scene.run` would do with these options. Opens no device."""
+    """What :meth:`Scene.run` would do with these options. Opens no device. A limit changes no plan,
+    since it stops what comes behind the culling; ``kinds`` is no part of one."""
     words = _words(method, options)
-    text, table = _farcull.plan(_scene(scene), words, _arguments.threads(threads))
+    made = _scene(scene)
+    text, table = _farcull.plan(
+        made,
+        words,
+        _arguments.threads(threads),
+        _arguments.ignored(ignore, made),
+        _arguments.limit(limit),
+    )
     return Plan(json.loads(text), table)
 
 

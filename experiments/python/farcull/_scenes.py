@@ -92,6 +92,11 @@ class Scene:
         return self._scene.objects
 
     @property
+    def ignored(self) -> NDArray[np.int64]:
+        """(k, 2) pairs of objects that the scene file ignores."""
+        return self._scene.ignored
+
+    @property
     def names(self) -> List[str]:
         """Of the objects."""
         return self._scene.names
@@ -108,8 +113,9 @@ class Scene:
         ``depth_format``, ``query``, ``clusters``, ``views``, ``rounds``, ``clear``, ``level``,
         ``conservative``, ``device``, ``clearance``, ``full``; and ``verify`` (default True: account
         for every pair) and ``threads``. ``kinds``, ``ignore`` and ``limit`` are those of
-        :func:`collide`; ``ignore`` takes names as well, as in [("base", "hand")]: every two different
-        objects with these names. Raises InputError naming the option that is wrong, and Error
+        :func:`collide`; ``ignore`` takes names as well, as in [("link*", "hand")]: every two different
+        objects with such names, where * stands for any characters. What the scene file ignores is
+        ignored too. Raises InputError naming the option that is wrong, and Error
         for a fault of the device.
         """
         from ._runs import run

@@ -15,6 +15,7 @@
 #include "core/pairs/regions.h"
 #include "core/pairs/run_pairs.h"
 #include "core/pairs/sweep.h"
+#include "core/scene/ignored.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/core/pairs/pairs_lab.h"
 
@@ -235,6 +236,24 @@ TEST(Runs, GiveThePairsWhoseBoxesOverlap) {
   }
   EXPECT_GT(by_runs, 20u);
   EXPECT_GT(pairs, 100'000u);
+}
+
+// Ignored objects have no pairs of runs, and the others lose none.
+TEST(Runs, OfIgnoredObjectsAreNoPairs) {
+  std::size_t removed = 0;
+  for (const Scene& scene : small_scenes()) {
+    std::vector<ObjectPair> ignored;
+    for (std::uint32_t b = 1; b < scene.objects.size(); ++b) {
+      for (std::uint32_t a = b % 2; a < b; a += 2) ignored.push_back({a, b});
+    }
+    ignored = in_order(std::move(ignored));
+    const PairParts parts = split_meetings(scene, 0, 2, false, ignored);
+    if (parts.runs.empty() || !parts.rest.triangles.empty()) continue;
+    std::vector<TrianglePair> expected = overlapping(scene, 0, true);
+    removed += remove_ignored(scene, ignored, expected);
+    ASSERT_EQ(pairs_of_runs(scene, parts.runs, 0, true, 2), expected) << scene.name;
+  }
+  EXPECT_GT(removed, 100u);
 }
 
 // What is decided by runs does not depend on threads.

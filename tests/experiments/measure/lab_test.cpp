@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "experiments/scenes/builtin/scenes.h"
+
 namespace farcull {
 namespace {
 
@@ -14,6 +16,16 @@ TEST(Lab, ReadsAMotionAnewWhereItHasOtherFrames) {
   Lab fresh("cpu");
   EXPECT_EQ(scene_hash(fresh.scene("crowd:30", 1, 12)), of12);
   EXPECT_NE(of4, of12) << "else it would not matter";
+}
+
+TEST(Lab, TheTruthIsWithoutWhatTheSceneIgnores) {
+  Lab lab("cpu");
+  Scene scene = make_builtin_scene("two-tori");
+  lab.scene("whole", [&] { return scene; });
+  EXPECT_GT(lab.truth().pairs.size(), 0u);
+  scene.ignored = {{0, 1}};
+  lab.scene("ignored", [&] { return scene; });
+  EXPECT_EQ(lab.truth().pairs.size(), 0u);
 }
 
 }  // namespace

@@ -319,6 +319,41 @@ def test_join_makes_one_scene_of_several_meshes():
     assert error_of(farcull.join, (V.astype(object), F)).where == "vertices"
 
 
+def cube(size, closed=True):
+    """Around the origin; without a side where it is open."""
+    V = size / 2 * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+    F = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4]]
+    return V, np.array(F + ([[1, 5, 7], [1, 7, 3]] if closed else []))
+
+
+def test_which_object_lies_inside_the_other():
+    def inside(first, second, **options):
+        V, F, objects = farcull.join(first, second)
+        (answer,) = farcull.distances(V, F, objects, **options)
+        return answer.inside
+
+    V, F = cube(1)
+    assert inside(cube(1), cube(4)) == "a"
+    assert inside(cube(4), cube(1)) == "b"
+    assert inside(cube(1), (V + 9, F)) == "none"
+    assert inside(cube(1), cube(4, closed=False)) == inside(cube(4, closed=False), cube(1)) == "not closed"
+    assert inside(cube(1), cube(4), inside=False) == inside(cube(1), cube(1)) == "unknown"
+
+
+def test_features_are_those_of_the_triangles_in_their_order():
+    flat, one = np.array([[0, 0, 0], [8, 0, 0], [0, 8, 0]]), np.array([[0, 1, 2]])
+    for other, features, points, distance in (
+        ([[4, 4, 9], [2, 2, 1], [9, 9, 9]], ("face", "vertex 1"), ((2, 2, 0), (2, 2, 1)), 1),
+        ([[4, -9, 0], [4, -2, -5], [4, -2, 5]], ("edge 0", "edge 1"), ((4, 0, 0), (4, -2, 0)), 2),
+        ([[-9, -4, 0], [-3, -4, 0], [-3, -9, 0]], ("vertex 0", "vertex 1"), ((0, 0, 0), (-3, -4, 0)), 5),
+    ):
+        first, second = (flat, one), (np.array(other), one)
+        (there,) = farcull.distances(*farcull.join(first, second))
+        (back,) = farcull.distances(*farcull.join(second, first))
+        assert (there.features, there.points, there.distance) == (features, points, distance)
+        assert (back.features, back.points, back.distance) == (features[::-1], points[::-1], distance)
+
+
 def test_distances():
     apart = V + 0
     apart[3:6, 2] += 1.5

@@ -184,10 +184,40 @@ def test_names_of_ignored_objects():
     assert objects(None) == every
     assert objects([("b:c", "a")]) == every - {(0, 2), (1, 2)}
     assert objects([("a", "a"), ("d", "b:c")]) == every - {(0, 1), (2, 3)}
+    # A * stands for any characters.
+    assert objects([("b*", "*")]) == every - {(0, 2), (1, 2), (2, 3)}
+    assert objects([("*:c", "d")]) == every - {(2, 3)}
+    assert "names 'x*', and no object" in str(pytest.raises(
+        farcull.InputError, twins.run, ignore=[("a", "d"), ("x*", "a")]).value)
     for wrong in ([("a", "e")], [("d", "d")], [("a", 4)], [(0, 4)], [(1, 1)], ["ab"], [("a",)]):
         with pytest.raises(farcull.InputError) as caught:
             twins.run(ignore=wrong)
         assert caught.value.where == "ignore"
+
+
+def test_what_a_scene_file_ignores_is_ignored(scene):
+    V, F, program = scene
+    whole = farcull.Scene(*sorted(program.folder.glob("*.off")), self=True)
+    path = program.folder / "ignoring.json"
+    path.write_text(json.dumps({"objects": [{"mesh": f"o{k}.off", "self": True} for k in range(4)],
+                                "ignore": [["o0", "o*"]]}))
+    read = farcull.Scene(path)
+    assert read.ignored.tolist() == [[0, 1], [0, 2], [0, 3]] and whole.ignored.shape == (0, 2)
+    for method in ("far-pairs", "exact"):
+        expected = whole.run(method, kinds=True, ignore=[(0, 1), (2, 0), (0, 3), (1, 2)])
+        record = read.run(method, kinds=True, ignore=[("o1", "o2")])
+        assert rows_of(record) == rows_of(expected) != rows_of(whole.run(method, kinds=True))
+        assert record.accounting["false_negatives"] == 0 and record.accounting["ignored"] == 4 * 40 * 40
+        with pytest.raises(farcull.InputError):
+            record.certificate()
+    with pytest.raises(farcull.Error) as caught:  # a check would prove something about other pairs
+        farcull.check(read, pairs=record.pairs)
+    assert "answers about all" in caught.value.reason
+    # The plan knows both.
+    counts = [str(farcull.plan(one, ignore=ignore, limit=3)).split("boxes overlap")[1][:40]
+              for one, ignore in ((whole, None), (read, None), (read, [("o1", "o2")]))]
+    assert len(set(counts)) == 3, counts
+    assert "is no option" in str(pytest.raises(farcull.InputError, farcull.plan, whole, kinds=True).value)
 
 
 def test_frames_of_one_collider_answer_as_single_calls(scene):

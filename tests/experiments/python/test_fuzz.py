@@ -63,6 +63,10 @@ def good_triangles(rng, vertices):
     return np.array([[rng.randrange(vertices) for _ in range(3)] for _ in range(count)]).reshape(-1, 3)
 
 
+def streamed(**arguments):
+    return list(farcull.stream(**arguments))
+
+
 def one_call(rng):
     """Most of the arguments are good, so that each check is reached."""
     vertices = good_vertices(rng)
@@ -72,9 +76,10 @@ def one_call(rng):
     for name in ("V", "F", "objects"):
         if rng.random() < 0.25:
             arguments[name] = rng.choice([random_array, lambda r: r.choice(JUNK)])(rng)
-    call = rng.choice([farcull.collide, farcull.collide, farcull.distances])
+    call = rng.choice([farcull.collide, farcull.collide, streamed, farcull.distances])
     options = {
-        farcull.collide: ("self", "clearance", "neighbours", "device", "threads"),
+        farcull.collide: ("self", "clearance", "neighbours", "device", "threads", "kinds", "ignore", "limit"),
+        streamed: ("self", "clearance", "neighbours", "threads", "kinds", "ignore", "limit"),
         farcull.distances: ("self", "kind", "k", "within", "inside", "threads"),
     }[call]
     for name in options:
@@ -98,11 +103,38 @@ def require_clear(error):
     assert error.where and error.reason and error.remedy, repr(error)
 
 
+def rows(pairs):
+    return [tuple(pair) for pair in np.asarray(pairs).reshape(-1, 2).tolist()]
+
+
+def require_right(call, arguments, answer):
+    """The answer is that of the same numbers as packed doubles and indices. Pairs that collide are those at the
+    distance 0 where nothing else is asked, which other code finds. Whether the second was asked."""
+    V = np.array(arguments["V"], np.float64).reshape(-1, 3)
+    F = np.array(arguments["F"]).reshape(-1, 3).astype(np.int64)
+    again = call(**{**arguments, "V": V, "F": F})
+    if call is farcull.distances:
+        assert answer == again
+        return False
+    if call is farcull.collide:
+        assert rows(answer.pairs) == rows(again.pairs)
+        assert rows(answer.neighbour_pairs) == rows(again.neighbour_pairs)
+        pairs = rows(answer.pairs)
+    else:
+        assert [rows(part.pairs) for part in answer] == [rows(part.pairs) for part in again]
+        pairs = [pair for part in answer for pair in rows(part.pairs)]
+    if arguments.keys() != {"V", "F", "objects", "threads"}:
+        return False
+    at_0 = farcull.distances(V, F, arguments["objects"], kind="all", within=0, threads=1, inside=False)
+    assert sorted(d.triangles for d in at_0) == pairs
+    return True
+
+
 def test_random_calls_answer_or_say_what_is_wrong():
     rng = random.Random(SEED)
     random.seed(SEED)
     print(f"seed {SEED}")
-    answered = refused = 0
+    answered = refused = compared = 0
     wheres = set()
     for number in range(CALLS):
         call, arguments = one_call(rng)
@@ -119,35 +151,52 @@ def test_random_calls_answer_or_say_what_is_wrong():
             raise
         else:
             answered += 1
-            if call is farcull.collide:
-                pairs = answer.pairs
-                count = len(np.asarray(arguments["F"]).reshape(-1, 3))
-                assert (pairs[:, 0] < pairs[:, 1]).all() and (pairs < count).all()
+            compared += require_right(call, arguments, answer)
     # Else the calls would show nothing.
-    assert min(answered, refused) > CALLS // 10, (answered, refused)
-    assert wheres >= {"vertices", "triangles", "objects", "self", "clearance", "threads", "kind"}
+    assert min(answered, refused, compared) > CALLS // 10, (answered, refused, compared)
+    assert wheres >= {"vertices", "triangles", "objects", "self", "clearance", "threads", "kind", "kinds", "ignore",
+                      "limit"}
 
 
-any_array = arrays.arrays(
-    dtype=arrays.floating_dtypes() | arrays.integer_dtypes() | arrays.unsigned_integer_dtypes(),
-    shape=st.tuples(st.integers(0, 6), st.sampled_from([3, 3, 3, 2])),
-)
+@st.composite
+def scenes(draw):
+    """Small scenes of whole numbers, so that every type can hold them, as arrays of any type."""
+    number = arrays.floating_dtypes() | arrays.integer_dtypes() | arrays.unsigned_integer_dtypes()
+    index = arrays.integer_dtypes() | arrays.unsigned_integer_dtypes()
+    n, m = draw(st.integers(3, 7)), draw(st.integers(0, 6))
+    vertices = draw(arrays.arrays("i1", (n, 3), elements=st.integers(0, 3), fill=st.nothing()))
+    triangles = draw(arrays.arrays("i1", (m, 3), elements=st.integers(0, n - 1), fill=st.nothing()))
+    starts = [0] + sorted(draw(st.lists(st.integers(0, m), max_size=2)))
+    return vertices.astype(draw(number)), triangles.astype(draw(index)), starts
 
 
-@seed(SEED)
-@settings(max_examples=150, deadline=None, database=None)
-@given(any_array, any_array, st.none() | st.lists(st.integers(-1, 7), max_size=3), st.booleans())
-def test_arrays_of_any_type_and_shape(vertices, triangles, objects, self_collision):
-    try:
-        result = farcull.collide(vertices, triangles, objects, self=self_collision, threads=1)
-    except farcull.InputError as error:
-        require_clear(error)
-        return
-    # The answer is that of the same numbers as doubles, packed.
-    plain = np.array(vertices, np.float64, order="C")
-    again = farcull.collide(plain, triangles.astype(np.int64), objects, self=self_collision)
-    assert np.array_equal(result.pairs, again.pairs)
-    assert np.array_equal(result.neighbour_pairs, again.neighbour_pairs)
+def test_arrays_of_any_type_and_layout():
+    seen = {"answered": 0, "with a pair": 0, "refused": 0}
+
+    @seed(SEED)
+    @settings(max_examples=150, deadline=None, database=None)
+    @given(scenes(), st.booleans(), st.sampled_from([lambda a: a, laid_out, np.asfortranarray, read_only]))
+    def look(scene, self_collision, layout):
+        vertices, triangles, objects = scene
+        vertices, triangles = layout(vertices), layout(triangles)
+        try:
+            result = farcull.collide(vertices, triangles, objects, self=self_collision, threads=1)
+        except farcull.InputError as error:
+            require_clear(error)
+            seen["refused"] += 1
+            return
+        # The answer is that of the same numbers as doubles, packed.
+        plain = np.array(vertices, np.float64, order="C")
+        again = farcull.collide(plain, triangles.astype(np.int64), objects, self=self_collision)
+        assert np.array_equal(result.pairs, again.pairs)
+        assert np.array_equal(result.neighbour_pairs, again.neighbour_pairs)
+        seen["answered"] += 1
+        seen["with a pair"] += len(result.pairs) > 0
+
+    look()
+    print(seen)
+    # Else it would show nothing.
+    assert seen["answered"] > 60 and seen["with a pair"] > 10, seen
 
 
 soups = st.lists(st.tuples(*[st.integers(-2, 2)] * 9), min_size=2, max_size=9)

@@ -236,6 +236,44 @@ TEST_F(SceneFileTest, RefusesWrongValuesWithTheirPlace) {
   expect_refused_key(R"("self": null)", "self is of type null");
 }
 
+TEST_F(SceneFileTest, IgnoresPairsOfObjectsByTheirNames) {
+  const std::string objects =
+      R"("objects": [{"mesh": "t.obj"}, {"mesh": "t.obj"}, {"name": "p", "mesh": "parts.obj",
+      "split": "groups"}])";
+  const auto ignored = [&](const std::string& pairs) {
+    return read("{" + objects + ", \"ignore\": " + pairs + "}").ignored;
+  };
+  using Pairs = std::vector<ObjectPair>;
+  EXPECT_EQ(read("{" + objects + "}").ignored, Pairs{});
+  EXPECT_EQ(ignored("[]"), Pairs{});
+  EXPECT_EQ(ignored(R"([["p/left", "t"]])"), (Pairs{{0, 2}}));
+  EXPECT_EQ(ignored(R"([["t*", "p/*"], ["t#2", "t"]])"),
+            (Pairs{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}}));
+  // The order of the keys says nothing.
+  EXPECT_EQ(read(R"({"ignore": [["t#2", "t"]], )" + objects + "}").ignored, (Pairs{{0, 1}}));
+}
+
+TEST_F(SceneFileTest, RefusesIgnoredObjectsWithTheirLine) {
+  const auto refused = [&](const std::string& pairs, const std::string& reason, long line) {
+    expect_refusal("{\"objects\": [\n{\"mesh\": \"t.obj\", \"scale\": [1, 1, 1]}],\n\"ignore\": " +
+                       pairs + "}",
+                   reason, line);
+  };
+  refused("[[\"t\", \"u\"]]", "ignore[0] names 'u', and no object is called so", 3);
+  refused("[\n[\"*\",\n\"*\"]]", "ignore[0] names 't' alone", 4);
+  refused("1", "ignore must be an array", 0);
+  refused("[1]", "ignore[0] must be an array of two names", 0);
+  refused("[[\"t\"]]", "ignore[0] must be an array of two names", 0);
+  refused("[[\"t\", 1]]", "ignore[0] must be an array of two names", 0);
+  refused("[\"t:t\"]", "ignore[0] must be an array of two names", 0);
+  // The line is that of the pair, not that of another array.
+  expect_refusal(
+      R"({"objects": [{"mesh": "t.obj"}, {"mesh": "t.obj", "name": "u"}], "ignore": [["u", "t"],
+      ["t", "u"],
+      ["u", "v"]]})",
+      "ignore[2] names 'v'", 3);
+}
+
 TEST_F(SceneFileTest, RefusesToMoveAMeshBeyondDoubles) {
   expect_refusal(R"({"objects": [{"mesh": "t.obj", "scale": 1e308}]})",
                  "beyond what a double can hold");

@@ -42,6 +42,7 @@ void expect_round_trip(const Scene& scene) {
   ASSERT_EQ(read.objects.size(), scene.objects.size());
   for (std::size_t o = 0; o < read.objects.size(); ++o)
     EXPECT_EQ(read.objects[o].self, scene.objects[o].self);
+  EXPECT_EQ(read.ignored, scene.ignored);
 }
 
 TEST(MeshWrite, ReadsBackAsItWas) {
@@ -72,6 +73,21 @@ TEST(MeshWrite, KeepsEveryBit) {
   scene.source_face = {0, 1, 0, 0};
   scene.objects = {{"../a%04d b", 0, 2, true}, {"../a%04d b", 2, 1, false}, {"", 3, 1, true}};
   expect_round_trip(scene);
+}
+
+TEST(MeshWrite, WritesIgnoredObjectsByNamesThatNameThemAlone) {
+  Scene scene = make_builtin_scene("crowd:4:2");
+  scene.ignored = {{0, 1}, {0, 3}, {2, 3}};
+  expect_round_trip(scene);
+  // Twins: a name that another object has too, and one that is a pattern.
+  for (const char* name : {"same", "*"}) {
+    Scene twin = scene;
+    twin.objects[0].name = name;
+    twin.objects[2].name = "same";
+    const ScratchFolder folder;
+    EXPECT_NE(error_of([&] { write_scene(twin, folder.path("s")); }).reason.find("fit others too"),
+              std::string::npos);
+  }
 }
 
 TEST(MeshWrite, ReplacesFilesAndTakesItsOwnBackWhereItFails) {

@@ -9,6 +9,14 @@
 
 namespace farcull {
 
+/// The pairs of different objects of which one has a name of the first pattern and the other one a
+/// name of the second. In a pattern a * stands for any characters. where, line: of an error; what:
+/// the pair as an error names it. Throws Error where no object has a name of a pattern, and where
+/// both patterns name one and the same object alone.
+std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& first,
+                                      const std::string& second, const std::string& where,
+                                      const std::string& what, long line = 0);
+
 /// Two groups of objects by their names, as in "link*:gripper". A * stands for any characters.
 struct IgnoredNames {
   std::string text;   // such as "link*:gripper"

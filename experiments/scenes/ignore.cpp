@@ -1,6 +1,6 @@
 // Names are looked up in the scene when it is there: those of frames may differ from frame to
 // frame.
-#include "experiments/command/ignore.h"
+#include "experiments/scenes/ignore.h"
 
 #include <fmt/format.h>
 
@@ -55,6 +55,20 @@ std::string some_names(const Scene& scene) {
   return out + (scene.objects.size() > kShown ? ", ..." : "");
 }
 
+/// Every two different objects of the groups.
+std::vector<ObjectPair> pairs_of(const std::vector<std::uint32_t>& first,
+                                 const std::vector<std::uint32_t>& second) {
+  std::vector<ObjectPair> out;
+  for (const std::uint32_t a : first) {
+    for (const std::uint32_t b : second) {
+      if (a != b) out.push_back({a, b});
+    }
+  }
+  return in_order(std::move(out));
+}
+
+constexpr const char* kOneObject = "names one object; only --self tests an object against itself";
+
 /// Appends the pairs that one text names.
 void append(const Scene& scene, const IgnoredNames& names, std::vector<ObjectPair>& out) {
   const std::string_view text = names.text;
@@ -80,16 +94,33 @@ void append(const Scene& scene, const IgnoredNames& names, std::vector<ObjectPai
   if (text.find(':') == std::string_view::npos) fail("has no colon");
   if (places == 0) fail(fmt::format("names '{}', and no object is called so", unknown));
   if (places > 1) fail("can be divided at more than one colon");
-  if (first.size() == 1 && first == second)
-    fail("names one object; only --self tests an object against itself");
-  for (const std::uint32_t a : first) {
-    for (const std::uint32_t b : second) {
-      if (a != b) out.push_back({a, b});
-    }
-  }
+  if (first.size() == 1 && first == second) fail(kOneObject);
+  const std::vector<ObjectPair> pairs = pairs_of(first, second);
+  out.insert(out.end(), pairs.begin(), pairs.end());
 }
 
 }  // namespace
+
+std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& first,
+                                      const std::string& second, const std::string& where,
+                                      const std::string& what, long line) {
+  const auto objects = [&](const std::string& pattern) {
+    std::vector<std::uint32_t> out = objects_of(scene, pattern);
+    if (!out.empty()) return out;
+    throw Error(where, fmt::format("{} names '{}', and no object is called so", what, pattern),
+                "give names of objects, in which * stands for any characters; the scene has " +
+                    some_names(scene),
+                line);
+  };
+  const std::vector<std::uint32_t> a = objects(first), b = objects(second);
+  if (a.size() == 1 && a == b) {
+    throw Error(where, fmt::format("{} names '{}' alone", what, scene.objects[a[0]].name),
+                "give two different objects; whether an object is tested against itself is said "
+                "by self",
+                line);
+  }
+  return pairs_of(a, b);
+}
 
 std::vector<IgnoredNames> parse_ignored(const std::string& list) {
   std::vector<IgnoredNames> out;

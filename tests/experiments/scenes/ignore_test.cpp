@@ -1,9 +1,10 @@
 // Names of ignored objects, as the command line and files give them.
-#include "experiments/command/ignore.h"
+#include "experiments/scenes/ignore.h"
 
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/scene/ignored.h"
 #include "tests/experiments/system/error_of.h"
 
 namespace farcull {
@@ -34,6 +35,30 @@ TEST(Ignore, OfNamesThatAreTheSameAllAreMeant) {
   EXPECT_EQ(ignored_objects(scene_of({"a", "a", "b"}), parse_ignored("a:b")),
             (Pairs{{0, 2}, {1, 2}}));
   EXPECT_EQ(ignored_objects(scene_of({"a", "a"}), parse_ignored("a:a")), (Pairs{{0, 1}}));
+}
+
+TEST(Ignore, PairsOfTwoPatternsAreThoseOfTheList) {
+  const Scene scene = scene_of({"base", "link1", "link2", "hand", "link"});
+  const auto pairs = [&](const char* a, const char* b) {
+    return pairs_between(scene, a, b, "here", "row 3");
+  };
+  EXPECT_EQ(pairs("link*", "hand"), (Pairs{{1, 3}, {2, 3}, {3, 4}}));
+  EXPECT_EQ(pairs("hand", "base"), (Pairs{{0, 3}}));
+  EXPECT_EQ(pairs("*", "*").size(), 10u);
+  const Error unknown = error_of([&] { pairs("base", "arm*"); });
+  EXPECT_EQ(unknown.where, "here");
+  EXPECT_EQ(unknown.reason, "row 3 names 'arm*', and no object is called so");
+  EXPECT_EQ(error_of([&] { pairs("han*", "hand"); }).reason, "row 3 names 'hand' alone");
+}
+
+TEST(Ignore, WhoAnswersAboutAllRefusesASceneThatIgnores) {
+  Scene scene = scene_of({"a", "b"});
+  EXPECT_NO_THROW(require_nothing_ignored(scene, "a check"));
+  scene.ignored = {{0, 1}};
+  EXPECT_NE(message_of([&] {
+              require_nothing_ignored(scene, "a check");
+            }).find("a check answers about all"),
+            std::string::npos);
 }
 
 TEST(Ignore, NamesMayHoldColons) {
