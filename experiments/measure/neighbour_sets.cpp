@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/proximity/near_pairs.h"
+#include "core/proximity/voronoi_device.h"
 
 namespace farcull {
 namespace {
@@ -84,24 +85,11 @@ NeighbourSets sets_of_trees(const Scene& scene, const NeighbourOptions& options,
   return out;
 }
 
+// As diagram_sets(), but the sets say why there are none.
 NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& options,
                               const Progress& progress) {
-  const VoronoiOptions voronoi{.resolution = options.resolution,
-                               .widening = options.widening,
-                               .threads = options.threads,
-                               .most_pairs = options.most_pairs};
-  NeighbourSets out;
   try {
-    if (options.method == NeighbourMethod::voronoi) {
-      out.objects = voronoi_neighbours(scene, voronoi, progress).objects;
-      for (const auto& [a, b] : out.objects)
-        out.left.push_back({scene.objects[a].triangle_count, scene.objects[b].triangle_count});
-    } else {
-      ReliableNeighbours found = reliable_neighbours(scene, voronoi, progress);
-      out.has_pairs = true;
-      out.objects = std::move(found.objects);
-      out.pairs = std::move(found.triangles);
-    }
+    return diagram_sets(scene, options, nullptr, progress);
   } catch (const Error& error) {
     // Of options that are out of range the caller hears.
     if (error.reason.find("too many pairs") == std::string::npos) throw;
@@ -109,22 +97,21 @@ NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& option
   } catch (const std::bad_alloc&) {
     return {.objects = {}, .left_out = "the memory of this machine does not hold the diagram"};
   }
-  return out;
 }
 
 // Adds to each object how many triangles of other objects its pairs name, each once. Triangles of
 // objects ascend with the objects, and a < b in each pair: those of later objects follow from the
 // pairs of one object after the other, those of earlier objects from the pairs of one triangle.
 void add_named(const Scene& scene, const std::vector<TrianglePair>& pairs,
-               std::vector<std::uint64_t>& named) {
+               std::vector<SetSize>& sizes) {
   const std::vector<std::uint32_t> owner = owners(scene);
   constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> last_object(scene.triangles.size(), kNobody);
   std::vector<std::uint32_t> last_triangle(scene.objects.size(), kNobody);
   for (const TrianglePair& pair : pairs) {
     const std::uint32_t a = owner[pair.a], b = owner[pair.b];
-    if (std::exchange(last_object[pair.b], a) != a) ++named[a];
-    if (std::exchange(last_triangle[b], pair.a) != pair.a) ++named[b];
+    if (std::exchange(last_object[pair.b], a) != a) ++sizes[a].triangles;
+    if (std::exchange(last_triangle[b], pair.a) != pair.a) ++sizes[b].triangles;
   }
 }
 
@@ -139,11 +126,6 @@ Sizes sizes_over(std::vector<std::uint64_t> values) {
   out.median = values[(values.size() - 1) / 2];
   out.most = values.back();
   return out;
-}
-
-bool holds(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b) {
-  return std::binary_search(sets.objects.begin(), sets.objects.end(),
-                            ObjectPair{std::min(a, b), std::max(a, b)});
 }
 
 }  // namespace
@@ -173,40 +155,84 @@ NeighbourSets neighbour_sets(const Scene& scene, const NeighbourOptions& options
   return sets_of_boxes(scene);
 }
 
+NeighbourSets diagram_sets(const Scene& scene, const NeighbourOptions& options,
+                           VoronoiDevice* device, const Progress& progress) {
+  if (!has_cells(options.method)) throw std::logic_error("diagram_sets: no diagram");
+  const VoronoiOptions voronoi{.resolution = options.resolution,
+                               .widening = options.widening,
+                               .threads = options.threads,
+                               .most_pairs = options.most_pairs};
+  NeighbourSets out;
+  if (options.method == NeighbourMethod::voronoi) {
+    VoronoiNeighbours found = device != nullptr
+                                  ? voronoi_neighbours(scene, voronoi, *device, progress)
+                                  : voronoi_neighbours(scene, voronoi, progress);
+    out.objects = std::move(found.objects);
+    out.work = found.counts;
+    for (const auto& [a, b] : out.objects)
+      out.left.push_back({scene.objects[a].triangle_count, scene.objects[b].triangle_count});
+  } else {
+    ReliableNeighbours found = device != nullptr
+                                   ? reliable_neighbours(scene, voronoi, *device, progress)
+                                   : reliable_neighbours(scene, voronoi, progress);
+    out.has_pairs = true;
+    out.objects = std::move(found.objects);
+    out.pairs = std::move(found.triangles);
+    out.work = found.counts;
+  }
+  return out;
+}
+
+std::vector<SetSize> set_sizes(const Scene& scene, const NeighbourSets& sets) {
+  std::vector<SetSize> out(scene.objects.size());
+  for (std::size_t i = 0; i < sets.objects.size(); ++i) {
+    const auto [a, b] = sets.objects[i];
+    ++out[a].objects;
+    ++out[b].objects;
+    if (sets.has_pairs) continue;
+    out[a].triangles += sets.left[i][1];
+    out[b].triangles += sets.left[i][0];
+  }
+  if (sets.has_pairs) add_named(scene, sets.pairs, out);
+  return out;
+}
+
+std::uint64_t triangle_pairs_of(const NeighbourSets& sets) {
+  std::uint64_t out = sets.pairs.size();
+  for (const auto& [a, b] : sets.left) out += a * b;
+  return out;
+}
+
+bool has_objects(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b) {
+  return std::binary_search(sets.objects.begin(), sets.objects.end(),
+                            ObjectPair{std::min(a, b), std::max(a, b)});
+}
+bool has_triangles(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b,
+                   const TrianglePair& triangles) {
+  return sets.has_pairs ? std::binary_search(sets.pairs.begin(), sets.pairs.end(), triangles)
+                        : has_objects(sets, a, b);
+}
+
 NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,
                         const std::vector<NearestObjects>& truth) {
   if (!sets.left_out.empty() || truth.size() != scene.objects.size())
     throw std::logic_error("sizes_of: no sets, or the truth of another scene");
-  NeighbourSizes out{.object_pairs = sets.objects.size(), .triangle_pairs = sets.pairs.size()};
-  std::vector<std::uint64_t> objects(truth.size()), triangles(truth.size());
-  for (std::size_t i = 0; i < sets.objects.size(); ++i) {
-    const auto [a, b] = sets.objects[i];
-    ++objects[a];
-    ++objects[b];
-    if (sets.has_pairs) continue;
-    const auto [of_a, of_b] = sets.left[i];
-    triangles[a] += of_b;
-    triangles[b] += of_a;
-    out.triangle_pairs += of_a * of_b;
-  }
-  if (sets.has_pairs) add_named(scene, sets.pairs, triangles);
-
+  NeighbourSizes out{.object_pairs = sets.objects.size(),
+                     .triangle_pairs = triangle_pairs_of(sets)};
+  const std::vector<SetSize> sizes = set_sizes(scene, sets);
   std::vector<std::uint64_t> with_objects, with_triangles;
   for (std::uint32_t object = 0; object < truth.size(); ++object) {
     const NearestObjects& nearest = truth[object];
     if (nearest.objects.empty()) continue;
     ++out.objects;
-    with_objects.push_back(objects[object]);
-    with_triangles.push_back(triangles[object]);
+    with_objects.push_back(sizes[object].objects);
+    with_triangles.push_back(sizes[object].triangles);
     bool found = false;
     for (std::size_t i = 0; i < nearest.objects.size(); ++i) {
-      const bool has = holds(sets, object, nearest.objects[i]);
-      found |= has;
+      const std::uint32_t other = nearest.objects[i];
+      found |= has_objects(sets, object, other);
       ++out.nearest_pairs;
-      out.missed_pairs +=
-          !(sets.has_pairs
-                ? std::binary_search(sets.pairs.begin(), sets.pairs.end(), nearest.triangles[i])
-                : has);
+      out.missed_pairs += !has_triangles(sets, object, other, nearest.triangles[i]);
     }
     out.missed += !found;
   }

@@ -15,6 +15,8 @@
 
 namespace farcull {
 
+class VoronoiDevice;
+
 /// boxes: one box for each object (object_boxes()). trees: what `farcull distance --pairs nearest`
 /// hands to exact arithmetic (core/proximity/near_pairs.h). voronoi, voronoi_reliable: the discrete
 /// Voronoi diagram as published, and the form of it that loses nothing (core/proximity/voronoi.h).
@@ -45,11 +47,34 @@ struct NeighbourSets {
   /// Why there are no sets: the diagram would keep too many pairs, or memory ended. Empty: there
   /// are.
   std::string left_out = {};
+  VoronoiCounts work = {};  // of the diagrams
 };
 
 /// The sets of a scene that satisfies validate(). Throws Error for options that are out of range.
 NeighbourSets neighbour_sets(const Scene& scene, const NeighbourOptions& options,
                              const Progress& progress = {});
+
+/// The same of a diagram, but it throws Error as well where there are no sets: as
+/// voronoi_neighbours() and reliable_neighbours() do. device: where its cells are computed; null:
+/// on the cores of the CPU. Precondition: has_cells(options.method).
+NeighbourSets diagram_sets(const Scene& scene, const NeighbourOptions& options,
+                           VoronoiDevice* device, const Progress& progress = {});
+
+/// The set of one object: how many other objects, and triangles of other objects.
+struct SetSize {
+  std::uint64_t objects = 0, triangles = 0;
+};
+/// Of each object of the scene.
+std::vector<SetSize> set_sizes(const Scene& scene, const NeighbourSets& sets);
+/// The pairs of triangles that are left.
+std::uint64_t triangle_pairs_of(const NeighbourSets& sets);
+
+/// Whether the objects are left as neighbours, whichever comes first.
+bool has_objects(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b);
+/// Whether the pair of triangles of these objects is left. Sets without pairs of triangles lose one
+/// where they lose its objects.
+bool has_triangles(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b,
+                   const TrianglePair& triangles);
 
 /// Sizes of the sets, and what they lack.
 struct NeighbourSizes {
@@ -64,8 +89,7 @@ struct NeighbourSizes {
   std::uint64_t set_objects = 0, median_objects = 0, most_objects = 0;
   std::uint64_t set_triangles = 0, median_triangles = 0, most_triangles = 0;
 };
-/// truth: nearest_objects() of the scene. Sets without pairs of triangles lose a pair of triangles
-/// where they lose its objects. Precondition: there are sets.
+/// truth: nearest_objects() of the scene. Precondition: there are sets.
 NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,
                         const std::vector<NearestObjects>& truth);
 

@@ -10,7 +10,7 @@
 
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
-#include "experiments/measure/neighbours.h"
+#include "experiments/measure/neighbour_sets.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/core/proximity/voronoi_lab.h"
 
@@ -85,16 +85,25 @@ std::uint64_t scene_table(const std::vector<std::string>& names, int largest) {
     const Scene scene = make_builtin_scene(name);
     const std::vector<NearestObjects> truth = nearest_objects(scene);
     for (int resolution = 64; resolution <= largest; resolution *= 2) {
-      const VoronoiOptions options{.resolution = resolution};
-      const DiagramCounts published = measure_published(scene, truth, options);
-      const DiagramCounts reliable = measure_reliable(scene, truth, options);
+      double ms[2] = {};
+      const auto measured = [&](NeighbourMethod method) {
+        const Stopwatch watch;
+        const NeighbourSets sets = diagram_sets(
+            scene,
+            {.method = method, .resolution = resolution, .most_pairs = VoronoiOptions{}.most_pairs},
+            nullptr);
+        ms[method == NeighbourMethod::voronoi_reliable] = watch.ms();
+        return sizes_of(scene, sets, truth);
+      };
+      const NeighbourSizes published = measured(NeighbourMethod::voronoi);
+      const NeighbourSizes reliable = measured(NeighbourMethod::voronoi_reliable);
       std::printf("| %s | %d | %" PRIu64 " | %" PRIu64 " | %" PRIu64 " | %" PRIu64 " | %" PRIu64
                   " | %" PRIu64 " | %.0f | %.0f |\n",
                   name.c_str(), resolution, published.objects, published.missed, reliable.missed,
-                  published.kept, reliable.kept, reliable.kept_triangles, published.ms,
-                  reliable.ms);
+                  published.object_pairs, reliable.object_pairs, reliable.triangle_pairs, ms[0],
+                  ms[1]);
       std::fflush(stdout);
-      lost += reliable.missed + reliable.missed_triangles;
+      lost += reliable.missed + reliable.missed_pairs;
     }
   }
   return lost;
