@@ -70,7 +70,7 @@ CLI::App* BenchCommand::add_to(CLI::App& app) {
   add("--distances", distances_, "PAIRS",
       "times of distance queries instead: objects, every two\nobjects; or nearest, each with "
       "the nearest other one.\nPeers are then "
-      "fcl-double,fcl-float,cgal-aabb");
+      "fcl-double,fcl-float,cgal-aabb,embree-points");
   add("--within", within_, "DISTANCE",
       "with --distances: farther ones need not be found;\nin world units, default all");
   add("--json", outputs_.json, "FILE", kJsonHelp);

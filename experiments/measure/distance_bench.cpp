@@ -185,8 +185,7 @@ DistanceBenchResult bench_distances(const Scene& given, const DistanceBenchOptio
     row.repeats = static_cast<int>(timed[i].ms.size());
     row.build_ms = middle(build[i]);
     row.query_ms = middle(query[i]);
-    // Floats are no peer of what answers in doubles.
-    if (!row.peer || row.name == "fcl-float") continue;
+    if (!row.peer || !running[i].comparable) continue;
     if (!result.fastest_peer ||
         row.total_ms.median < result.rows[*result.fastest_peer].total_ms.median) {
       result.fastest_peer = i;
@@ -246,6 +245,10 @@ std::string distance_bench_table(const Scene& scene, const DistanceBenchOptions&
                                 counted(scene.objects.size(), "object", "objects"),
                                 counted(scene.triangles.size(), "triangle", "triangles"),
                                 counted(options.threads, "thread", "threads"), cpu_model());
+  const auto asked = [&result](const char* name) {
+    return std::any_of(result.rows.begin(), result.rows.end(),
+                       [name](const DistanceBenchRow& row) { return row.name == name; });
+  };
   Table table("lrrrrrrrrrrrrrr");
   table.add({"", "ms", "low", "high", "n", "cold", "build", "query", "MiB", "distances", "exact",
              "lacking", "other 0", "rel. error", result.fastest_peer ? "x fastest" : ""});
@@ -268,9 +271,14 @@ std::string distance_bench_table(const Scene& scene, const DistanceBenchOptions&
       "resident\nat the peak of the cold run, beyond before. exact: the correctly rounded "
       "distance; lacking:\ndistances that were not found; other 0: objects that meet called apart, "
       "or the reverse;\nrel. error: the largest one of the others.\n";
+  if (asked("embree-points")) {
+    out +=
+        "embree-points: from the vertices alone, so a bound from above where edges are nearest.\n";
+  }
   if (result.fastest_peer) {
-    out += fmt::format("x fastest: of the fastest peer in doubles, {}, in this run.\n",
-                       result.rows[*result.fastest_peer].name);
+    out +=
+        fmt::format("x fastest: of the fastest peer that measures in doubles, {}, in this run.\n",
+                    result.rows[*result.fastest_peer].name);
   }
   return out;
 }

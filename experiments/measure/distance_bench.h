@@ -50,7 +50,7 @@ struct DistanceBenchRow {
 struct DistanceBenchResult {
   std::vector<DistanceBenchRow> rows;                         // ours is the first
   std::vector<std::pair<std::string, std::string>> left_out;  // name, reason
-  std::optional<std::size_t> fastest_peer;                    // in doubles; into rows
+  std::optional<std::size_t> fastest_peer;                    // of the comparable ones; into rows
 };
 
 /// Of different objects alone, also where the scene says that one is tested against itself. Throws

@@ -166,7 +166,10 @@ PeerDistances ask(const Scene& scene, const PeerQuestion& question, unsigned thr
 }  // namespace
 
 std::vector<DistancePeer> cgal_distance_peers() {
-  return {{"cgal-aabb", "CGAL " CGAL_VERSION_STR, "", ask, [](const Scene& scene) {
+  return {{.name = "cgal-aabb",
+           .library = "CGAL " CGAL_VERSION_STR,
+           .run = ask,
+           .refuses = [](const Scene& scene) {
              return degenerate_triangles(scene) == 0
                         ? std::string()
                         : std::string("its tree and distances take no degenerate triangle");

@@ -41,6 +41,9 @@ struct DistancePeer {
   std::string name;          // as in --peers
   std::string library;       // with its version
   std::string missing = {};  // why this build is without it; empty: it is there
+  /// False: it answers in floats, or bounds distances from above alone, so it is no measure of how
+  /// fast distances can be had.
+  bool comparable = true;
   std::function<PeerDistances(const Scene&, const PeerQuestion&, unsigned threads)> run = {};
   std::function<std::string(const Scene&)> refuses = {};  // why it cannot be asked about such a
                                                           // scene; empty: it can. Null: about all
@@ -51,10 +54,14 @@ struct DistancePeer {
 ///                          dynamic tree of boxes
 ///   cgal-aabb              each triangle of one object against CGAL's AABB_tree of the other, with
 ///                          squared_distance() of two triangles in doubles
+///   embree-points          Embree's rtcPointQuery from every vertex of each object to the other
+///                          one's triangles, in floats. Edges are not asked against edges, so it
+///                          bounds the distance from above, and objects that cross are not 0
 std::vector<DistancePeer> distance_peers();
 
 /// Their parts, a library each.
 std::vector<DistancePeer> fcl_distance_peers();
 std::vector<DistancePeer> cgal_distance_peers();
+std::vector<DistancePeer> embree_distance_peers();
 
 }  // namespace farcull

@@ -152,8 +152,15 @@ std::string refuses_degenerate(const Scene& scene) {
 }  // namespace
 
 std::vector<DistancePeer> fcl_distance_peers() {
-  return {{"fcl-double", kFclLibrary, "", ask<double>, refuses_degenerate},
-          {"fcl-float", kFclLibrary, "", ask<float>, refuses_degenerate}};
+  return {{.name = "fcl-double",
+           .library = kFclLibrary,
+           .run = ask<double>,
+           .refuses = refuses_degenerate},
+          {.name = "fcl-float",
+           .library = kFclLibrary,
+           .comparable = false,
+           .run = ask<float>,
+           .refuses = refuses_degenerate}};
 }
 
 }  // namespace farcull

@@ -32,7 +32,7 @@ std::vector<Peer> fcl_narrow_peers() {
 std::vector<DistancePeer> fcl_distance_peers() {
   const std::string missing = "built without FCL (Debian: libfcl-dev)";
   return {{.name = "fcl-double", .library = "FCL", .missing = missing},
-          {.name = "fcl-float", .library = "FCL", .missing = missing}};
+          {.name = "fcl-float", .library = "FCL", .missing = missing, .comparable = false}};
 }
 #endif
 
@@ -40,6 +40,13 @@ std::vector<DistancePeer> fcl_distance_peers() {
 std::vector<Peer> embree_peers() {
   return {missing("embree-low", "Embree 3", "libembree-dev"),
           missing("embree-medium", "Embree 3", "libembree-dev")};
+}
+
+std::vector<DistancePeer> embree_distance_peers() {
+  return {{.name = "embree-points",
+           .library = "Embree 3",
+           .missing = "built without Embree 3 (Debian: libembree-dev)",
+           .comparable = false}};
 }
 #endif
 
@@ -61,7 +68,8 @@ std::vector<Peer> narrow_peers() {
 
 std::vector<DistancePeer> distance_peers() {
   std::vector<DistancePeer> all = fcl_distance_peers();
-  for (DistancePeer& peer : cgal_distance_peers()) all.push_back(std::move(peer));
+  for (std::vector<DistancePeer> some : {cgal_distance_peers(), embree_distance_peers()})
+    all.insert(all.end(), std::move_iterator(some.begin()), std::move_iterator(some.end()));
   return all;
 }
 

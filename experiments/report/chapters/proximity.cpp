@@ -467,6 +467,20 @@ DataTable all_sets(const StoredStudy& stored) {
        estimate_column("time (ms)")});
 }
 
+// What the distances of Embree are; nothing where it was not asked.
+void add_limit_of_vertices(const std::vector<NamedRows>& scenes, Chapter& chapter) {
+  const auto asked = [](const Row* row) { return name_of(row->point) == "embree-points"; };
+  if (std::none_of(scenes.begin(), scenes.end(), [&](const NamedRows& scene) {
+        return std::any_of(scene.rows.begin(), scene.rows.end(), asked);
+      }))
+    return;
+  chapter.limits.push_back(
+      "Embree has no query for the distance of two meshes. embree-points asks it from every vertex "
+      "of each object for the nearest point of the other one. That bounds the distance from above, "
+      "but for the rounding to floats: it is too large where the nearest points lie inside two "
+      "edges, and above 0 where objects cross. So its time is no time of the same question.");
+}
+
 }  // namespace
 
 Chapter proximity_chapter(const StoredStudy& stored) {
@@ -488,6 +502,7 @@ Chapter proximity_chapter(const StoredStudy& stored) {
       "Most of the time of a library is that of building its trees, which a program that asks "
       "again "
       "would build once."};
+  add_limit_of_vertices(distances, out);
   add_gaps(stored, out);
   DataTable exponents{
       .name = "proximity-exponents",

@@ -178,5 +178,18 @@ TEST(ProximityChapter, SaysWhatIsNotKnownAndWhatWasLeftOut) {
   EXPECT_TRUE(chapter_of(none.stored).figures.empty());
 }
 
+// Embree is asked another question, which the page says where it has its answers, and only there.
+TEST(ProximityChapter, SaysWhatDistancesFromVerticesAre) {
+  const auto says_so = [](const Chapter& chapter) {
+    return std::any_of(chapter.limits.begin(), chapter.limits.end(), [](const std::string& limit) {
+      return limit.starts_with("Embree has no query");
+    });
+  };
+  MadeUp with = rows(0, 0, 0);
+  with.add(at("field", "embree-points nearest"), asked(3, 0.25, false), 5);
+  EXPECT_TRUE(says_so(chapter_of(with.stored)));
+  EXPECT_FALSE(says_so(chapter_of(rows(0, 0, 0).stored)));
+}
+
 }  // namespace
 }  // namespace farcull
