@@ -39,6 +39,10 @@ void draw(GLenum mode, GLint first, GLsizei count) {
 // at the one before far_lost_item.
 constexpr const char* kEnd = "if (w >= u_count) break;";
 constexpr const char* kEarlierEnd = "if (w >= u_count || w + 1u == far_lost_item) break;";
+// Programs of far-pairs may learn on the device how many items they have.
+constexpr const char* kCountedEnd = "if (w >= items) break;";
+constexpr const char* kEarlierCountedEnd =
+    "if (w >= items || (far_lost_item != 0u && w == items / 2u)) break;";
 constexpr const char* kSize = "layout(local_size_x = 64) in;";
 constexpr const char* kSizeAndItem =
     "layout(local_size_x = 64) in;\nlayout(location = 64) uniform uint far_lost_item;";
@@ -93,11 +97,14 @@ void shader_source(GLuint shader, GLsizei count, const GLchar* const* texts, con
   if (!plan || count != 1 || lengths != nullptr)
     return ShaderSource::original(shader, count, texts, lengths);
   std::string text = texts[0];
-  if (plan->kind == Kind::unfinished_item && text.find(kEnd) != std::string::npos) {
+  if (plan->kind == Kind::unfinished_item &&
+      (text.find(kEnd) != std::string::npos || text.find(kCountedEnd) != std::string::npos)) {
     replace(text, kSize, kSizeAndItem);
     replace(text, kEnd, kEarlierEnd);
+    replace(text, kCountedEnd, kEarlierCountedEnd);
   }
-  if (plan->kind == Kind::kept_bits) replace(text, "to[w] = 0u;", "");
+  if (plan->kind == Kind::kept_bits)
+    replace(text, "to[w] = 0u;", "if (u_extra.x == 0u) to[w] = 0u;");
   // The text of lists has three steps, of which the second counts.
   if (plan->kind == Kind::wrong_count && text.find("#define FAR_STEP 1\n") != std::string::npos &&
       text.find("atomicExchange(listed[record]") != std::string::npos) {

@@ -18,7 +18,7 @@ enum class DriverFaultKind {
   lost_query,          // an occlusion query is never issued
   blind_queries,       // all occlusion queries answer zero, from strike() on
   wrong_count,         // far-pairs: the count of a list is one too large
-  kept_bits,           // far-pairs: words that shall be set to 0 keep their values
+  kept_bits,           // far-pairs: bits of pairs that shall be set to 0 keep their values
 };
 
 /// Only calls of the thread that made the object are at fault; those of other threads reach the

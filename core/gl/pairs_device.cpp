@@ -8,7 +8,6 @@
 
 #include "core/base/error.h"
 #include "core/gl/echo.h"
-#include "core/pairs/backend.h"
 #include "embedded/echo_glsl.h"
 #include "embedded/interval_glsl.h"
 #include "embedded/pair_check_comp.h"
@@ -23,7 +22,6 @@
 #include "embedded/pair_rows_glsl.h"
 #include "embedded/pair_scan_comp.h"
 #include "embedded/pair_source_glsl.h"
-#include "embedded/pair_spans_comp.h"
 #include "embedded/pair_tests_comp.h"
 
 namespace farcull {
@@ -49,7 +47,6 @@ const std::array<Source, kPairPrograms>& sources() {
   static const std::array<Source, kPairPrograms> all = {{
       {"pair items", 8, pair_items_comp, 0, pair_source_glsl},
       {"pair records", 4, pair_items_comp, 1, pair_source_glsl},
-      {"pair spans", 16, pair_spans_comp, 0},
       {"pair lists, marking", 8, pair_lists_comp, 0},
       {"pair lists, counting", 8, pair_lists_comp, 1},
       {"pair lists, filling", 4, pair_lists_comp, 2},
@@ -57,13 +54,12 @@ const std::array<Source, kPairPrograms>& sources() {
       {"pair lists by rows, counting", 2, pair_lists_comp, 1, pair_rows_glsl, {"FAR_ROWS"}},
       {"pair lists by rows, filling", 2, pair_lists_comp, 2, pair_rows_glsl, {"FAR_ROWS"}},
       {"pair conflicts", 16, pair_conflicts_comp, 0},
-      {"pair scan, sums", 4, pair_scan_comp, 0},
-      {"pair scan, sums of sums", 4, pair_scan_comp, 1},
-      {"pair scan, top", 1, pair_scan_comp, 2},
-      {"pair scan, down to sums", 4, pair_scan_comp, 3},
-      {"pair scan, down", 4, pair_scan_comp, 4},
+      {"pair scan, sums", 1, pair_scan_comp, 0},
+      {"pair scan, down", 1, pair_scan_comp, 1},
       {"pair check of crowds", 32, pair_check_comp, 0},
-      {"pair check of lists", 64, pair_check_comp, 1},
+      {"pair sum of what was sent", 64, pair_copy_comp, 0, "", {"FAR_SUM FAR_SENT"}},
+      {"pair zeros", 64, pair_copy_comp, 2},
+      {"pair check of lists, and crowded cells", 16, pair_cut_comp, 0, pair_rows_glsl},
       {"pair tests", 4, pair_tests_comp, 0, "", {"FAR_SUM FAR_TESTS"}},
       {"pair tests left", 4, pair_tests_comp, 1, "", {"FAR_SUM FAR_TESTS"}},
       {"pair tests of uncut cells",
@@ -78,15 +74,12 @@ const std::array<Source, kPairPrograms>& sources() {
        1,
        "",
        {"FAR_SUM FAR_TESTS", "FAR_SOME_CROWDED"}},
-      {"pair subdivision, parents", 16, pair_cut_comp, 0},
       {"pair subdivision, counting", 1, pair_cut_comp, 1, pair_rows_glsl},
       {"pair subdivision, deciding", 1, pair_cut_comp, 2},
       {"pair subdivision, filling", 1, pair_cut_comp, 3, pair_rows_glsl},
       {"pair large ones", 16, pair_large_comp, 0},
       {"pair comparison with large ones", 1, pair_large_comp, 1, pair_source_glsl},
-      {"pair sum of what was sent", 64, pair_copy_comp, 0, "", {"FAR_SUM FAR_SENT"}},
       {"pair copy", 64, pair_copy_comp, 1},
-      {"pair zeros", 64, pair_copy_comp, 2},
       {"pair tests, settled", 4, pair_tests_comp, 0, "", {"FAR_SUM FAR_TESTS", "FAR_SETTLED"}},
       {"pair tests left, settled", 4, pair_tests_comp, 1, "", {"FAR_SUM FAR_TESTS", "FAR_SETTLED"}},
       {"pair tests of uncut cells, settled",
@@ -121,6 +114,8 @@ std::vector<std::string> defines_of(const Source& source, std::uint32_t index) {
            number("FAR_LISTED", kTotalListed),
            number("FAR_LISTED_ROWS", kTotalListedRows),
            number("FAR_PARENTS", kTotalParents),
+           number("FAR_ENTRIES", kTotalEntries),
+           number("FAR_LARGE_FOUND", kTotalLargeFound),
            number("FAR_PAIRS", kTotalPairs),
            number("FAR_TESTS", kTotalTests),
            number("FAR_MORE", kTotalMore),
@@ -139,10 +134,10 @@ std::vector<std::string> defines_of(const Source& source, std::uint32_t index) {
   return out;
 }
 
-constexpr std::array kSerials = {kSerialStart, kSerialItems, kSerialCut, kSerialPairs};
+constexpr std::array kSerials = {kSerialStart, kSerialItems, kSerialPairs};
 
 // Where core/gl/shaders/pair_main.glsl adds the tags of buffers to the echo.
-constexpr std::uint32_t kTagPlace = 31;
+constexpr std::uint32_t kTagPlace = 31, kWorkPlace = 42;
 
 GLint limit_of(GLenum name) {
   GLint value = 0;
@@ -192,6 +187,9 @@ PairQueue::PairQueue(const GlContext& context, const GlPairOptions& options)
   for (std::size_t p = 0; p <= static_cast<std::size_t>(PairProgram::tests); ++p) program(p);
   words_.assign(kTotals + 2 * kDispatches, 0);
   counters_.reserve(words_.size() * sizeof(std::uint32_t), block_);
+  GLint clock_bits = 0;
+  glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &clock_bits);
+  clock_ = clock_bits > 0;
   start(true);
   check_gl("pairs");
 }
@@ -222,7 +220,10 @@ const PairQueue::Program& PairQueue::program(std::size_t which) {
 
 void PairQueue::start(bool fresh) {
   if (fresh) dispatches_ = readbacks_ = 0;
+  for (GlQuery& stamp : stamps_) stamp = GlQuery();
   expected_.clear();
+  needed_.clear();
+  overflow_ = false;
   expected_sum_ = 0;
   std::fill(words_.begin(), words_.end(), 0);
   for (const PairTotal place : kSerials) words_[place] = serials_[place] = ++serial_;
@@ -232,17 +233,20 @@ void PairQueue::start(bool fresh) {
 void PairQueue::reset(PairTotals totals) {
   std::array<std::uint32_t, kTotals> words{};
   words[0] = serials_[totals.serial] = ++serial_;
+  if (totals.serial == kSerialPairs) overflow_ = false;
   counters_.write(totals.serial * sizeof(std::uint32_t), words.data(),
                   totals.words * sizeof(std::uint32_t));
 }
 
-void PairQueue::run(PairProgram which, std::uint64_t count, const PairUniforms& u,
+void PairQueue::run(PairProgram which, const PairWork& work, const PairUniforms& u,
                     const std::vector<PairBinding>& bindings) {
-  if (count == 0) return;
+  const std::uint64_t count = work.items(work.most);
   if (count >> 31 != 0) throw std::logic_error("PairQueue::run: too much work for one dispatch");
   if (expected_.size() == kDispatches) check_finished("pairs");
+  if (work.total != kSerialStart) needed_.push_back(work);
+  if (count == 0) return;
   const auto index = static_cast<std::size_t>(which);
-  const auto n = static_cast<std::uint32_t>(count);
+  const auto n = static_cast<std::uint32_t>(work.most);
   const Program& used = program(index);
   const auto finished = kTotals + 2 * static_cast<std::uint32_t>(expected_.size());
   glUseProgram(used.name);
@@ -259,6 +263,8 @@ void PairQueue::run(PairProgram which, std::uint64_t count, const PairUniforms& 
   glUniform1ui(10, u.items);
   glUniform4uiv(11, 1, u.extra.data());
   glUniform4fv(12, 1, u.numbers.data());
+  const std::array<std::uint32_t, 4> counted = {work.total, work.per, work.times, 0};
+  glUniform4uiv(13, 1, counted.data());
   GlEcho echo;
   echo.add({static_cast<std::uint32_t>(index) + 1, n, finished});
   echo.add(u.widen);
@@ -269,6 +275,8 @@ void PairQueue::run(PairProgram which, std::uint64_t count, const PairUniforms& 
   echo.add({u.cells, u.masked, u.capacity, u.items});
   echo.add(u.extra);
   echo.add(u.numbers);
+  echo.place = kWorkPlace;
+  echo.add(counted);
   const auto bind = [&](GLuint at, const GlStore& store) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, at, store.name());
     if ((used.bindings >> at & 1) != 0) echo.add_at(kTagPlace + at, store.tag());
@@ -276,20 +284,27 @@ void PairQueue::run(PairProgram which, std::uint64_t count, const PairUniforms& 
   for (const PairBinding& b : bindings) bind(b.index, *b.store);
   bind(kCounters, counters_);
   const std::uint32_t per_group = kGroup * sources()[index].batch;
-  const std::uint32_t groups = (n + per_group - 1) / per_group;
+  const auto groups = static_cast<std::uint32_t>((count + per_group - 1) / per_group);
   const std::uint32_t most = static_cast<std::uint32_t>(context_.info().max_compute_groups);
   const std::uint32_t columns = std::min(groups, most);
   const std::uint32_t rows = (groups + columns - 1) / columns;
   glDispatchCompute(columns, rows, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-  expected_.push_back({n, echo.sum});
+  expected_.push_back({work, echo.sum});
   ++dispatches_;
 }
 
-void PairQueue::expect(const GlStore& store, std::span<const std::byte> data) {
-  const std::size_t count = data.size() / sizeof(std::uint32_t);
-  expected_sum_ += gl_sum(data);
-  run(PairProgram::sum, count, {}, {{0, &store}});
+void PairQueue::expect(const std::array<Sent, 5>& sent) {
+  PairUniforms u;
+  std::vector<PairBinding> bindings;
+  std::size_t words = 0;
+  for (std::size_t k = 0; k < sent.size(); ++k) {
+    expected_sum_ += gl_sum(sent[k].data);
+    words += sent[k].data.size() / sizeof(std::uint32_t);
+    if (k < u.extra.size()) u.extra[k] = static_cast<std::uint32_t>(words);
+    bindings.push_back({static_cast<GLuint>(k), sent[k].store});
+  }
+  run(PairProgram::sum, words, u, bindings);
 }
 
 void PairQueue::grow(GlStore& store, std::size_t wanted, std::size_t keep) {
@@ -301,32 +316,41 @@ void PairQueue::grow(GlStore& store, std::size_t wanted, std::size_t keep) {
   std::swap(store, grown);
 }
 
-void PairQueue::scan(const GlStore& numbers, const GlStore& before, std::size_t count) {
-  // Where each level of sums begins, and how long it is.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> levels;
-  std::uint32_t at = 0;
-  for (std::size_t n = count;;) {
-    n = (n + kScanned - 1) / kScanned;
-    levels.emplace_back(at, static_cast<std::uint32_t>(n));
-    at += static_cast<std::uint32_t>(n);
-    if (n <= kScanned) break;
+void PairQueue::scan(const GlStore& numbers, const GlStore& before, std::size_t count,
+                     PairTotal counted, PairTotal sum) {
+  const auto sums_of = [](std::size_t n) { return (n + kScanned - 1) / kScanned; };
+  const std::size_t first = sums_of(count), second = sums_of(first), third = sums_of(second);
+  sums_.reserve((first + second + third) * sizeof(std::uint32_t), block_);
+  zero(sums_, second + third);
+  PairUniforms u;
+  u.extra = {sum, static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(second),
+             static_cast<std::uint32_t>(second + third)};
+  const PairWork work =
+      counted == kSerialStart ? PairWork(first) : PairWork(count, counted, kScanned);
+  for (const PairProgram step : {PairProgram::sum_numbers, PairProgram::scan_numbers})
+    run(step, work, u, {{0, &numbers}, {1, &before}, {2, &sums_}});
+}
+
+// A new name each time: a stamp that is lost then has no object, and no stale time to give.
+void PairQueue::stamp(PairStamp at) {
+  if (!clock_) return;
+  GlQuery& query = stamps_[static_cast<std::size_t>(at)];
+  query = gl_make<GlQuery>(glGenQueries);
+  glQueryCounter(query, GL_TIMESTAMP);
+}
+
+double PairQueue::between(PairStamp from, PairStamp to) const {
+  std::array<GLuint64, 2> ns{};
+  for (std::size_t k = 0; k < ns.size(); ++k) {
+    const GlQuery& query = stamps_[static_cast<std::size_t>(k == 0 ? from : to)];
+    if (query == 0) return -1;
+    GLuint ready = GL_FALSE;
+    glGetQueryObjectuiv(query, GL_QUERY_RESULT_AVAILABLE, &ready);
+    if (ready == GL_TRUE) glGetQueryObjectui64v(query, GL_QUERY_RESULT, &ns[k]);
+    check_gl("clock");
+    if (ns[k] == 0) return -1;
   }
-  sums_.reserve(at * sizeof(std::uint32_t), block_);
-  const auto step = [&](PairProgram program, std::uint32_t from, std::size_t length,
-                        std::uint32_t to) {
-    PairUniforms u;
-    u.extra = {from, static_cast<std::uint32_t>(length), to, kTotalScanned};
-    run(program, (length + kScanned - 1) / kScanned, u, {{0, &numbers}, {1, &before}, {2, &sums_}});
-  };
-  step(PairProgram::sum_numbers, 0, count, levels[0].first);
-  for (std::size_t l = 1; l < levels.size(); ++l) {
-    step(PairProgram::sum_sums, levels[l - 1].first, levels[l - 1].second, levels[l].first);
-  }
-  step(PairProgram::scan_top, levels.back().first, levels.back().second, 0);
-  for (std::size_t l = levels.size(); l-- > 1;) {
-    step(PairProgram::scan_sums, levels[l - 1].first, levels[l - 1].second, levels[l].first);
-  }
-  step(PairProgram::scan_numbers, 0, count, levels[0].first);
+  return ns[1] >= ns[0] ? static_cast<double>(ns[1] - ns[0]) / 1e6 : -1;
 }
 
 void PairQueue::check_finished(const std::string& stage) {
@@ -343,11 +367,18 @@ void PairQueue::check_finished(const std::string& stage) {
   for (const PairTotal place : kSerials) {
     if (words_[place] != serials_[place]) lost("counts were not set to zero, or not read");
   }
+  overflow_ |= words_[kTotalOverflow] != 0 ||
+               std::any_of(needed_.begin(), needed_.end(),
+                           [&](const PairWork& work) { return words_[work.total] > work.most; });
+  needed_.clear();
   for (std::size_t d = 0; d < expected_.size(); ++d) {
+    const PairWork& work = expected_[d].work;
+    const bool counted = work.total != kSerialStart;
     const std::uint32_t finished = words_[kTotals + 2 * d];
-    if (finished != expected_[d].items) {
-      lost(std::to_string(finished) + " of " + std::to_string(expected_[d].items) +
-           " work items finished");
+    const std::uint64_t meant = work.items(counted ? words_[work.total] : work.most);
+    // After an overflow nothing is done, and nothing is believed.
+    if (finished != meant && !(counted && overflow_)) {
+      lost(std::to_string(finished) + " of " + std::to_string(meant) + " work items finished");
     }
     if (words_[kTotals + 2 * d + 1] != expected_[d].echo)
       lost("a program ran with other numbers or other buffers than were meant");
@@ -362,6 +393,7 @@ std::array<std::uint32_t, kTotals> PairQueue::read(const std::string& stage) {
   check_finished(stage);
   std::array<std::uint32_t, kTotals> totals;
   std::copy_n(words_.begin(), kTotals, totals.begin());
+  totals[kTotalOverflow] = overflow_;
   if (totals[kTotalSent] != expected_sum_) {
     throw Error("GL " + stage, "the device holds other data than were sent",
                 "a command was lost: run again, or with another --device");

@@ -12,43 +12,66 @@
 #include "core/gl/context.h"
 #include "core/gl/objects.h"
 #include "core/gl/pairs_options.h"
+#include "core/pairs/backend.h"
 
 namespace farcull {
 
-/// Totals that programs count, as words of the counter buffer; two words, low first, where noted.
-/// The same names with FAR_ are macros of the shaders. Totals that are set to 0 together follow a
-/// serial number, which is sent with the zeros: where it comes back, they have arrived.
+/// Totals that programs count, as words of the counter buffer; two words, low first, where noted,
+/// or a word for each level. The same names with FAR_ are macros of the shaders. Totals that are
+/// set to 0 together follow a serial number, which is sent with the zeros: where it comes back,
+/// they have arrived.
 enum PairTotal : std::uint32_t {
   kSerialStart,
-  kTotalOverflow,
-  kTotalScanned,
   kTotalMismatches,
   kTotalListed,
   kTotalListedRows,
-  kTotalSent,  // two words
-  kSerialItems = kTotalSent + 2,
+  kTotalSent,                       // two words
+  kTotalRowItems = kTotalSent + 2,  // work items of pixel rows, as scanned
+  kTotalLargeFound,
+  kTotalEntries,                                  // of each level
+  kTotalCrowded = kTotalEntries + kMaxLevel + 1,  // cells, of each level, before they are filled
+  kTotalParents = kTotalCrowded + kMaxLevel + 1,  // the same, when they are listed
+  kSerialItems = kTotalParents + kMaxLevel + 1,
   kTotalWholes,
   kTotalItems,
   kTotalLarge,
   kTotalRows,  // two words
-  kSerialCut = kTotalRows + 2,
-  kTotalCrowded,
-  kTotalParents,
-  kSerialPairs,
+  kSerialPairs = kTotalRows + 2,
+  kTotalOverflow,
   kTotalPairs,
-  kTotalTests,  // two words
-  kTotalMore = kTotalTests + 2,
-  kTotals,
+  kTotalTests,                   // two words
+  kTotalMore = kTotalTests + 2,  // work items of further tests, of each level
+  kTotals = kTotalMore + kMaxLevel + 1,
 };
+/// The total of a level.
+constexpr PairTotal of_level(PairTotal first, std::size_t level) {
+  return static_cast<PairTotal>(first + level);
+}
 
 /// Totals that are set to 0 together, by the place of their serial number.
 struct PairTotals {
   PairTotal serial;
   std::uint32_t words;  // with it
 };
-constexpr PairTotals kItemTotals{kSerialItems, kSerialCut - kSerialItems};
-constexpr PairTotals kCutTotals{kSerialCut, kSerialPairs - kSerialCut};
+constexpr PairTotals kItemTotals{kSerialItems, kSerialPairs - kSerialItems};
 constexpr PairTotals kPairTotals{kSerialPairs, kTotals - kSerialPairs};
+
+/// How many work items a dispatch has: `most` where no total is given. Else a total that the device
+/// counts says it, so that nobody has to wait and read it: one work item for each `per` of it,
+/// `times`. The total may be `most`, the room that there is for what it counts. Where it is more,
+/// no work is done, nor by the dispatches after it that ask for a total, and read() says so.
+struct PairWork {
+  PairWork(std::uint64_t count) : most(count) {}
+  PairWork(std::uint64_t room, PairTotal counted, std::uint32_t each = 1, std::uint32_t times_ = 1)
+      : most(room), total(counted), per(each), times(times_) {}
+  std::uint64_t most;
+  PairTotal total = kSerialStart;  // none
+  std::uint32_t per = 1, times = 1;
+
+  std::uint64_t items(std::uint64_t of) const {
+    return total == kSerialStart ? of : (of + per - 1) / per * times;
+  }
+};
 
 /// A storage buffer with the contents of an array, of which only what changed is sent.
 class PairMirror {
@@ -81,7 +104,6 @@ struct PairUniforms {
 enum class PairProgram {
   items,
   records,
-  spans,
   mark_wholes,
   count_wholes,
   fill_wholes,
@@ -90,31 +112,27 @@ enum class PairProgram {
   fill_rows,
   conflicts,
   sum_numbers,
-  sum_sums,
-  scan_top,
-  scan_sums,
   scan_numbers,
   crowded,
-  filled,
+  sum,
+  zero,
+  parents,
   tests,
   more_tests,
   uncut_tests,
   more_uncut_tests,
-  parents,
   cut_count,
   cut_decide,
   cut_fill,
   find_large,
   large,
-  sum,
   copy,
-  zero,
   settled_tests,
   more_settled_tests,
   uncut_settled_tests,
   more_uncut_settled_tests,
 };
-constexpr std::size_t kPairPrograms = 34;
+constexpr std::size_t kPairPrograms = 29;
 
 // Work of one invocation, bounded far below the 65,535 iterations after which llvmpipe stops.
 constexpr std::uint32_t kSpan = 1024;      // pixels of a row
@@ -126,32 +144,55 @@ struct PairBinding {
   const GlStore* store;
 };
 
+/// When a part of the window begins, when its slices are marked, its lists filled in, and its tests
+/// done.
+enum class PairStamp : std::size_t { begun, marked, listed, done };
+constexpr std::size_t kPairStamps = 4;
+
 class PairQueue {
  public:
   PairQueue(const GlContext& context, const GlPairOptions& options);
 
   std::size_t block() const { return block_; }  // bytes of data in a storage block
-  /// Forgets all counts; counts dispatches from 0 where `fresh`.
+  /// Forgets all counts, and all that was not read; counts dispatches from 0 where `fresh`.
   void start(bool fresh);
   void reset(PairTotals totals);
-  /// Runs work(w) for 0 <= w < count < 2^31; every binding that the program reads must be given.
-  void run(PairProgram program, std::uint64_t count, const PairUniforms& uniforms,
+  /// Runs work(w) for each work item, fewer than 2^31 of them; every binding that the program reads
+  /// must be given.
+  void run(PairProgram program, const PairWork& work, const PairUniforms& uniforms,
            const std::vector<PairBinding>& bindings);
-  /// The sums before each of `count` numbers; their total becomes kTotalScanned.
-  void scan(const GlStore& numbers, const GlStore& before, std::size_t count);
-  /// Lets the device sum what the store holds; read() compares the sum with that of `data`, of a
-  /// whole number of words.
-  void expect(const GlStore& store, std::span<const std::byte> data);
+  /// The sums before each of `count` numbers, or of as many as the total `counted` says, unless it
+  /// is kSerialStart; their sum becomes the total `sum`.
+  void scan(const GlStore& numbers, const GlStore& before, std::size_t count, PairTotal counted,
+            PairTotal sum);
+  /// Lets the device sum what five stores hold; read() compares the sum with that of the data, of a
+  /// whole number of words each, none where nothing was sent.
+  struct Sent {
+    const GlStore* store;
+    std::span<const std::byte> data;
+  };
+  void expect(const std::array<Sent, 5>& sent);
   /// Grows to hold `wanted` bytes of data, of which the first `keep` survive.
   void grow(GlStore& store, std::size_t wanted, std::size_t keep);
   /// Sets the first `words` words of data to 0, by a dispatch, so that it cannot be lost unnoticed.
-  void zero(const GlStore& store, std::size_t words) {
-    run(PairProgram::zero, words, {}, {{1, &store}});
+  /// `bits`: they are bits of pairs.
+  void zero(const GlStore& store, std::size_t words, bool bits = false) {
+    PairUniforms u;
+    u.extra[0] = bits;
+    run(PairProgram::zero, words, u, {{1, &store}});
   }
   /// Waits, reads the totals and throws Error naming `stage` unless every work item of every
   /// dispatch since the start finished, each read the uniforms and the buffers that were meant,
-  /// what was sent and what was set to 0 has arrived, and GL has no error.
+  /// what was sent and what was set to 0 has arrived, and GL has no error. Where kTotalOverflow is
+  /// not 0, there was not room enough for a total, or a sum went beyond 32 bits: what was done
+  /// since the start is not complete then.
   std::array<std::uint32_t, kTotals> read(const std::string& stage);
+
+  /// Notes the time at which the device gets here, where it has a clock (GL_TIMESTAMP).
+  void stamp(PairStamp at);
+  /// ms on the device between two stamps since the start; negative where they are not known. It
+  /// does not wait: read() comes before. Throws Error where a stamp was lost.
+  double between(PairStamp from, PairStamp to) const;
 
   /// Counts a wait for results that read() does not make.
   void add_readback() { ++readbacks_; }
@@ -166,7 +207,7 @@ class PairQueue {
     std::uint32_t bindings = 0;  // a bit for each that it reads
   };
   struct Dispatch {
-    std::uint32_t items;
+    PairWork work;
     std::uint32_t echo;  // as in core/gl/shaders/pair_main.glsl
   };
   const Program& program(std::size_t which);
@@ -179,10 +220,14 @@ class PairQueue {
   GlStore counters_;
   GlStore sums_;
   std::vector<Dispatch> expected_;                // of each dispatch since the last read
+  std::vector<PairWork> needed_;                  // totals for which there has to be room
+  bool overflow_ = false;                         // there was not, or a sum was too large
   std::uint32_t expected_sum_ = 0;                // of what was sent since the start
   std::array<std::uint32_t, kTotals> serials_{};  // those that were sent, at their places
   std::uint32_t serial_ = 0;                      // the last one
   std::vector<std::uint32_t> words_;
+  bool clock_ = false;
+  std::array<GlQuery, kPairStamps> stamps_;
 };
 
 }  // namespace farcull

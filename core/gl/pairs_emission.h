@@ -22,10 +22,13 @@ class PairEmission {
   /// Decides whether pairs of the part are emitted once, which takes a bit for each two records:
   /// where they may repeat often, and there is memory for it.
   void settle(const PairLevel& pixels, PairMemory& memory);
-  /// The tests of a level's cells that are not cut; false: too many.
-  bool test(PairLevel& level, bool pixels, bool some_cut, PairMemory& memory);
-  /// Large triangles with each active one.
-  void compare_large(const PairMemory& memory);
+  /// The tests of all lists, and large triangles with each active one; false: too many. `totals`
+  /// are those of all tests together where they were done at once, else nothing.
+  bool make(PairLists& lists, const PairMemory& memory, std::optional<PairTotalWords>& totals);
+  /// The same with room for as many pairs as the forecast says; reads the totals once. False: there
+  /// was too little room for something since the part began, so that nothing is believed.
+  bool make(PairLists& lists, const PairForecast& forecast, const PairMemory& memory,
+            PairTotalWords& totals);
   /// All pairs of the window; the next begin() comes before any other call.
   std::vector<TrianglePair> take();
 
@@ -33,12 +36,25 @@ class PairEmission {
   // Launches work items first .. first + count - 1, which may append `capacity` pairs.
   using Launch =
       std::function<void(std::uint64_t first, std::uint64_t count, std::uint32_t capacity)>;
-  std::uint32_t emit(std::uint64_t count, const PairMemory& memory, const Launch& launch);
+  // Is told how many work items of further tests some work items have left.
+  using After = std::function<void(std::uint32_t more)>;
+  void emit(std::uint64_t count, std::size_t level, const PairMemory& memory, const Launch& launch,
+            const After& after);
+  void emit_tests(PairLists& lists, std::size_t l, const PairMemory& memory);
+  void emit_large(const PairMemory& memory);
+  std::size_t most_bytes(const PairMemory& memory) const;
+  std::size_t pair_capacity(const PairMemory& memory) const;
+  std::size_t unit_capacity(const PairMemory& memory) const;
+  void find_large(const PairMemory& memory);
+  void run_tests(PairLists& lists, std::size_t l, bool more, const PairWork& work,
+                 std::uint64_t first, const PairMemory& memory);
+  void run_large(const PairWork& work, std::size_t sent, std::uint64_t first, std::size_t capacity);
+  void launch_all(PairLists& lists, bool more, const PairMemory& memory);
   void read_pairs(std::size_t emitted);
 
   PairRun& run_;
   PairItems& items_;
-  GlStore pairs_, units_, units_before_, settled_, large_;
+  GlStore pairs_, units_, settled_, large_;
   std::size_t settled_words_ = 0;  // bits of pairs that the part has emitted; 0: it keeps none
   std::optional<PairPool> found_;
 };

@@ -1,22 +1,147 @@
-// A part of the window that is too much for the memory is split in two, down to single pixels.
+// A window whose work is foreseen by that on the last ones is done without a wait: each dispatch
+// learns on the device how much there is to do. Where there was too little room for something, all
+// is done again, and what there is to do is read, step by step. A part of the window that is too
+// much for the memory is split in two, down to single pixels.
 #include "core/gl/pairs_finder.h"
 
 #include <algorithm>
 
+#include "core/base/error.h"
 #include "core/base/stopwatch.h"
 
 namespace farcull {
+namespace {
+
+// As many views as a frame has mostly, so that the room is enough for each of them.
+constexpr std::size_t kRemembered = 4;
+
+void check_counted_twice(const PairTotalWords& totals, std::size_t levels) {
+  bool same = totals[kTotalLargeFound] == totals[kTotalLarge] &&
+              two_words(totals, kTotalRows) == totals[kTotalRowItems];
+  for (std::size_t l = 1; l <= levels; ++l)
+    same &= totals[of_level(kTotalCrowded, l)] == totals[of_level(kTotalParents, l)];
+  if (same) return;
+  throw Error("GL pairs", "the same was counted twice with different results",
+              "a compute invocation was lost: run again, or with another --device");
+}
+
+}  // namespace
 
 std::vector<TrianglePair> PairFinder::find(const PairTask& task, PairCounts& counts) {
   const Stopwatch start;
   run_.begin(task);
   emission_.begin();
   run_.counts.mark_ms = start.ms();
-  if (!task.active.empty()) split({0, task.width - 1, 0, task.height - 1});
+  fresh_ = true;
+  if (task.active.empty()) {
+    if (run_.scene.sent_bytes() > 0) run_.device.read("pairs upload");
+  } else {
+    const PairPart whole{0, task.width - 1, 0, task.height - 1};
+    const std::optional<PairForecast> expected = forecast();
+    if (!expected || !find_at_once(whole, *expected)) {
+      split(whole);
+    } else {
+      run_.counts.bands = 1;
+    }
+    if (seen_ && run_.counts.bands == 1) {
+      last_ones_.push_front(*seen_);
+      if (last_ones_.size() > kRemembered) last_ones_.pop_back();
+    } else {
+      last_ones_.clear();
+    }
+  }
   run_.counts.dispatches = run_.device.dispatches();
   run_.counts.readbacks = run_.device.readbacks();
   counts = run_.counts;
   return emission_.take();
+}
+
+// Nothing where the last windows were of another scene.
+std::optional<PairForecast> PairFinder::forecast() const {
+  if (last_ones_.empty() || run_.scene.gathered()) return {};
+  PairForecast all = last_ones_.front();
+  if (all.triangles != run_.task->triangles.size()) return {};
+  for (const PairForecast& one : last_ones_) {
+    if (one.triangles == all.triangles) all.join(one);
+  }
+  return all.with_room();
+}
+
+void PairFinder::begin_part(const PairPart& part) {
+  if (!fresh_) run_.device.start(false);
+  fresh_ = false;
+  run_.device.stamp(PairStamp::begun);
+  run_.common.tile = {part.i0, part.i1, part.j0, part.j1};
+  seen_.reset();
+}
+
+// Takes the counts of a part that was done.
+void PairFinder::end_part(const PairTotalWords& totals) {
+  PairForecast seen;
+  seen.triangles = run_.task->triangles.size();
+  seen.wholes = totals[kTotalWholes];
+  seen.items = totals[kTotalItems];
+  seen.large = totals[kTotalLarge];
+  seen.shown = totals[kTotalListed];
+  seen.row_items = totals[kTotalRowItems];
+  seen.pairs = totals[kTotalPairs];
+  for (std::size_t l = 0; l <= kMaxLevel; ++l) {
+    seen.entries[l] = totals[of_level(kTotalEntries, l)];
+    seen.crowded[l] = totals[of_level(kTotalParents, l)];
+    seen.more = std::max<std::size_t>(seen.more, totals[of_level(kTotalMore, l)]);
+  }
+  // The time of the device; unknown for the window where it is for a part.
+  const auto add = [&](double& ms, PairStamp from, PairStamp to) {
+    const double more = run_.device.between(from, to);
+    ms = more < 0 || (run_.counts.bands > 0 && ms < 0) ? -1 : std::max(ms, 0.0) + more;
+  };
+  add(run_.counts.mark_device_ms, PairStamp::begun, PairStamp::marked);
+  add(run_.counts.list_device_ms, PairStamp::marked, PairStamp::listed);
+  add(run_.counts.pair_device_ms, PairStamp::listed, PairStamp::done);
+  while (seen.levels < kMaxLevel && seen.crowded[seen.levels] > 0) ++seen.levels;
+  check_counted_twice(totals, seen.levels);
+  lists_.set_dirty(false);
+  run_.counts.listed += totals[kTotalListed] + totals[kTotalListedRows];
+  run_.counts.crowded += seen.crowded[0];
+  run_.counts.large = std::max<std::uint64_t>(run_.counts.large, seen.large);
+  for (const std::size_t entries : seen.entries) run_.counts.entries += entries;
+  seen_ = seen;
+}
+
+// The whole window with one wait; false: there was not room enough.
+bool PairFinder::find_at_once(const PairPart& part, const PairForecast& forecast) {
+  PairMemory memory{run_.options.memory, run_.device.block(), false};
+  if (forecast.pairs * sizeof(TrianglePair) > std::min(memory.left / 4, memory.block)) return false;
+  const PairCounts before = run_.counts;
+  begin_part(part);
+  const Stopwatch marking;
+  bool enough = items_.make(forecast, memory);
+  run_.counts.mark_ms += marking.ms();
+  const double marked = run_.counts.mark_ms;
+  const Stopwatch listing;
+  enough = enough && lists_.make(part, forecast, memory);
+  run_.counts.list_ms += listing.ms() - (run_.counts.mark_ms - marked);
+  const Stopwatch pairing;
+  run_.device.stamp(PairStamp::listed);
+  if (enough) {
+    emission_.settle(lists_.level(0), memory);
+    PairTotalWords totals;
+    enough = emission_.make(lists_, forecast, memory, totals);
+    const std::size_t levels = lists_.levels();
+    // Work that nobody foresaw was left out: rows of pixels, and crowded cells of the last level.
+    enough = enough && two_words(totals, kTotalRows) == totals[kTotalRowItems] &&
+             (levels == kMaxLevel || totals[of_level(kTotalParents, levels)] == 0);
+    if (enough) end_part(totals);
+  } else {
+    run_.device.read("pairs");
+  }
+  run_.counts.pair_ms += pairing.ms();
+  if (enough) return true;
+  run_.counts = before;
+  ++run_.counts.redone;
+  emission_.begin();
+  lists_.set_dirty(true);
+  return false;
 }
 
 // One part of the window; false: too much for the memory.
@@ -28,8 +153,7 @@ bool PairFinder::find_in(const PairPart& part) {
   if (!memory.last && (fixed > memory.left / 2 || fixed > memory.block)) return false;
 
   const Stopwatch marking;
-  run_.device.start(false);
-  run_.common.tile = {part.i0, part.i1, part.j0, part.j1};
+  begin_part(part);
   if (!items_.make(memory)) return false;
   run_.counts.mark_ms += marking.ms();
   if (items_.empty()) return true;
@@ -40,21 +164,13 @@ bool PairFinder::find_in(const PairPart& part) {
   run_.counts.list_ms += listing.ms() - (run_.counts.mark_ms - marked);
 
   const Stopwatch pairing;
+  run_.device.stamp(PairStamp::listed);
   emission_.settle(lists_.level(0), memory);
-  std::size_t crowded = run_.counts.crowded;
-  for (std::size_t l = 0;; ++l) {
-    std::size_t crowded_below = 0;
-    const bool some_cut = crowded > 0 && l < kMaxLevel;
-    if (some_cut && !lists_.cut(l, crowded, memory, crowded_below)) return false;
-    if (!emission_.test(lists_.level(l), l == 0, some_cut, memory)) return false;
-    run_.counts.entries += lists_.level(l).listed;
-    if (!some_cut) break;
-    crowded = crowded_below;
-  }
-  emission_.compare_large(memory);
-  check_lists(run_.device.read("pairs"));
-  lists_.set_dirty(false);
-  run_.counts.large = std::max<std::uint64_t>(run_.counts.large, items_.large());
+  std::optional<PairTotalWords> at_once;
+  if (!emission_.make(lists_, memory, at_once)) return false;
+  const bool known = at_once.has_value();
+  end_part(known ? *at_once : run_.device.read("pairs"));
+  if (!known) seen_.reset();
   run_.counts.pair_ms += pairing.ms();
   return true;
 }

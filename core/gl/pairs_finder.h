@@ -2,6 +2,8 @@
 // other. For core/gl/pairs.cpp alone.
 #pragma once
 
+#include <deque>
+#include <optional>
 #include <vector>
 
 #include "core/gl/pairs_emission.h"
@@ -23,11 +25,18 @@ class PairFinder {
  private:
   void split(const PairPart& part);
   bool find_in(const PairPart& part);
+  bool find_at_once(const PairPart& part, const PairForecast& forecast);
+  void begin_part(const PairPart& part);
+  void end_part(const PairTotalWords& totals);
+  std::optional<PairForecast> forecast() const;
 
   PairRun run_;
   PairItems items_{run_};
   PairLists lists_;
   PairEmission emission_;
+  bool fresh_ = true;                   // nothing was told to the device but what was sent
+  std::optional<PairForecast> seen_;    // of the last part, where all of it is known
+  std::deque<PairForecast> last_ones_;  // of the last windows
 };
 
 }  // namespace farcull

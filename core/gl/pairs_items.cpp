@@ -7,28 +7,53 @@
 #include "core/base/error.h"
 
 namespace farcull {
+namespace {
 
-bool PairItems::make(PairMemory& memory) {
+// A first guess, so that few windows make their items twice: a whole item for each triangle and a
+// record for one in eight, where that takes little of the memory.
+constexpr std::size_t kGuessedRecords = 8, kGuessPart = 16;
+
+}  // namespace
+
+void PairItems::launch(std::size_t whole_capacity, std::size_t capacity) {
   PairUniforms u = run_.common;
-  u.extra[1] = run_.scene.gathered();
   u.numbers[0] =
       std::max<float>(kLargePixels, 0.125f * static_cast<float>(run_.task->active.size()));
-  for (GlStore* store : {&heads_, &records_, &record_heads_, &listed_flags_, &shown_list_}) {
+  u.capacity = static_cast<std::uint32_t>(capacity);
+  u.extra = {0, run_.scene.gathered(), static_cast<std::uint32_t>(whole_capacity), 0};
+  run_.scene.for_each_piece([&](std::size_t first, std::size_t count) {
+    u.extra[0] = static_cast<std::uint32_t>(first);
+    run_.device.run(PairProgram::items, count, u,
+                    run_.scene.bindings(records_, record_heads_,
+                                        {{8, &heads_}, {9, &listed_flags_}, {10, &rows_}}));
+  });
+}
+
+bool PairItems::take(PairMemory& memory) const {
+  return memory.take(wholes_ * kVec4) && memory.take(wholes_ * kWord) &&
+         memory.take(items_ * kRecord) && memory.take(items_ * (kVec4 + 3 * kWord));
+}
+
+bool PairItems::make(PairMemory& memory) {
+  for (GlStore* store : {&heads_, &records_, &record_heads_, &listed_flags_, &shown_list_, &rows_})
     store->reserve(kVec4, kVec4);
-  }
+  const auto reserve = [&](std::size_t wholes, std::size_t items) {
+    heads_.reserve(wholes * kVec4, memory.block);
+    records_.reserve(items * kRecord, memory.block);
+    record_heads_.reserve(items * kVec4, memory.block);
+    listed_flags_.reserve(items * kWord, memory.block);
+    rows_.reserve(items * kWord, memory.block);
+  };
+  const std::size_t guess = run_.task->active.size();
+  if (guess * kVec4 <= std::min(memory.left / kGuessPart, memory.block))
+    reserve(guess, guess / kGuessedRecords);
   for (int attempt = 0;; ++attempt) {
     const std::size_t whole_capacity = heads_.bytes() / kVec4;
-    const std::size_t capacity = std::min(
-        {records_.bytes() / kRecord, record_heads_.bytes() / kVec4, listed_flags_.bytes() / kWord});
-    u.capacity = static_cast<std::uint32_t>(capacity);
-    u.extra[2] = static_cast<std::uint32_t>(whole_capacity);
+    const std::size_t capacity =
+        std::min({records_.bytes() / kRecord, record_heads_.bytes() / kVec4,
+                  listed_flags_.bytes() / kWord, rows_.bytes() / kWord});
     run_.device.reset(kItemTotals);
-    run_.scene.for_each_piece([&](std::size_t first, std::size_t count) {
-      u.extra[0] = static_cast<std::uint32_t>(first);
-      run_.device.run(
-          PairProgram::items, count, u,
-          run_.scene.bindings(records_, record_heads_, {{8, &heads_}, {9, &listed_flags_}}));
-    });
+    launch(whole_capacity, capacity);
     const auto totals = run_.device.read("pair items");
     wholes_ = totals[kTotalWholes];
     items_ = totals[kTotalItems];
@@ -41,23 +66,34 @@ bool PairItems::make(PairMemory& memory) {
     }
     PairMemory trial = memory;
     if (!trial.take(wholes_ * kVec4) || !trial.take(items_ * kRecord)) return false;
-    heads_.reserve(wholes_ * kVec4, memory.block);
-    records_.reserve(items_ * kRecord, memory.block);
-    record_heads_.reserve(items_ * kVec4, memory.block);
-    listed_flags_.reserve(items_ * kWord, memory.block);
+    reserve(wholes_, items_);
   }
   run_.common.items = static_cast<std::uint32_t>(items_);
-  if (!memory.take(wholes_ * kVec4) || !memory.take(wholes_ * kWord) ||
-      !memory.take(items_ * kRecord) || !memory.take(items_ * (kVec4 + 3 * kWord))) {
-    return false;
-  }
+  if (!take(memory)) return false;
   shown_list_.reserve(wholes_ * kWord, memory.block);
   return row_items_ >> 31 == 0 || memory.last;
 }
 
+bool PairItems::make(const PairForecast& forecast, PairMemory& memory) {
+  wholes_ = forecast.wholes;
+  items_ = forecast.items;
+  large_ = forecast.large;
+  row_items_ = forecast.row_items;
+  const std::size_t all = items_ + forecast.shown;
+  if (!take(memory) || all * kRecord > memory.block || row_items_ >> 31 != 0) return false;
+  heads_.reserve(wholes_ * kVec4, memory.block);
+  records_.reserve(all * kRecord, memory.block);
+  record_heads_.reserve(all * kVec4, memory.block);
+  listed_flags_.reserve(items_ * kWord, memory.block);
+  rows_.reserve(items_ * kWord, memory.block);
+  shown_list_.reserve(wholes_ * kWord, memory.block);
+  run_.common.items = static_cast<std::uint32_t>(items_);
+  launch(wholes_, items_);
+  return true;
+}
+
 bool PairItems::make_records(std::size_t shown, PairMemory& memory) {
   shown_ = shown;
-  if (shown_ == 0) return true;
   const std::size_t all = records();
   if (!memory.take(shown_ * kRecord) || !memory.take(shown_ * kVec4) ||
       all * kRecord > memory.block) {
@@ -71,7 +107,7 @@ bool PairItems::make_records(std::size_t shown, PairMemory& memory) {
     u.extra[0] = static_cast<std::uint32_t>(first);
     u.extra[2] = static_cast<std::uint32_t>(count);
     run_.device.run(
-        PairProgram::records, shown_, u,
+        PairProgram::records, all_shown(), u,
         run_.scene.bindings(records_, record_heads_, {{8, &heads_}, {9, &shown_list_}}));
   });
   return true;

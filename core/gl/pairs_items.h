@@ -14,8 +14,10 @@ class PairItems {
  public:
   explicit PairItems(PairRun& run) : run_(run) {}
 
-  /// The items of the part run.common.tile; false: too many.
+  /// The items of the part run.common.tile, counted; false: too many.
   bool make(PairMemory& memory);
+  /// The same with room for as many as the forecast says, and nothing is read; false: too many.
+  bool make(const PairForecast& forecast, PairMemory& memory);
   /// `shown` whole items are listed: they become records. False: too many.
   bool make_records(std::size_t shown, PairMemory& memory);
 
@@ -32,10 +34,20 @@ class PairItems {
   const GlStore& heads() const { return heads_; }
   const GlStore& listed_flags() const { return listed_flags_; }
   const GlStore& shown_list() const { return shown_list_; }
+  /// Work items of the rows of each record.
+  const GlStore& rows() const { return rows_; }
+  /// Work for each of them. After a forecast the numbers above are upper bounds.
+  PairWork all_items() const { return {items_, kTotalItems}; }
+  PairWork all_wholes() const { return {wholes_, kTotalWholes}; }
+  PairWork all_shown() const { return {shown_, kTotalListed}; }
+  PairWork all_rows() const { return {row_items_, kTotalRowItems}; }
 
  private:
+  void launch(std::size_t whole_capacity, std::size_t capacity);
+  bool take(PairMemory& memory) const;
+
   PairRun& run_;
-  GlStore heads_, records_, record_heads_, listed_flags_, shown_list_;
+  GlStore rows_, heads_, records_, record_heads_, listed_flags_, shown_list_;
   std::size_t wholes_ = 0, items_ = 0, large_ = 0, shown_ = 0;
   std::uint64_t row_items_ = 0;
 };

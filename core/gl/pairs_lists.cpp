@@ -25,7 +25,8 @@ bool PairLevel::shape(std::size_t n, std::uint32_t groups, std::uint64_t expecte
     ++shift;
   }
   bins = {groups * slices, shift, slices, groups - 1};
-  const std::size_t wanted = (all_bins() + 1) * kWord;
+  // Lists of smaller cells have a place more for each parent (pair_cut.comp).
+  const std::size_t wanted = (all_bins() + cells / kSubCells + 1) * kWord;
   if (!memory.take(wanted) || !memory.take(wanted)) return false;
   if (counts.reserve(wanted, memory.block)) dirty = true;
   if (dirty) {
@@ -55,7 +56,8 @@ void PairLists::visit(PairProgram wholes_program, PairProgram rows_program, std:
   u.extra[0] = run_.owners.bits;
   for (const bool by_rows : {false, true}) {
     run_.device.run(by_rows ? rows_program : wholes_program,
-                    by_rows ? items_.row_items() : (fill ? items_.shown() : items_.wholes()), u,
+                    by_rows ? items_.all_rows() : (fill ? items_.all_shown() : items_.all_wholes()),
+                    u,
                     {{0, &items_.record_store()},
                      {1, &rows_before_},
                      {2, &masks_},
@@ -80,17 +82,14 @@ void PairLists::mark(const PairPart& part, std::size_t mask_bytes) {
   run_.counts.mark_ms += start.ms();
 }
 
-// The lists of the part's pixels; false: too much.
-bool PairLists::make(const PairPart& part, PairMemory& memory) {
+// Counts the entries of the part's pixels, and gives their lists places; false: too much.
+bool PairLists::count(const PairPart& part, PairMemory& memory) {
   PairLevel& pixels = levels_[0];
+  levels_cut_ = 0;
   run_.common.cells = static_cast<std::uint32_t>(part.cells());
   rows_before_.reserve(std::max<std::size_t>(items_.items() * kWord, kVec4), memory.block);
-  if (items_.row_items() > 0) {
-    rows_.reserve(items_.items() * kWord, memory.block);
-    run_.device.run(PairProgram::spans, items_.items(), run_.common,
-                    {{3, &rows_}, {6, &items_.record_heads()}});
-    run_.device.scan(rows_, rows_before_, items_.items());
-  }
+  if (items_.row_items() > 0)
+    run_.device.scan(items_.rows(), rows_before_, items_.items(), kTotalItems, kTotalRowItems);
   const std::size_t mask_bytes =
       run_.common.masked ? part.cells() * 8 * (1 + 2 * run_.owners.bits) : kVec4;
   if (!memory.take(mask_bytes)) return false;
@@ -99,72 +98,112 @@ bool PairLists::make(const PairPart& part, PairMemory& memory) {
                     memory))
     return false;
   if (run_.common.masked) mark(part, mask_bytes);
+  run_.device.stamp(PairStamp::marked);
   visit(PairProgram::count_wholes, PairProgram::count_rows, 0);
-  run_.device.scan(pixels.counts, pixels.first, pixels.all_bins() + 1);
-  PairUniforms u = run_.common;
-  u.bins = pixels.bins;
-  run_.device.run(PairProgram::crowded, part.cells(), u, {{3, &pixels.counts}, {4, &pixels.first}});
-  const auto totals = run_.device.read("pair lists");
-  if (overflow(totals, memory)) return false;
-  run_.counts.crowded += totals[kTotalCrowded];
-  if (!items_.make_records(totals[kTotalListed], memory) ||
-      !pixels.fill(totals[kTotalScanned], memory))
-    return false;
-  visit(PairProgram::fill_wholes, PairProgram::fill_rows, pixels.listed);
-  run_.device.run(PairProgram::filled, pixels.all_bins(), u,
-                  {{3, &pixels.counts}, {4, &pixels.first}});
-  run_.counts.listed += totals[kTotalListed] + totals[kTotalListedRows];
+  run_.device.scan(pixels.counts, pixels.first, pixels.all_bins() + 1, kSerialStart, kTotalEntries);
   return true;
 }
 
-// Cuts the crowded cells of level l into those of the next; false: too much.
-bool PairLists::cut(std::size_t l, std::size_t crowded, PairMemory& memory,
-                    std::size_t& crowded_below) {
+bool PairLists::fill(std::size_t shown, std::size_t entries, PairMemory& memory) {
+  if (!items_.make_records(shown, memory) || !levels_[0].fill(entries, memory)) return false;
+  visit(PairProgram::fill_wholes, PairProgram::fill_rows, entries);
+  return true;
+}
+
+bool PairLists::make(const PairPart& part, PairMemory& memory) {
+  if (!count(part, memory)) return false;
+  PairUniforms u = run_.common;
+  u.bins = levels_[0].bins;
+  run_.device.run(PairProgram::crowded, part.cells(), u, {{4, &levels_[0].first}});
+  auto totals = run_.device.read("pair lists");
+  if (overflow(totals, memory)) return false;
+  if (!fill(totals[kTotalListed], totals[kTotalEntries], memory)) return false;
+  for (std::size_t l = 0;; ++l) {
+    const std::size_t crowded = l < kMaxLevel ? totals[of_level(kTotalCrowded, l)] : 0;
+    if (!take_parents(l, crowded, memory)) return false;
+    check(l);
+    if (crowded == 0) return true;
+    cut(l);
+    totals = run_.device.read("pair subdivision");
+    check_lists(totals);
+    if (totals[of_level(kTotalParents, l)] != crowded) {
+      throw Error("GL pairs", "crowded pixels were counted twice with different results",
+                  "a compute invocation was lost: run again, or with another --device");
+    }
+    if (overflow(totals, memory)) return false;
+    if (!fill_cut(l, totals[of_level(kTotalEntries, l + 1)], memory)) return false;
+  }
+}
+
+bool PairLists::make(const PairPart& part, const PairForecast& forecast, PairMemory& memory) {
+  if (!count(part, memory) || !fill(forecast.shown, forecast.entries[0], memory)) return false;
+  for (std::size_t l = 0;; ++l) {
+    const bool last = l == forecast.levels;
+    if (!take_parents(l, last ? 0 : forecast.crowded[l], memory)) return false;
+    check(l);
+    if (last) return true;
+    cut(l);
+    if (!fill_cut(l, forecast.entries[l + 1], memory)) return false;
+  }
+}
+
+// Memory for the cells of level l that are cut, and for the counts of the level below.
+bool PairLists::take_parents(std::size_t l, std::size_t crowded, PairMemory& memory) {
   PairLevel& level = levels_[l];
-  PairLevel& below = levels_[l + 1];
+  level.crowded = crowded;
+  level.parents.reserve(kVec4, kVec4);
+  if (crowded == 0) return true;
   if (!memory.take(level.cells * kWord) || !memory.take(crowded * kVec4)) return false;
   level.state.reserve(level.cells * kWord, memory.block);
   level.parents.reserve(crowded * kVec4, memory.block);
-  if (!below.shape(crowded * kSubCells, run_.owners.groups, level.listed, memory)) return false;
+  return levels_[l + 1].shape(crowded * kSubCells, run_.owners.groups, level.listed, memory);
+}
 
+// Runs one step of pair_cut.comp on level l.
+void PairLists::step(PairProgram program, std::size_t l, const PairWork& work,
+                     std::size_t capacity) {
+  const PairLevel& level = levels_[l];
+  const bool checks = program == PairProgram::parents;
+  const PairLevel& below = checks ? level : levels_[l + 1];
   PairUniforms u = run_.common;
   u.bins = below.bins;
-  u.capacity = static_cast<std::uint32_t>(crowded);
+  u.capacity = static_cast<std::uint32_t>(capacity);
   u.extra = {static_cast<std::uint32_t>(l), level.bins[0], 0, 0};
   u.numbers[0] = 1;
   for (std::size_t k = 0; k <= l; ++k) u.numbers[0] /= kSubdivision;
   u.numbers[1] = 1 / u.numbers[0];
-  const auto step = [&](PairProgram program, std::size_t n) {
-    run_.device.run(program, n, u,
-                    {{0, &items_.record_store()},
-                     {1, l > 0 ? &levels_[l - 1].parents : &level.parents},
-                     {2, &level.parents},
-                     {3, &below.counts},
-                     {4, program == PairProgram::parents ? &level.first : &below.first},
-                     {5, &level.entries},
-                     {6, &level.places},
-                     {8, &level.state},
-                     {9, &below.entries},
-                     {10, &below.places}});
-  };
-  run_.device.reset(kCutTotals);
-  step(PairProgram::parents, level.cells);
-  step(PairProgram::cut_count, level.listed);
-  step(PairProgram::cut_decide, crowded);
-  run_.device.scan(below.counts, below.first, below.all_bins() + 1);
-  run_.device.run(PairProgram::crowded, below.cells, u, {{3, &below.counts}, {4, &below.first}});
-  const auto totals = run_.device.read("pair subdivision");
-  if (totals[kTotalParents] != crowded) {
-    throw Error("GL pairs", "crowded pixels were counted twice with different results",
-                "a compute invocation was lost: run again, or with another --device");
-  }
-  if (overflow(totals, memory)) return false;
-  crowded_below = totals[kTotalCrowded];
-  if (!below.fill(totals[kTotalScanned], memory)) return false;
-  u.capacity = static_cast<std::uint32_t>(below.listed);
-  if (below.listed > 0) step(PairProgram::cut_fill, level.listed);
-  run_.device.run(PairProgram::filled, below.all_bins(), u,
-                  {{3, &below.counts}, {4, &below.first}});
+  run_.device.run(program, work, u,
+                  {{0, &items_.record_store()},
+                   {1, l > 0 ? &levels_[l - 1].parents : &level.parents},
+                   {2, &level.parents},
+                   {3, &below.counts},
+                   {4, &below.first},
+                   {5, &level.entries},
+                   {6, &level.places},
+                   {8, level.crowded > 0 ? &level.state : &level.parents},
+                   {9, &below.entries},
+                   {10, &below.places}});
+}
+
+// Whether all that was counted was filled in, and which cells are crowded.
+void PairLists::check(std::size_t l) {
+  step(PairProgram::parents, l,
+       l == 0 ? PairWork(levels_[0].cells)
+              : PairWork(levels_[l - 1].crowded, of_level(kTotalParents, l - 1), 1,
+                         static_cast<std::uint32_t>(kSubCells)),
+       levels_[l].crowded);
+}
+
+// Cuts the crowded cells of level l where that saves tests, and gives the smaller ones places.
+void PairLists::cut(std::size_t l) {
+  step(PairProgram::cut_count, l, all_entries(l), 0);
+  step(PairProgram::cut_decide, l, {levels_[l].crowded, of_level(kTotalParents, l)}, 0);
+  levels_cut_ = l + 1;
+}
+
+bool PairLists::fill_cut(std::size_t l, std::size_t entries, PairMemory& memory) {
+  if (!levels_[l + 1].fill(entries, memory)) return false;
+  step(PairProgram::cut_fill, l, all_entries(l), entries);
   return true;
 }
 

@@ -14,8 +14,9 @@ namespace farcull {
 /// Lists of the cells of one level: pixels, then parts of crowded ones.
 struct PairLevel {
   GlStore counts, first, entries, places, state, parents;
-  std::size_t cells = 0;
-  std::size_t listed = 0;                         // entries
+  std::size_t cells = 0;                          // or room for so many
+  std::size_t listed = 0;                         // entries, or room for so many
+  std::size_t crowded = 0;                        // cells that are cut, or room for so many
   std::array<std::uint32_t, 4> bins{1, 6, 1, 0};  // as u_bins
   bool dirty = false;                             // counts are not all 0
 
@@ -32,22 +33,35 @@ class PairLists {
   PairLists(PairRun& run, PairItems& items) : run_(run), items_(items) {}
 
   PairLevel& level(std::size_t l) { return levels_[l]; }
-  /// The lists of the part's pixels; false: too much.
+  /// The lists of the part's pixels and of the parts of crowded ones; false: too much. Counts are
+  /// read where they are needed.
   bool make(const PairPart& part, PairMemory& memory);
-  /// Cuts the crowded cells of level l into those of the next, of which `crowded_below` are crowded
-  /// again; false: too much.
-  bool cut(std::size_t l, std::size_t crowded, PairMemory& memory, std::size_t& crowded_below);
+  /// The same with room for as many as the forecast says, and nothing is read.
+  bool make(const PairPart& part, const PairForecast& forecast, PairMemory& memory);
+  /// Levels that are cut: level l has lists for l <= levels().
+  std::size_t levels() const { return levels_cut_; }
+  PairWork all_entries(std::size_t l) const {
+    return {levels_[l].listed, of_level(kTotalEntries, l)};
+  }
   /// Says whether the counts of all levels are 0, as they are after a part that was done.
   void set_dirty(bool dirty);
 
  private:
   void visit(PairProgram wholes_program, PairProgram rows_program, std::size_t capacity);
   void mark(const PairPart& part, std::size_t mask_bytes);
+  bool count(const PairPart& part, PairMemory& memory);
+  bool fill(std::size_t shown, std::size_t entries, PairMemory& memory);
+  bool take_parents(std::size_t l, std::size_t crowded, PairMemory& memory);
+  void check(std::size_t l);
+  void cut(std::size_t l);
+  bool fill_cut(std::size_t l, std::size_t entries, PairMemory& memory);
+  void step(PairProgram program, std::size_t l, const PairWork& work, std::size_t capacity);
 
   PairRun& run_;
   PairItems& items_;
-  GlStore rows_, rows_before_, masks_;
+  GlStore rows_before_, masks_;
   std::array<PairLevel, kMaxLevel + 1> levels_;
+  std::size_t levels_cut_ = 0;
 };
 
 }  // namespace farcull

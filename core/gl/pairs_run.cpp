@@ -19,6 +19,41 @@ bool PairMemory::take(std::size_t bytes) {
   return true;
 }
 
+namespace {
+
+constexpr std::size_t kLeastRoom = 64;
+
+// Calls change(mine, other) for each count.
+template <class Change>
+void for_each_count(PairForecast& mine, const PairForecast& other, const Change& change) {
+  change(mine.wholes, other.wholes);
+  change(mine.items, other.items);
+  change(mine.large, other.large);
+  change(mine.shown, other.shown);
+  change(mine.pairs, other.pairs);
+  change(mine.more, other.more);
+  change(mine.row_items, other.row_items);
+  for (std::size_t l = 0; l <= kMaxLevel; ++l) {
+    change(mine.entries[l], other.entries[l]);
+    change(mine.crowded[l], other.crowded[l]);
+  }
+}
+
+}  // namespace
+
+void PairForecast::join(const PairForecast& other) {
+  for_each_count(*this, other, [](auto& mine, auto its) { mine = std::max(mine, its); });
+  levels = std::max(levels, other.levels);
+}
+
+PairForecast PairForecast::with_room() const {
+  PairForecast out = *this;
+  for_each_count(out, *this, [](auto& mine, auto its) {
+    if (its > 0) mine = its + its / 4 + kLeastRoom;
+  });
+  return out;
+}
+
 void PairRun::begin(const PairTask& t) {
   task = &t;
   counts = {};

@@ -43,6 +43,22 @@ inline std::uint64_t two_words(const PairTotalWords& totals, PairTotal low) {
   return std::uint64_t{totals[low]} | std::uint64_t{totals[low + 1]} << 32;
 }
 
+/// What the work on a window needs room for, as counted by the last windows: with it no count has
+/// to be read before all is done.
+struct PairForecast {
+  std::size_t triangles = 0;  // of the scene it is about
+  std::size_t wholes = 0, items = 0, large = 0, shown = 0, pairs = 0, more = 0;
+  std::uint64_t row_items = 0;
+  std::size_t levels = 0;                            // that are cut
+  std::array<std::size_t, kMaxLevel + 1> entries{};  // of each level
+  std::array<std::size_t, kMaxLevel + 1> crowded{};  // cells of each level
+
+  /// The largest of both.
+  void join(const PairForecast& other);
+  /// Room for a quarter more, except where there was nothing.
+  PairForecast with_room() const;
+};
+
 struct PairRun {
   PairRun(const GlContext& context, const GlPairOptions& wanted)
       : options(wanted), device(context, wanted), scene(device) {}

@@ -41,19 +41,22 @@ PairOwners PairSceneStores::begin(const PairTask& t) {
               t.owners.size_bytes() > block || t.active.size_bytes() > block ||
               object_words_.size() * sizeof(std::uint32_t) > block;
   if (gathered_) return owners;
-  send(vertices_, as_bytes(t.vertices));
-  send(triangles_, as_bytes(t.triangles));
-  send(owners_, as_bytes(t.owners));
-  send(active_, as_bytes(t.active));
-  send(objects_, as_bytes(object_words_));
-  if (sent_bytes_ > 0) device_.read("pairs upload");
+  send({as_bytes(t.vertices), as_bytes(t.triangles), as_bytes(t.owners), as_bytes(t.active),
+        as_bytes(object_words_)});
   return owners;
 }
 
-// Brings a buffer up to date; what it then holds is compared with the data when totals are read.
-void PairSceneStores::send(PairMirror& mirror, std::span<const std::byte> data) {
-  const std::size_t bytes = mirror.update(data);
-  if (bytes > 0) device_.expect(mirror.store(), data);
+void PairSceneStores::send(const std::array<std::span<const std::byte>, 5>& data) {
+  const std::array<PairMirror*, 5> mirrors = {&vertices_, &triangles_, &owners_, &active_,
+                                              &objects_};
+  std::array<PairQueue::Sent, 5> sent;
+  std::size_t bytes = 0;
+  for (std::size_t k = 0; k < mirrors.size(); ++k) {
+    const std::size_t of_this = mirrors[k]->update(data[k]);
+    bytes += of_this;
+    sent[k] = {&mirrors[k]->store(), of_this > 0 ? data[k] : std::span<const std::byte>()};
+  }
+  if (bytes > 0) device_.expect(sent);
   sent_bytes_ += bytes;
 }
 
@@ -85,11 +88,9 @@ void PairSceneStores::for_each_piece(const std::function<void(std::size_t, std::
       }
       own.push_back(static_cast<std::uint32_t>(own_words.size() / 8 - 1));
     }
-    send(vertices_, std::as_bytes(std::span(corners)));
-    send(triangles_, std::as_bytes(std::span(numbers)));
-    send(owners_, std::as_bytes(std::span(own)));
-    send(active_, std::as_bytes(task_->active.subspan(begin, n)));
-    send(objects_, std::as_bytes(std::span(own_words)));
+    send({std::as_bytes(std::span(corners)), std::as_bytes(std::span(numbers)),
+          std::as_bytes(std::span(own)), std::as_bytes(task_->active.subspan(begin, n)),
+          std::as_bytes(std::span(own_words))});
     launch(begin, n);
   }
 }

@@ -1,6 +1,7 @@
 // The scene of FAR pairs on a GL device: what all parts of a window share.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -40,7 +41,8 @@ class PairSceneStores {
                                     std::initializer_list<PairBinding> more) const;
 
  private:
-  void send(PairMirror& mirror, std::span<const std::byte> data);
+  // Brings the buffers up to date; what they then hold is compared when totals are read.
+  void send(const std::array<std::span<const std::byte>, 5>& data);
 
   PairQueue& device_;
   const PairTask* task_ = nullptr;

@@ -66,8 +66,12 @@ struct PairCounts {
   std::uint64_t undrawable = 0;  // triangles that the view could not show: joined by boxes
   // On a GL device, else 0: kernels that were started, and waits for results to be read.
   std::uint64_t dispatches = 0, readbacks = 0;
+  // How often the work was done again, since what was expected of the last views was too little.
+  std::uint64_t redone = 0;
   double prepare_ms = 0;                         // to pixel space
   double mark_ms = 0, list_ms = 0, pair_ms = 0;  // CPU: summed over threads
+  // The same by the clock of a GL device; negative where it gives none, and on the CPU.
+  double mark_device_ms = -1, list_device_ms = -1, pair_device_ms = -1;
 };
 
 class PairBackend {

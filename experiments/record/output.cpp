@@ -32,6 +32,7 @@ Json view_json(const ViewReport& view) {
 
 Json view_json(const PairView& view) {
   const PairCounts& c = view.counts;
+  const auto or_null = [](double ms) { return ms < 0 ? Json(nullptr) : Json(ms); };
   return {{"name", view.name},
           {"looked", view.looked},
           {"reason", view.reason},
@@ -47,7 +48,14 @@ Json view_json(const PairView& view) {
           {"bands", c.bands},
           {"undrawable", c.undrawable},
           {"dispatches", c.dispatches},
-          {"readbacks", c.readbacks}};
+          {"readbacks", c.readbacks},
+          {"redone", c.redone},
+          {"mark_ms", c.mark_ms},
+          {"list_ms", c.list_ms},
+          {"pair_ms", c.pair_ms},
+          {"mark_device_ms", or_null(c.mark_device_ms)},
+          {"list_device_ms", or_null(c.list_device_ms)},
+          {"pair_device_ms", or_null(c.pair_device_ms)}};
 }
 
 Json budget_json(const std::vector<ViewReport>& views) {

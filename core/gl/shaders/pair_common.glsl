@@ -1,5 +1,5 @@
 // Shared by the programs of FAR pairs, after core/pairs/interval.glsl: uniforms, records, and the loop over work items. A program
-// defines work(w) for each w < u_count; FAR_BATCH of them are one invocation's, so that no invocation comes near 65,535
+// defines work(w) for each w < far_count(); FAR_BATCH of them are one invocation's, so that no invocation comes near 65,535
 // iterations (llvmpipe then stops without a word) and the finished ones are counted together. Where a text has several steps,
 // each is a program of its own with another FAR_STEP, so that none carries the code of the others.
 layout(local_size_x = 64) in;
@@ -19,7 +19,7 @@ const uint kLarge = 4u;
 layout(std430, binding = 7) buffer Counters { uvec4 tag_7; uint counters[]; };  // totals, then finished work items of each dispatch
 #define FAR_TAG_7 tag_7.x
 
-layout(location = 0) uniform uint u_count;       // work items of this dispatch
+layout(location = 0) uniform uint u_count;       // work items of this dispatch; with u_work.x the most that its total may be
 layout(location = 1) uniform uint u_finished;    // index of the counter of those that finished
 layout(location = 2) uniform vec4 u_widen;       // as in core/pairs/interval.glsl
 layout(location = 3) uniform ivec4 u_tile;       // pixels i0, i1, j0, j1, inclusive
@@ -32,6 +32,18 @@ layout(location = 9) uniform uint u_capacity;   // that the program's output hol
 layout(location = 10) uniform uint u_items;      // records of triangles that are not whole
 layout(location = 11) uniform uvec4 u_extra;     // what one program alone needs
 layout(location = 12) uniform vec4 u_numbers;    // the same
+// Where x is not 0, the total counters[x] says how many work items there are: one for each y of it, times z.
+layout(location = 13) uniform uvec4 u_work;
+
+// The work items of this dispatch. Where the total is beyond what there is room for, or one before it was, there are none: what
+// lies in the buffers is not complete then.
+uint far_count() {
+  if (u_work.x == 0u) return u_count;
+  uint total = counters[u_work.x];
+  if (total > u_count) counters[FAR_OVERFLOW] = 1u;
+  if (total > u_count || counters[FAR_OVERFLOW] != 0u) return 0u;
+  return (total + u_work.y - 1u) / u_work.y * u_work.z;
+}
 
 uint far_group() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 

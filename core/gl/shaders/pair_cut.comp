@@ -1,6 +1,8 @@
 // Crowded cells, cut into FAR_SUBDIVISION^2 smaller ones wherever that leaves at most half of the tests: the function subdivide
-// of core/pairs/tile.h. Parents are the crowded cells of a level, u_bins those of the level below. Steps: 0 lists the parents, 1 counts
-// entries of smaller cells, 2 decides, 3 fills the entries in.
+// of core/pairs/tile.h. Parents are the crowded cells of a level, u_bins those of the level below. Steps: 0, after
+// the lists of a level are filled in, counts those whose counts are not used up and lists the parents, 1 counts entries of smaller
+// cells, 2 decides and gives their lists places, 3 fills the entries in. In `first` each parent has a place more than its smaller
+// cells have bins, since its entries are followed by those of any other one.
 layout(std430, binding = 0) buffer Records { uvec4 tag_0; readonly vec4 records[]; };
 #define FAR_TAG_0 tag_0.x
 layout(std430, binding = 1) buffer Above { uvec4 tag_1; readonly uvec4 above[]; };  // the parents of the level before, where there is one
@@ -9,7 +11,7 @@ layout(std430, binding = 2) buffer Parents { uvec4 tag_2; uvec4 parents[]; };  /
 #define FAR_TAG_2 tag_2.x
 layout(std430, binding = 3) buffer Counts { uvec4 tag_3; uint counts[]; };
 #define FAR_TAG_3 tag_3.x
-layout(std430, binding = 4) buffer First { uvec4 tag_4; readonly uint first[]; };  // step 0: of the level itself; else of the level below
+layout(std430, binding = 4) buffer First { uvec4 tag_4; uint first[]; };  // step 0: of the level itself; else of the level below
 #define FAR_TAG_4 tag_4.x
 layout(std430, binding = 5) buffer Entries { uvec4 tag_5; readonly uvec4 entries[]; };
 #define FAR_TAG_5 tag_5.x
@@ -24,15 +26,20 @@ layout(std430, binding = 10) buffer SubPlaces { uvec4 tag_10; writeonly uvec2 su
 
 const uint kSubCells = FAR_SUBDIVISION * FAR_SUBDIVISION;
 
-// u_extra: x level, y bins of a cell of the level. u_numbers: x side of a smaller cell (px), y how many of them are a px; powers
+// u_extra: x level, y bins of a cell of the level. Step 0: u_capacity 0: no cell of the level is cut. u_numbers: x side of a smaller cell (px), y how many of them are a px; powers
 // of two.
 
 #if FAR_STEP == 0
 void work(uint cell) {
-  uint n = first[(cell + 1u) * u_extra.y] - first[cell * u_extra.y];
+  uint begin = cell * u_extra.y;
+  uint left = 0u;
+  for (uint k = 0u; k < u_extra.y; ++k) left += counts[begin + k] != 0u ? 1u : 0u;
+  if (left != 0u) atomicAdd(counters[FAR_MISMATCHES], left);
+  if (u_extra.x > 0u) begin += cell / kSubCells;
+  uint n = first[begin + u_extra.y] - first[begin];
   uint number = 0u;
   if (n > FAR_CROWDED) {
-    uint at = atomicAdd(counters[FAR_PARENTS], 1u);
+    uint at = atomicAdd(counters[FAR_PARENTS + u_extra.x], 1u);
     if (at < u_capacity) {
       precise float x;
       precise float y;
@@ -51,7 +58,7 @@ void work(uint cell) {
       number = at + 1u;
     }
   }
-  state[cell] = number;
+  if (u_capacity != 0u) state[cell] = number;
 }
 
 #elif FAR_STEP == 2
@@ -64,9 +71,15 @@ uvec2 far_twice_tests(uint n) {
 
 void work(uint p) {
   uvec2 left = uvec2(0u);
+  uint sum = 0u;
+  uint crowded = 0u;
+  uint bins = kSubCells * u_bins.x;
+  uint begin = p * bins;
   for (uint c = 0u; c < kSubCells; ++c) {
     uint n = 0u;
-    for (uint k = 0u; k < u_bins.x; ++k) n += counts[(p * kSubCells + c) * u_bins.x + k];
+    for (uint k = 0u; k < u_bins.x; ++k) n += counts[begin + c * u_bins.x + k];
+    if (n > FAR_CROWDED) ++crowded;
+    sum += n;
     uvec2 tests = far_twice_tests(n);
     left.x += tests.x;
     left.y += tests.y + (left.x < tests.x ? 1u : 0u);
@@ -75,8 +88,23 @@ void work(uint p) {
   uvec2 twice = uvec2(left.x << 1, left.y << 1 | left.x >> 31);
   if (twice.y > all.y || (twice.y == all.y && twice.x > all.x)) {
     state[parents[p].x] = 0u;
-    for (uint k = 0u; k < kSubCells * u_bins.x; ++k) counts[p * kSubCells * u_bins.x + k] = 0u;
+    for (uint k = 0u; k < bins; ++k) {
+      counts[begin + k] = 0u;
+      first[begin + p + k] = 0u;
+    }
+    first[begin + p + bins] = 0u;
+    return;
   }
+  // A parent has at most 2^32 - 1 entries, of which each is in at most all its 64 cells; with half of the tests they are fewer than
+  // 6 times as many. A sum beyond 32 bits is noticed where it, or that of all parents, passes them.
+  uint at = atomicAdd(counters[FAR_ENTRIES + u_extra.x + 1u], sum);
+  if (at + sum < at || parents[p].y > 0x1fffffffu) counters[FAR_OVERFLOW] = 1u;
+  if (crowded != 0u) atomicAdd(counters[FAR_CROWDED_CELLS + u_extra.x + 1u], crowded);
+  for (uint k = 0u; k < bins; ++k) {
+    first[begin + p + k] = at;
+    at += counts[begin + k];
+  }
+  first[begin + p + bins] = at;
 }
 
 #else
@@ -87,7 +115,7 @@ void far_add_entry(uint cell, uvec4 lo, uvec4 hi, uint record, float near, float
 #else
   uint left = atomicAdd(counts[bin], 0xffffffffu);
   if (left == 0u) return;  // more than was counted: the count is not 0 in the end
-  uint at = first[bin] + left - 1u;
+  uint at = first[bin + cell / kSubCells] + left - 1u;
   if (at >= u_capacity) return;
   sub_entries[2u * at] = uvec4(lo.xy, floatBitsToUint(near), lo.w);
   sub_entries[2u * at + 1u] = uvec4(hi.xy, floatBitsToUint(far), hi.w);

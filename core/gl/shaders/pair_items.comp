@@ -10,6 +10,8 @@ layout(std430, binding = 8) buffer Heads { uvec4 tag_8; uvec4 heads[]; };  // of
 #if FAR_STEP == 0
 layout(std430, binding = 9) buffer Listed { uvec4 tag_9; writeonly uint listed[]; };  // of the records
 #define FAR_TAG_9 tag_9.x
+layout(std430, binding = 10) buffer Rows { uvec4 tag_10; writeonly uint rows[]; };  // work items that the rows of each record are
+#define FAR_TAG_10 tag_10.x
 // u_capacity: records; u_extra.z: whole items. u_numbers.x: pixels that a large triangle meets at least.
 #else
 layout(std430, binding = 9) buffer Shown { uvec4 tag_9; readonly uint shown[]; };  // the whole items that are listed
@@ -44,20 +46,23 @@ void work(uint w) {
     return;
   }
   uint code = t.code;
+  uint row_items = 0u;
   precise float width = t.hi.x - t.lo.x;
   precise float height = t.hi.y - t.lo.y;
   if (far_footprint(t.a, t.b, t.c, width, height) > u_numbers.x) {
     code |= kLarge;
     atomicAdd(counters[FAR_LARGE], 1u);
   } else {
-    uint rows = uint(min(j1, u_tile.w) - max(j0, u_tile.z) + 1);
+    uint height_here = uint(min(j1, u_tile.w) - max(j0, u_tile.z) + 1);
     uint spans = uint(min(i1, u_tile.y) - max(i0, u_tile.x)) / FAR_SPAN + 1u;
-    far_add(FAR_ROWS_TOTAL, rows * spans);
+    row_items = height_here * spans;
+    far_add(FAR_ROWS_TOTAL, row_items);
   }
   uint at = atomicAdd(counters[FAR_ITEMS], 1u);
   if (at >= u_capacity) return;
   far_record(at, t, code, from, uint(i1) | uint(j1) << 16);
   listed[at] = 0u;
+  rows[at] = row_items;
 }
 #else
 void work(uint w) {

@@ -1,5 +1,5 @@
 // Large triangles with each active one, in the rectangle of that one's bounds: compare_large of core/pairs/cpu.cpp. Step 0 lists
-// the large ones among the records; step 1 compares FAR_LARGE_BATCH of them with each triangle that was sent.
+// the large ones among the records; step 1 compares FAR_LARGE_BATCH of them with a triangle that was sent.
 layout(std430, binding = 5) buffer Records { uvec4 tag_5; readonly vec4 records[]; };
 #define FAR_TAG_5 tag_5.x
 layout(std430, binding = 6) buffer RecordHeads { uvec4 tag_6; readonly uvec4 record_heads[]; };
@@ -9,15 +9,15 @@ layout(std430, binding = 8) buffer Large { uvec4 tag_8; uint large[]; };  // rec
 #if FAR_STEP == 0
 void work(uint w) {
   if ((record_heads[w].y & kLarge) == 0u) return;
-  uint at = atomicAdd(counters[FAR_PARENTS], 1u);
+  uint at = atomicAdd(counters[FAR_LARGE_FOUND], 1u);
   if (at < u_capacity) large[at] = w;
 }
 #else
 layout(std430, binding = 9) buffer Pairs { uvec4 tag_9; writeonly uvec2 pairs[]; };
 #define FAR_TAG_9 tag_9.x
 
-// u_extra: z the first large triangle, w how many there are in all. u_items: the first triangle of this dispatch among those that
-// were sent.
+// u_extra.w: large triangles at most. u_cells: triangles that were sent. u_items: the first work item of this dispatch; each
+// FAR_LARGE_BATCH large triangles have one for each of those.
 
 bool far_meets_over(uint l, vec4 box_lo, vec4 box_hi) {
   vec4 a = records[kRecordSize * l];
@@ -42,14 +42,16 @@ bool far_meets_over(uint l, vec4 box_lo, vec4 box_hi) {
 
 void work(uint w) {
   FarTriangle t;
-  if (!far_triangle(u_items + w, t)) return;
+  uint item = u_items + w;
+  if (!far_triangle(item % u_cells, t)) return;
   // Two triangles that meet do so in a pixel of some part, where both are found.
   if (far_pixel(t.hi.x, u_window.x) < u_tile.x || far_pixel(t.lo.x, u_window.x) > u_tile.y ||
       far_pixel(t.hi.y, u_window.y) < u_tile.z || far_pixel(t.lo.y, u_window.y) > u_tile.w)
     return;
-  uint end = min(u_extra.z + FAR_LARGE_BATCH, u_extra.w);
+  uint begin = item / u_cells * FAR_LARGE_BATCH;
+  uint end = min(begin + FAR_LARGE_BATCH, min(counters[FAR_LARGE_FOUND], u_extra.w));
   // First to the next one whose box meets the triangle's, so that few steps compute a strip.
-  for (uint k = u_extra.z; k < end; ++k) {
+  for (uint k = begin; k < end; ++k) {
     uint l = 0u;
     uint other = 0u;
     for (; k < end; ++k) {

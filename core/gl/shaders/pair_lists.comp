@@ -41,7 +41,7 @@ layout(std430, binding = 1) buffer Rows { uvec4 tag_1; readonly uint rows[]; }; 
 FAR_LAST_AT_MOST(far_record_of_row, rows)
 #endif
 
-// u_extra.x: bits of an owner's number. u_extra.y: bins of the part. u_items: records before the whole ones.
+// u_extra.x: bits of an owner's number. u_extra.y: bins of the part. u_items: records before the whole ones, of which there may be fewer.
 
 // The slices first .. last that lie in one of the two words.
 uint far_slice_bits(int first_slice, int last_slice, int word) {
@@ -85,7 +85,7 @@ bool far_visit(uint cell, uint word, uint near_bits, uint far_bits, uint bin, ui
 
 #ifdef FAR_ROWS
 void work(uint w) {
-  uint record = far_record_of_row(w, u_items);
+  uint record = far_record_of_row(w, min(counters[FAR_ITEMS], u_items));
   uvec4 head = heads[record];
   int i0 = max(int(head.z & 0xffffu), u_tile.x);
   int i1 = min(int(head.w & 0xffffu), u_tile.y);

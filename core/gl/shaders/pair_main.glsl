@@ -54,16 +54,18 @@ uint far_echo() {
 #ifdef FAR_TAG_10
   FAR_ADD(41u, FAR_TAG_10)
 #endif
+  FAR_ADD(42u, u_work.x) FAR_ADD(43u, u_work.y) FAR_ADD(44u, u_work.z) FAR_ADD(45u, u_work.w)
   return sum;
 }
 
 void main() {
   uint base = far_group() * (64u * FAR_BATCH) + gl_LocalInvocationID.x;
   if (base == 0u) counters[u_finished + 1u] = far_echo();
+  uint items = far_count();
   uint done = 0u;
   for (uint k = 0u; k < FAR_BATCH; ++k) {
     uint w = base + k * 64u;
-    if (w >= u_count) break;
+    if (w >= items) break;
     work(w);
     ++done;
   }

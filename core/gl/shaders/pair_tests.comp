@@ -4,14 +4,8 @@
 // Step 0: each entry with up to FAR_UNIT partners. Step 1: with the partners left, FAR_UNIT a work item.
 layout(std430, binding = 2) buffer Pairs { uvec4 tag_2; writeonly uvec2 pairs[]; };
 #define FAR_TAG_2 tag_2.x
-#if FAR_STEP == 0
-layout(std430, binding = 3) buffer Units { uvec4 tag_3; writeonly uint units[]; };  // work items of step 1 of each entry
+layout(std430, binding = 3) buffer Units { uvec4 tag_3; uvec2 units[]; };  // work items of step 1: entry, its partners / FAR_UNIT
 #define FAR_TAG_3 tag_3.x
-#else
-layout(std430, binding = 3) buffer Units { uvec4 tag_3; readonly uint units[]; };  // of the entries before each
-#define FAR_TAG_3 tag_3.x
-FAR_LAST_AT_MOST(far_entry_of_unit, units)
-#endif
 layout(std430, binding = 4) buffer First { uvec4 tag_4; readonly uint first[]; };
 #define FAR_TAG_4 tag_4.x
 layout(std430, binding = 9) buffer Entries { uvec4 tag_9; readonly uvec4 entries[]; };
@@ -28,8 +22,8 @@ layout(std430, binding = 1) buffer Settled { uvec4 tag_1; uint settled[]; };
 #define FAR_TAG_1 tag_1.x
 #endif
 
-// u_extra: x not 0 where the level is that of pixels, y not 0 where entries of one group may collide, z entries, w the first work
-// item.
+// u_extra: x level, 0 is that of pixels, y not 0 where entries of one group may collide, z work items of step 1 that there is room
+// for, w the first work item.
 
 void work(uint index) {
   uint w = u_extra.w + index;
@@ -37,8 +31,8 @@ void work(uint index) {
   uint e = w;
   uint skip = 0u;
 #else
-  uint e = far_entry_of_unit(w, u_extra.z);
-  uint skip = (w - units[e] + 1u) * FAR_UNIT;
+  uint e = units[w].x;
+  uint skip = units[w].y * FAR_UNIT;
 #endif
   uint cell = places[e].x;
   uvec4 lo_bits = entries[2u * e];
@@ -48,8 +42,9 @@ void work(uint index) {
   uint group = (hi_bits.w >> 3) & u_bins.w;
   uint near_slice = uint(far_depth_slice(lo.z)) >> u_bins.y;
   uint far_slice_bin = uint(far_depth_slice(hi.z)) >> u_bins.y;
-  uint own = cell * u_bins.x + group * u_bins.z;
-  uint other = cell * u_bins.x + (1u - group) * u_bins.z;
+  uint bins = cell * u_bins.x + (u_extra.x != 0u ? cell / (FAR_SUBDIVISION * FAR_SUBDIVISION) : 0u);
+  uint own = bins + group * u_bins.z;
+  uint other = bins + (1u - group) * u_bins.z;
   uint other_begin = 0u;
   uint others = 0u;
   if (u_bins.w != 0u) {
@@ -59,19 +54,22 @@ void work(uint index) {
   uint all = others;
   if (u_extra.y != 0u) all += first[own + far_slice_bin + 1u] - e - 1u;
 #ifdef FAR_SOME_CROWDED
-  bool crowded = first[(cell + 1u) * u_bins.x] - first[cell * u_bins.x] > FAR_CROWDED;
+  bool crowded = first[bins + u_bins.x] - first[bins] > FAR_CROWDED;
   if (state[cell] != 0u) all = 0u;
 #endif
 #if FAR_STEP == 0
   uint more = all > FAR_UNIT ? (all - 1u) / FAR_UNIT : 0u;
-  units[w] = more;
-  if (more != 0u) counters[FAR_MORE] = 1u;
+  if (more != 0u) {
+    uint to = atomicAdd(counters[FAR_MORE + u_extra.x], more);
+    if (to + more < to) counters[FAR_OVERFLOW] = 1u;
+    for (uint k = 0u; k < more && to + k < u_extra.z; ++k) units[to + k] = uvec2(e, k + 1u);
+  }
 #endif
   uint begin = min(skip, all);
   uint end = min(skip + FAR_UNIT, all);
   uint owner = hi_bits.w >> 3;
   bool self = (hi_bits.w & kSelf) != 0u;
-  bool dedupe = u_extra.x != 0u && (hi_bits.w & kWhole) != 0u;
+  bool dedupe = u_extra.x == 0u && (hi_bits.w & kWhole) != 0u;
 #ifdef FAR_SOME_CROWDED
   if (crowded) dedupe = false;
 #endif

@@ -323,7 +323,10 @@ TEST(GlPairsTwin, WithStaleBitsPairsAreLost) {
   EXPECT_EQ(clean.raw_pairs(seen.task, counts).size(), 150u * 150);
   const DriverFault fault(DriverFaultKind::kept_bits);
   GlPairs stale(lab::context());
-  stale.raw_pairs(seen.task, counts);  // leaves the bits of all pairs
+  // Each leaves the bits of all pairs; the second one has room for more records, so that its bits
+  // lie elsewhere, and the third has the same room.
+  stale.raw_pairs(seen.task, counts);
+  stale.raw_pairs(seen.task, counts);
   EXPECT_EQ(stale.raw_pairs(seen.task, counts).size(), 0u);
 }
 
@@ -336,7 +339,7 @@ TEST(GlPairs, NoticeEveryFault) {
   ASSERT_GT(clean.views[0].counts.large, 0u);
   const std::size_t dispatches = backend.dispatches();
   ASSERT_GT(dispatches, 20u);
-  // The first call grew buffers and repeated what did not fit.
+  // Of the first call counts were read, and what did not fit was repeated.
   find_pairs(scene, settings, backend);
   const std::size_t again = backend.dispatches();
   EXPECT_LE(again, dispatches);
@@ -350,12 +353,22 @@ TEST(GlPairs, NoticeEveryFault) {
   for (const DriverFaultKind kind :
        {DriverFaultKind::lost_dispatch, DriverFaultKind::oversized_dispatch,
         DriverFaultKind::unfinished_item}) {
-    for (std::size_t at = 0; at < again; ++at) {
-      EXPECT_THROW(find_under(kind, at), Error)
-          << "fault " << static_cast<int>(kind) << " of dispatch " << at;
+    // A fault makes the next one compile all programs again, so two kinds strike every fifth time.
+    const std::size_t stride = kind == DriverFaultKind::lost_dispatch ? 1 : 5;
+    std::size_t noticed = 0, tried = 0;
+    for (std::size_t at = 0; at < dispatches; at += stride, ++tried) {
+      try {
+        // A dispatch may have nothing to do; then none of its items can be lost.
+        EXPECT_EQ(find_under(kind, at), clean.candidates)
+            << "fault " << static_cast<int>(kind) << " of dispatch " << at;
+      } catch (const Error&) {
+        ++noticed;
+      }
     }
+    const bool may_have_none = kind == DriverFaultKind::unfinished_item;
+    EXPECT_GE(noticed, may_have_none ? tried / 2 : tried);
   }
-  for (std::size_t at = 0; at < 50; ++at)
+  for (std::size_t at = 0; at < 10; ++at)
     EXPECT_THROW(find_under(DriverFaultKind::wrong_count, 37 * at), Error) << "count " << 37 * at;
   // The twin: a fault beyond the last dispatch is none.
   EXPECT_EQ(find_under(DriverFaultKind::lost_dispatch, dispatches), clean.candidates);
@@ -366,6 +379,125 @@ TEST(GlPairs, NoticeEveryFault) {
     EXPECT_THROW(find_pairs(scene, settings, backend), Error);
   }
   EXPECT_EQ(find_pairs(scene, settings, backend).candidates, clean.candidates);
+}
+
+// The same faults of a window whose work was foreseen: no count is read before all is done, and
+// each dispatch learns on the device how much there is to do.
+TEST(GlPairs, NoticeEveryFaultOfAWindowThatWasForeseen) {
+  const Scene scene = mixed_scene();
+  const PairSettings settings{.views = parse_views("z"), .resolution = 24};
+  for (const DriverFaultKind kind :
+       {DriverFaultKind::lost_dispatch, DriverFaultKind::oversized_dispatch,
+        DriverFaultKind::unfinished_item}) {
+    const std::size_t stride = kind == DriverFaultKind::lost_dispatch ? 1 : 7;
+    std::size_t noticed = 0, tried = 0, dispatches = 1;
+    for (std::size_t at = 0; at <= dispatches; at += stride) {
+      DriverFault fault(kind, at);
+      GlPairs faulty(lab::context());
+      const auto right = find_pairs(scene, settings, faulty).candidates;
+      if (at == 0) {
+        EXPECT_EQ(find_pairs(scene, settings, faulty).candidates, right);
+        dispatches = faulty.dispatches();
+      }
+      fault.strike(at);
+      tried += at < dispatches;
+      try {
+        EXPECT_EQ(find_pairs(scene, settings, faulty).candidates, right)
+            << "fault " << static_cast<int>(kind) << " of dispatch " << at;
+      } catch (const Error&) {
+        ++noticed;
+        EXPECT_LT(at, dispatches);  // the twin: a fault beyond the last dispatch is none
+      }
+    }
+    EXPECT_GE(noticed, kind == DriverFaultKind::unfinished_item ? tried / 2 : tried);
+  }
+}
+
+// Where what was foreseen is too little, the work is done again; nothing is written beyond a
+// buffer, and nothing is believed.
+TEST(GlPairs, DoItAgainWhereMoreComesThanWasForeseen) {
+  GlPairs backend(lab::context());
+  Both both(backend);
+  const PairSettings settings{.views = parse_views("z"), .resolution = 24};
+  const Scene full = mixed_scene();
+  std::size_t redone = 0;
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    Scene thin = full;  // as many triangles, of which few meet anything
+    Random random(seed);
+    const double apart = std::exp2(1 + random.below(4)), size = std::exp2(-random.below(8));
+    for (std::size_t v = 0; v < thin.vertices.size(); ++v) {
+      if (v % 3 == 0 || seed % 3 == 0) thin.vertices[v] = size * thin.vertices[v];
+      if (seed % 2 == 0) thin.vertices[v].x() += apart * static_cast<double>(v / 3 % 2);
+    }
+    for (const Scene* scene : std::initializer_list<const Scene*>{&thin, &full}) {
+      const PairResult found = find_pairs(*scene, settings, both);
+      for (const PairView& view : found.views) redone += view.counts.redone;
+    }
+  }
+  expect_same(both);
+  EXPECT_GT(redone, 3u);
+}
+
+// What a view asks of the device, whatever the scene: on its second frame it is foreseen.
+TEST(GlPairs, AskForFewDispatchesAndReadbacks) {
+  struct Case {
+    Scene scene;
+    PairSettings settings;
+  };
+  std::vector<Case> cases;
+  for (std::uint64_t seed = 400; seed < 412; ++seed) {
+    Scene scene = random_scene(seed);
+    if (seed % 2 == 0) scene = with_self(std::move(scene));
+    cases.push_back({std::move(scene), settings_of(seed)});
+  }
+  for (const int resolution : {1, 8, 24})
+    cases.push_back({mixed_scene(), {.views = parse_views("z"), .resolution = resolution}});
+  cases.push_back({crowded_scene(6, 3000), {.views = parse_views("z"), .resolution = 1}});
+  cases.push_back({lab::coincident(300, 1e-3, 7), {.views = parse_views("z"), .resolution = 64}});
+  for (const char* name :
+       {"two-spheres", "random-soup", "needles", "degenerate", "ground", "crowd"})
+    cases.push_back({make_builtin_scene(name), {.views = parse_views("x,y,z")}});
+  std::size_t first_dispatches = 0, first_readbacks = 0, dispatches = 0, readbacks = 0;
+  std::size_t crowded = 0, large = 0;
+  for (const Case& c : cases) {
+    GlPairs backend(lab::context());
+    std::uint64_t first[2] = {0, 0}, later[2] = {0, 0};
+    const auto count = [](const PairView& view, std::uint64_t(&most)[2]) {
+      most[0] = std::max(most[0], view.counts.dispatches);
+      most[1] = std::max(most[1], view.counts.readbacks);
+    };
+    for (const PairView& view : find_pairs(c.scene, c.settings, backend).views) count(view, first);
+    find_pairs(c.scene, c.settings, backend);
+    for (const PairView& view : find_pairs(c.scene, c.settings, backend).views) {
+      if (!view.looked) continue;
+      count(view, later);
+      crowded += view.counts.crowded;
+      large += view.counts.large;
+      EXPECT_EQ(view.counts.redone, 0u) << c.scene.name;
+      EXPECT_EQ(view.counts.bands, 1u) << c.scene.name;
+      // The clock of the device gives all times or none.
+      const bool timed = view.counts.mark_device_ms >= 0;
+      EXPECT_EQ(view.counts.list_device_ms >= 0, timed) << c.scene.name;
+      EXPECT_EQ(view.counts.pair_device_ms >= 0, timed) << c.scene.name;
+    }
+    if (!c.scene.name.empty() && c.scene.name != "test") {
+      std::printf("%-12s first frame %2d dispatches, %d readbacks; later %2d and %d\n",
+                  c.scene.name.c_str(), static_cast<int>(first[0]), static_cast<int>(first[1]),
+                  static_cast<int>(later[0]), static_cast<int>(later[1]));
+    }
+    first_dispatches = std::max<std::size_t>(first_dispatches, first[0]);
+    first_readbacks = std::max<std::size_t>(first_readbacks, first[1]);
+    dispatches = std::max<std::size_t>(dispatches, later[0]);
+    readbacks = std::max<std::size_t>(readbacks, later[1]);
+  }
+  std::printf("first frame: %zu dispatches, %zu readbacks at most; later ones: %zu and %zu\n",
+              first_dispatches, first_readbacks, dispatches, readbacks);
+  EXPECT_GT(crowded, 0u);
+  EXPECT_GT(large, 0u);
+  EXPECT_LE(dispatches, 40u);
+  EXPECT_LE(readbacks, 3u);
+  EXPECT_LE(first_dispatches, 80u);
+  EXPECT_LE(first_readbacks, 10u);
 }
 
 TEST(GlPairs, SendOnlyWhatChanged) {
