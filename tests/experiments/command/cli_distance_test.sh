@@ -61,6 +61,21 @@ bad 'a diagram of one object' 'SCENE: only one object' distance small.obj --neig
 launch distance random-soup --pairs all --within 100 # for longer than bad() lets it
 refused 'more pairs than are answered' 'within: has (more than )?[0-9]+ pairs .*; give a smaller distance'
 
+# 5,794 objects of one triangle.
+awk 'BEGIN { for (i = 0; i < 5794; ++i) printf "o o%d\nv %d 0 0\nv %d 1 0\nv %d 0 1\nf %d %d %d\n", i, i, i, i, 3*i+1, 3*i+2, 3*i+3 }' \
+  >many.obj
+echo '{"name": "many", "objects": [{"mesh": "many.obj", "split": "groups"}]}' >many.json
+bad 'more pairs of objects than are answered' 'scene: has 16782321 pairs of objects, and at most 16777216 .*; ask for the nearest' \
+  distance many.json
+for option in --json --csv --certificate; do
+  bad "a full disk for $option" '/dev/full: cannot be written: No space left' distance "${two[@]}" "$option" /dev/full
+done
+good 'a certificate' 0 distance "${two[@]}" --certificate whole.json
+for size in 0 1 100 300; do
+  head -c "$size" whole.json >cut.json
+  bad "$size bytes of a certificate" 'cut\.json: not JSON at byte' check cut.json "${two[@]}"
+done
+
 # --- good cases --------------------------------------------------------------------------------
 
 good 'two objects' 0 distance "${two[@]}" --verify
@@ -108,6 +123,29 @@ expect 'frames' "$out" '^ +2 +1 +2 '
 expect 'frames' frames.csv '^frame,object_a,'
 expect 'frames' frames.csv '^3,0,0,1,0,3,9/1,'
 expect 'frames' frames.json '^    "missed": 0,$'
+# Objects that appear and vanish: hints of the frame before are of other objects, or of none.
+for i in 1 2 3 4; do
+  {
+    for ((k = 1; k <= (i == 2 ? 3 : i == 4 ? 2 : 1); ++k)); do
+      printf 'o o%d\nv %d 0 0\nv 9 0 %d\nv 9 1 0\nf -3 -2 -1\n' "$k" $((i + k)) "$k"
+    done
+  } >"comes_$i.obj"
+done
+echo '{"name": "comes", "objects": [{"mesh": "small.obj"}, {"mesh": "comes_%d.obj", "split": "groups"}]}' >comes.json
+for pairs in objects nearest; do
+  good "objects that come and go, $pairs" 0 distance comes.json --pairs "$pairs" --frames 1:4 --verify --csv frames.csv
+  for i in 1 2 3 4; do
+    good "frame $i of them alone" 0 distance comes.json --pairs "$pairs" --frames "$i:$i" --csv frame.csv
+    ((cases += 1))
+    [[ $(grep "^$i," frames.csv) == "$(grep "^$i," frame.csv)" ]] || fail "frame $i of them alone" 'other answers'
+  done
+done
+# A distance beyond the largest double.
+printf 'v 1.7e308 0 0\nv 1.6e308 0 0\nv 1.7e308 1 0\nf 1 2 3\n' >right_end.obj
+printf 'v -1.7e308 0 0\nv -1.6e308 0 0\nv -1.7e308 1 0\nf 1 2 3\n' >left_end.obj
+good 'beyond the doubles' 0 distance right_end.obj left_end.obj --verify --json - --certificate ends.json
+expect 'beyond the doubles' "$out" '^ +"distance": null,$'
+good 'beyond the doubles, proved' 0 check ends.json right_end.obj left_end.obj
 good 'frames of a built-in scene' 0 distance two-spheres --frames 2 --signed no
 good 'a diagram' 0 distance small.obj right.obj large.obj --neighbours published
 expect 'a diagram' "$out" '^0 small +1 right +1 +'
