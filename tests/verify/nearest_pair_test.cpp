@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/core/base/trials.h"
+#include "tests/core/scene/scenes.h"
 #include "tests/verify/closest_reference.h"
 #include "tests/verify/hard_pairs.h"
 #include "verify/closest.h"
@@ -113,6 +114,22 @@ TEST(NearestPair, ThousandsOfTies) {
   const auto nearest = nearest_pair(scene, same);
   EXPECT_EQ(nearest->pair, same[1]);
   EXPECT_EQ(nearest->closest.distance, 1);
+}
+
+// Of a face and a point over it. Both distances are less than half of the least double, so they are
+// rounded to 0, and neither is 0.
+TEST(NearestPair, OfDistancesThatAreRoundedToZero) {
+  const Vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), p(1, 2, 1), q(2, 1, 1);
+  Scene scene = lab::scene_of({{{4 * x, 4 * y, 2 * z}},  // p is 1 / sqrt(6) over it
+                               {{p, p, p}},
+                               {{6 * x, 3 * y, 2 * z}},  // q is 1 / sqrt(14) over it
+                               {{q, q, q}}});
+  for (Vec3& v : scene.vertices) v = v * 0x1p-1074;
+  const auto found = nearest_pair(scene, std::vector<TrianglePair>{{0, 1}, {2, 3}});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->pair, (TrianglePair{2, 3}));
+  EXPECT_EQ(found->closest.distance, 0);
+  EXPECT_FALSE(found->closest.squared.is_zero());
 }
 
 TEST(NearestPair, RefusesWhatTheSceneLacks) {

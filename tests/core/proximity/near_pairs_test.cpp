@@ -12,6 +12,7 @@
 #include "tests/core/base/rational.h"
 #include "tests/core/base/trials.h"
 #include "tests/core/proximity/near_lab.h"
+#include "tests/core/scene/scenes.h"
 
 namespace farcull {
 namespace {
@@ -264,6 +265,28 @@ TEST(NearestObjects, HintsChangeNoAnswerAndSaveWork) {
   }
   EXPECT_LT(with.box_pairs, without.box_pairs);
   EXPECT_LT(with.triangle_pairs, without.triangle_pairs);
+}
+
+// An object that has appeared or vanished since the frame before makes hints of triangles of a
+// third object, which is nearer: their distance bounds nothing.
+TEST(NearPairs, AHintOfAnotherObjectIsNoBound) {
+  const auto at = [](double x) {
+    return std::vector{std::array{Vec3(x, 0, 0), Vec3(x, 1, 0), Vec3(x, 0, 1)}};
+  };
+  const Scene scene = lab::scene_of({at(0), at(100), at(-1)});
+  const ProximityTrees trees(scene, 1);
+  const std::vector<ObjectPair> question = {{0, 1}};
+  for (const TrianglePair& wrong : {TrianglePair{0, 2}, TrianglePair{1, 2}}) {
+    const std::vector<std::optional<TrianglePair>> hints = {wrong};
+    const std::vector<NearPairs> near = trees.near_pairs(question, kInfinite, hints);
+    ASSERT_EQ(near.size(), 1u);
+    EXPECT_EQ(near[0].pairs, (std::vector<TrianglePair>{{0, 1}}));
+    const std::vector<NearHint> of_objects = {{{0, 1}, wrong}};
+    const std::vector<NearPairs> nearest = trees.nearest_objects(1, kInfinite, of_objects);
+    ASSERT_EQ(nearest.size(), 2u);
+    EXPECT_EQ(nearest[0].pairs, (std::vector<TrianglePair>{{0, 1}}));
+    EXPECT_EQ(nearest[1].pairs, (std::vector<TrianglePair>{{0, 2}}));
+  }
 }
 
 TEST(NearestObjects, OfAScatteredCrowdFewPairsOfObjectsAreSearched) {
