@@ -52,11 +52,13 @@ std::uint64_t count_of_questions(const Scene& scene) {
 }
 
 // Each pair of objects takes memory from the start, and more where it is answered.
-void require_few(std::uint64_t questions, const DistanceOptions& options) {
+void require_few_questions(const Scene& scene, const DistanceOptions& options) {
+  if (options.pairs != DistancePairs::objects) return;
+  const std::uint64_t questions = count_of_questions(scene);
   const std::uint64_t most = options.most_pairs * (std::isfinite(options.within) ? 4 : 1);
   if (questions <= most) return;
-  throw Error("objects",
-              "the scene has " + std::to_string(questions) + " pairs of objects, and at most " +
+  throw Error("scene",
+              "has " + std::to_string(questions) + " pairs of objects, and at most " +
                   std::to_string(most) + " are answered",
               "ask for the nearest objects of each (--pairs nearest), or for the triangles within "
               "a distance (--pairs all --within D)");
@@ -147,7 +149,6 @@ void between_objects(const Scene& scene, const Progress& progress, DistanceMemor
   if (options.pairs == DistancePairs::nearest) {
     near = trees.nearest_objects(options.k, options.within, hints_of(memory), progress);
   } else {
-    require_few(count_of_questions(scene), options);
     const std::vector<ObjectPair> questions = every_two_objects(scene);
     near = trees.near_pairs(questions, options.within, hints_for(questions, memory), progress);
   }
@@ -340,6 +341,7 @@ DistanceRecord distances(const Scene& scene, const DistanceOptions& options,
   check(options);
   if (const std::string reason = nothing_asked(scene, options); !reason.empty())
     throw Error("scene", reason, "give two objects or more, or distances inside one");
+  require_few_questions(scene, options);
   const FloatingPointGuard guard;
   const Stopwatch watch;
   DistanceRecord out;

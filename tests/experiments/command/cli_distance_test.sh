@@ -65,7 +65,7 @@ refused 'more pairs than are answered' 'within: has (more than )?[0-9]+ pairs .*
 awk 'BEGIN { for (i = 0; i < 5794; ++i) printf "o o%d\nv %d 0 0\nv %d 1 0\nv %d 0 1\nf %d %d %d\n", i, i, i, i, 3*i+1, 3*i+2, 3*i+3 }' \
   >many.obj
 echo '{"name": "many", "objects": [{"mesh": "many.obj", "split": "groups"}]}' >many.json
-bad 'more pairs of objects than are answered' 'scene: has 16782321 pairs of objects, and at most 16777216 .*; ask for the nearest' \
+bad 'more pairs of objects than are answered' 'scene: has 16782321 pairs of objects, and at most 4194304 .*; ask for the nearest' \
   distance many.json
 for option in --json --csv --certificate; do
   bad "a full disk for $option" '/dev/full: cannot be written: No space left' distance "${two[@]}" "$option" /dev/full
