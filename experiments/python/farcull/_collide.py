@@ -150,7 +150,8 @@ def collide(
     limit: Optional[int] = None,
 ) -> Result:
     """All pairs of triangles that collide: of different objects, and of one that is tested against
-    itself. The parameters are those of :class:`Collider` and :meth:`Collider.find`.
+    itself. The parameters are those of :class:`Collider`, but for its ``views`` and ``resolution``, and
+    of :meth:`Collider.find`.
 
     For many frames, keep a Collider.
     """
@@ -308,9 +309,9 @@ def distances(
 ) -> List[Distance]:
     """How far objects are apart, exactly, with the points that are nearest.
 
-    - ``V``, ``F``, ``objects``, ``self``: as in :func:`collide`.
+    - ``V``, ``F``, ``objects``: as in :func:`collide`; ``self`` as well, but not with "nearest".
     - ``kind``: "objects": of every two objects; "nearest": of each object and its ``k`` nearest
-      others; "all": every pair of triangles at the distance ``within`` or less.
+      others, where alone ``k`` has a meaning; "all": every pair of triangles at the distance ``within`` or less.
     - ``within``: nothing farther apart is answered. World units, 0 or more; None: no limit.
     - ``inside``: whether an object lies inside another; not with "all".
     - ``threads``: up to 1024; 0: one for each core.
@@ -325,12 +326,18 @@ def distances(
     limit = _arguments.optional_number("within", within)
     if limit is not None and limit < 0:
         raise InputError("within", f"is {limit}", "give a distance, 0 or more, or None")
+    which = _arguments.choice("kind", kind, ("objects", "nearest", "all"))
+    wanted = _arguments.integer("k", k, 1, 2**32 - 1)
+    if which == "nearest" and (all_objects or any(each)):
+        raise InputError("self", "has no meaning with kind nearest", "leave it out, or give another kind")
+    if which != "nearest" and wanted != 1:
+        raise InputError("k", f"has no meaning with kind {which}", "leave it out, or give kind='nearest'")
     answers = _farcull.distances(
         _arguments.array("vertices", V),
         triangles,
         starts,
-        _arguments.choice("kind", kind, ("objects", "nearest", "all")),
-        _arguments.integer("k", k, 1, 2**32 - 1),
+        which,
+        wanted,
         -1.0 if limit is None else limit,
         all_objects,
         each,

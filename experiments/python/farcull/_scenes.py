@@ -130,7 +130,7 @@ class Scene:
 
 
 class Frames:
-    """A scene that moves: ``for frame, scene in farcull.Frames("cloth-drop", frames=60): ...``.
+    """A scene that moves: ``for frame, scene in farcull.Frames("cloth", frames=60): ...``.
 
     The names are those of :class:`Scene`: a built-in scene that moves, or mesh files with %d or %04d
     in their names. ``frames``: a number N (0 to N - 1), or (first, last). Raises Error where nothing

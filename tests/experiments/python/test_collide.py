@@ -371,6 +371,8 @@ def test_distances():
         dict(within=-1),
         dict(within=math.nan),
         dict(kind="all"),
+        dict(k=7),
+        dict(self=True, kind="nearest"),
         dict(inside="no"),
         dict(threads=-1),
         dict(objects=None),
