@@ -73,6 +73,8 @@ void GlCanvas::forget() {
   }
 }
 
+GlCanvasWork GlCanvas::work() const { return state_ ? state_->work : GlCanvasWork(); }
+
 void GlCanvas::require_begun(const char* function) const {
   if (state_ && state_->begun) return;
   throw std::logic_error(std::string("GlCanvas::") + function +

@@ -9,6 +9,7 @@
 
 #include "core/canvas/canvas.h"
 #include "core/gl/canvas_options.h"
+#include "core/gl/canvas_work.h"
 #include "core/gl/context.h"
 
 namespace farcull {
@@ -31,6 +32,9 @@ class GlCanvas final : public Canvas {
   std::vector<std::uint8_t> run(const Pass& pass) override;
   std::vector<float> samples(Verb verb, const std::vector<Draw>& draws) override;
   std::vector<float> depths(Verb verb, const std::vector<Draw>& draws) override;
+
+  /// Zeros after an exception.
+  GlCanvasWork work() const;
 
  private:
   void forget();

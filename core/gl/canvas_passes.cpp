@@ -1,5 +1,6 @@
 // The passes of the GL canvas. A pass sends its list, draws it batch by batch, and believes the
 // answers only after the report, the count of primitives and the control items say that it ran.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -23,19 +24,51 @@ void CanvasState::begin(const Window& to, const Drawables& drawables) {
                                                  : std::as_bytes(std::span(drawables.triangles));
   static_assert(sizeof(Proxy) == 7 * 16 && sizeof(drawables.triangles[0]) == 3 * 16);
   const std::size_t chunk_bytes = per_chunk * 16 * vec4s();
+  const bool known = choose_elements(bytes);
+  std::vector<GlStore>& chunks = current.chunks;
   chunks.resize((elements + per_chunk - 1) / per_chunk);
+  work.uploaded_bytes = 0;
   report->start(0, report->dispatches(bytes.size()) + chunks.size(), 0);
   for (std::size_t c = 0; c < chunks.size(); ++c) {
     const auto chunk =
         bytes.subspan(c * chunk_bytes, std::min(chunk_bytes, bytes.size() - c * chunk_bytes));
-    chunks[c].reserve(chunk.size(), chunk_bytes);
-    chunks[c].write(0, chunk.data(), chunk.size());
+    if (chunks[c].reserve(chunk.size(), chunk_bytes) || !known) {
+      chunks[c].write(0, chunk.data(), chunk.size());
+      work.uploaded_bytes += chunk.size();
+    }
+    // What lies on the device is compared each time, also where nothing is sent.
     report->expect(chunks[c], chunk);
   }
+  if (!known) current.bytes.assign(bytes.begin(), bytes.end());
   set_uniforms(store_program);
   set_uniforms(ask_program);
   report->read("upload");
   begun = true;
+}
+
+// Makes the elements that were sent as `bytes` the current ones, or others that are written next;
+// true: they are the same. A scene that stays as it is has one set of elements for each view.
+bool CanvasState::choose_elements(std::span<const std::byte> bytes) {
+  constexpr std::size_t kEarlier = 2;                       // so three in all
+  constexpr std::size_t kLargest = std::size_t{128} << 20;  // bytes of a set that is kept
+  const auto is_same = [&](const CanvasElements& set) {
+    return set.bytes.size() == bytes.size() && std::ranges::equal(set.bytes, bytes);
+  };
+  if (is_same(current)) return true;
+  const auto found = std::find_if(earlier.begin(), earlier.end(), is_same);
+  if (found != earlier.end()) {
+    std::swap(current, *found);
+    return true;
+  }
+  if (bytes.size() > kLargest) {
+    earlier.clear();
+  } else if (earlier.size() < kEarlier) {
+    earlier.push_back(std::exchange(current, {}));
+  } else {
+    std::swap(current, earlier.front());
+    std::rotate(earlier.begin(), earlier.begin() + 1, earlier.end());
+  }
+  return false;
 }
 
 // Draws the batches of a pass and returns how many primitives they are.
@@ -65,8 +98,7 @@ std::uint64_t CanvasState::draw_pass(const Pass& pass, const CanvasPass& laid) {
 
 // Draws a batch with an occlusion query for each slot. A slot's draws may be spread over batches of
 // its step: its query stays open until another slot comes or the step ends.
-void CanvasState::draw_queries(const CanvasPass& laid, const CanvasRun& run,
-                               std::uint32_t& open) const {
+void CanvasState::draw_queries(const CanvasPass& laid, const CanvasRun& run, std::uint32_t& open) {
   const GpuDraw* const list = &laid.list[run.offset + 1];
   for (std::size_t from = 0; from < run.count;) {
     const std::uint32_t slot = list[from].slot;
@@ -75,6 +107,7 @@ void CanvasState::draw_queries(const CanvasPass& laid, const CanvasRun& run,
     if (slot != open) {
       if (open != kNone) glEndQuery(GL_ANY_SAMPLES_PASSED);
       glBeginQuery(GL_ANY_SAMPLES_PASSED, queries[slot]);
+      ++work.queries;
       open = slot;
     }
     draw(from, to - from);
@@ -84,6 +117,7 @@ void CanvasState::draw_queries(const CanvasPass& laid, const CanvasRun& run,
 
 std::vector<std::uint8_t> CanvasState::run(const Pass& pass) {
   const CanvasPass laid = lay_out(shape(), pass, true, odd);
+  work = {.queries = 1, .readbacks = 2, .uploaded_bytes = work.uploaded_bytes};
   const bool with_flags = options.query == QueryMode::flags;
   upload(laid, with_flags);
   if (!with_flags) {
@@ -129,7 +163,8 @@ std::vector<std::uint8_t> CanvasState::run(const Pass& pass) {
 }
 
 // After report->read(), so nothing is waited for.
-std::vector<std::uint8_t> CanvasState::read_queries(std::uint32_t slots) const {
+std::vector<std::uint8_t> CanvasState::read_queries(std::uint32_t slots) {
+  work.readbacks += slots;
   std::vector<std::uint8_t> seen(slots);
   for (std::uint32_t i = 0; i < slots; ++i) {
     GLuint result = kNone;

@@ -211,7 +211,8 @@ void CanvasState::start(float clear) const {
 }
 
 // A pass may have as many steps as triangles, so a step calls only what it needs.
-void CanvasState::set_verb(Verb verb, bool touching) const {
+void CanvasState::set_verb(Verb verb, bool touching) {
+  ++work.state_changes;
   const bool ask = verb == Verb::ask, bare = ask && compares_in_shader();
   glUseProgram(ask ? ask_program.name : store_program.name);
   if (compares_in_shader()) {
@@ -300,13 +301,14 @@ std::uint32_t CanvasState::echo(const CanvasPass& laid, const CanvasRun& run,
   return echo.sum;
 }
 
-void CanvasState::draw(std::size_t first, std::size_t count) const {
+void CanvasState::draw(std::size_t first, std::size_t count) {
   // GL counts vertices in signed 32-bit numbers.
   constexpr std::size_t kMost = 1u << 26;
   for (std::size_t at = first; at < first + count; at += kMost) {
     const std::size_t n = std::min(kMost, first + count - at);
     glDrawArrays(GL_TRIANGLES, static_cast<GLint>(at) * vertices(),
                  static_cast<GLsizei>(n) * vertices());
+    ++work.draws;
   }
 }
 

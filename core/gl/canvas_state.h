@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "core/gl/canvas_layout.h"
 #include "core/gl/canvas_options.h"
 #include "core/gl/canvas_report.h"
+#include "core/gl/canvas_work.h"
 #include "core/gl/context.h"
 #include "core/gl/objects.h"
 
@@ -25,6 +27,12 @@ struct CanvasProgram {
   GlProgram name;
   std::uint32_t number = 0;  // no other program of the process has it
   std::uint32_t echo = 0;    // of the uniforms that belong to the window
+};
+
+/// Elements that were sent, so that the same ones are not sent twice.
+struct CanvasElements {
+  std::vector<GlStore> chunks;
+  std::vector<std::byte> bytes;  // what was sent to them
 };
 
 /// The canvas on the device: its programs, render targets and stores, and the state that a pass
@@ -41,9 +49,10 @@ struct CanvasState {
   GlTexture depth;
   GlFramebuffer depth_target, bare_target;
   int target_width = 0, target_height = 0;
-  bool odd = false;  // which of two pixels the next pass marks
-  std::vector<GlStore> chunks;
-  std::size_t per_chunk = 0;  // elements
+  bool odd = false;                     // which of two pixels the next pass marks
+  CanvasElements current;               // of the last begin()
+  std::vector<CanvasElements> earlier;  // of those before, which may come again
+  std::size_t per_chunk = 0;            // elements
   std::size_t elements = 0;
   std::size_t block = 0;        // bytes of data in a storage block
   std::size_t alignment = 256;  // of a storage buffer range, in bytes
@@ -52,6 +61,7 @@ struct CanvasState {
   std::optional<CanvasReport> report;
   std::vector<GlQuery> queries;
   Window window;
+  GlCanvasWork work;
 
   CanvasState(const GlContext& context, DepthMode mode, const std::string& solid,
               const GlCanvasOptions& options);
@@ -66,7 +76,7 @@ struct CanvasState {
   }
   GLuint primitives() const { return mode == DepthMode::fragment ? 2 : 1; }
   const GlStore& elements_of(const CanvasRun& run) const {
-    return run.chunk == kExtras ? extras : chunks[run.chunk];
+    return run.chunk == kExtras ? extras : current.chunks[run.chunk];
   }
 
   CanvasShape shape() const;
@@ -78,13 +88,13 @@ struct CanvasState {
   void set_uniforms(CanvasProgram& program) const;
   void clear_depth(float value) const;
   void start(float clear) const;
-  void set_verb(Verb verb, bool touching) const;
+  void set_verb(Verb verb, bool touching);
   void set_conservative(bool on) const;
   void upload(const CanvasPass& laid, bool with_flags);
   void bind(const CanvasRun& run, const CanvasRun* before) const;
   std::uint32_t echo(const CanvasPass& laid, const CanvasRun& run, const CanvasProgram& program,
                      bool touching) const;
-  void draw(std::size_t first, std::size_t count) const;
+  void draw(std::size_t first, std::size_t count);
 
   // Uploads the elements of `drawables` and prepares the targets. All functions throw Error where
   // the device refuses or a command was lost; nothing on it is to be believed then.
@@ -95,9 +105,10 @@ struct CanvasState {
 
  private:
   std::uint64_t draw_pass(const Pass& pass, const CanvasPass& laid);
-  void draw_queries(const CanvasPass& laid, const CanvasRun& run, std::uint32_t& open) const;
+  void draw_queries(const CanvasPass& laid, const CanvasRun& run, std::uint32_t& open);
   void draw_all(CanvasProgram& program, Verb verb, const std::vector<Draw>& wanted, GLuint target);
-  std::vector<std::uint8_t> read_queries(std::uint32_t slots) const;
+  std::vector<std::uint8_t> read_queries(std::uint32_t slots);
+  bool choose_elements(std::span<const std::byte> bytes);
 };
 
 }  // namespace farcull

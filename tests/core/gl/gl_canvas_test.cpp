@@ -159,6 +159,61 @@ TEST(GlCanvas, SeveralStoresAddUp) {
   }
 }
 
+// A step is one draw call for each element buffer that it reads, and one for the canvas's control
+// items. With flags all answers come in one buffer, whatever the number of slots.
+TEST(GlCanvas, AsksForFewDrawsAndReadbacks) {
+  const Layers layers;
+  const Fattener fattener = obb_fattener();
+  const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
+  for (const long limit : {0L, 16L * 7 * 20}) {
+    for (const QueryMode query : {QueryMode::flags, QueryMode::occlusion}) {
+      SCOPED_TRACE(std::to_string(limit));
+      GlCanvas canvas(lab::context(), fattener.mode, fattener.solid,
+                      {.query = query, .storage_limit = limit});
+      canvas.begin(layers.window, drawables);
+      const Pass pass = layers.pass(drawables, 0, 1);
+      EXPECT_EQ(canvas.run(pass), std::vector<std::uint8_t>(layers.cells(), 1));
+      const GlCanvasWork work = canvas.work();
+      const std::size_t bytes = drawables.elements() * 7 * 16;
+      const std::size_t per_chunk = static_cast<std::size_t>(limit) / (7 * 16);
+      const std::size_t chunks = limit == 0 ? 1 : drawables.elements() / (per_chunk - 1) + 1;
+      EXPECT_EQ(work.uploaded_bytes, bytes);
+      EXPECT_EQ(work.state_changes, pass.steps.size());
+      if (query == QueryMode::flags) {
+        EXPECT_LE(work.draws, pass.steps.size() * (1 + chunks));
+        EXPECT_EQ(work.queries, 1u);
+        EXPECT_EQ(work.readbacks, 2u);  // the report with the flags, and the number of primitives
+      } else {
+        EXPECT_GE(work.queries, pass.slots);
+      }
+    }
+  }
+}
+
+// The elements of three views stay on the device, and are compared with what they should be.
+TEST(GlCanvas, SendsNothingTwice) {
+  const Layers layers;
+  const Fattener fattener = obb_fattener();
+  GlCanvas canvas(lab::context(), fattener.mode, fattener.solid);
+  std::vector<Drawables> views;
+  for (const double radius : {0.5, 0.75, 1.0})
+    views.push_back(lab::fattened(layers.window, fattener, radius, layers.patches));
+  const std::vector<std::uint8_t> right(layers.cells(), 1);
+  for (int frame = 0; frame < 3; ++frame) {
+    for (const Drawables& view : views) {
+      canvas.begin(layers.window, view);
+      EXPECT_EQ(canvas.work().uploaded_bytes, frame == 0 ? view.elements() * 7 * 16 : 0);
+      EXPECT_EQ(canvas.run(layers.pass(view, 0, 1)), right);
+    }
+  }
+  // Whatever changes is sent.
+  Drawables moved = views[1];
+  moved.proxies.back().corners[0] -= 0.125f;
+  canvas.begin(layers.window, moved);
+  EXPECT_EQ(canvas.work().uploaded_bytes, moved.elements() * 7 * 16);
+  EXPECT_EQ(canvas.run(layers.pass(moved, 0, 1)), right);
+}
+
 TEST(GlCanvas, ReversedDepthTestIsADefectThatShows) {
   const Layers layers;
   const Fattener fattener = obb_fattener();
