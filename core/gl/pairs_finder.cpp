@@ -25,6 +25,21 @@ void check_counted_twice(const PairTotalWords& totals, std::size_t levels) {
               "a compute invocation was lost: run again, or with another --device");
 }
 
+// The same that the device was asked, compared again, and work that nobody foresaw and that was
+// left out: rows of pixels, and crowded cells of the last level.
+bool has_room(const PairForecast& room, const PairTotalWords& totals, std::size_t levels) {
+  bool enough = totals[kTotalWholes] <= room.wholes && totals[kTotalItems] <= room.items &&
+                totals[kTotalLarge] <= room.large && totals[kTotalListed] <= room.shown &&
+                two_words(totals, kTotalRows) == totals[kTotalRowItems] &&
+                totals[kTotalRowItems] <= room.row_items;
+  for (std::size_t l = 0; l <= levels; ++l) {
+    const std::size_t crowded = l < levels ? room.crowded[l] : 0;
+    enough &= totals[of_level(kTotalEntries, l)] <= room.entries[l];
+    enough &= l == kMaxLevel || totals[of_level(kTotalParents, l)] <= crowded;
+  }
+  return enough;
+}
+
 }  // namespace
 
 std::vector<TrianglePair> PairFinder::find(const PairTask& task, PairCounts& counts) {
@@ -100,7 +115,7 @@ void PairFinder::end_part(const PairTotalWords& totals) {
   add(run_.counts.pair_device_ms, PairStamp::listed, PairStamp::done);
   while (seen.levels < kMaxLevel && seen.crowded[seen.levels] > 0) ++seen.levels;
   check_counted_twice(totals, seen.levels);
-  lists_.set_dirty(false);
+  lists_.set_done();
   run_.counts.listed += totals[kTotalListed] + totals[kTotalListedRows];
   run_.counts.crowded += seen.crowded[0];
   run_.counts.large = std::max<std::uint64_t>(run_.counts.large, seen.large);
@@ -112,6 +127,8 @@ void PairFinder::end_part(const PairTotalWords& totals) {
 bool PairFinder::find_at_once(const PairPart& part, const PairForecast& forecast) {
   PairMemory memory{run_.options.memory, run_.device.block(), false};
   if (forecast.pairs * sizeof(TrianglePair) > std::min(memory.left / 4, memory.block)) return false;
+  const std::uint64_t batches = (forecast.large + kLargeBatch - 1) / kLargeBatch;
+  if (batches * run_.task->active.size() >> 31 != 0) return false;  // beyond one dispatch
   const PairCounts before = run_.counts;
   begin_part(part);
   const Stopwatch marking;
@@ -128,9 +145,7 @@ bool PairFinder::find_at_once(const PairPart& part, const PairForecast& forecast
     PairTotalWords totals;
     enough = emission_.make(lists_, forecast, memory, totals);
     const std::size_t levels = lists_.levels();
-    // Work that nobody foresaw was left out: rows of pixels, and crowded cells of the last level.
-    enough = enough && two_words(totals, kTotalRows) == totals[kTotalRowItems] &&
-             (levels == kMaxLevel || totals[of_level(kTotalParents, levels)] == 0);
+    enough = enough && has_room(forecast, totals, levels);
     if (enough) end_part(totals);
   } else {
     run_.device.read("pairs");
@@ -140,7 +155,7 @@ bool PairFinder::find_at_once(const PairPart& part, const PairForecast& forecast
   run_.counts = before;
   ++run_.counts.redone;
   emission_.begin();
-  lists_.set_dirty(true);
+  lists_.set_broken_off();
   return false;
 }
 
@@ -186,7 +201,7 @@ void PairFinder::split(const PairPart& part) {
   // The next parts believe what was sent for this one, so it is checked first.
   run_.device.read("pairs");
   run_.counts = before;
-  lists_.set_dirty(true);
+  lists_.set_broken_off();
   PairPart low = part, high = part;
   if (part.height() > 1) {
     low.j1 = part.j0 + part.height() / 2 - 1;

@@ -207,8 +207,12 @@ bool PairLists::fill_cut(std::size_t l, std::size_t entries, PairMemory& memory)
   return true;
 }
 
-void PairLists::set_dirty(bool dirty) {
-  for (PairLevel& level : levels_) level.dirty = dirty;
+void PairLists::set_done() {
+  for (std::size_t l = 0; l <= levels_cut_; ++l) levels_[l].dirty = false;
+}
+
+void PairLists::set_broken_off() {
+  for (PairLevel& level : levels_) level.dirty = true;
 }
 
 }  // namespace farcull

@@ -43,8 +43,10 @@ class PairLists {
   PairWork all_entries(std::size_t l) const {
     return {levels_[l].listed, of_level(kTotalEntries, l)};
   }
-  /// Says whether the counts of all levels are 0, as they are after a part that was done.
-  void set_dirty(bool dirty);
+  /// After a part that was done the counts of its levels are 0; after one that was broken off
+  /// nobody knows.
+  void set_done();
+  void set_broken_off();
 
  private:
   void visit(PairProgram wholes_program, PairProgram rows_program, std::size_t capacity);

@@ -92,7 +92,7 @@ struct GlHook<Pointer, Result (*)(Arguments...)> {
   X(glFramebufferTexture2D) X(glGenBuffers) X(glGenFramebuffers) X(glGenQueries) \
   X(glGenTextures) X(glGenVertexArrays) X(glGetBufferSubData) X(glGetQueryObjectui64v) \
   X(glGetQueryObjectuiv) X(glLinkProgram) X(glMemoryBarrier) X(glPixelStorei) \
-  X(glProgramUniform1f) X(glProgramUniform1i) X(glProgramUniform1ui) X(glProgramUniform2fv) \
+  X(glQueryCounter) X(glProgramUniform1f) X(glProgramUniform1i) X(glProgramUniform1ui) X(glProgramUniform2fv) \
   X(glProgramUniform4iv) X(glReadPixels) X(glShaderSource) X(glTexParameteri) X(glUniform1f) \
   X(glUniform1i) X(glUniform1ui) X(glUniform2f) X(glUniform2fv) X(glUniform2iv) X(glUniform4fv) \
   X(glUniform4i) X(glUniform4iv) X(glUniform4uiv) X(glUseProgram) X(glViewport)
