@@ -80,9 +80,11 @@ void PairEmission::emit(std::uint64_t count, std::size_t level, const PairMemory
     if (emitted > capacity || more > unit_capacity(memory) || totals[kTotalOverflow] != 0) {
       // Bits say that pairs were emitted which did not fit.
       if (settled_words_ > 0) run_.device.zero(settled_, settled_words_, true);
-      if (totals[kTotalOverflow] == 0 && more <= unit_capacity(memory) &&
-          emitted * sizeof(TrianglePair) <= most) {
+      const bool fits = more * kUnitBytes <= most && emitted * sizeof(TrianglePair) <= most;
+      const bool grows = emitted > capacity || more > unit_capacity(memory);
+      if (fits && grows) {
         pairs_.reserve(emitted * sizeof(TrianglePair), most);
+        units_.reserve(more * kUnitBytes, most);
       } else if (n > 1) {
         size = n / 2;
       } else {
@@ -92,6 +94,7 @@ void PairEmission::emit(std::uint64_t count, std::size_t level, const PairMemory
       continue;
     }
     read_pairs(emitted);
+    emitted_bytes_ += emitted * sizeof(TrianglePair);
     run_.counts.tests += two_words(totals, kTotalTests);
     if (more > 0) after(more);
     first += n;
@@ -189,7 +192,8 @@ bool PairEmission::make(PairLists& lists, const PairMemory& memory,
   const std::uint64_t batches = (items_.large() + kLargeBatch - 1) / kLargeBatch;
   const std::uint64_t comparisons = batches * run_.task->active.size();
   const bool at_once = entries <= kAtOnce && comparisons <= kAtOnce * kLargeBatch &&
-                       !(comparisons > 0 && run_.scene.gathered());
+                       !(comparisons > 0 && run_.scene.gathered()) &&
+                       run_.task->triangles.size() != too_many_of_;
   for (int attempt = 0; at_once && attempt < kAttempts; ++attempt) {
     run_.device.reset(kPairTotals);
     launch_all(lists, true, memory);
@@ -208,12 +212,17 @@ bool PairEmission::make(PairLists& lists, const PairMemory& memory,
     }
     // Bits say that pairs were emitted which did not fit.
     if (settled_words_ > 0) run_.device.zero(settled_, settled_words_, true);
-    if (emitted * sizeof(TrianglePair) > most || more * kUnitBytes > most) break;
+    if (emitted * sizeof(TrianglePair) > most || more * kUnitBytes > most) {
+      too_many_of_ = run_.task->triangles.size();
+      break;
+    }
     pairs_.reserve(emitted * sizeof(TrianglePair), most);
     units_.reserve(more * kUnitBytes, most);
   }
+  emitted_bytes_ = 0;
   for (std::size_t l = 0; l <= lists.levels(); ++l) emit_tests(lists, l, memory);
   emit_large(memory);
+  if (emitted_bytes_ <= most) too_many_of_ = 0;
   check_lists(run_.device.read("pairs"));
   return true;
 }

@@ -57,6 +57,9 @@ class PairEmission {
   GlStore pairs_, units_, settled_, large_;
   std::size_t settled_words_ = 0;  // bits of pairs that the part has emitted; 0: it keeps none
   std::optional<PairPool> found_;
+  std::size_t emitted_bytes_ = 0;  // of a part whose tests are not done at once
+  // Triangles of the scene whose pairs were too many to be emitted at once; 0: none.
+  std::size_t too_many_of_ = 0;
 };
 
 }  // namespace farcull
