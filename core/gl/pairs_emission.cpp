@@ -50,19 +50,19 @@ void PairEmission::read_pairs(std::size_t emitted) {
   found_->shrink_if_full(0);
 }
 
-std::size_t PairEmission::most_bytes(const PairMemory& memory) const {
+std::size_t PairEmission::most_bytes(const PartMemory& memory) const {
   return std::max(std::min(run_.options.memory / 4, memory.block), kLeastPairs);
 }
-std::size_t PairEmission::pair_capacity(const PairMemory& memory) const {
+std::size_t PairEmission::pair_capacity(const PartMemory& memory) const {
   return std::min(pairs_.bytes(), most_bytes(memory)) / sizeof(TrianglePair);
 }
-std::size_t PairEmission::unit_capacity(const PairMemory& memory) const {
+std::size_t PairEmission::unit_capacity(const PartMemory& memory) const {
   return std::min(units_.bytes(), most_bytes(memory)) / kUnitBytes;
 }
 
 // Runs launch(first, count) over work items that append pairs, in as many parts as the memory for
 // pairs asks for, and takes the pairs. After each part after(the total kTotalMore of the level).
-void PairEmission::emit(std::uint64_t count, std::size_t level, const PairMemory& memory,
+void PairEmission::emit(std::uint64_t count, std::size_t level, const PartMemory& memory,
                         const Launch& launch, const After& after) {
   const std::size_t most = most_bytes(memory);
   std::uint64_t size = std::min(count, kEmitted);
@@ -103,7 +103,7 @@ void PairEmission::emit(std::uint64_t count, std::size_t level, const PairMemory
 
 // Pairs are emitted once where they may repeat often and there is memory for a bit for each two
 // records.
-void PairEmission::settle(const PairLevel& pixels, PairMemory& memory) {
+void PairEmission::settle(const PairLevel& pixels, PartMemory& memory) {
   settled_words_ = 0;
   const std::size_t all = items_.records(), listed_ones = pixels.listed;
   if (pixels.crowded == 0 && listed_ones <= kRepeatedFrom * all) return;
@@ -117,7 +117,7 @@ void PairEmission::settle(const PairLevel& pixels, PairMemory& memory) {
 
 // Runs tests of a level's cells that are not cut, or what they left (`more`).
 void PairEmission::run_tests(PairLists& lists, std::size_t l, bool more, const PairWork& work,
-                             std::uint64_t first, const PairMemory& memory) {
+                             std::uint64_t first, const PartMemory& memory) {
   PairLevel& level = lists.level(l);
   const bool some_cut = level.crowded > 0, once = settled_words_ > 0;
   PairUniforms u = run_.common;
@@ -143,7 +143,7 @@ void PairEmission::run_tests(PairLists& lists, std::size_t l, bool more, const P
 }
 
 // Lists the large ones among the records.
-void PairEmission::find_large(const PairMemory& memory) {
+void PairEmission::find_large(const PartMemory& memory) {
   large_.reserve(std::max(items_.large() * kWord, kVec4), memory.block);
   if (items_.large() == 0) return;
   PairUniforms u = run_.common;
@@ -165,7 +165,7 @@ void PairEmission::run_large(const PairWork& work, std::size_t sent, std::uint64
                                       {{8, &large_}, {9, &pairs_}}));
 }
 
-void PairEmission::launch_all(PairLists& lists, bool more, const PairMemory& memory) {
+void PairEmission::launch_all(PairLists& lists, bool more, const PartMemory& memory) {
   for (std::size_t l = 0; l <= lists.levels(); ++l) {
     run_tests(lists, l, false, lists.all_entries(l), 0, memory);
     run_tests(lists, l, true, {more ? unit_capacity(memory) : 0, of_level(kTotalMore, l)}, 0,
@@ -177,7 +177,7 @@ void PairEmission::launch_all(PairLists& lists, bool more, const PairMemory& mem
   run_.device.stamp(PairStamp::done);
 }
 
-bool PairEmission::make(PairLists& lists, const PairMemory& memory,
+bool PairEmission::make(PairLists& lists, const PartMemory& memory,
                         std::optional<PairTotalWords>& all_totals) {
   const std::size_t most = most_bytes(memory);
   find_large(memory);
@@ -227,7 +227,7 @@ bool PairEmission::make(PairLists& lists, const PairMemory& memory,
   return true;
 }
 
-void PairEmission::emit_tests(PairLists& lists, std::size_t l, const PairMemory& memory) {
+void PairEmission::emit_tests(PairLists& lists, std::size_t l, const PartMemory& memory) {
   const auto launch = [&](bool more) {
     return [&, more](std::uint64_t first, std::uint64_t n, std::uint32_t) {
       run_tests(lists, l, more, n, first, memory);
@@ -237,7 +237,7 @@ void PairEmission::emit_tests(PairLists& lists, std::size_t l, const PairMemory&
        [&](std::uint32_t more) { emit(more, l, memory, launch(true), [](std::uint32_t) {}); });
 }
 
-void PairEmission::emit_large(const PairMemory& memory) {
+void PairEmission::emit_large(const PartMemory& memory) {
   // Bits are of records of entries, which large ones have none of.
   settled_words_ = 0;
   if (items_.large() == 0) return;
@@ -252,7 +252,7 @@ void PairEmission::emit_large(const PairMemory& memory) {
   });
 }
 
-bool PairEmission::make(PairLists& lists, const PairForecast& forecast, const PairMemory& memory,
+bool PairEmission::make(PairLists& lists, const PairForecast& forecast, const PartMemory& memory,
                         PairTotalWords& totals) {
   const std::size_t most = most_bytes(memory);
   find_large(memory);

@@ -125,7 +125,7 @@ void PairFinder::end_part(const PairTotalWords& totals) {
 
 // The whole window with one wait; false: there was not room enough.
 bool PairFinder::find_at_once(const PairPart& part, const PairForecast& forecast) {
-  PairMemory memory{run_.options.memory, run_.device.block(), false};
+  PartMemory memory{run_.options.memory, run_.device.block(), false};
   if (forecast.pairs * sizeof(TrianglePair) > std::min(memory.left / 4, memory.block)) return false;
   const std::uint64_t batches = (forecast.large + kLargeBatch - 1) / kLargeBatch;
   if (batches * run_.task->active.size() >> 31 != 0) return false;  // beyond one dispatch
@@ -161,7 +161,7 @@ bool PairFinder::find_at_once(const PairPart& part, const PairForecast& forecast
 
 // One part of the window; false: too much for the memory.
 bool PairFinder::find_in(const PairPart& part) {
-  PairMemory memory{run_.options.memory, run_.device.block(), part.cells() == 1};
+  PartMemory memory{run_.options.memory, run_.device.block(), part.cells() == 1};
   // The bytes that every pixel needs, before any work is done.
   const std::size_t fixed = part.cells() * (2 * run_.owners.groups * kWord +
                                             (run_.common.masked ? 8 + 16 * run_.owners.bits : 0));

@@ -29,12 +29,12 @@ void PairItems::launch(std::size_t whole_capacity, std::size_t capacity) {
   });
 }
 
-bool PairItems::take(PairMemory& memory) const {
+bool PairItems::take(PartMemory& memory) const {
   return memory.take(wholes_ * kVec4) && memory.take(wholes_ * kWord) &&
          memory.take(items_ * kRecord) && memory.take(items_ * (kVec4 + 3 * kWord));
 }
 
-bool PairItems::make(PairMemory& memory) {
+bool PairItems::make(PartMemory& memory) {
   for (GlStore* store : {&heads_, &records_, &record_heads_, &listed_flags_, &shown_list_, &rows_})
     store->reserve(kVec4, kVec4);
   const auto reserve = [&](std::size_t wholes, std::size_t items) {
@@ -64,7 +64,7 @@ bool PairItems::make(PairMemory& memory) {
       throw Error("GL pairs", "the same triangles were counted twice with different results",
                   "a command was lost: run again, or with another --device");
     }
-    PairMemory trial = memory;
+    PartMemory trial = memory;
     if (!trial.take(wholes_ * kVec4) || !trial.take(items_ * kRecord)) return false;
     reserve(wholes_, items_);
   }
@@ -74,7 +74,7 @@ bool PairItems::make(PairMemory& memory) {
   return row_items_ >> 31 == 0 || memory.last;
 }
 
-bool PairItems::make(const PairForecast& forecast, PairMemory& memory) {
+bool PairItems::make(const PairForecast& forecast, PartMemory& memory) {
   wholes_ = forecast.wholes;
   items_ = forecast.items;
   large_ = forecast.large;
@@ -92,7 +92,7 @@ bool PairItems::make(const PairForecast& forecast, PairMemory& memory) {
   return true;
 }
 
-bool PairItems::make_records(std::size_t shown, PairMemory& memory) {
+bool PairItems::make_records(std::size_t shown, PartMemory& memory) {
   shown_ = shown;
   const std::size_t all = records();
   if (!memory.take(shown_ * kRecord) || !memory.take(shown_ * kVec4) ||

@@ -15,11 +15,11 @@ class PairItems {
   explicit PairItems(PairRun& run) : run_(run) {}
 
   /// The items of the part run.common.tile, counted; false: too many.
-  bool make(PairMemory& memory);
+  bool make(PartMemory& memory);
   /// The same with room for as many as the forecast says, and nothing is read; false: too many.
-  bool make(const PairForecast& forecast, PairMemory& memory);
+  bool make(const PairForecast& forecast, PartMemory& memory);
   /// `shown` whole items are listed: they become records. False: too many.
-  bool make_records(std::size_t shown, PairMemory& memory);
+  bool make_records(std::size_t shown, PartMemory& memory);
 
   bool empty() const { return wholes_ + items_ == 0; }
   std::size_t wholes() const { return wholes_; }
@@ -44,7 +44,7 @@ class PairItems {
 
  private:
   void launch(std::size_t whole_capacity, std::size_t capacity);
-  bool take(PairMemory& memory) const;
+  bool take(PartMemory& memory) const;
 
   PairRun& run_;
   GlStore rows_, heads_, records_, record_heads_, listed_flags_, shown_list_;

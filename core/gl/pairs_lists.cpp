@@ -16,7 +16,7 @@ constexpr std::size_t kBins = std::size_t{1} << 20;  // that are wanted at most
 }  // namespace
 
 bool PairLevel::shape(std::size_t n, std::uint32_t groups, std::uint64_t expected,
-                      PairMemory& memory) {
+                      PartMemory& memory) {
   cells = n;
   std::uint32_t slices = kSlices, shift = 0;
   const std::size_t most = std::min<std::uint64_t>({expected, kBins, memory.left / (8 * kWord)});
@@ -38,7 +38,7 @@ bool PairLevel::shape(std::size_t n, std::uint32_t groups, std::uint64_t expecte
   return true;
 }
 
-bool PairLevel::fill(std::size_t n, PairMemory& memory) {
+bool PairLevel::fill(std::size_t n, PartMemory& memory) {
   listed = n;
   if (!memory.take(n * kEntry) || !memory.take(n * 2 * kWord)) return false;
   entries.reserve(n * kEntry, memory.block);
@@ -83,7 +83,7 @@ void PairLists::mark(const PairPart& part, std::size_t mask_bytes) {
 }
 
 // Counts the entries of the part's pixels, and gives their lists places; false: too much.
-bool PairLists::count(const PairPart& part, PairMemory& memory) {
+bool PairLists::count(const PairPart& part, PartMemory& memory) {
   PairLevel& pixels = levels_[0];
   levels_cut_ = 0;
   run_.common.cells = static_cast<std::uint32_t>(part.cells());
@@ -104,13 +104,13 @@ bool PairLists::count(const PairPart& part, PairMemory& memory) {
   return true;
 }
 
-bool PairLists::fill(std::size_t shown, std::size_t entries, PairMemory& memory) {
+bool PairLists::fill(std::size_t shown, std::size_t entries, PartMemory& memory) {
   if (!items_.make_records(shown, memory) || !levels_[0].fill(entries, memory)) return false;
   visit(PairProgram::fill_wholes, PairProgram::fill_rows, entries);
   return true;
 }
 
-bool PairLists::make(const PairPart& part, PairMemory& memory) {
+bool PairLists::make(const PairPart& part, PartMemory& memory) {
   if (!count(part, memory)) return false;
   PairUniforms u = run_.common;
   u.bins = levels_[0].bins;
@@ -135,7 +135,7 @@ bool PairLists::make(const PairPart& part, PairMemory& memory) {
   }
 }
 
-bool PairLists::make(const PairPart& part, const PairForecast& forecast, PairMemory& memory) {
+bool PairLists::make(const PairPart& part, const PairForecast& forecast, PartMemory& memory) {
   if (!count(part, memory) || !fill(forecast.shown, forecast.entries[0], memory)) return false;
   for (std::size_t l = 0;; ++l) {
     const bool last = l == forecast.levels;
@@ -148,7 +148,7 @@ bool PairLists::make(const PairPart& part, const PairForecast& forecast, PairMem
 }
 
 // Memory for the cells of level l that are cut, and for the counts of the level below.
-bool PairLists::take_parents(std::size_t l, std::size_t crowded, PairMemory& memory) {
+bool PairLists::take_parents(std::size_t l, std::size_t crowded, PartMemory& memory) {
   PairLevel& level = levels_[l];
   level.crowded = crowded;
   level.parents.reserve(kVec4, kVec4);
@@ -201,7 +201,7 @@ void PairLists::cut(std::size_t l) {
   levels_cut_ = l + 1;
 }
 
-bool PairLists::fill_cut(std::size_t l, std::size_t entries, PairMemory& memory) {
+bool PairLists::fill_cut(std::size_t l, std::size_t entries, PartMemory& memory) {
   if (!levels_[l + 1].fill(entries, memory)) return false;
   step(PairProgram::cut_fill, l, all_entries(l), entries);
   return true;

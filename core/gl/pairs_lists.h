@@ -23,9 +23,9 @@ struct PairLevel {
   std::size_t all_bins() const { return cells * bins[0]; }
   /// Chooses about as many bins as entries are `expected` and takes the memory of their counts;
   /// false: too much.
-  bool shape(std::size_t n, std::uint32_t groups, std::uint64_t expected, PairMemory& memory);
+  bool shape(std::size_t n, std::uint32_t groups, std::uint64_t expected, PartMemory& memory);
   /// Takes the memory of n entries; false: too much.
-  bool fill(std::size_t n, PairMemory& memory);
+  bool fill(std::size_t n, PartMemory& memory);
 };
 
 class PairLists {
@@ -35,9 +35,9 @@ class PairLists {
   PairLevel& level(std::size_t l) { return levels_[l]; }
   /// The lists of the part's pixels and of the parts of crowded ones; false: too much. Counts are
   /// read where they are needed.
-  bool make(const PairPart& part, PairMemory& memory);
+  bool make(const PairPart& part, PartMemory& memory);
   /// The same with room for as many as the forecast says, and nothing is read.
-  bool make(const PairPart& part, const PairForecast& forecast, PairMemory& memory);
+  bool make(const PairPart& part, const PairForecast& forecast, PartMemory& memory);
   /// Levels that are cut: level l has lists for l <= levels().
   std::size_t levels() const { return levels_cut_; }
   PairWork all_entries(std::size_t l) const {
@@ -51,12 +51,12 @@ class PairLists {
  private:
   void visit(PairProgram wholes_program, PairProgram rows_program, std::size_t capacity);
   void mark(const PairPart& part, std::size_t mask_bytes);
-  bool count(const PairPart& part, PairMemory& memory);
-  bool fill(std::size_t shown, std::size_t entries, PairMemory& memory);
-  bool take_parents(std::size_t l, std::size_t crowded, PairMemory& memory);
+  bool count(const PairPart& part, PartMemory& memory);
+  bool fill(std::size_t shown, std::size_t entries, PartMemory& memory);
+  bool take_parents(std::size_t l, std::size_t crowded, PartMemory& memory);
   void check(std::size_t l);
   void cut(std::size_t l);
-  bool fill_cut(std::size_t l, std::size_t entries, PairMemory& memory);
+  bool fill_cut(std::size_t l, std::size_t entries, PartMemory& memory);
   void step(PairProgram program, std::size_t l, const PairWork& work, std::size_t capacity);
 
   PairRun& run_;

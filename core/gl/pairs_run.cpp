@@ -8,7 +8,7 @@
 
 namespace farcull {
 
-bool PairMemory::take(std::size_t bytes) {
+bool PartMemory::take(std::size_t bytes) {
   if (bytes > block && last) {
     throw Error("GL pairs", "one pixel needs a buffer of " + std::to_string(bytes) + " bytes",
                 "use --device cpu or a larger --resolution");
@@ -77,7 +77,7 @@ void check_lists(const PairTotalWords& totals) {
               "a compute invocation was lost: run again, or with another --device");
 }
 
-bool overflow(const PairTotalWords& totals, const PairMemory& memory) {
+bool overflow(const PairTotalWords& totals, const PartMemory& memory) {
   if (totals[kTotalOverflow] == 0) return false;
   if (memory.last) {
     throw Error("GL pairs", "one pixel has more work than can be counted in 32 bits",

@@ -26,7 +26,7 @@ struct PairPart {
 };
 
 /// The memory of one part of the window.
-struct PairMemory {
+struct PartMemory {
   std::size_t left;
   std::size_t block;
   bool last;  // a single pixel, which is done whatever it takes
@@ -79,6 +79,6 @@ struct PairRun {
 void check_lists(const PairTotalWords& totals);
 /// True where a sum went beyond 32 bits, so that the part must be split. Throws Error where it is a
 /// single pixel.
-bool overflow(const PairTotalWords& totals, const PairMemory& memory);
+bool overflow(const PairTotalWords& totals, const PartMemory& memory);
 
 }  // namespace farcull
