@@ -71,7 +71,7 @@ expect 'kinds of frames' "$out" '^ +"crossing": [0-9]+,$'
 expect 'kinds of frames' <(head -n 1 frames.csv) '^frame,object_a,.*,contact$'
 
 good 'ignored' 0 verify "${all[@]}" --ignore 'f*:spike' --pairs ignored.csv
-expect 'ignored' "$out" '^ignored    1 candidate pair of 2 pairs of objects$'
+expect 'ignored' "$out" '^ignored    0 candidate pairs of 2 pairs of objects$' # far-pairs makes none of them
 expect 'ignored' "$out" ' 2 ignored \+ 0 missed$'
 ((cases += 1))
 cmp -s ignored.csv <(grep -v ',2,0$' plain.csv) || fail 'ignored' 'other pairs'
