@@ -24,7 +24,7 @@ std::string beside(const std::string& file, const std::string& record) {
 
 SceneSource RunCommand::source() const {
   return [this](const TakePart& take) {
-    stream_scene(scene_, [&](Scene& part) {
+    return stream_scene(scene_, [&](Scene& part) {
       if (self_) make_self(part);
       take(part);
     });

@@ -8,13 +8,10 @@
 #include "core/base/stopwatch.h"
 #include "core/scene/ignored.h"
 #include "core/scene/members.h"
+#include "experiments/method/stages.h"
 
 namespace farcull {
-namespace {
-
-// The potentially colliding set, where the method gives pairs alone.
 void count_kept(const Scene& scene, Candidates& found) {
-  if (found.pairs.empty() || !found.triangles.empty()) return;
   found.triangles = members_of(found.pairs, scene.triangles.size());
   found.triangle_count = found.triangles.size();
   found.object_count = count_objects(scene, found.triangles);
@@ -58,14 +55,12 @@ void decide_stage(const Scene& scene, Session& session, const Progress& progress
   record.trace.push_back(stage);
 }
 
-// Accounts for every pair that culling did not leave to the exact tests.
-void verify_stage(const Scene& scene, const Progress& progress, Record& record) {
+void verify_stage(const Scene& scene, const std::vector<TrianglePair>& left,
+                  const Progress& progress, Record& record) {
   Stage stage{.kind = StageKind::verify, .reason = Reason::not_asked, .unit = Unit::pairs};
   if (record.options.verify) {
     if (progress) progress("accounting for every pair");
-    const std::vector<TrianglePair> decided =
-        culls(record.options.method) ? std::vector<TrianglePair>() : pairs_left(record);
-    record.verification = account(scene, decided.empty() ? record.found.pairs : decided,
+    record.verification = account(scene, left,
                                   {.clearance = record.options.clearance,
                                    .max_examples = std::numeric_limits<std::size_t>::max(),
                                    .ignored = record.options.ignored});
@@ -92,8 +87,6 @@ void contact_stage(const Scene& scene, Session& session, const Progress& progres
   record.neighbour_contacts = contacts_of(scene, record.collisions.neighbour_pairs, asked, threads);
   record.ms.contacts = watch.ms();
 }
-
-}  // namespace
 
 Candidates find(const Scene& scene, const Plan& plan, Session& session, const Progress& progress) {
   const FloatingPointGuard guard;
@@ -158,7 +151,9 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   record.degenerate_triangles = degenerate_triangles(scene);
 
   record.found = find(scene, planned, session, progress);
-  count_kept(scene, record.found);
+  // Where the method gives pairs alone.
+  if (!record.found.pairs.empty() && record.found.triangles.empty())
+    count_kept(scene, record.found);
   record.trace.insert(record.trace.end(), record.found.trace.begin(), record.found.trace.end());
   try {
     record.promise = promise_of(options, record.found.device, session);
@@ -170,7 +165,9 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   record.ms.cull = planned.ms + record.found.ms;
   decide_stage(scene, session, progress, record);
   record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
-  verify_stage(scene, progress, record);
+  std::vector<TrianglePair> decided;  // of a method that decides as it finds
+  if (options.verify && !culls(options.method)) decided = pairs_left(record);
+  verify_stage(scene, culls(options.method) ? record.found.pairs : decided, progress, record);
   // Of a method that decides as it finds: decide_first() has kept to the limit already.
   if (options.limit > 0 && keep_first(options.limit, record.collisions)) record.complete = false;
   contact_stage(scene, session, progress, record);

@@ -156,7 +156,7 @@ class SceneFile {
     return builder;
   }
 
-  // Precondition: the scene is that of the file.
+  // Precondition: the scene has the objects of the file; of them only the names are read.
   std::vector<ObjectPair> read_ignored(const json& pairs, const Scene& scene) const {
     const std::string form = "write \"ignore\": [[\"NAME\", \"NAME\"], ...]";
     require(pairs.is_array(), "ignore", "must be an array", form);
@@ -335,16 +335,18 @@ Scene parse(const std::string& text, const std::string& path, MeshCache& meshes)
 // Meshes that a streamed scene file keeps.
 constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
 
-void stream_file(const std::string& path, const TakePart& take) {
+std::vector<ObjectPair> stream_file(const std::string& path, const TakePart& take) {
   MeshCache meshes;
   std::size_t bytes = 0;  // of the parts since the cache was empty, at least those of its meshes
   const Parsed file = parsed(read_file(path, kMaxSceneFileBytes), path);
-  if (file.root.contains("ignore")) {
-    throw Error(path, "ignores pairs of objects, which a run of a part (--tiles) does not know",
-                "delete \"ignore\" and name the pairs by --ignore, or run without --tiles");
-  }
-  SceneFile(path, file.ignore_lines, meshes).read(file.root, [&](SceneBuilder& builder) {
+  const bool ignores = file.root.contains("ignore");
+  Scene names;  // of the whole scene
+  SceneFile reader(path, file.ignore_lines, meshes);
+  reader.read(file.root, [&](SceneBuilder& builder) {
     Scene part = builder.take_part();
+    if (ignores) {
+      for (const Object& object : part.objects) names.objects.push_back({.name = object.name});
+    }
     bytes += part.vertices.size() * sizeof(Vec3) + part.triangles.size() * 20;
     if (bytes > kKeptBytes) {
       meshes = MeshCache();
@@ -352,6 +354,8 @@ void stream_file(const std::string& path, const TakePart& take) {
     }
     take(part);
   });
+  if (!ignores) return {};
+  return reader.read_ignored(file.root["ignore"], names);
 }
 
 // The builder of a scene of mesh files. Every extension is looked at first, so that nothing is read
@@ -420,20 +424,25 @@ Scene load_scene(const std::vector<std::string>& arguments, MeshCache& meshes) {
   }
 }
 
-void stream_scene(const std::vector<std::string>& arguments, const TakePart& take) {
+std::vector<ObjectPair> stream_scene(const std::vector<std::string>& arguments,
+                                     const TakePart& take) {
   if (arguments.size() == 1 && is_builtin_scene(arguments[0])) {
     const SceneRequest request = parse_scene_name(arguments[0]);
     if (request.entry->name == "field" && request.suffixes.empty()) {
       const std::uint64_t seed = request.parameters.seed.value_or(*request.entry->seed);
-      return stream_field(request.parameters, seed, arguments[0], take);
+      stream_field(request.parameters, seed, arguments[0], take);
+      return {};
     }
   } else if (arguments.size() == 1 && is_scene_file(arguments[0])) {
     return stream_file(arguments[0], take);
   } else if (arguments.size() > 1 || (arguments.size() == 1 && has_mesh_extension(arguments[0]))) {
-    return stream_meshes(arguments, take);
+    stream_meshes(arguments, take);
+    return {};
   }
   Scene whole = load_scene(arguments);
+  const std::vector<ObjectPair> ignored = std::exchange(whole.ignored, {});
   take(whole);
+  return ignored;
 }
 
 bool is_scene_file(const std::string& name) { return extension(name) == ".json"; }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/scene/object_pair.h"
 #include "core/scene/scene.h"
 
 namespace farcull {
@@ -18,8 +19,10 @@ using TakePart = std::function<void(Scene& part)>;
 /// each part. A part is a mesh file, an object of a scene file, or some objects of the built-in
 /// scene `field`; every other built-in scene, or one with suffixes, is a single part. Memory: the
 /// largest part with its file, 256 MiB of meshes that a scene file names several times, and the
-/// names of the objects of mesh and scene files. Throws Error as load_scene(), perhaps after some
-/// parts, and what take() throws.
-void stream_scene(const std::vector<std::string>& arguments, const TakePart& take);
+/// names of the objects of mesh and scene files. Returns the pairs of objects that the scene
+/// ignores, in the numbers of the whole scene; parts ignore none. Throws Error as load_scene(),
+/// perhaps after some parts, and what take() throws.
+std::vector<ObjectPair> stream_scene(const std::vector<std::string>& arguments,
+                                     const TakePart& take);
 
 }  // namespace farcull

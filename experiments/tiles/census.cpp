@@ -90,7 +90,7 @@ Fnv1a Census::begun_hash() const {
 Census take_census(const SceneSource& source, double clearance, bool names) {
   Census out;
   Sampler sampler;
-  source([&](Scene& part) {
+  out.ignored = source([&](Scene& part) {
     out.name = part.name;
     out.objects += part.objects.size();
     for (const Object& object : part.objects) {

@@ -15,15 +15,17 @@
 
 namespace farcull {
 
-/// Calls its argument with one part of a scene after the other, the same ones each time.
-using SceneSource = std::function<void(const TakePart&)>;
+/// Calls its argument with one part of a scene after the other, the same ones each time, and
+/// returns the pairs of objects that the scene ignores, as stream_scene() does.
+using SceneSource = std::function<std::vector<ObjectPair>(const TakePart&)>;
 
-/// What a reading of all parts tells. Memory: 65,536 triangles, and 16 bytes for each object whose
-/// number of triangles is not that of the object before it.
+/// What a reading of all parts tells. Memory: 65,536 triangles, 16 bytes for each object whose
+/// number of triangles is not that of the object before it, and the ignored pairs.
 struct Census {
   std::string name;
   std::uint64_t objects = 0, self_objects = 0, triangles = 0;
-  std::vector<std::string> names;  // of the objects; empty where they were not asked for
+  std::vector<std::string> names;   // of the objects; empty where they were not asked for
+  std::vector<ObjectPair> ignored;  // by the scene, as in_order() gives them
   /// Grown boxes of some triangles: all of them where there are at most 65,536, else those of which
   /// the numbers are chosen by a fixed hash. So the same scene gives the same sample everywhere.
   std::vector<Box> sample;

@@ -1,19 +1,18 @@
 // The stages of experiments/method/run.h, with one more: candidates of other tiles are removed
-// before the exact tests, and after the accounting.
+// after the accounting, and before the exact tests.
 #include "experiments/tiles/run_tile.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
-#include <thread>
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/base/text.h"
-#include "core/scene/members.h"
+#include "core/scene/ignored.h"
+#include "experiments/method/stages.h"
 
 namespace farcull {
 namespace {
@@ -42,51 +41,6 @@ Scene names_of(const Census& census) {
   return out;
 }
 
-// Accounts for every pair of the part: kept are the candidates of all tiles.
-void account_for_part(const Scene& scene, Record& record) {
-  Stage stage{.kind = StageKind::verify, .reason = Reason::not_asked, .unit = Unit::pairs};
-  if (record.options.verify) {
-    record.verification = account(scene, record.found.pairs,
-                                  {.clearance = record.options.clearance,
-                                   .max_examples = std::numeric_limits<std::size_t>::max(),
-                                   .ignored = record.options.ignored});
-    Accounting& accounting = *record.verification;
-    if (record.options.clearance == 0) record.missed = count_contacts(scene, accounting.examples);
-    accounting.examples.resize(std::min(accounting.examples.size(), kExamples));
-    stage.ran = true;
-    stage.reason = Reason::every_pair;
-    stage.ms = accounting.ms;
-    stage.in = accounting.pairs_total;
-    stage.out = accounting.false_negatives;
-  }
-  record.trace.push_back(stage);
-}
-
-void decide_own(const Scene& scene, Record& record) {
-  const Stopwatch watch;
-  record.collisions =
-      decide(scene, record.found.pairs,
-             {.clearance = record.options.clearance, .neighbours = record.options.neighbours});
-  record.decided = record.found.pairs.size();
-  record.ms.exact = watch.ms();
-  record.trace.push_back(
-      {.kind = StageKind::exact,
-       .ran = true,
-       .reason = Reason::predicates,
-       .ms = record.ms.exact,
-       .in = record.decided,
-       .out = record.collisions.pairs.size() + record.collisions.neighbour_pairs.size(),
-       .unit = Unit::pairs});
-}
-
-// The potentially colliding set of the candidates that are left.
-void count_kept(const Scene& scene, Candidates& found) {
-  found.count = found.pairs.size();
-  found.triangles = members_of(found.pairs, scene.triangles.size());
-  found.triangle_count = found.triangles.size();
-  found.object_count = count_objects(scene, found.triangles);
-}
-
 Record run_part(const TileScene& part, const RunOptions& options, const Slab& slab,
                 Session& session, const Progress& progress, std::uint64_t& elsewhere) {
   const FloatingPointGuard guard;
@@ -112,24 +66,15 @@ Record run_part(const TileScene& part, const RunOptions& options, const Slab& sl
   }
   record.ms.setup = record.found.setup_ms;
   record.ms.cull += record.found.ms;
-  if (progress && options.verify) progress("accounting for every pair");
-  account_for_part(scene, record);
+  verify_stage(scene, record.found.pairs, progress, record);  // the candidates of all tiles
   elsewhere = std::erase_if(record.found.pairs, [&](const TrianglePair& pair) {
     return !owns(slab, scene, pair, options.clearance);
   });
+  record.found.count = record.found.pairs.size();
   count_kept(scene, record.found);
-  if (progress) progress("exact tests");
-  decide_own(scene, record);
+  decide_stage(scene, session, progress, record);
   record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
-  if (options.contacts != ContactDetail::none) {
-    const Stopwatch watch;
-    const unsigned threads =
-        session.threads() > 0 ? session.threads() : std::thread::hardware_concurrency();
-    record.contacts = contacts_of(scene, record.collisions.pairs, options.contacts, threads);
-    record.neighbour_contacts =
-        contacts_of(scene, record.collisions.neighbour_pairs, options.contacts, threads);
-    record.ms.contacts = watch.ms();
-  }
+  contact_stage(scene, session, progress, record);
   require_proved("arithmetic");  // a driver's code ran in this thread too
   record.used = floating_point();
   return record;
@@ -176,8 +121,12 @@ TileRun run_tile(const SceneSource& source, const TileQuestion& question, Sessio
   out.part.scene.name += fmt::format(" (tile {} of {})", out.tile.k, out.tile.n);
   out.read_ms = reading.ms();
   RunOptions options = question.options;
-  if (question.ignored)
-    options.ignored = in_part(question.ignored(names_of(out.census)), out.part.numbers);
+  options.ignored = in_part(out.census.ignored, out.part.numbers);
+  if (question.ignored) {
+    for (const ObjectPair& pair : in_part(question.ignored(names_of(out.census)), out.part.numbers))
+      options.ignored.push_back(pair);
+    options.ignored = in_order(std::move(options.ignored));
+  }
   out.record = run_part(out.part, options, out.slab, session, progress, out.elsewhere);
   return out;
 }

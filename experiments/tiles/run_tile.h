@@ -28,8 +28,8 @@ inline constexpr std::size_t kMostTiles = 10'000;
 struct TileQuestion {
   RunOptions options;  // of far-pairs, without a limit; `ignored` is empty
   TileNumber tile = {};
-  /// Which objects are ignored, as pairs of the objects of a scene that has the names alone; empty:
-  /// none.
+  /// Which objects are ignored beside those that the scene ignores, as pairs of the objects of a
+  /// scene that has the names alone; empty: none.
   std::function<std::vector<ObjectPair>(const Scene& names)> ignored = {};
   std::string ignored_text = {};  // the same in words, which all tiles have to share
 };

@@ -20,6 +20,17 @@ std::string axis_name(int axis) { return std::string(1, "xyz"[axis]); }
 // Null where a tile has no end on this side.
 Json end_json(double at) { return std::isfinite(at) ? Json(at) : Json(nullptr); }
 
+// What the scene ignores, in the same text for all tiles. Its hash (scene_hash()) leaves that out.
+std::string ignored_text(const std::vector<ObjectPair>& ignored) {
+  if (ignored.empty()) return "";
+  Fnv1a hash;
+  for (const ObjectPair& pair : ignored) {
+    hash.add(std::uint64_t{pair.a});
+    hash.add(std::uint64_t{pair.b});
+  }
+  return fmt::format("{}, {}", counted(ignored.size(), "pair", "pairs"), hash.hex());
+}
+
 std::string interval_text(const Slab& slab) {
   const bool first = slab.from == -HUGE_VAL, last = slab.to == HUGE_VAL;
   if (first && last) return "everything";
@@ -95,7 +106,8 @@ Json tile_json(const TileRun& run, const TileList* list) {
                    {"full", o.full},
                    {"verify", o.verify},
                    {"contacts", o.contacts != ContactDetail::none},
-                   {"ignored", run.ignored}}},
+                   {"ignored", run.ignored},
+                   {"ignored_by_the_scene", ignored_text(run.census.ignored)}}},
                  {"list", list ? list_json(*list) : Json(nullptr)},
                  {"read_ms", run.read_ms},
                  {"peak_memory_mib", peak_memory_mib()}};

@@ -66,6 +66,12 @@ cat >again.json <<END
   {"mesh": "$mesh", "split": "components", "scale": 1.5}]}
 END
 same 2 again.json
+# A scene that ignores pairs of its objects, some of which meet no tile of the other.
+sed -E '0,/^\{/s//{"ignore": [["*1", "*2"], ["*3", "*4"]],/' crowd/scene.json >crowd/ignores.json
+same 3 crowd/ignores.json
+same 2 crowd/ignores.json --ignore '*5:*6'
+"$program" run crowd/scene.json --no-verify --tiles 2/2 --json t2.json --pairs t2.csv >out.txt
+refused "was run with other options" merge t1.json t2.json -o merged.csv
 same 2 "$mesh" "$mesh"
 
 # The plan cuts where the runs cut, and counts what they read.

@@ -49,7 +49,7 @@ class MergeTiles : public testing::Test {
 
   void run(std::size_t k, std::size_t n, const std::string& scene, double clearance = 0) {
     TileQuestion question{.options = {.device = "native", .clearance = clearance}, .tile = {k, n}};
-    const SceneSource source = [&](const TakePart& take) { stream_scene({scene}, take); };
+    const SceneSource source = [&](const TakePart& take) { return stream_scene({scene}, take); };
     const TileRun tile = run_tile(source, question, session_);
     const TileList text{
         .text = tile_list(tile, {}), .file = list(k).filename().string(), .columns = {}};

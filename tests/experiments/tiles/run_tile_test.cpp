@@ -23,10 +23,10 @@ RunOptions native(double clearance) {
 TEST(Tiles, GiveTheListOfOneRunOnRandomScenes) {
   RandomNumbers random(4);
   Session session("native");
-  std::uint64_t pairs = 0, elsewhere = 0, shared = 0;
+  std::uint64_t pairs = 0, elsewhere = 0, shared = 0, ignored = 0;
   for (int trial = 0; trial < 1000; ++trial) {
     SCOPED_TRACE(trial);
-    const Scene scene = small_scene(random);
+    Scene scene = small_scene(random);
     RunOptions options = native(trial % 3 == 0 ? 0.5 * random.below(3) : 0);
     options.contacts = trial % 5 == 0 ? ContactDetail::kinds : ContactDetail::none;
     const PairColumns columns = {.faces = trial % 2 == 0,
@@ -36,7 +36,14 @@ TEST(Tiles, GiveTheListOfOneRunOnRandomScenes) {
       options.ignored = {{0, 1}};
       question.ignored = [](const Scene&) { return std::vector<ObjectPair>{{0, 1}}; };
     }
+    if (trial % 8 < 2 && scene.objects.size() > 2) scene.ignored = {{0, 2}, {1, 2}};
     const Record whole = run(scene, options, session);
+    if (!scene.ignored.empty()) {
+      Scene all = scene;
+      all.ignored.clear();
+      const Record more = run(all, options, session);
+      ignored += more.collisions.pairs.size() - whole.collisions.pairs.size();
+    }
     std::vector<std::string> lists;
     const std::size_t n = 1 + random.below(std::size_t{5});
     std::uint64_t home = 0, candidates = 0;
@@ -62,6 +69,7 @@ TEST(Tiles, GiveTheListOfOneRunOnRandomScenes) {
   EXPECT_GT(pairs, 5000);
   EXPECT_GT(elsewhere, 1000);
   EXPECT_GT(shared, 1000);
+  EXPECT_GT(ignored, 100);  // so a tile that forgets what the scene ignores has another list
 }
 
 TEST(Tiles, NoticeASceneThatChangesBetweenTheReadings) {
@@ -77,7 +85,7 @@ TEST(Tiles, NoticeASceneThatChangesBetweenTheReadings) {
     return [&scene, &reading, change](const TakePart& take) {
       Scene now = scene;
       if (++reading == 2) change(now);
-      source_of(now)(take);
+      return source_of(now)(take);
     };
   };
   const auto drop = [](Scene& now) {
@@ -142,7 +150,7 @@ void expect_same(const std::vector<std::string>& arguments, std::size_t least_pa
   std::vector<std::string> names, known;
   std::vector<std::uint32_t> faces;
   std::size_t parts = 0;
-  const SceneSource source = [&](const TakePart& take) { stream_scene(arguments, take); };
+  const SceneSource source = [&](const TakePart& take) { return stream_scene(arguments, take); };
   source([&](Scene& part) {
     ++parts;
     EXPECT_EQ(part.name, scene.name);
@@ -155,6 +163,7 @@ void expect_same(const std::vector<std::string>& arguments, std::size_t least_pa
   EXPECT_EQ(faces, scene.source_face);
   const Census census = take_census(source, 0, true);
   EXPECT_EQ(census.names, known);
+  EXPECT_EQ(census.ignored, scene.ignored);
   const TileScene all = gather_tile(source, census, {}, 0);
   EXPECT_EQ(all.hash, scene_hash(scene));
   EXPECT_EQ(all.scene.triangles.size(), scene.triangles.size());

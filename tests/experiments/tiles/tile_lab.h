@@ -57,6 +57,7 @@ inline SceneSource source_of(const Scene& scene) {
       part.objects[0].first_triangle = 0;
       take(part);
     }
+    return scene.ignored;
   };
 }
 

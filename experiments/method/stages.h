@@ -1,0 +1,25 @@
+// The last stages of run(), for those who put others between them.
+#pragma once
+
+#include "core/base/progress.h"
+#include "experiments/method/run.h"
+
+namespace farcull {
+
+/// Sets the triangles and objects that are left from the candidate pairs.
+void count_kept(const Scene& scene, Candidates& found);
+
+/// Decides the candidates by exact predicates, with the clearance and the limit of record.options.
+/// Sets collisions, decided, complete and ms.exact, and adds a stage to the trace.
+void decide_stage(const Scene& scene, Session& session, const Progress& progress, Record& record);
+
+/// If record.options ask for it: accounts for every pair that is not in `left`. Sets verification
+/// and missed. Adds a stage to the trace in any case.
+void verify_stage(const Scene& scene, const std::vector<TrianglePair>& left,
+                  const Progress& progress, Record& record);
+
+/// If record.options ask for it: the kinds of contact of the colliding pairs, on as many threads as
+/// the session has. Sets contacts, neighbour_contacts and ms.contacts.
+void contact_stage(const Scene& scene, Session& session, const Progress& progress, Record& record);
+
+}  // namespace farcull
