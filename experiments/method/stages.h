@@ -1,10 +1,26 @@
-// The last stages of run(), for those who put others between them.
+// The stages of run() behind find(). run_tile() puts one more between them.
 #pragma once
 
+#include <cstdint>
+#include <utility>
+#include <vector>
+
 #include "core/base/progress.h"
-#include "experiments/method/run.h"
+#include "experiments/method/record.h"
+#include "experiments/method/session.h"
 
 namespace farcull {
+
+/// Decides the candidates by exact predicates, where the method has not done so.
+Collisions decide(const Scene& scene, const Candidates& candidates, const ExactQuestion& question);
+
+/// What the options ask of how pairs meet, one for each.
+std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<TrianglePair>& pairs,
+                                      ContactDetail contacts, unsigned threads);
+
+/// How many of the colliding pairs, neighbours among them, meet in each way; all kinds in their
+/// order.
+std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& record);
 
 /// Sets the triangles and objects that are left from the candidate pairs.
 void count_kept(const Scene& scene, Candidates& found);
