@@ -15,6 +15,7 @@
 
 #include "core/base/stopwatch.h"
 #include "experiments/measure/peers/distance_peers.h"
+#include "experiments/measure/peers/distance_tasks.h"
 #include "experiments/measure/peers/parts.h"
 #include "verify/exact.h"
 
@@ -122,43 +123,15 @@ PeerDistances ask(const Scene& scene, const PeerQuestion& question, unsigned thr
   const auto trees = trees_of(scene, threads);
   PeerDistances answer{.build_ms = building.ms()};
   const Stopwatch asking;
-  const double most = std::nextafter(question.within * question.within, HUGE_VAL);
-  if (question.task == DistanceTask::objects) {
-    std::vector<std::pair<std::size_t, std::size_t>> tasks;
-    for (std::size_t i = 0; i < trees.size(); ++i) {
-      for (std::size_t k = i + 1; k < trees.size(); ++k) tasks.emplace_back(i, k);
-    }
-    answer.distances.resize(tasks.size());
-    for_each_taken(tasks.size(), 1, threads, [&](std::size_t t) {
-      const TreeOfObject &a = *trees[tasks[t].first], &b = *trees[tasks[t].second];
-      answer.distances[t] = {a.number, b.number,
-                             root_within(squared_distance_of(a, b, most), question.within)};
-    });
-  } else {
-    answer.distances.resize(trees.size());
-    for_each_taken(trees.size(), 1, threads, [&](std::size_t i) {
-      // By the gaps of boxes, the least one first.
-      std::vector<std::pair<double, std::size_t>> others;
-      for (std::size_t k = 0; k < trees.size(); ++k) {
-        if (k != i) others.emplace_back(squared_gap(trees[i]->box, trees[k]->box), k);
-      }
-      std::sort(others.begin(), others.end());
-      double least = most;
-      std::uint32_t nearest = trees[i]->number;
-      for (const auto& [gap, k] : others) {
-        if (gap >= least) break;
-        const double found = squared_distance_of(*trees[i], *trees[k], least);
-        if (found < least) {
-          least = found;
-          nearest = trees[k]->number;
-        }
-      }
-      const double found = nearest == trees[i]->number ? std::numeric_limits<double>::infinity()
-                                                       : root_within(least, question.within);
-      answer.distances[i] = {trees[i]->number, nearest, found};
-    });
-  }
-  std::erase_if(answer.distances, [](const PeerDistance& d) { return std::isinf(d.distance); });
+  std::vector<std::uint32_t> numbers;
+  for (const auto& tree : trees) numbers.push_back(tree->number);
+  answer.distances = distances_of_trees(
+      numbers, question.task, std::nextafter(question.within * question.within, HUGE_VAL), threads,
+      [&](std::size_t i, std::size_t k) { return squared_gap(trees[i]->box, trees[k]->box); },
+      [&](std::size_t i, std::size_t k, double least) {
+        return squared_distance_of(*trees[i], *trees[k], least);
+      },
+      [&](double squared) { return root_within(squared, question.within); });
   answer.query_ms = asking.ms();
   return answer;
 }

@@ -16,6 +16,7 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "experiments/measure/peers/distance_peers.h"
+#include "experiments/measure/peers/distance_tasks.h"
 #include "experiments/measure/peers/parts.h"
 #include "verify/exact.h"
 
@@ -206,39 +207,16 @@ PeerDistances ask(const Scene& scene, const PeerQuestion& question, unsigned thr
     return found < most && found <= question.within ? static_cast<double>(found)
                                                     : std::numeric_limits<double>::infinity();
   };
-  if (question.task == DistanceTask::objects) {
-    std::vector<std::pair<std::size_t, std::size_t>> tasks;
-    for (std::size_t i = 0; i < trees.size(); ++i) {
-      for (std::size_t k = i + 1; k < trees.size(); ++k) tasks.emplace_back(i, k);
-    }
-    answer.distances.resize(tasks.size());
-    for_each_taken(tasks.size(), 1, threads, [&](std::size_t t) {
-      const TreeOfObject &a = trees[tasks[t].first], &b = trees[tasks[t].second];
-      answer.distances[t] = {a.number, b.number, found_within(bound_of(a, b, most))};
-    });
-  } else {
-    answer.distances.resize(trees.size());
-    for_each_taken(trees.size(), 1, threads, [&](std::size_t i) {
-      // By the gaps of boxes, the least one first.
-      std::vector<std::pair<float, std::size_t>> others;
-      for (std::size_t k = 0; k < trees.size(); ++k) {
-        if (k != i) others.emplace_back(gap(trees[i], trees[k]), k);
-      }
-      std::sort(others.begin(), others.end());
-      float least = most;
-      std::uint32_t nearest = trees[i].number;
-      for (const auto& [apart, k] : others) {
-        if (apart >= least) break;
-        const float found = bound_of(trees[i], trees[k], least);
-        if (!(found < least)) continue;
-        least = found;
-        nearest = trees[k].number;
-      }
-      answer.distances[i] = {trees[i].number, nearest, found_within(least)};
-    });
-  }
+  std::vector<std::uint32_t> numbers;
+  for (std::size_t i = 0; i < trees.size(); ++i) numbers.push_back(trees[i].number);
+  answer.distances = distances_of_trees(
+      numbers, question.task, most, threads,
+      [&](std::size_t i, std::size_t k) { return gap(trees[i], trees[k]); },
+      [&](std::size_t i, std::size_t k, float least) {
+        return bound_of(trees[i], trees[k], least);
+      },
+      found_within);
   trees.check();
-  std::erase_if(answer.distances, [](const PeerDistance& d) { return std::isinf(d.distance); });
   answer.query_ms = asking.ms();
   return answer;
 }
