@@ -7,8 +7,9 @@
 #                  second time, which has to be refused, since the first one still writes the file
 #   killed task    its program is killed; it is put back in the queue by hand
 # Then the shards are merged, and the rows have to be equal to those of an undisturbed run. The same is
-# done with GNU parallel and with Open MPI, each with a process that is killed in the middle. It is no part
-# of CI.
+# done with GNU parallel and with Open MPI, each with a process that is killed in the middle. At last
+# experiments/tiles.sbatch is submitted, the program of a tile is killed and put back, and the merged list
+# of pairs has to be that of one run. It is no part of CI.
 #   bash tests/cluster.sh                                 the study radius, --quick: some minutes
 #   STUDY=accuracy bash tests/cluster.sh --device native  another study and other options
 # It installs what is missing and builds. The log and those of the daemons are in build/cluster/.
@@ -27,7 +28,7 @@ study=${STUDY:-radius}
 export STUDY=$study
 options=("$@")
 if ((${#options[@]} == 0)); then options=(--quick); fi
-readonly tasks=4
+readonly tasks=4 tile_scene=field:2000000
 folder=build/cluster
 rm -rf "$folder"
 mkdir -p "$folder"
@@ -323,6 +324,40 @@ slurm() {
   merges slurm Slurm
 }
 
+# The tiles of a scene, each a task; the program of the second one is killed before it has a record.
+hold_tile() { # K: stops the program of that tile; 1: it does not run yet. $program is set.
+  program=$(process_of farcull "SLURM_ARRAY_TASK_ID=$1")
+  [[ -n $program ]] || return 1
+  kill -STOP "$program"
+  held+=("$program")
+}
+merge_tiles() {
+  build/farcull merge "$folder"/tiles/tile-*.json -o "$folder/tiles/merged.csv" >>"$folder/merged.txt" 2>"$work/refused"
+}
+tiles() {
+  local -i job
+  local program
+  say "tiles of $tile_scene"
+  waited build/farcull run "$tile_scene" --no-verify --pairs "$folder/one-run.csv" >"$folder/one-run.txt"
+  job=$(SCENE=$tile_scene sbatch --parsable --array=1-$tasks --output="$farcull_root/$folder/tiles-%A-%a.log" \
+    experiments/tiles.sbatch "$folder/tiles" --no-verify)
+  say "tiles: job $job, $tasks tasks"
+  until_true 120 hold_tile 2 || give_up "tile 2 does not start: $(states "$job")"
+  check "tiles: task 2 has no record when it is killed" not test -e "$folder/tiles/tile-2.json"
+  kill -KILL "$program"
+  check "tiles: task 2 failed, after its program was killed" until_true 60 state_is "$job" 2 FAILED
+  check "tiles: the queue is empty" until_true 300 is_over "$job"
+  check "tiles: three tiles of four are not merged" not merge_tiles
+  check "tiles: the refusal says why" says "$work/refused" "of its $tasks tiles one is missing: 2"
+  scontrol requeue "${job}_2"
+  check "tiles: after it was put back every task is complete" until_true 300 all_completed "$job"
+  check "tiles: the tiles are merged" merge_tiles
+  check "tiles: the $(($(wc -l <"$folder/one-run.csv") - 1)) pairs are those of one run" \
+    cmp -s "$folder/one-run.csv" "$folder/tiles/merged.csv"
+  sed -i '$d' "$folder/tiles/tile-3.csv"
+  check "tiles: twin: a pair that is gone from a list is noticed" not merge_tiles
+}
+
 # ---- GNU parallel and Open MPI ----
 
 # disturbed NAME K N VARIABLE COMMAND...: runs the command, and kills the program of shard K in the
@@ -359,6 +394,7 @@ disturbed openmpi 2 4 OMPI_COMM_WORLD_RANK=1 mpirun --oversubscribe -n 4 \
 unset "${!OMPI_@}"
 
 slurm
+tiles
 
 say "$failures checks failed; $(grep -c '  ok  ' "$folder/log.txt") passed"
 ((failures == 0))
