@@ -208,8 +208,8 @@ std::string reason_of(const Stage& stage) {
       return "--no-verify";
     case Reason::near_boxes:
       return counted(stage.n, "pair of objects", "pairs of objects") + "; boxes compared: " + m;
-    case Reason::not_signed:
-      return "--signed no";
+    case Reason::inside_not_asked:
+      return "--inside no";
     case Reason::if_more_left:
       return stage.n > 0 ? "if more than " + triangles_left(stage.n) : "if any triangle is left";
     case Reason::if_more_candidates:

@@ -87,7 +87,7 @@ enum class Reason : std::uint8_t {
   every_pair,          // every pair is accounted for
   not_asked,           // --no-verify
   near_boxes,          // of n pairs of objects; m bounds of boxes were compared
-  not_signed,          // --signed no
+  inside_not_asked,    // --inside no
   // Rules by which pixels decide, in a plan.
   if_more_left,        // if more than n triangles are left (n = 0: any)
   if_more_candidates,  // if more than n candidates are left for each triangle that takes part

@@ -36,12 +36,12 @@ constexpr const char* kDistanceExamples =
     "  farcull distance far-apart --verify\n"
     "  farcull distance far-apart --certificate d.json && farcull check d.json far-apart\n"
     "  farcull distance 'cloth_%04d.obj' body.obj --frames 1:100 --csv frames.csv\n"
-    "  farcull distance crowd --neighbours published --resolution 128\n\n"
+    "  farcull distance crowd --voronoi published --resolution 128\n\n"
     "A distance is that of the surfaces; it is the root of an exact number, rounded once.\n"
     "The witness points are rounded too, coordinate by coordinate. 0: the objects meet.\n"
     "docs/proximity.md has the columns and the proof.\n\n"
     "Exit status 0: answered, also where objects meet. 1: --verify found a nearer pair than an\n"
-    "answer, or a wrong answer; or --neighbours reliable lost a nearest object. 2: the input or "
+    "answer, or a wrong answer; or --voronoi reliable lost a nearest object. 2: the input or "
     "an\n"
     "option is wrong.";
 
@@ -179,7 +179,7 @@ CLI::App* DistanceCommand::add_to(CLI::App& app) {
   add_flag(*command, "--self", self_,
            "the triangles of one object as well, those that share\n"
            "a vertex position left out");
-  add("--signed", signed_, "yes|no",
+  add("--inside", inside_, "yes|no",
       "no: leave out whether an object lies inside another;\ndefault yes");
   add("--threads", threads_, "N", "of the CPU; default as many as there are cores");
   add_flag(
@@ -192,7 +192,7 @@ CLI::App* DistanceCommand::add_to(CLI::App& app) {
   add("--certificate", outputs_.certificate, "FILE",
       "write evidence of each distance to this file, for\n"
       "farcull check; with --frames a number (%d or %04d) in it");
-  neighbours_.add_to(*command);
+  diagram_.add_to(*command);
   add_footer(*command, kDistanceExamples);
   return command;
 }
@@ -215,13 +215,13 @@ DistanceOptions DistanceCommand::parse() const {
   if (self_ && out.pairs == DistancePairs::nearest)
     throw Error("--self", "has no meaning with --pairs nearest: no object is its own neighbour",
                 "leave it out, or use --pairs objects or all");
-  if (signed_) {
-    if (*signed_ != "yes" && *signed_ != "no")
-      throw Error("--signed", "'" + *signed_ + "' is no choice", "give yes or no");
-    if (*signed_ == "yes" && out.pairs == DistancePairs::all)
-      throw Error("--signed", "yes has no meaning with --pairs all",
+  if (inside_) {
+    if (*inside_ != "yes" && *inside_ != "no")
+      throw Error("--inside", "'" + *inside_ + "' is no choice", "give yes or no");
+    if (*inside_ == "yes" && out.pairs == DistancePairs::all)
+      throw Error("--inside", "yes has no meaning with --pairs all",
                   "leave it out, or use --pairs objects or nearest");
-    out.inside = *signed_ == "yes";
+    out.inside = *inside_ == "yes";
   }
   out.threads = threads();
   out.verify = verify_;
@@ -237,15 +237,15 @@ unsigned DistanceCommand::threads() const {
   return *threads;
 }
 
-// With --neighbours no distances are answered.
+// With --voronoi no distances are answered.
 void DistanceCommand::require_no_distances() const {
   for (const auto& [option, given] :
        {std::pair("--pairs", pairs_.has_value()), std::pair("--k", k_.has_value()),
         std::pair("--within", within_.has_value()), std::pair("--self", self_),
-        std::pair("--signed", signed_.has_value()), std::pair("--verify", verify_),
+        std::pair("--inside", inside_.has_value()), std::pair("--verify", verify_),
         std::pair("--frames", frames_.has_value()),
         std::pair("--certificate", outputs_.certificate.has_value())}) {
-    if (given) throw Error(option, "has no meaning with --neighbours", "leave one of the two out");
+    if (given) throw Error(option, "has no meaning with --voronoi", "leave one of the two out");
   }
 }
 
@@ -264,9 +264,9 @@ void DistanceCommand::require_question(const Scene& scene, const DistanceOptions
 }
 
 int DistanceCommand::run() const {
-  if (neighbours_.asked()) {
+  if (diagram_.asked()) {
     require_no_distances();
-    const DiagramOptions options = neighbours_.parse(threads());
+    const DiagramOptions options = diagram_.parse(threads());
     check_scene(scene_);
     return run_neighbours(scene_, options, checked(outputs_, scene_files(scene_, {})));
   }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/command/distance_neighbours.h"
+#include "experiments/command/distance_diagram.h"
 #include "experiments/command/options.h"
 #include "experiments/method/distances.h"
 #include "experiments/scenes/frames.h"
@@ -29,9 +29,9 @@ class DistanceCommand {
   int run_frames(const DistanceOptions& options, const Outputs& outputs, FrameRange range) const;
 
   std::vector<std::string> scene_;
-  Text pairs_, k_, within_, signed_, threads_, frames_;
+  Text pairs_, k_, within_, inside_, threads_, frames_;
   bool self_ = false, verify_ = false;
-  DiagramArguments neighbours_;
+  DiagramArguments diagram_;
   Outputs outputs_;
 };
 

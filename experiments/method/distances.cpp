@@ -179,7 +179,7 @@ void between_objects(const Scene& scene, const Progress& progress, DistanceMemor
 void find_insides(const Scene& scene, const Progress& progress, DistanceRecord& record) {
   Stage stage{.kind = StageKind::inside, .unit = Unit::pairs};
   if (!record.options.inside) {
-    stage.reason = Reason::not_signed;
+    stage.reason = Reason::inside_not_asked;
     record.trace.push_back(stage);
     return;
   }

@@ -36,27 +36,27 @@ bad 'nearest and self' '--self: has no meaning with --pairs nearest' distance "$
 for threads in 0 -1 1025 x ''; do
   bad "threads '$threads'" '--threads: ' distance "${two[@]}" --threads "$threads"
 done
-bad 'signed maybe' '--signed: .*give yes or no' distance "${two[@]}" --signed maybe
-bad 'signed triangles' '--signed: ' distance "${two[@]}" --pairs all --within 1 --signed yes
+bad 'inside maybe' '--inside: .*give yes or no' distance "${two[@]}" --inside maybe
+bad 'inside of triangles' '--inside: ' distance "${two[@]}" --pairs all --within 1 --inside yes
 bad 'no such option' '--clearance: farcull distance has no such option' distance "${two[@]}" --clearance 1
 bad 'no such file' 'none\.obj: ' distance small.obj none.obj --json old.json
 bad 'an output that is read' '--csv: ' distance "${two[@]}" --csv right.obj
 bad 'one file twice' '--csv: .*--json' distance "${two[@]}" --csv a.out --json a.out
 bad 'frames of what stands still' '--frames: nothing .*%d' distance "${two[@]}" --frames 3
-bad 'no such diagram' "--neighbours: 'some' is no choice; give published or reliable" distance "${two[@]}" \
-  --neighbours some
+bad 'no such diagram' "--voronoi: 'some' is no choice; give published or reliable" distance "${two[@]}" \
+  --voronoi some
 for cells in 0 -1 1.5 '' x 16385 99999999999999999999; do
-  bad "cells '$cells'" '--resolution: ' distance "${two[@]}" --neighbours reliable --resolution "$cells"
+  bad "cells '$cells'" '--resolution: ' distance "${two[@]}" --voronoi reliable --resolution "$cells"
 done
-bad 'a device of distances' '--device: has no meaning without --neighbours' distance "${two[@]}" --device cpu
-bad 'no such device' "--device: 'toaster' is no device" distance "${two[@]}" --neighbours published --device toaster
-bad 'cells of distances' '--resolution: has no meaning without --neighbours' distance "${two[@]}" --resolution 64
-for option in '--pairs nearest' '--k 2' '--within 1' --self '--signed no' --verify '--frames 3' '--certificate c.json'; do
+bad 'a device of distances' '--device: has no meaning without --voronoi' distance "${two[@]}" --device cpu
+bad 'no such device' "--device: 'toaster' is no device" distance "${two[@]}" --voronoi published --device toaster
+bad 'cells of distances' '--resolution: has no meaning without --voronoi' distance "${two[@]}" --resolution 64
+for option in '--pairs nearest' '--k 2' '--within 1' --self '--inside no' --verify '--frames 3' '--certificate c.json'; do
   # shellcheck disable=SC2086 # an option and its value
-  bad "a diagram and $option" "${option%% *}: has no meaning with --neighbours" distance "${two[@]}" \
-    --neighbours published $option
+  bad "a diagram and $option" "${option%% *}: has no meaning with --voronoi" distance "${two[@]}" \
+    --voronoi published $option
 done
-bad 'a diagram of one object' 'SCENE: only one object' distance small.obj --neighbours published
+bad 'a diagram of one object' 'SCENE: only one object' distance small.obj --voronoi published
 ((cases += 1))
 launch distance random-soup --pairs all --within 100 # for longer than bad() lets it
 refused 'more pairs than are answered' 'within: has (more than )?[0-9]+ pairs .*; give a smaller distance'
@@ -99,8 +99,8 @@ good 'outside in' 0 distance large.obj small.obj --csv -
 expect 'outside in' "$out" ',b$'
 good 'not closed' 0 distance small.obj open.obj --csv -
 expect 'not closed' "$out" ',not closed$'
-good 'not signed' 0 distance small.obj large.obj --signed no --csv -
-expect 'not signed' "$out" ',$'
+good 'inside not asked' 0 distance small.obj large.obj --inside no --csv -
+expect 'inside not asked' "$out" ',$'
 good 'within less' 0 distance "${two[@]}" --within 0.999 --csv -
 ((cases += 1))
 (($(wc -l <"$out") == 1)) || fail 'within less' 'an answer'
@@ -146,19 +146,19 @@ printf 'v -1.7e308 0 0\nv -1.6e308 0 0\nv -1.7e308 1 0\nf 1 2 3\n' >left_end.obj
 good 'beyond the doubles' 0 distance right_end.obj left_end.obj --verify --json - --certificate ends.json
 expect 'beyond the doubles' "$out" '^ +"distance": null,$'
 good 'beyond the doubles, proved' 0 check ends.json right_end.obj left_end.obj
-good 'frames of a built-in scene' 0 distance two-spheres --frames 2 --signed no
-good 'a diagram' 0 distance small.obj right.obj large.obj --neighbours published
+good 'frames of a built-in scene' 0 distance two-spheres --frames 2 --inside no
+good 'a diagram' 0 distance small.obj right.obj large.obj --voronoi published
 expect 'a diagram' "$out" '^0 small +1 right +1 +'
 expect 'a diagram' "$out" '^nearest +[3-6] nearest objects of 3 objects; the diagram lost [0-9]+$'
-good 'a diagram that loses' 0 distance ground@tiny --neighbours published --csv lost.csv --json lost.json
+good 'a diagram that loses' 0 distance ground@tiny --voronoi published --csv lost.csv --json lost.json
 expect 'a diagram that loses' lost.csv '^object,nearest,nearest_objects,distance,'
 expect 'a diagram that loses' lost.json '^    "lost": [1-9]'
-good 'a reliable diagram' 0 distance crowd --neighbours reliable --resolution 32 --threads 1 --json -
+good 'a reliable diagram' 0 distance crowd --voronoi reliable --resolution 32 --threads 1 --json -
 expect 'a reliable diagram' "$out" '^    "lost": 0,$'
 for form in published reliable; do
-  good "a $form diagram on GL" 0 distance small.obj right.obj large.obj --neighbours "$form" --resolution 9 \
+  good "a $form diagram on GL" 0 distance small.obj right.obj large.obj --voronoi "$form" --resolution 9 \
     --device software --csv gl.csv --json gl.json
-  good "a $form diagram on the CPU" 0 distance small.obj right.obj large.obj --neighbours "$form" --resolution 9 \
+  good "a $form diagram on the CPU" 0 distance small.obj right.obj large.obj --voronoi "$form" --resolution 9 \
     --device cpu --csv cpu.csv
   ((cases += 1))
   [[ $(cut -d, -f1-4,7 gl.csv) == "$(cut -d, -f1-4,7 cpu.csv)" ]] || fail "a $form diagram on GL" 'other answers'

@@ -40,5 +40,5 @@ for device in software hardware gl 0; do
   refused run two-spheres --method far --device "$device"
   refused run two-spheres --method far-pairs --device "$device"
 done
-refused distance two-spheres --neighbours published --device gl
+refused distance two-spheres --voronoi published --device gl
 refused picture two-spheres -o "$work/picture.png"

@@ -1,4 +1,4 @@
-// `farcull distance --neighbours`: potential neighbours by a discrete Voronoi diagram.
+// `farcull distance --voronoi`: potential neighbours by a discrete Voronoi diagram.
 #pragma once
 
 #include <string>
@@ -9,17 +9,17 @@
 
 namespace farcull {
 
-/// Options that go with --neighbours alone.
+/// Options that go with --voronoi alone.
 class DiagramArguments {
  public:
   void add_to(CLI::App& command);
-  /// Whether --neighbours was given. Throws Error where another of these was given without it.
+  /// Whether --voronoi was given. Throws Error where another of these was given without it.
   bool asked() const;
   /// threads: 0 for as many as there are cores. Throws Error naming the option that is bad.
   DiagramOptions parse(unsigned threads) const;
 
  private:
-  Text neighbours_, resolution_, device_;
+  Text diagram_, resolution_, device_;
 };
 
 /// Writes the record of the scene to the outputs. The exit status: 0 done, 1 the reliable form lost

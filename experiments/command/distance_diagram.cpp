@@ -1,5 +1,5 @@
 // Reads the options of a diagram, then asks it about the scene.
-#include "experiments/command/distance_neighbours.h"
+#include "experiments/command/distance_diagram.h"
 
 #include <fmt/format.h>
 
@@ -16,37 +16,36 @@
 namespace farcull {
 
 void DiagramArguments::add_to(CLI::App& command) {
-  add_option(command, "--neighbours", neighbours_, "FORM",
+  add_option(command, "--voronoi", diagram_, "FORM",
              "which objects may be nearest by a discrete Voronoi\n"
              "diagram, and which nearest ones it loses, instead of\n"
              "distances: published or reliable (docs/voronoi.md)");
   add_option(command, "--resolution", resolution_, "N",
-             "with --neighbours: cells of the diagram along the\n"
+             "with --voronoi: cells of the diagram along the\n"
              "longest side of the scene; default 64");
   add_option(command, "--device", device_, "DEVICE",
-             "with --neighbours: cpu (alias native) or a GL device:\n"
+             "with --voronoi: native (alias cpu) or a GL device:\n"
              "gl, software, hardware or a number that farcull doctor\n"
-             "lists; default cpu");
+             "lists; default native");
 }
 
 bool DiagramArguments::asked() const {
-  if (neighbours_) return true;
+  if (diagram_) return true;
   for (const auto& [option, given] : {std::pair("--resolution", resolution_.has_value()),
                                       std::pair("--device", device_.has_value())}) {
     if (given)
-      throw Error(option, "has no meaning without --neighbours",
-                  "add --neighbours published or reliable, or leave it out");
+      throw Error(option, "has no meaning without --voronoi",
+                  "add --voronoi published or reliable, or leave it out");
   }
   return false;
 }
 
 DiagramOptions DiagramArguments::parse(unsigned threads) const {
   DiagramOptions out{.threads = threads, .device = device_of(device_)};
-  if (*neighbours_ == "reliable") {
+  if (*diagram_ == "reliable") {
     out.form = DiagramForm::reliable;
-  } else if (*neighbours_ != "published") {
-    throw Error("--neighbours", "'" + *neighbours_ + "' is no choice",
-                "give published or reliable");
+  } else if (*diagram_ != "published") {
+    throw Error("--voronoi", "'" + *diagram_ + "' is no choice", "give published or reliable");
   }
   if (resolution_) {
     const std::optional<int> cells = parse_number<int>(*resolution_);
