@@ -337,6 +337,12 @@ std::vector<IgnoredNames> RunCommand::ignored() const {
   return out;
 }
 
+std::vector<NamedFile> RunCommand::read_files(const std::optional<FrameRange>& range) const {
+  std::vector<NamedFile> out = scene_files(scene_, range);
+  if (ignore_file_) out.push_back({"--ignore-file", *ignore_file_});
+  return out;
+}
+
 std::string RunCommand::with_self() const {
   std::string command = kind_ == Kind::run ? "run" : kind_ == Kind::verify ? "verify" : "plan";
   command = command_with("farcull " + command, scene_);
@@ -361,12 +367,12 @@ int RunCommand::run() const {
   columns();
   std::optional<FrameRange> range;
   if (frames_) range = parse_frames(*frames_);
-  const Outputs outputs = checked(outputs_, scene_files(scene_, range), range);
+  const Outputs outputs = checked(outputs_, read_files(range), range);
   return range ? run_frames(options, outputs, *range) : run_once(options, outputs);
 }
 
 int RunCommand::plan(const RunOptions& options) const {
-  const Outputs outputs = checked(outputs_, scene_files(scene_));
+  const Outputs outputs = checked(outputs_, read_files());
   Scene scene = load_scene(scene_);
   if (self_) make_self(scene);
   RunOptions all = options;

@@ -32,6 +32,8 @@ class RunCommand {
   void refuse_outputs() const;
   PairColumns columns() const;
   std::vector<IgnoredNames> ignored() const;
+  /// What the command reads, which no output may overwrite.
+  std::vector<NamedFile> read_files(const std::optional<FrameRange>& range = {}) const;
   /// The command line that tests a scene of one object.
   std::string with_self() const;
   /// Of verify: the verdict, green or red on a terminal; else empty.

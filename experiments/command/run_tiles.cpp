@@ -16,8 +16,22 @@ namespace fs = std::filesystem;
 
 // The file as it is called from the folder of the record.
 std::string beside(const std::string& file, const std::string& record) {
-  const fs::path folder = fs::absolute(record).lexically_normal().parent_path();
-  return fs::absolute(file).lexically_normal().lexically_proximate(folder).string();
+  // Of folders behind links, `..` is not the one that the path names.
+  const fs::path folder = fs::weakly_canonical(fs::absolute(record).parent_path());
+  const fs::path path = fs::absolute(file);
+  return (fs::weakly_canonical(path.parent_path()) / path.filename())
+      .lexically_proximate(folder)
+      .string();
+}
+
+// A record is UTF-8.
+void require_text(const std::string& option, const std::string& file) {
+  try {
+    static_cast<void>(nlohmann::json(file).dump());
+  } catch (const nlohmann::json::exception&) {
+    throw Error(option, "the name of the file is no UTF-8, and the record has to hold it",
+                "choose another name");
+  }
 }
 
 }  // namespace
@@ -51,13 +65,11 @@ int RunCommand::run_tile(const RunOptions& options) const {
   TileQuestion question{.options = options, .tile = parse_tile(*tiles_)};
   refuse_with_tiles(options);
   refuse_outputs();
-  const Outputs outputs = checked(outputs_, scene_files(scene_));
+  const Outputs outputs = checked(outputs_, read_files());
   const PairColumns chosen = columns();
-  if (const std::vector<IgnoredNames> names = ignored(); !names.empty()) {
+  if (outputs.pairs && outputs.json) require_text("--pairs", *outputs.pairs);
+  if (const std::vector<IgnoredNames> names = ignored(); !names.empty())
     question.ignored = [names](const Scene& scene) { return ignored_objects(scene, names); };
-    for (const IgnoredNames& name : names)
-      question.ignored_text += (question.ignored_text.empty() ? "" : ",") + name.text;
-  }
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   Session session(options.device);
@@ -73,7 +85,8 @@ int RunCommand::run_tile(const RunOptions& options) const {
   }
   if (outputs.json) write_json(tile_json(tile, list ? &*list : nullptr), *outputs.json);
   if (!outputs.to_stdout())
-    write_output("-", run_table(tile.part.scene, tile.record) + tile_lines(tile));
+    write_output("-", run_table(tile.part.scene, tile.record) + tile_lines(tile) +
+                          nothing_note(nothing_to_test(tile.census), with_self()));
   if (!broken(tile.record, false)) return kExitDone;
   complain_broken(missed(tile.record));
   return kExitBroken;
@@ -82,10 +95,12 @@ int RunCommand::run_tile(const RunOptions& options) const {
 int RunCommand::plan_tiles(const RunOptions& options) const {
   const std::size_t tiles = parse_tiles(*tiles_);
   refuse_with_tiles(options);
-  const Outputs outputs = checked(outputs_, scene_files(scene_));
+  const Outputs outputs = checked(outputs_, read_files());
   TerminalProgress terminal;
   if (const Progress progress = terminal.callback()) progress("reading the scene");
-  const Census census = take_census(source(), options.clearance);
+  const std::vector<IgnoredNames> names = ignored();
+  const Census census = take_census(source(), options.clearance, !names.empty());
+  if (!names.empty()) ignored_objects(names_of(census), names);  // says which name is none
   const Cuts cuts = choose_cuts(census, tiles);
   const std::vector<TileCount> counts = count_tiles(source(), cuts, options.clearance);
   terminal.clear();

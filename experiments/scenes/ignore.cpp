@@ -47,6 +47,17 @@ std::vector<std::uint32_t> objects_of(const Scene& scene, std::string_view patte
   return out;
 }
 
+/// Whether the pattern is the name of an object, and fits others too, so that it may mean either.
+bool doubtful(const Scene& scene, std::string_view pattern,
+              const std::vector<std::uint32_t>& objects) {
+  return std::ranges::any_of(objects,
+                             [&](std::uint32_t o) { return scene.objects[o].name == pattern; }) &&
+         !std::ranges::all_of(objects,
+                              [&](std::uint32_t o) { return scene.objects[o].name == pattern; });
+}
+
+constexpr const char* kDoubtful = "is the name of an object, and as a pattern fits others too";
+
 std::string some_names(const Scene& scene) {
   constexpr std::size_t kShown = 5;
   std::string out;
@@ -90,6 +101,10 @@ void append(const Scene& scene, const IgnoredNames& names, std::vector<ObjectPai
     ++places;
     first = a;
     second = b;
+    for (const auto& [name, objects] : {std::pair(left, a), std::pair(right, b)}) {
+      if (doubtful(scene, name, objects))
+        fail(fmt::format("names '{}', which {}", name, kDoubtful));
+    }
   }
   if (text.find(':') == std::string_view::npos) fail("has no colon");
   if (places == 0) fail(fmt::format("names '{}', and no object is called so", unknown));
@@ -106,6 +121,10 @@ std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& fir
                                       const std::string& what, long line) {
   const auto objects = [&](const std::string& pattern) {
     std::vector<std::uint32_t> out = objects_of(scene, pattern);
+    if (doubtful(scene, pattern, out)) {
+      throw Error(where, fmt::format("{} names '{}', which {}", what, pattern, kDoubtful),
+                  "call the object something without a *", line);
+    }
     if (!out.empty()) return out;
     throw Error(where, fmt::format("{} names '{}', and no object is called so", what, pattern),
                 "give names of objects, in which * stands for any characters; the scene has " +

@@ -87,6 +87,10 @@ Fnv1a Census::begun_hash() const {
   return hash;
 }
 
+std::uint64_t size_word(const Object& object) {
+  return object.triangle_count | std::uint64_t{object.self} << 32;
+}
+
 Census take_census(const SceneSource& source, double clearance, bool names) {
   Census out;
   Sampler sampler;
@@ -95,7 +99,7 @@ Census take_census(const SceneSource& source, double clearance, bool names) {
     out.objects += part.objects.size();
     for (const Object& object : part.objects) {
       out.self_objects += object.self;
-      const std::uint64_t word = object.triangle_count | std::uint64_t{object.self} << 32;
+      const std::uint64_t word = size_word(object);
       if (out.sizes.empty() || out.sizes.back().first != word) out.sizes.emplace_back(word, 0);
       ++out.sizes.back().second;
       if (names) out.names.push_back(object.name);
@@ -105,6 +109,13 @@ Census take_census(const SceneSource& source, double clearance, bool names) {
       sampler.add(out.triangles++, grown_box(part, t, clearance));
   });
   out.sample = sampler.take();
+  return out;
+}
+
+Scene names_of(const Census& census) {
+  Scene out;
+  out.name = census.name;
+  for (const std::string& name : census.names) out.objects.push_back({.name = name});
   return out;
 }
 

@@ -29,16 +29,21 @@ struct Census {
   /// Grown boxes of some triangles: all of them where there are at most 65,536, else those of which
   /// the numbers are chosen by a fixed hash. So the same scene gives the same sample everywhere.
   std::vector<Box> sample;
-  /// What scene_hash() hashes of each object before it comes to the coordinates, and how often in a
-  /// row.
+  /// size_word() of each object, and how often in a row.
   std::vector<std::pair<std::uint64_t, std::uint64_t>> sizes;
 
   /// scene_hash() of the scene, up to the coordinates.
   Fnv1a begun_hash() const;
 };
 
+/// What scene_hash() hashes of an object before it comes to the coordinates.
+std::uint64_t size_word(const Object& object);
+
 /// clearance: as of grown_box(). names: of the objects are kept. Throws what `source` throws.
 Census take_census(const SceneSource& source, double clearance, bool names = false);
+
+/// A scene of the objects by their names alone.
+Scene names_of(const Census& census);
 
 /// Where a scene is cut.
 struct Cuts {

@@ -33,22 +33,33 @@ class Gathering {
   }
 
   TileScene take() {
-    if (objects_ != census_.objects || triangles_ != census_.triangles) {
-      throw Error(census_.name,
-                  fmt::format("had {} triangles of {} objects when it was read first, and now has "
-                              "{} of {}",
-                              census_.triangles, census_.objects, triangles_, objects_),
-                  "do not change its files while a run reads them");
-    }
+    if (run_ != census_.sizes.size()) changed();
     out_.hash = hash_.hex();
+    out_.faces_hash = faces_.hex();
     return std::move(out_);
   }
 
  private:
+  [[noreturn]] void changed() const {
+    throw Error(census_.name,
+                fmt::format("is not what it was when it was read first: that had {} triangles of "
+                            "{} objects; now object {} is another one",
+                            census_.triangles, census_.objects, objects_),
+                "do not change its files while a run reads them");
+  }
+
+  // The hash began with what the first reading says of all objects, so this reading has to agree.
+  void require_known(const Object& object) {
+    if (run_ == census_.sizes.size() || census_.sizes[run_].first != size_word(object)) changed();
+    if (++of_run_ < census_.sizes[run_].second) return;
+    ++run_;
+    of_run_ = 0;
+  }
+
   void add(const Scene& part, const Object& object) {
     Scene& to = out_.scene;
+    require_known(object);
     const std::uint64_t number = objects_++;
-    triangles_ += object.triangle_count;
     Object own{.name = {},
                .first_triangle = static_cast<std::uint32_t>(to.triangles.size()),
                .triangle_count = 0,
@@ -58,6 +69,7 @@ class Gathering {
       for (const Vec3& p : part.corners(t)) {
         for (int i = 0; i < 3; ++i) hash_.add(std::bit_cast<std::uint64_t>(p[i]));
       }
+      faces_.add(std::uint64_t{part.source_face[t]});
       const Box box = grown_box(part, t, clearance_);
       if (!meets(slab_, box)) continue;
       out_.home += holds(slab_, box.lo[slab_.axis]);
@@ -90,9 +102,11 @@ class Gathering {
   const Census& census_;
   Slab slab_;
   double clearance_;
-  Fnv1a hash_;
+  Fnv1a hash_, faces_;
   TileScene out_;
-  std::uint64_t objects_ = 0, triangles_ = 0;
+  std::size_t run_ = 0;       // of census_.sizes: that of the next object
+  std::uint64_t of_run_ = 0;  // objects before it in the run
+  std::uint64_t objects_ = 0;
   std::vector<std::uint32_t> vertex_;  // of the part, in the tile
 };
 

@@ -18,6 +18,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/system/streamed_output.h"
+#include "experiments/tiles/run_tile.h"
 #include "verify/certificate/sha256.h"
 
 namespace farcull {
@@ -46,10 +47,14 @@ struct Source {
 template <class Value>
 Value at(const Source& source, const char* place) {
   try {
-    return source.json.at(nlohmann::ordered_json::json_pointer(place)).get<Value>();
+    const Json& value = source.json.at(nlohmann::ordered_json::json_pointer(place));
+    // get() would round a number, or take a negative one for a large one.
+    if (!std::is_same_v<Value, std::uint64_t> || value.is_number_unsigned())
+      return value.get<Value>();
   } catch (const nlohmann::json::exception&) {
-    no_record(source.path, fmt::format("is no record of a tile: {} is missing or wrong", place));
+    // Said below.
   }
+  no_record(source.path, fmt::format("is no record of a tile: {} is missing or wrong", place));
 }
 
 std::string text_of(const std::string& path) {
@@ -77,7 +82,7 @@ Source read_record(const std::string& path) {
   out.k = at<std::uint64_t>(out, "/tile/k");
   out.n = at<std::uint64_t>(out, "/tile/n");
   out.home = at<std::uint64_t>(out, "/tile/home_triangles");
-  if (out.k < 1 || out.k > out.n)
+  if (out.k < 1 || out.k > out.n || out.n > kMostTiles)
     no_record(path, fmt::format("says that it is tile {} of {}", out.k, out.n));
   if (at<Json>(out, "/tile/list").is_null()) {
     throw Error(path, "has no list: the tile was run without --pairs FILE",
@@ -88,7 +93,8 @@ Source read_record(const std::string& path) {
   out.sha256 = at<std::string>(out, "/tile/list/sha256");
   const fs::path list(at<std::string>(out, "/tile/list/file"));
   out.list = (fs::path(path).parent_path() / list).string();
-  if (!fs::exists(out.list)) {
+  std::error_code code;
+  if (!fs::exists(out.list, code)) {
     throw Error(out.list, fmt::format("does not exist, and {} names it", path),
                 "put the list where it was, beside the record");
   }
@@ -344,6 +350,9 @@ MergedTiles merge_tiles(const std::vector<std::string>& records, const std::stri
     json[count] = sum_of(sources, (std::string("/") + count).c_str());
   json["contacts"] = contacts_of(sources);
   if (merged.verified) merged.false_negatives = sum_of(sources, "/verification/false_negatives");
+  for (const Source& source : sources)
+    merged.promises = merged.promises && at<bool>(source, "/promises");
+  json["promises"] = merged.promises;
   json["false_negatives"] = merged.verified ? Json(merged.false_negatives) : Json(nullptr);
   std::uint64_t largest = 0;
   for (const Source& source : sources)

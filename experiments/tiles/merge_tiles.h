@@ -15,6 +15,7 @@ struct MergedTiles {
   std::uint64_t rows = 0;             // of the list
   std::uint64_t false_negatives = 0;  // of all accountings
   bool verified = false;              // every tile has an accounting
+  bool promises = true;               // every tile promises to miss nothing (docs/record.md)
   std::string json;                   // the record of the whole: counts and times, docs/tiles.md
 };
 

@@ -33,14 +33,6 @@ std::vector<ObjectPair> in_part(const std::vector<ObjectPair>& whole, const List
   return out;
 }
 
-// The objects by their names alone.
-Scene names_of(const Census& census) {
-  Scene out;
-  out.name = census.name;
-  for (const std::string& name : census.names) out.objects.push_back({.name = name});
-  return out;
-}
-
 Record run_part(const TileScene& part, const RunOptions& options, const Slab& slab,
                 Session& session, const Progress& progress, std::uint64_t& elsewhere) {
   const FloatingPointGuard guard;
@@ -112,8 +104,13 @@ TileRun run_tile(const SceneSource& source, const TileQuestion& question, Sessio
               .cuts = {},
               .slab = {},
               .part = {},
-              .record = {},
-              .ignored = question.ignored_text};
+              .record = {}};
+  out.ignored = out.census.ignored;
+  if (question.ignored) {
+    const std::vector<ObjectPair> asked = question.ignored(names_of(out.census));
+    out.ignored.insert(out.ignored.end(), asked.begin(), asked.end());
+    out.ignored = in_order(std::move(out.ignored));
+  }
   out.cuts = choose_cuts(out.census, question.tile.n);
   out.slab = slab_of(out.cuts.axis, out.cuts.at, question.tile.k - 1);
   if (progress) progress("reading the triangles of the tile");
@@ -121,12 +118,7 @@ TileRun run_tile(const SceneSource& source, const TileQuestion& question, Sessio
   out.part.scene.name += fmt::format(" (tile {} of {})", out.tile.k, out.tile.n);
   out.read_ms = reading.ms();
   RunOptions options = question.options;
-  options.ignored = in_part(out.census.ignored, out.part.numbers);
-  if (question.ignored) {
-    for (const ObjectPair& pair : in_part(question.ignored(names_of(out.census)), out.part.numbers))
-      options.ignored.push_back(pair);
-    options.ignored = in_order(std::move(options.ignored));
-  }
+  options.ignored = in_part(out.ignored, out.part.numbers);
   out.record = run_part(out.part, options, out.slab, session, progress, out.elsewhere);
   return out;
 }

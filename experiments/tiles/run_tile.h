@@ -11,6 +11,7 @@
 #include "core/base/progress.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
+#include "experiments/record/tables.h"
 #include "experiments/tiles/gather.h"
 
 namespace farcull {
@@ -31,7 +32,6 @@ struct TileQuestion {
   /// Which objects are ignored beside those that the scene ignores, as pairs of the objects of a
   /// scene that has the names alone; empty: none.
   std::function<std::vector<ObjectPair>(const Scene& names)> ignored = {};
-  std::string ignored_text = {};  // the same in words, which all tiles have to share
 };
 
 struct TileRun {
@@ -42,9 +42,9 @@ struct TileRun {
   TileScene part;  // its scene is called after the whole and the tile
   Record record;   // of the part; its candidates and pairs are those that belong to the tile. The
                    // accounting is about all pairs of the part, whichever tile they belong to
-  std::uint64_t elsewhere = 0;  // candidates that belong to other tiles
-  double read_ms = 0;           // of both readings of the scene
-  std::string ignored = {};     // TileQuestion::ignored_text
+  std::uint64_t elsewhere = 0;           // candidates that belong to other tiles
+  double read_ms = 0;                    // of both readings of the scene
+  std::vector<ObjectPair> ignored = {};  // of the whole scene, by itself and by the question
 };
 
 /// Reads the scene twice and finds the pairs that belong to the tile. The same scene, options and
@@ -68,6 +68,9 @@ struct TileList {
 /// The record as to_json(), about the whole scene and with the entry `tile` (docs/tiles.md). list:
 /// null where there is none, and then `farcull merge` has nothing to join.
 nlohmann::ordered_json tile_json(const TileRun& run, const TileList* list);
+
+/// As nothing_to_test() says of the whole scene.
+NothingToTest nothing_to_test(const Census& census);
 
 /// The lines for people: what the tile is, and what the run says nothing about.
 std::string tile_lines(const TileRun& run);

@@ -20,7 +20,8 @@ std::string axis_name(int axis) { return std::string(1, "xyz"[axis]); }
 // Null where a tile has no end on this side.
 Json end_json(double at) { return std::isfinite(at) ? Json(at) : Json(nullptr); }
 
-// What the scene ignores, in the same text for all tiles. Its hash (scene_hash()) leaves that out.
+// The pairs of objects, in the same text for all tiles. Not as names: the same name may be of
+// another object, and scene_hash() leaves names out.
 std::string ignored_text(const std::vector<ObjectPair>& ignored) {
   if (ignored.empty()) return "";
   Fnv1a hash;
@@ -72,10 +73,12 @@ Json tile_json(const TileRun& run, const TileList* list) {
   const Scene& scene = run.part.scene;
   const RunOptions& o = run.record.options;
   Json out = to_json(scene, run.record);
+  const std::string nothing = nothing_to_test(run.census).reason;
   out["scene"] = {{"name", run.census.name},
                   {"objects", run.census.objects},
                   {"self_objects", run.census.self_objects},
                   {"triangles", run.census.triangles},
+                  {"nothing_to_test", nothing.empty() ? Json(nullptr) : Json(nothing)},
                   {"hash", run.part.hash}};
   if (run.record.verification) {
     const std::vector<std::uint32_t> owner = owners(scene);
@@ -88,30 +91,47 @@ Json tile_json(const TileRun& run, const TileList* list) {
   }
   Json cuts = Json::array();
   for (const double cut : run.cuts.at) cuts.push_back(cut);
-  out["tile"] = {{"k", run.tile.k},
-                 {"n", run.tile.n},
-                 {"axis", axis_name(run.cuts.axis)},
-                 {"from", end_json(run.slab.from)},
-                 {"to", end_json(run.slab.to)},
-                 {"cuts", cuts},
-                 {"objects", scene.objects.size()},
-                 {"triangles", scene.triangles.size()},
-                 {"home_triangles", run.part.home},
-                 {"degenerate_triangles", run.record.degenerate_triangles},
-                 {"candidates_elsewhere", run.elsewhere},
-                 {"asked",
-                  {{"resolution", o.resolution},
-                   {"views", o.views},
-                   {"clearance", o.clearance},
-                   {"full", o.full},
-                   {"verify", o.verify},
-                   {"contacts", o.contacts != ContactDetail::none},
-                   {"ignored", run.ignored},
-                   {"ignored_by_the_scene", ignored_text(run.census.ignored)}}},
-                 {"list", list ? list_json(*list) : Json(nullptr)},
-                 {"read_ms", run.read_ms},
-                 {"peak_memory_mib", peak_memory_mib()}};
+  out["tile"] = {
+      {"k", run.tile.k},
+      {"n", run.tile.n},
+      {"axis", axis_name(run.cuts.axis)},
+      {"from", end_json(run.slab.from)},
+      {"to", end_json(run.slab.to)},
+      {"cuts", cuts},
+      {"objects", scene.objects.size()},
+      {"triangles", scene.triangles.size()},
+      {"home_triangles", run.part.home},
+      {"degenerate_triangles", run.record.degenerate_triangles},
+      {"candidates_elsewhere", run.elsewhere},
+      {"asked",
+       {{"resolution", o.resolution},
+        {"views", o.views},
+        {"clearance", o.clearance},
+        {"full", o.full},
+        {"verify", o.verify},
+        {"contacts", o.contacts != ContactDetail::none},
+        {"ignored", ignored_text(run.ignored)},
+        {"faces", list && list->columns.faces ? Json(run.part.faces_hash) : Json(nullptr)}}},
+      {"list", list ? list_json(*list) : Json(nullptr)},
+      {"read_ms", run.read_ms},
+      {"peak_memory_mib", peak_memory_mib()}};
   return out;
+}
+
+NothingToTest nothing_to_test(const Census& census) {
+  // A scene that has as much to test: of its objects two with triangles, and one without.
+  Scene few;
+  std::uint32_t with = 0, without = 0;
+  for (const auto& [word, times] : census.sizes) {
+    Object object{
+        .name = {}, .triangle_count = static_cast<std::uint32_t>(word), .self = word >> 32 != 0};
+    std::uint32_t& count = object.triangle_count > 0 ? with : without;
+    const std::uint32_t most = object.triangle_count > 0 ? 2 : 1;
+    for (std::uint64_t k = 0; k < times && count < most; ++k, ++count)
+      few.objects.push_back(object);
+  }
+  few.triangles.resize(std::min<std::uint64_t>(census.triangles, 2));
+  return nothing_to_test(few);
 }
 
 std::string tile_lines(const TileRun& run) {

@@ -70,7 +70,15 @@ same 2 again.json
 sed -E '0,/^\{/s//{"ignore": [["*1", "*2"], ["*3", "*4"]],/' crowd/scene.json >crowd/ignores.json
 same 3 crowd/ignores.json
 same 2 crowd/ignores.json --ignore '*5:*6'
-"$program" run crowd/scene.json --no-verify --tiles 2/2 --json t2.json --pairs t2.csv >out.txt
+# Tiles that ignore others are not joined, whether the scene or the command line names them.
+"$program" run crowd/ignores.json --no-verify --tiles 2/2 --json t2.json --pairs t2.csv >out.txt
+refused "was run with other options" merge t1.json t2.json -o merged.csv
+"$program" run crowd/scene.json --no-verify --tiles 1/2 --json t1.json --pairs t1.csv >out.txt
+refused "was run with other options" merge t1.json t2.json -o merged.csv
+# Nor is a name believed, but the object: here one and the same name is of two objects.
+sed 's/tetrahedron0"/kept"/; s/tetrahedron1"/tetrahedron0"/; s/kept"/tetrahedron1"/' crowd/scene.json >crowd/renamed.json
+"$program" run crowd/scene.json --no-verify --ignore 'tetrahedron0:*2' --tiles 1/2 --json t1.json --pairs t1.csv >out.txt
+"$program" run crowd/renamed.json --no-verify --ignore 'tetrahedron0:*2' --tiles 2/2 --json t2.json --pairs t2.csv >out.txt
 refused "was run with other options" merge t1.json t2.json -o merged.csv
 same 2 "$mesh" "$mesh"
 
@@ -97,7 +105,30 @@ refused "--certificate: cannot be answered in tiles" run two-spheres --tiles 1/2
 refused "'3/2' is no tile" run two-spheres --tiles 3/2
 refused "'1/2' is no number of tiles" plan two-spheres --tiles 1/2
 refused "no object is called so" run crowd --tiles 1/2 --ignore 'nobody:*'
+refused "no object is called so" plan crowd --tiles 2 --ignore 'nobody:*'
+refused "no UTF-8" run crowd --tiles 1/2 --json t.json --pairs $'u\xff.csv'
+echo 'tetrahedron0:*2' >ignored.txt
+refused "--ignore-file" run crowd --tiles 1/2 --ignore-file ignored.txt --pairs ignored.txt
+refused "--ignore-file" run crowd --ignore-file ignored.txt --json ignored.txt
+"$program" run "$mesh" --tiles 1/1 >out.txt
+grep -q 'nothing to test: the scene is one object' out.txt || wrong "a tile of one object: $(cat out.txt)"
 [[ ! -e c.json ]] || wrong "a certificate was written"
+
+# A record and a list in two folders, of which one is behind a link.
+mkdir -p real/deep
+ln -s real/deep link
+"$program" run two-tori --tiles 1/1 --json link/t.json --pairs t.csv >out.txt
+"$program" merge link/t.json -o merged.csv >out.txt || wrong "a record behind a link"
+
+# A tile that missed a pair, or promises nothing.
+"$program" run two-tori --tiles 1/1 --json t1.json --pairs t1.csv >out.txt
+"$program" merge t1.json -o merged.csv --json - | grep -q '"promises": true' || wrong "no promise"
+sed -i 's/"false_negatives": 0/"false_negatives": 3/; s/"promises": true/"promises": false/' t1.json
+status=0
+"$program" merge t1.json -o merged.csv >out.txt 2>err.txt || status=$?
+((status == 1)) || wrong "a merge with missed pairs: status $status"
+grep -q 'culled pairs that collide: 3' err.txt || wrong "missed pairs: $(cat err.txt)"
+grep -q 'no promise: ' out.txt || wrong "a tile without a promise: $(cat out.txt)"
 
 # merge: what is missing, and that nothing is written then.
 same 3 two-tori

@@ -35,6 +35,16 @@ TEST(Ignore, OfNamesThatAreTheSameAllAreMeant) {
   EXPECT_EQ(ignored_objects(scene_of({"a", "a", "b"}), parse_ignored("a:b")),
             (Pairs{{0, 2}, {1, 2}}));
   EXPECT_EQ(ignored_objects(scene_of({"a", "a"}), parse_ignored("a:a")), (Pairs{{0, 1}}));
+  // A name with a * in it fits itself, and is refused where it fits others too.
+  EXPECT_EQ(ignored_objects(scene_of({"a*", "b"}), parse_ignored("a*:b")), (Pairs{{0, 1}}));
+  const Scene scene = scene_of({"a*", "a2", "b"});
+  EXPECT_NE(message_of([&] {
+              ignored_objects(scene, parse_ignored("b:a*"));
+            }).find("names 'a*', which is the name of an object, and as a pattern fits others too"),
+            std::string::npos);
+  EXPECT_EQ(error_of([&] { pairs_between(scene, "a*", "b", "here", "row 3"); }).reason,
+            "row 3 names 'a*', which is the name of an object, and as a pattern fits others too");
+  EXPECT_EQ(pairs_between(scene, "a2", "b", "here", "row 3"), (Pairs{{1, 2}}));
 }
 
 TEST(Ignore, PairsOfTwoPatternsAreThoseOfTheList) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -13,6 +14,7 @@
 #include "core/base/error.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/tiles/run_tile.h"
+#include "verify/certificate/sha256.h"
 
 namespace farcull {
 namespace {
@@ -127,6 +129,12 @@ TEST_F(MergeTiles, RefuseWhatIsNotOfOneScene) {
   run(2, kTiles, "field:9000");
   change(2, [](Json& json) { json["tile"]["asked"]["clearance"] = 1; });
   expect_refused("was run with other options");
+  run(2, kTiles, "field:9000");
+  change(2, [](Json& json) { json["tile"]["list"]["columns"] = "a,b"; });
+  expect_refused("has other columns in its list");
+  run(2, kTiles, "field:9000");
+  change(2, [](Json& json) { json["tile"]["list"]["kinds"] = {"crossing"}; });
+  expect_refused("has other kinds of contact in its list");
 }
 
 TEST_F(MergeTiles, NoticeATriangleThatNoTileHas) {
@@ -176,6 +184,17 @@ TEST_F(MergeTiles, RefuseWhatIsNoRecord) {
   run(2, kTiles, "field:9000");
   change(2, [](Json& json) { json["tile"]["list"] = nullptr; });
   expect_refused("without --pairs FILE");
+  for (const Json& number : {Json(-1), Json(0.5), Json("1"), Json(nullptr)}) {
+    run(2, kTiles, "field:9000");
+    change(2, [&](Json& json) { json["tile"]["home_triangles"] = number; });
+    expect_refused("/tile/home_triangles is missing or wrong");
+  }
+  run(2, kTiles, "field:9000");
+  change(2, [](Json& json) { json["tile"]["n"] = std::uint64_t{1} << 40; });
+  expect_refused("says that it is tile 2 of 1099511627776");
+  run(2, kTiles, "field:9000");
+  change(2, [](Json& json) { json["tile"]["list"]["file"] = std::string(300, 'x'); });
+  expect_refused("does not exist, and");
 }
 
 TEST_F(MergeTiles, DoNotWriteOverWhatIsRead) {
@@ -184,6 +203,43 @@ TEST_F(MergeTiles, DoNotWriteOverWhatIsRead) {
   EXPECT_THROW(merge_tiles({record(1), record(2), record(3)}, out(), list(1).string()), Error);
   EXPECT_FALSE(fs::exists(out()));
   EXPECT_EQ(read(list(1)), before);
+}
+
+// Longer than what is read, and written, at a time.
+TEST_F(MergeTiles, JoinLongLists) {
+  constexpr std::size_t kRows = 100'000;
+  const std::string columns = Json::parse(read(record(1)))["tile"]["list"]["columns"];
+  std::array<std::string, kTiles> texts;
+  std::array<std::size_t, kTiles> rows{};
+  texts.fill(columns + "\n");
+  std::string whole = columns + "\n";
+  for (std::size_t row = 0; row < kRows * kTiles; ++row) {
+    const std::string line = std::to_string(row / 7) + "," + std::to_string(row) + ",1000000000," +
+                             std::to_string(row * row) + "\n";
+    const std::size_t to = row * row % 7 % kTiles;
+    texts[to] += line;
+    ++rows[to];
+    whole += line;
+  }
+  for (std::size_t k = 1; k <= kTiles; ++k) {
+    ASSERT_GT(texts[k - 1].size(), std::size_t{1} << 20);
+    write(list(k), texts[k - 1]);
+    Sha256 hash;
+    hash.add(texts[k - 1]);
+    change(k, [&](Json& json) {
+      json["tile"]["list"]["rows"] = rows[k - 1];
+      json["tile"]["list"]["sha256"] = hash.digest();
+    });
+  }
+  EXPECT_EQ(merge_tiles({record(1), record(2), record(3)}, out()).rows, kRows * kTiles);
+  EXPECT_TRUE(read(out()) == whole);
+}
+
+TEST_F(MergeTiles, PromiseWhatEveryTilePromises) {
+  EXPECT_EQ(Json::parse(merge_tiles({record(1), record(2), record(3)}, out()).json)["promises"],
+            Json::parse(read(record(1)))["promises"]);
+  change(2, [](Json& json) { json["promises"] = false; });
+  EXPECT_FALSE(merge_tiles({record(1), record(2), record(3)}, out()).promises);
 }
 
 TEST_F(MergeTiles, AddUpMissedPairs) {

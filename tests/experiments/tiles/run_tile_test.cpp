@@ -13,6 +13,8 @@
 namespace farcull {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 RunOptions native(double clearance) {
   RunOptions out;
   out.device = "native";
@@ -75,7 +77,8 @@ TEST(Tiles, GiveTheListOfOneRunOnRandomScenes) {
 TEST(Tiles, NoticeASceneThatChangesBetweenTheReadings) {
   RandomNumbers random(5);
   Scene scene = small_scene(random);
-  while (scene.triangles.size() < 4) scene = small_scene(random);
+  while (scene.objects.size() < 3 || scene.objects[1].triangle_count == 0)
+    scene = small_scene(random);
   Session session("native");
   const TileQuestion question{.options = native(0), .tile = {1, 1}};
   const std::string hash = run_tile(source_of(scene), question, session).part.hash;
@@ -93,6 +96,21 @@ TEST(Tiles, NoticeASceneThatChangesBetweenTheReadings) {
     --now.objects.back().triangle_count;
   };
   EXPECT_THROW(run_tile(changing(drop), question, session), Error);
+  // The same triangles of other objects: their numbers would be those of another scene.
+  const auto shift = [](Scene& now) {
+    for (std::size_t o = 1; o < now.objects.size(); ++o) {
+      if (now.objects[o].triangle_count == 0) continue;
+      Object& before = now.objects[o - 1];
+      ++before.triangle_count;
+      now.objects[o].first_triangle++;
+      now.objects[o].triangle_count--;
+      return;
+    }
+  };
+  EXPECT_THROW(run_tile(changing(shift), question, session), Error);
+  const auto flip = [](Scene& now) { now.objects[0].self = !now.objects[0].self; };
+  EXPECT_THROW(run_tile(changing(flip), question, session), Error);
+  EXPECT_NO_THROW(run_tile(changing([](Scene&) {}), question, session));
   // No census tells this; the hash does, so the records of the tiles do not fit together.
   const auto move = [](Scene& now) { now.vertices[now.triangles[0][0]].x() += 1; };
   EXPECT_NE(run_tile(changing(move), question, session).part.hash, hash);
@@ -130,6 +148,79 @@ TEST(Tiles, ReadTheNumberOfATile) {
     EXPECT_THROW(parse_tile(bad), Error) << bad;
   EXPECT_EQ(parse_tiles("3"), 3);
   for (const char* bad : {"", "0", "1/2", "10001"}) EXPECT_THROW(parse_tiles(bad), Error) << bad;
+}
+
+Json json_of(const TileRun& run, bool faces = false) {
+  const TileList list{
+      .text = tile_list(run, {.faces = faces}), .file = "list.csv", .columns = {.faces = faces}};
+  return tile_json(run, &list);
+}
+
+// Tiles whose records say the same share what they ignore, object by object, whatever its names.
+TEST(Tiles, SayWhichObjectsTheyIgnore) {
+  RandomNumbers random(8);
+  Scene scene = small_scene(random);
+  while (scene.objects.size() < 4) scene = small_scene(random);
+  Session session("native");
+  TileQuestion question{.options = native(0), .tile = {1, 2}};
+  const auto asked = [&] {
+    return json_of(run_tile(source_of(scene), question, session))["tile"]["asked"];
+  };
+  const Json none = asked();
+  scene.ignored = {{0, 1}};
+  const Json by_scene = asked();
+  EXPECT_NE(by_scene, none);
+  scene.ignored = {{0, 2}};
+  EXPECT_NE(asked(), by_scene);
+  scene.ignored = {};
+  question.ignored = [](const Scene&) { return std::vector<ObjectPair>{{0, 1}}; };
+  EXPECT_EQ(asked(), by_scene);
+  question.ignored = [](const Scene&) { return std::vector<ObjectPair>{{0, 2}}; };
+  EXPECT_NE(asked(), by_scene);
+  // Lists with faces: of the same triangles from other faces.
+  const TileRun one = run_tile(source_of(scene), question, session);
+  scene.source_face.back() += 1;
+  const TileRun other = run_tile(source_of(scene), question, session);
+  EXPECT_EQ(one.part.hash, other.part.hash);
+  EXPECT_EQ(json_of(one)["tile"]["asked"], json_of(other)["tile"]["asked"]);
+  EXPECT_NE(json_of(one, true)["tile"]["asked"], json_of(other, true)["tile"]["asked"]);
+}
+
+// Missed pairs have the numbers of the whole scene.
+TEST(Tiles, NameMissedPairsAsInTheWholeScene) {
+  const Scene scene = load_scene({"field:3000"});
+  Session session("native");
+  TileRun tile = run_tile(source_of(scene), {.options = native(0), .tile = {3, 3}}, session);
+  ASSERT_GT(tile.part.numbers.objects.front(), 0);
+  const auto last = static_cast<std::uint32_t>(tile.part.scene.triangles.size()) - 1;
+  tile.record.verification->examples = {{0, last}};
+  const Json example = json_of(tile)["verification"]["examples"][0];
+  EXPECT_EQ(example["a"]["object"], tile.part.numbers.objects.front());
+  EXPECT_EQ(example["a"]["triangle"], tile.part.numbers.triangles.front());
+  EXPECT_EQ(example["b"]["object"], tile.part.numbers.objects.back());
+  EXPECT_EQ(example["b"]["triangle"], tile.part.numbers.triangles.back());
+}
+
+TEST(Tiles, SayWhereAWholeSceneHasNothingToTest) {
+  for (const bool self : {false, true}) {
+    for (const std::vector<std::uint32_t>& counts :
+         std::vector<std::vector<std::uint32_t>>{{}, {0}, {1}, {2}, {2, 0}, {0, 0, 3}, {1, 1}}) {
+      Scene scene;
+      scene.vertices.resize(3);
+      for (const std::uint32_t count : counts) {
+        scene.objects.push_back(
+            {.name = {},
+             .first_triangle = static_cast<std::uint32_t>(scene.triangles.size()),
+             .triangle_count = count,
+             .self = self});
+        scene.triangles.resize(scene.triangles.size() + count, {0, 1, 2});
+      }
+      scene.source_face.resize(scene.triangles.size());
+      const NothingToTest told = nothing_to_test(take_census(source_of(scene), 0));
+      EXPECT_EQ(told.reason, nothing_to_test(scene).reason);
+      EXPECT_EQ(told.with_self, nothing_to_test(scene).with_self);
+    }
+  }
 }
 
 TEST(Tiles, RefuseOtherMethodsAndLimits) {
