@@ -63,7 +63,7 @@ def test_ctrl_c_ends_a_call(call):
     )
     try:
         assert process.stdout.readline() == "begun\n"
-        time.sleep(1.0)
+        time.sleep(0.4)
         process.send_signal(signal.SIGINT)
         start = time.monotonic()
         out, _ = process.communicate(timeout=60)
