@@ -1,7 +1,7 @@
 """How much processor time a call from Python takes beyond the same call in C++, on one thread.
 
     cmake --build build --target farcull farcull_python farcull_python_overhead -j 2
-    PYTHONPATH=build/python /usr/bin/python3 experiments/python/overhead.py build/farcull_python_overhead
+    PYTHONPATH=build/python /usr/bin/python3 experiments/python_overhead.py build/farcull_python_overhead
 
 A second argument is the scene (default two-bunnies), a third the number of rounds. In each round every kind of call
 is made once, in an order that is drawn, so that what else the machine does meets all of them. Printed are the median
