@@ -182,7 +182,7 @@ widths=(1280)
 broken=$work/broken
 mkdir -p "$broken"
 first=${ids[0]}
-# They are made of a page of one figure and one table, which the browser shows in a tenth of the time.
+# They are made of a page of one figure and one table, which the browser shows sooner.
 small=$broken/small-page.html
 awk -v first="<figure id=\"$first\">" '
   /<figure/ { kept = $0 == first || (/class="table"/ && !tables++); inside = 1 }
