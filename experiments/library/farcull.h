@@ -67,6 +67,8 @@ struct ColliderInput {
   std::span<const std::uint32_t> triangles;      // three indices of vertices for each triangle
   std::span<const std::uint32_t> object_starts;  // the first triangle of each object: ascending,
                                                  // the first is 0; empty: all are one object
+  std::span<const std::int64_t> wide_triangles = {};  // in place of `triangles`, which is then
+                                                      // empty: the same as 64-bit numbers
 };
 
 /// Two triangles, a < b, numbered from 0 in the order of the input.

@@ -2,10 +2,92 @@
 #include "experiments/library/input.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
 #include <limits>
 #include <string>
 
 namespace farcull {
+namespace {
+
+constexpr std::size_t kBlock = 1024;  // numbers, which stay in the nearest cache
+
+static_assert(sizeof(Vec3) == 3 * sizeof(double));
+static_assert(sizeof(std::array<std::uint32_t, 3>) == 3 * sizeof(std::uint32_t));
+
+// Whether no number is infinite or a NaN, which are those whose exponent is all ones. One more in
+// the exponent then reaches the bit of the sign. No branch is in the loop, so that the compiler can
+// look at several numbers at a time.
+bool all_finite(std::span<const double> block) {
+  constexpr std::uint64_t kExponent = 0x7FF0'0000'0000'0000, kOne = 0x0010'0000'0000'0000;
+  std::uint64_t bits = 0;
+  for (const double x : block) bits |= (std::bit_cast<std::uint64_t>(x) & kExponent) + kOne;
+  return bits >> 63 == 0;
+}
+
+// Copies indices. Whether all are below `vertices`.
+bool copy_block(std::span<const std::uint32_t> from, std::uint32_t* to, std::size_t vertices) {
+  std::memcpy(to, from.data(), from.size_bytes());
+  std::uint32_t most = 0;
+  for (std::size_t k = 0; k < from.size(); ++k) most = std::max(most, to[k]);
+  return most < vertices;
+}
+
+// The same, made narrower. Of each number that 32 bits cannot hold, a bit above them is set, also
+// of a negative one, whose sign fills them.
+bool copy_block(std::span<const std::int64_t> from, std::uint32_t* to, std::size_t vertices) {
+  std::uint64_t bits = 0;
+  for (std::size_t k = 0; k < from.size(); ++k) {
+    const auto wide = static_cast<std::uint64_t>(from[k]);
+    bits |= wide;
+    to[k] = static_cast<std::uint32_t>(wide);
+  }
+  std::uint32_t most = 0;
+  for (std::size_t k = 0; k < from.size(); ++k) most = std::max(most, to[k]);
+  return bits >> 32 == 0 && most < vertices;
+}
+
+// Copies come before the look at them: another thread of the caller may change what it gave
+// meanwhile, and what the scene holds has to be right.
+void copy_vertices(std::span<const double> from, std::vector<Vec3>& to) {
+  to.resize(from.size() / 3);
+  if (from.empty()) return;
+  double* const copies = to[0].data();
+  for (std::size_t begin = 0; begin < from.size(); begin += kBlock) {
+    const std::size_t end = std::min(begin + kBlock, from.size());
+    std::memcpy(copies + begin, from.data() + begin, (end - begin) * sizeof(double));
+    if (all_finite({copies + begin, copies + end})) continue;
+    std::size_t k = begin;
+    while (std::isfinite(copies[k])) ++k;
+    throw Error("vertices", "vertex " + std::to_string(k / 3) + " is not finite",
+                "give finite coordinates");
+  }
+}
+
+template <class Index>
+void copy_triangles(std::span<const Index> from, std::size_t vertices,
+                    std::vector<std::array<std::uint32_t, 3>>& to) {
+  to.resize(from.size() / 3);
+  if (from.empty()) return;
+  std::uint32_t* const copies = to[0].data();
+  for (std::size_t begin = 0; begin < from.size(); begin += kBlock) {
+    const std::size_t end = std::min(begin + kBlock, from.size());
+    if (copy_block(from.subspan(begin, end - begin), copies + begin, vertices)) continue;
+    // One number at a time, to name the first that is none of a vertex.
+    for (std::size_t k = begin; k < end; ++k) {
+      const Index v = from[k];
+      copies[k] = static_cast<std::uint32_t>(v);
+      if (v >= 0 && static_cast<std::uint64_t>(v) < vertices) continue;
+      throw Error("triangles",
+                  "triangle " + std::to_string(k / 3) + " names vertex " + std::to_string(v) +
+                      " of " + std::to_string(vertices),
+                  "correct the index");
+    }
+  }
+}
+
+}  // namespace
 
 void take(const ColliderInput& input, bool self, const std::vector<bool>& self_objects,
           Scene& scene) {
@@ -13,29 +95,18 @@ void take(const ColliderInput& input, bool self, const std::vector<bool>& self_o
   if (input.vertices.size() % 3 != 0 || input.vertices.size() / 3 > kMost)
     throw Error("vertices", "are not three doubles for each of at most 2^32 - 1 vertices",
                 "give x, y, z of each");
-  if (input.triangles.size() % 3 != 0 || input.triangles.size() / 3 > kMost)
+  if (!input.triangles.empty() && !input.wide_triangles.empty())
+    throw Error("triangles", "are given twice", "give triangles or wide_triangles");
+  const std::size_t indices = input.triangles.size() + input.wide_triangles.size();
+  if (indices % 3 != 0 || indices / 3 > kMost)
     throw Error("triangles", "are not three indices for each of at most 2^32 - 1 triangles",
                 "give three indices of each");
-  const auto count = static_cast<std::uint32_t>(input.triangles.size() / 3);
-  scene.vertices.resize(input.vertices.size() / 3);
-  for (std::size_t v = 0; v < scene.vertices.size(); ++v) {
-    scene.vertices[v] = {input.vertices[3 * v], input.vertices[3 * v + 1],
-                         input.vertices[3 * v + 2]};
-    if (scene.vertices[v].allFinite()) continue;
-    throw Error("vertices", "vertex " + std::to_string(v) + " is not finite",
-                "give finite coordinates");
-  }
-  scene.triangles.resize(count);
-  for (std::size_t t = 0; t < count; ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t v = input.triangles[3 * t + k];
-      scene.triangles[t][k] = v;
-      if (v < scene.vertices.size()) continue;
-      throw Error("triangles",
-                  "triangle " + std::to_string(t) + " names vertex " + std::to_string(v) + " of " +
-                      std::to_string(scene.vertices.size()),
-                  "correct the index");
-    }
+  const auto count = static_cast<std::uint32_t>(indices / 3);
+  copy_vertices(input.vertices, scene.vertices);
+  if (input.wide_triangles.empty()) {
+    copy_triangles(input.triangles, scene.vertices.size(), scene.triangles);
+  } else {
+    copy_triangles(input.wide_triangles, scene.vertices.size(), scene.triangles);
   }
   scene.source_face.resize(count);
   const std::size_t objects = std::max<std::size_t>(input.object_starts.size(), 1);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <type_traits>
 #include <utility>
 
@@ -95,9 +96,9 @@ bool block_fits(const std::byte* from, std::uint32_t* to) {
   return bits <= std::numeric_limits<std::uint32_t>::max();
 }
 
-// Calls with a value of the type.
+// The answer of a call with a value of the type.
 template <class Call>
-void with_integer(char kind, std::size_t size, const Call& call) {
+auto with_integer(char kind, std::size_t size, const Call& call) {
   if (kind == 'i') {
     if (size == 1) return call(std::int8_t{});
     if (size == 2) return call(std::int16_t{});
@@ -140,13 +141,15 @@ bool Rows::packed(std::size_t size) const {
 }
 
 template <class Out, class In>
-void Rows::copy(std::vector<Out>& memory) const {
-  memory.resize(3 * rows_);
+std::span<const Out> Rows::copy(Memory<Out>& memory) const {
+  if (rows_ > std::numeric_limits<std::size_t>::max() / (3 * sizeof(Out))) throw std::bad_alloc();
+  const std::span<Out> out = memory.room(3 * rows_);
   // Of several errors the one of the lowest row is thrown.
   for_chunks(rows_, chunks_for(rows_, kRowsOfThread),
              [&](std::size_t, std::size_t begin, std::size_t end) {
-               copy_rows<Out, In>(begin, end, memory.data() + 3 * begin);
+               copy_rows<Out, In>(begin, end, out.data() + 3 * begin);
              });
+  return out;
 }
 
 template <class Out, class In>
@@ -172,28 +175,26 @@ void Rows::copy_rows(std::size_t begin, std::size_t end, Out* to) const {
   }
 }
 
-std::span<const double> Rows::doubles(std::vector<double>& memory) const {
+std::span<const double> Rows::doubles(Memory<double>& memory) const {
   if (kind_ == 'f' && packed(sizeof(double)))
     return {reinterpret_cast<const double*>(data_), 3 * rows_};
-  if (kind_ == 'f') {
-    if (size_ == 2) {
-      copy<double, Half>(memory);
-    } else if (size_ == 4) {
-      copy<double, float>(memory);
-    } else {
-      copy<double, double>(memory);
-    }
-  } else {
-    with_integer(kind_, size_, [&](auto in) { copy<double, decltype(in)>(memory); });
-  }
-  return memory;
+  if (kind_ != 'f')
+    return with_integer(kind_, size_, [&](auto in) { return copy<double, decltype(in)>(memory); });
+  if (size_ == 2) return copy<double, Half>(memory);
+  if (size_ == 4) return copy<double, float>(memory);
+  return copy<double, double>(memory);
 }
 
-std::span<const std::uint32_t> Rows::indices(std::vector<std::uint32_t>& memory) const {
+std::span<const std::uint32_t> Rows::indices(Memory<std::uint32_t>& memory) const {
   if (kind_ == 'u' && packed(sizeof(std::uint32_t)))
     return {reinterpret_cast<const std::uint32_t*>(data_), 3 * rows_};
-  with_integer(kind_, size_, [&](auto in) { copy<std::uint32_t, decltype(in)>(memory); });
-  return memory;
+  return with_integer(kind_, size_,
+                      [&](auto in) { return copy<std::uint32_t, decltype(in)>(memory); });
+}
+
+std::span<const std::int64_t> Rows::wide() const {
+  if (kind_ != 'i' || !packed(sizeof(std::int64_t))) return {};
+  return {reinterpret_cast<const std::int64_t*>(data_), 3 * rows_};
 }
 
 Given::Given(const py::array& vertices, const py::array& triangles, const py::array& object_starts)
@@ -213,7 +214,10 @@ Given::Given(const py::array& vertices, const py::array& triangles, const py::ar
 }
 
 ColliderInput Given::input(Copies& copies) const {
-  return {vertices_.doubles(copies.vertices), triangles_.indices(copies.triangles), starts_};
+  const std::span<const double> vertices = vertices_.doubles(copies.vertices);
+  const std::span<const std::int64_t> wide = triangles_.wide();
+  if (!wide.empty()) return {vertices, {}, starts_, wide};
+  return {vertices, triangles_.indices(copies.triangles), starts_};
 }
 
 std::vector<TrianglePair> pairs_of(const py::array& array, const std::string& name,

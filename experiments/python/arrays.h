@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +15,26 @@
 #include "experiments/python/call.h"
 
 namespace farcull::python {
+
+/// Memory for numbers that are all written before they are read, so that nothing fills it first.
+template <class Number>
+class Memory {
+ public:
+  /// Room for so many numbers; what it held is lost.
+  std::span<Number> room(std::size_t count) {
+    if (count > size_) {
+      size_ = 0;
+      memory_.reset();  // before the new memory is asked for, so that both are never held
+      memory_.reset(new Number[count]);
+      size_ = count;
+    }
+    return {memory_.get(), count};
+  }
+
+ private:
+  std::unique_ptr<Number[]> memory_;
+  std::size_t size_ = 0;
+};
 
 /// An array of rows of three numbers, of any type of number, with any strides: what its memory says
 /// at the time of a call. The array is kept as long as this lives.
@@ -26,12 +47,14 @@ class Rows {
   /// The numbers as doubles or as indices, row after row. Those of the array itself where they
   /// are of that type and lie so, else copies in `memory`. Touches no Python. Throws Error for a
   /// number that rounds, or an index below 0 or of 2^32 or more.
-  std::span<const double> doubles(std::vector<double>& memory) const;
-  std::span<const std::uint32_t> indices(std::vector<std::uint32_t>& memory) const;
+  std::span<const double> doubles(Memory<double>& memory) const;
+  std::span<const std::uint32_t> indices(Memory<std::uint32_t>& memory) const;
+  /// The numbers of the array itself where they are of this type and lie row after row; else none.
+  std::span<const std::int64_t> wide() const;
 
  private:
   template <class Out, class In>
-  void copy(std::vector<Out>& memory) const;
+  std::span<const Out> copy(Memory<Out>& memory) const;
   template <class Out, class In>
   void copy_rows(std::size_t begin, std::size_t end, Out* to) const;
   bool packed(std::size_t size) const;
@@ -48,8 +71,8 @@ class Rows {
 /// Copies of arrays that the library cannot take as they are. Kept from call to call, no call but
 /// the first has to ask the system for memory.
 struct Copies {
-  std::vector<double> vertices;
-  std::vector<std::uint32_t> triangles;
+  Memory<double> vertices;
+  Memory<std::uint32_t> triangles;
 };
 
 /// What a call is about. Only its construction and its end need the interpreter.

@@ -158,29 +158,30 @@ py::list distances_of(const py::array& vertices, const py::array& triangles,
 
 }  // namespace
 
+ColliderOptions options_of(const py::dict& question) {
+  return {
+      .threads = question["threads"].cast<unsigned>(),
+      .self = question["all_objects"].cast<bool>(),
+      .self_objects = question["self_objects"].cast<std::vector<bool>>(),
+      .clearance = question["clearance"].cast<double>(),
+      .neighbours = question["neighbours"].cast<bool>(),
+      .contacts = question["kinds"].cast<bool>() ? ColliderContacts::kinds : ColliderContacts::none,
+      .ignore = question["ignore"].cast<std::vector<std::array<std::uint32_t, 2>>>(),
+      .limit = question["limit"].cast<std::uint64_t>()};
+}
+
 void add_collider(py::module_& module) {
   py::class_<KeptCollider>(module, "Collider")
-      .def(py::init([](const std::string& device, unsigned threads, bool self,
-                       const std::vector<bool>& self_objects, double clearance, bool neighbours,
-                       bool kinds, const std::vector<std::array<std::uint32_t, 2>>& ignore,
-                       std::uint64_t limit, const std::string& views, int resolution) {
-             const ColliderContacts contacts =
-                 kinds ? ColliderContacts::kinds : ColliderContacts::none;
-             return std::make_unique<KeptCollider>(ColliderOptions{.device = device_of(device),
-                                                                   .threads = threads,
-                                                                   .self = self,
-                                                                   .self_objects = self_objects,
-                                                                   .clearance = clearance,
-                                                                   .neighbours = neighbours,
-                                                                   .contacts = contacts,
-                                                                   .ignore = ignore,
-                                                                   .limit = limit,
-                                                                   .views = views,
-                                                                   .resolution = resolution});
+      .def(py::init([](const py::dict& question, const std::string& device,
+                       const std::string& views, int resolution) {
+             ColliderOptions options = options_of(question);
+             options.device = device_of(device);
+             options.views = views;
+             options.resolution = resolution;
+             return std::make_unique<KeptCollider>(options);
            }),
-           py::kw_only(), py::arg("device"), py::arg("threads"), py::arg("all_objects"),
-           py::arg("self_objects"), py::arg("clearance"), py::arg("neighbours"), py::arg("kinds"),
-           py::arg("ignore"), py::arg("limit"), py::arg("views"), py::arg("resolution"))
+           py::arg("question"), py::kw_only(), py::arg("device"), py::arg("views"),
+           py::arg("resolution"))
       .def("find", &KeptCollider::find);
   // Codes of kinds are places in this tuple, whichever of the two enumerations they come from.
   static_assert(static_cast<int>(ColliderContactKind::touch_face) + 1 == kContactKinds.size());

@@ -1,9 +1,13 @@
 // The parts of the compiled module. Each adds its classes and functions.
 #pragma once
 
+#include "experiments/library/farcull.h"
 #include "experiments/python/call.h"
 
 namespace farcull::python {
+
+/// What is asked of a collider or a stream, as _collide.py puts it together.
+ColliderOptions options_of(const py::dict& question);
 
 void add_collider(py::module_& module);
 void add_distances(py::module_& module);

@@ -2,11 +2,9 @@
 #include <pybind11/stl.h>
 #include <unistd.h>
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "experiments/python/arrays.h"
@@ -87,20 +85,8 @@ class KeptStream {
 void add_stream(py::module_& module) {
   py::class_<KeptStream>(module, "Stream")
       .def(py::init([](const py::array& vertices, const py::array& triangles,
-                       const py::array& starts, unsigned threads, bool self,
-                       const std::vector<bool>& self_objects, double clearance, bool neighbours,
-                       bool kinds, const std::vector<std::array<std::uint32_t, 2>>& ignore,
-                       std::uint64_t limit) {
-        const ColliderContacts contacts = kinds ? ColliderContacts::kinds : ColliderContacts::none;
-        const ColliderOptions options{.threads = threads,
-                                      .self = self,
-                                      .self_objects = self_objects,
-                                      .clearance = clearance,
-                                      .neighbours = neighbours,
-                                      .contacts = contacts,
-                                      .ignore = ignore,
-                                      .limit = limit};
-        return std::make_unique<KeptStream>(vertices, triangles, starts, options);
+                       const py::array& starts, const py::dict& question) {
+        return std::make_unique<KeptStream>(vertices, triangles, starts, options_of(question));
       }))
       .def("next", &KeptStream::next)
       // Python looks for signals behind a call, and not behind an assignment.

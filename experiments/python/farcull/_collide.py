@@ -61,6 +61,29 @@ class Result:
     report: Report
 
 
+def _question(
+    self: Union[bool, Sequence[bool]],
+    clearance: float,
+    neighbours: bool,
+    threads: int,
+    kinds: bool,
+    ignore: Optional[ArrayLike],
+    limit: Optional[int],
+) -> "_farcull.Question":
+    """What a collider and a stream are asked, checked."""
+    all_objects, each = _arguments.selves(self)
+    return {
+        "all_objects": all_objects,
+        "self_objects": each,
+        "clearance": _arguments.number("clearance", clearance),
+        "neighbours": _arguments.flag("neighbours", neighbours),
+        "threads": _arguments.threads(threads),
+        "kinds": _arguments.flag("kinds", kinds),
+        "ignore": _arguments.ignored(ignore),
+        "limit": _arguments.limit(limit),
+    }
+
+
 class Collider:
     """Finds colliding pairs again and again, as for the frames of an animation.
 
@@ -102,17 +125,11 @@ class Collider:
         views: str = "auto",
         resolution: int = 0,
     ) -> None:
-        collider._all, collider._each = _arguments.selves(self)
+        question = _question(self, clearance, neighbours, threads, kinds, ignore, limit)
+        collider._selves = question["all_objects"], question["self_objects"]
         collider._collider = _farcull.Collider(
+            question,
             device=_arguments.choice("device", device, ("cpu", "gl", "best")),
-            threads=_arguments.threads(threads),
-            all_objects=collider._all,
-            self_objects=collider._each,
-            clearance=_arguments.number("clearance", clearance),
-            neighbours=_arguments.flag("neighbours", neighbours),
-            kinds=_arguments.flag("kinds", kinds),
-            ignore=_arguments.ignored(ignore),
-            limit=_arguments.limit(limit),
             views=_arguments.text("views", views),
             resolution=_arguments.integer("resolution", resolution, 0, 16384),
         )
@@ -131,7 +148,7 @@ class Collider:
         """
         triangles = _arguments.array("triangles", F)
         starts = _arguments.starts(objects, triangles)
-        _arguments.require_something(len(starts), self._all, self._each)
+        _arguments.require_something(len(starts), *self._selves)
         found = self._collider.find(_arguments.array("vertices", V), triangles, starts)
         return Result(**{**found, "report": Report(**found["report"])})
 
@@ -236,23 +253,9 @@ def stream(
     """
     triangles = _arguments.array("triangles", F)
     starts = _arguments.starts(objects, triangles)
-    all_objects, each = _arguments.selves(self)
-    _arguments.require_something(len(starts), all_objects, each)
-    return Stream(
-        _farcull.Stream(
-            _arguments.array("vertices", V),
-            triangles,
-            starts,
-            _arguments.threads(threads),
-            all_objects,
-            each,
-            _arguments.number("clearance", clearance),
-            _arguments.flag("neighbours", neighbours),
-            _arguments.flag("kinds", kinds),
-            _arguments.ignored(ignore),
-            _arguments.limit(limit),
-        )
-    )
+    question = _question(self, clearance, neighbours, threads, kinds, ignore, limit)
+    _arguments.require_something(len(starts), question["all_objects"], question["self_objects"])
+    return Stream(_farcull.Stream(_arguments.array("vertices", V), triangles, starts, question))
 
 
 def join(

@@ -1,6 +1,6 @@
 """The compiled module. It is no interface for users: the package around it is."""
 
-from typing import Any, List, Optional, Sequence, Tuple
+from typing import Any, List, Optional, Sequence, Tuple, TypedDict
 
 from numpy import bool_, float64, int64, uint8, uint32
 from numpy.typing import NDArray
@@ -9,21 +9,21 @@ kinds: Tuple[str, ...]
 
 def require_main_interpreter() -> None: ...
 
+class Question(TypedDict):
+    """What a collider or a stream is asked. For annotations alone: the module has no such name."""
+
+    all_objects: bool
+    self_objects: Sequence[bool]
+    clearance: float
+    neighbours: bool
+    threads: int
+    kinds: bool
+    ignore: Sequence[Sequence[int]]
+    limit: int
+
 class Collider:
     def __init__(
-        self,
-        *,
-        device: str,
-        threads: int,
-        all_objects: bool,
-        self_objects: Sequence[bool],
-        clearance: float,
-        neighbours: bool,
-        kinds: bool,
-        ignore: Sequence[Sequence[int]],
-        limit: int,
-        views: str,
-        resolution: int,
+        self, question: Question, *, device: str, views: str, resolution: int
     ) -> None: ...
     def find(
         self, vertices: NDArray[Any], triangles: NDArray[Any], starts: NDArray[int64]
@@ -38,14 +38,7 @@ class Stream:
         vertices: NDArray[Any],
         triangles: NDArray[Any],
         starts: NDArray[int64],
-        threads: int,
-        all_objects: bool,
-        self_objects: Sequence[bool],
-        clearance: float,
-        neighbours: bool,
-        kinds: bool,
-        ignore: Sequence[Sequence[int]],
-        limit: int,
+        question: Question,
     ) -> None: ...
     def next(
         self,

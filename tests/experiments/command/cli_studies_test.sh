@@ -14,7 +14,7 @@ trap cleanup EXIT
 source "$(dirname -- "${BASH_SOURCE[0]}")/cli_lab.sh"
 
 # The study of the most points and the least work; every point of it by itself takes milliseconds.
-readonly study=radius
+readonly study=precision
 unset SLURM_ARRAY_TASK_ID OMPI_COMM_WORLD_RANK OMPI_COMM_WORLD_SIZE
 
 measure() { timeout 240 "$program" experiment "$study" --quick "$@" >"$out" 2>"$err"; }
@@ -126,9 +126,9 @@ expect shards "$out" '^shard 3 of 4, by SLURM_ARRAY_TASK_ID$'
 OMPI_COMM_WORLD_RANK=1 OMPI_COMM_WORLD_SIZE=4 measure --out shards || fail shards "status $?"
 expect shards "$out" '^shard 2 of 4, by OMPI_COMM_WORLD_RANK$'
 measure --out shards --shard 1/4 || fail shards "status $?"
-bad "a shard is missing" 'shard 4/4: of radius is missing' merge shards
+bad "a shard is missing" 'shard 4/4: of precision is missing' merge shards
 measure --out shards --shard 4/4 || fail shards "status $?"
-bad "a shard twice" '.*is shard 1/4 of radius, and so is' merge shards/results-1-of-4.sqlite \
+bad "a shard twice" '.*is shard 1/4 of precision, and so is' merge shards/results-1-of-4.sqlite \
   shards/results-1-of-4.sqlite -o new.sqlite
 good merge 0 merge shards
 expect merge "$out" "^$points rows of 1 study from 4 shards: shards/results.sqlite$"
@@ -137,18 +137,18 @@ bad "merged already" 'shards/results.sqlite: is there already' merge shards
 sqlite3 shards/results.sqlite "UPDATE rows SET counts = '{}' WHERE position = 3"
 differ "a row that was changed" shards
 sqlite3 shards/results-2-of-4.sqlite "DELETE FROM rows WHERE position = 5"
-bad "a hole" 'shards/results-2-of-4.sqlite: has no row of radius' merge shards -o new.sqlite
+bad "a hole" 'shards/results-2-of-4.sqlite: has no row of precision' merge shards -o new.sqlite
 
 # A folder that SQLite would take for something else than a folder.
 good "a folder with a colon" 0 experiment "$study" --quick --out 'file:x?mode=memory&q=' --shard 1/1000
 expect "a folder with a colon" <(ls 'file:x?mode=memory&q=') '^results-1-of-1000.sqlite$'
 
 # What is refused.
-bad "again without --resume" 'whole/results.sqlite: holds [0-9]+ rows of radius already' \
+bad "again without --resume" 'whole/results.sqlite: holds [0-9]+ rows of precision already' \
   experiment "$study" --quick --out whole
-bad "another seed" 'whole/results.sqlite: radius stands there with' experiment "$study" --quick \
+bad "another seed" 'whole/results.sqlite: precision stands there with' experiment "$study" --quick \
   --out whole --resume --seed 2
-bad "the other grid" 'whole/results.sqlite: radius stands there with' experiment "$study" --out whole \
+bad "the other grid" 'whole/results.sqlite: precision stands there with' experiment "$study" --out whole \
   --resume
 mkdir foreign empty damaged
 echo 'my notes, long enough to be no empty file' >foreign/results.sqlite

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <utility>
 
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
@@ -142,6 +143,70 @@ TEST(Library, RefusesBadInputAndGoesOn) {
   expect_exact(collider, make_builtin_scene("two-spheres"));
   Collider marked({.self_objects = {true}});
   EXPECT_EQ(refused([&] { marked.find(good.input()); }), "self_objects");
+}
+
+TEST(Library, IndicesOf64BitsAnswerTheSame) {
+  const Flat flat(make_builtin_scene("two-spheres"));
+  std::vector<std::int64_t> wide(flat.triangles.begin(), flat.triangles.end());
+  Collider collider;
+  const std::vector<ColliderPair> expected = collider.find(flat.input()).pairs;
+  EXPECT_GT(expected.size(), 0u);
+  const auto find = [&] { return collider.find({flat.vertices, {}, flat.starts, wide}).pairs; };
+  EXPECT_EQ(find(), expected);
+  EXPECT_EQ(refused([&] {
+              collider.find({flat.vertices, flat.triangles, flat.starts, wide});
+            }),
+            "triangles");
+  // In 32 bits each of the first two would be what it is in place of.
+  for (const std::int64_t bad :
+       {wide[5] + (std::int64_t{1} << 32), wide[5] - (std::int64_t{1} << 32), std::int64_t{-1},
+        static_cast<std::int64_t>(flat.vertices.size() / 3)}) {
+    const std::int64_t good = std::exchange(wide[5], bad);
+    EXPECT_EQ(refused(find), "triangles") << bad;
+    wide[5] = good;
+  }
+  EXPECT_EQ(find(), expected);
+  wide.pop_back();
+  EXPECT_EQ(refused(find), "triangles");
+}
+
+// Numbers are copied and checked in blocks: a bad one is named wherever in a block it stands.
+TEST(Library, NamesTheFirstBadNumberAtEachPlace) {
+  const Flat good(make_builtin_scene("two-spheres"));
+  const std::vector<std::int64_t> wide(good.triangles.begin(), good.triangles.end());
+  Collider collider;
+  const auto reason = [&](const ColliderInput& input) -> std::string {
+    try {
+      collider.find(input);
+    } catch (const ColliderError& error) {
+      return error.reason;
+    }
+    return "nothing was thrown";
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto vertices = static_cast<std::uint32_t>(good.vertices.size() / 3);
+  for (const std::size_t at : {0, 1, 2, 1022, 1023, 1024, 1025, 2047, 2048, 5000}) {
+    for (const double value : {nan, -nan, HUGE_VAL, -HUGE_VAL}) {
+      Flat flat = good;
+      flat.vertices[at] = flat.vertices[at + 700] = value;
+      EXPECT_EQ(reason(flat.input()), "vertex " + std::to_string(at / 3) + " is not finite");
+    }
+    Flat flat = good;
+    flat.triangles[at] = vertices;
+    flat.triangles[at + 700] = ~std::uint32_t{0};
+    const std::string named = "triangle " + std::to_string(at / 3) + " names vertex ";
+    const std::string of = " of " + std::to_string(vertices);
+    EXPECT_EQ(reason(flat.input()), named + std::to_string(vertices) + of);
+    std::vector<std::int64_t> bad = wide;
+    bad[at] = -1;
+    bad[at + 700] = vertices;
+    EXPECT_EQ(reason({good.vertices, {}, good.starts, bad}), named + "-1" + of);
+  }
+  Flat largest = good;  // the largest doubles are finite
+  largest.vertices.back() = std::numeric_limits<double>::max();
+  largest.vertices[0] = -std::numeric_limits<double>::max();
+  largest.vertices[1] = std::numeric_limits<double>::denorm_min();
+  EXPECT_EQ(reason(largest.input()), "nothing was thrown");
 }
 
 TEST(Library, RefusesBadOptions) {

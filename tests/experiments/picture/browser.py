@@ -120,6 +120,24 @@ class Browser:
                 raise TimeoutError(f"never became true: {condition}; {self.problems}")
             time.sleep(0.03)
 
+    def cpu_seconds(self):
+        """Of all processes of the browser that run."""
+        children, seconds = {}, {}
+        for name in filter(str.isdigit, os.listdir("/proc")):
+            try:
+                with open(f"/proc/{name}/stat", encoding="utf-8", errors="replace") as file:
+                    words = file.read().rsplit(")", 1)[1].split()
+            except OSError:
+                continue  # it has ended
+            children.setdefault(int(words[1]), []).append(int(name))
+            seconds[int(name)] = (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
+        total, left = 0, [self.process.pid]
+        while left:
+            pid = left.pop()
+            total += seconds.get(pid, 0)
+            left += children.get(pid, [])
+        return total
+
     def open(self, url):
         self.ask("Page.navigate", url="about:blank")
         self.ask("Page.navigate", url=url)

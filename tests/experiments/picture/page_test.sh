@@ -11,7 +11,31 @@ farcull=$(realpath -- "$1")
 here=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 cd "$work" || exit 2
 
-"$farcull" picture two-tori --compare cullide,far,exact --resolutions 32,256,512 --size 400x340 \
+# Two tori whose tubes cross, of few triangles: software draws each picture in the time that they take.
+python3 - <<'END' || exit 1
+import math
+
+
+def torus(name, rings, sides, place):
+    with open(name, "w", encoding="utf-8") as out:
+        print(f"OFF\n{rings * sides} {2 * rings * sides} 0", file=out)
+        for r in range(rings):
+            for s in range(sides):
+                a, t = 2 * math.pi * (r + 0.3) / rings, 2 * math.pi * (s + 0.2) / sides
+                width = 1 + 0.35 * math.cos(t)
+                print(*place(width * math.cos(a), width * math.sin(a), 0.35 * math.sin(t)), file=out)
+        for r in range(rings):
+            for s in range(sides):
+                a, b = r * sides + s, (r + 1) % rings * sides + s
+                c, d = r * sides + (s + 1) % sides, (r + 1) % rings * sides + (s + 1) % sides
+                print(f"3 {a} {b} {d}\n3 {a} {d} {c}", file=out)
+
+
+torus("first.off", 36, 18, lambda x, y, z: (x, y, z))
+torus("second.off", 36, 18, lambda x, y, z: (x + 0.45, -z, y))
+END
+tori=(first.off second.off)
+"$farcull" picture "${tori[@]}" --compare cullide,far,exact --resolutions 32,256,512 --size 400x340 \
   --html tori.html >said 2>errors
 status=$?
 if grep -q 'three.js' errors; then
@@ -19,10 +43,15 @@ if grep -q 'three.js' errors; then
   exit 77
 fi
 ((status == 0)) || { cat errors >&2; exit 1; }
-"$farcull" picture two-tori --method cullide --resolution 256 --size 400x340 -o flat.png >/dev/null || exit 1
-"$farcull" picture two-spheres --compare cullide:64,far-pairs --frames 3:6 --size 200x160 \
-  --html spheres.html >said-of-frames || exit 1
-"$farcull" run two-tori --method exact --no-verify --pairs pairs.csv --contacts >/dev/null || exit 1
+"$farcull" picture "${tori[@]}" --method cullide --resolution 256 --size 400x340 -o flat.png >/dev/null || exit 1
+"$farcull" picture cylinders:10 --compare cullide:64,far-pairs --frames 3:6 --size 200x160 \
+  --html moving.html >said-of-frames || exit 1
+# A scene of usual size, where its meshes are there.
+if ! "$farcull" picture two-bunnies --compare cullide:64,far-pairs --size 200x160 --html large.html \
+  >/dev/null 2>errors; then
+  grep -q 'meshes.sh' errors || { cat errors >&2; exit 1; }
+fi
+"$farcull" run "${tori[@]}" --method exact --no-verify --pairs pairs.csv --contacts >/dev/null || exit 1
 # Triangles that meet the one of a.off: equal, crossing, touch-vertex, touch-edge, coplanar, touch-face.
 printf '%s\n' OFF '3 1 0' '0 0 0' '8 0 0' '0 8 0' '3 0 1 2' >a.off
 printf '%s\n' OFF '18 6 0' '0 0 0' '8 0 0' '0 8 0' '1 1 -1' '1 1 1' '1 3 0.5' '4 2 0' '4 2 3' '5 2 3' \
@@ -30,5 +59,5 @@ printf '%s\n' OFF '18 6 0' '0 0 0' '8 0 0' '0 8 0' '1 1 -1' '1 1 1' '1 3 0.5' '4
   '3 0 1 2' '3 3 4 5' '3 6 7 8' '3 9 10 11' '3 12 13 14' '3 15 16 17' >b.off
 "$farcull" picture a.off b.off --compare exact --size 200x160 --html kinds.html >/dev/null || exit 1
 "$farcull" run a.off b.off --no-verify --pairs kinds.csv --contacts >/dev/null || exit 1
-PYTHONDONTWRITEBYTECODE=1 python3 "$here/page_test.py" tori.html said pairs.csv spheres.html said-of-frames \
+PYTHONDONTWRITEBYTECODE=1 python3 "$here/page_test.py" tori.html said pairs.csv moving.html said-of-frames \
   kinds.html kinds.csv flat.png || exit 1

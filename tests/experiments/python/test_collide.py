@@ -49,13 +49,19 @@ def test_many_triangles_of_every_type_are_read_exactly(kind):
         assert np.array_equal(scene.triangles, given[:rows])
 
 
-@pytest.mark.parametrize("row", [0, 255, 256, 511, 700, 999])
+# Around the blocks that the library reads at once, and those that are converted before it reads them.
+@pytest.mark.parametrize("row", [0, 255, 256, 340, 341, 342, 511, 700, 999])
 @pytest.mark.parametrize("value", [-1, 2**32, 2**32 + 1, 2**63 - 1, -(2**63), -(2**32)])
 def test_an_index_that_does_not_fit_is_named_with_its_row(row, value):
     given = np.zeros((1000, 3), np.int64)
     given[row, row % 3] = value
+    said = f"triangle {row} names vertex {value}"
     error = error_of(farcull.collide, V, given, self=True)
-    assert error.where == "triangles" and error.reason == f"triangle {row} names vertex {value}"
+    assert error.where == "triangles" and error.reason == f"{said} of {len(V)}"
+    for other in (np.asfortranarray(given), given.astype(np.uint64)):
+        error = error_of(farcull.collide, V, other, self=True)
+        as_read = said if other.dtype == np.int64 else f"triangle {row} names vertex {value % 2**64}"
+        assert error.where == "triangles" and error.reason == as_read
 
 
 def test_half_precision_is_read_exactly():
@@ -218,19 +224,17 @@ def test_what_only_claims_to_be_an_array_is_refused():
 def test_the_compiled_module_refuses_what_the_package_would_not_give_it():
     from farcull import _farcull
 
-    collider = _farcull.Collider(
-        device="cpu",
-        threads=0,
-        all_objects=False,
-        self_objects=[],
-        clearance=0.0,
-        neighbours=True,
-        kinds=False,
-        ignore=[],
-        limit=0,
-        views="auto",
-        resolution=0,
-    )
+    question = {
+        "threads": 0,
+        "all_objects": False,
+        "self_objects": [],
+        "clearance": 0.0,
+        "neighbours": True,
+        "kinds": False,
+        "ignore": [],
+        "limit": 0,
+    }
+    collider = _farcull.Collider(question, device="cpu", views="auto", resolution=0)
     starts = np.zeros(1, np.int64)
     for vertices, triangles in (
         (V.astype(object), F),

@@ -152,6 +152,7 @@ def test_random_calls_answer_or_say_what_is_wrong():
         else:
             answered += 1
             compared += require_right(call, arguments, answer)
+    print(f"of {CALLS} calls {answered} answered, {refused} refused, {compared} compared with distances")
     # Else the calls would show nothing.
     assert min(answered, refused, compared) > CALLS // 10, (answered, refused, compared)
     assert wheres >= {"vertices", "triangles", "objects", "self", "clearance", "threads", "kind", "kinds", "ignore",

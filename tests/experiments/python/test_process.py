@@ -63,7 +63,7 @@ def test_ctrl_c_ends_a_call(call):
     )
     try:
         assert process.stdout.readline() == "begun\n"
-        time.sleep(1.0)
+        time.sleep(0.4)
         process.send_signal(signal.SIGINT)
         start = time.monotonic()
         out, _ = process.communicate(timeout=60)
@@ -72,6 +72,81 @@ def test_ctrl_c_ends_a_call(call):
     assert process.returncode == 0
     assert out.startswith("ended ") and out.endswith("\n[[0 1]]\n"), out
     print(f"ended after {float(out.split()[1]) - start:.2f} s")
+
+
+def test_a_collider_that_was_interrupted_answers_as_a_new_one():
+    out = python(
+        """
+    import farcull, random, signal, time
+    import numpy as np
+
+    class Stop(Exception):
+        pass
+
+    def stop(*_):
+        raise Stop
+
+    signal.signal(signal.SIGALRM, stop)
+    rng, draw = np.random.default_rng(11), random.Random(11)
+    V = (rng.uniform(0, 9, size=(80000, 1, 3)) + rng.normal(0, 0.1, size=(80000, 3, 3))).reshape(-1, 3)
+    F = np.arange(240000).reshape(-1, 3)
+    collider = farcull.Collider(self=True)
+    begun = time.monotonic()
+    collider.find(V, F)
+    whole = time.monotonic() - begun
+    interrupted = 0
+    for _ in range(8):
+        V = V.copy()
+        moved = rng.random(len(V)) < draw.choice([0.001, 0.3, 1])
+        V[moved] += rng.normal(0, 0.01, size=(moved.sum(), 3))
+        try:
+            # Signals are looked for every 50 ms: the call ends in one step or another.
+            signal.setitimer(signal.ITIMER_REAL, draw.uniform(0.001, whole))
+            collider.find(V, F)
+            signal.setitimer(signal.ITIMER_REAL, 0)
+        except Stop:
+            interrupted += 1
+    kept, fresh = collider.find(V, F), farcull.collide(V, F, self=True)
+    assert np.array_equal(kept.pairs, fresh.pairs) and len(fresh.pairs) > 1000
+    assert np.array_equal(kept.neighbour_pairs, fresh.neighbour_pairs)
+    print(interrupted)
+    """
+    )
+    assert int(out) > 0  # else it shows nothing
+
+
+def test_arrays_that_another_thread_changes_meanwhile_are_answered_or_refused():
+    out = python(
+        """
+    import farcull, threading
+    import numpy as np
+    rng = np.random.default_rng(13)
+    V = (rng.normal(0, 9, size=(9000, 1, 3)) + rng.normal(0, 0.1, size=(9000, 3, 3))).reshape(-1, 3)
+    F = np.arange(27000).reshape(-1, 3)
+    ended = False
+
+    def change():
+        while not ended:
+            F[5000], V[100] = (2**40, -5, 7), np.nan
+            F[5000], V[100] = (1, 2, 3), 0.5
+
+    changer = threading.Thread(target=change)
+    changer.start()
+    seen = {"answered": 0, "vertices": 0, "triangles": 0}
+    for call in range(400):
+        try:
+            farcull.collide(V, F, [0, 4000], threads=1)
+            seen["answered"] += 1
+        except farcull.InputError as error:
+            seen[error.where] += 1
+        if call > 20 and min(seen.values()) > 0:
+            break
+    ended = True
+    changer.join()
+    print(min(seen.values()))
+    """
+    )
+    assert int(out) > 0  # each was seen, else it shows nothing
 
 
 def test_a_call_leaves_the_lock_to_other_threads():
