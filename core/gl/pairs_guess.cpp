@@ -110,9 +110,7 @@ std::optional<PairForecast> first_guess(const PairTask& task, std::size_t memory
       if (pixels > 0.99f * large) ++guess.large;
       if (pixels > 1.01f * large) continue;
       guess.row_items += height * ((width - 1) / kSpan + 1);
-      // A triangle meets pixels along its sides as well, at most two more for each of its rows and
-      // columns.
-      listed += std::min(width * height, static_cast<std::size_t>(pixels) + 2 * (width + height));
+      listed += std::min(width * height, static_cast<std::size_t>(pixels));
     }
     cells.add(item);
   }
@@ -132,6 +130,12 @@ std::optional<PairForecast> first_guess(const PairTask& task, std::size_t memory
     guess.levels = l + 1;
     guess.entries[l + 1] = kCutEntries * guess.entries[l];
     crowded = guess.crowded[l] * kSubdivision * kSubdivision;
+  }
+  if (bytes_of(guess) > memory / 4 * 3) {
+    // Where there is no memory to cut crowded pixels, there may be none: masks leave entries out.
+    guess.levels = 0;
+    guess.crowded.fill(0);
+    std::fill(guess.entries.begin() + 1, guess.entries.end(), 0);
   }
   if (bytes_of(guess) > memory / 4 * 3) return {};
   std::size_t entries = 0;

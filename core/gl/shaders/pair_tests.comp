@@ -54,6 +54,8 @@ void work(uint w) {
   }
   uint all = others;
   if (u_extra.y != 0u) all += FAR_AT(first, own + far_slice_bin + 1u) - e - 1u;
+  // Where a dispatch was lost, places may be anything: no loop is longer for it than there are entries.
+  all = min(all, uint(entries.length()) / 2u);
 #ifdef FAR_SOME_CROWDED
   bool crowded = FAR_AT(first, bins + u_bins.x) - FAR_AT(first, bins) > FAR_CROWDED;
   if (FAR_AT(state, cell) != 0u) all = 0u;
