@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/uninitialized.h"
+#include "core/canvas/work.h"
 #include "core/view/raster.h"
 #include "core/view/view.h"
 
@@ -115,6 +116,8 @@ class Canvas {
   /// values in [0, 1], empty pixels 1 for store and 0 for ask. For the lemmas' tests and for
   /// pictures.
   virtual std::vector<float> depths(Verb verb, const std::vector<Draw>& draws);
+  /// What it has asked of its device so far; all 0 on the cores of the CPU.
+  virtual CanvasWork work() const { return {}; }
 };
 
 /// The depth map of a window, the same float expression wherever it stands:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/gl/canvas_state.h"
@@ -57,6 +58,7 @@ const RasterLimits& GlCanvas::limits() const { return limits_; }
 
 // Everything on the device is deleted, or where the context cannot be had, left to go with it.
 void GlCanvas::forget() {
+  if (state_) earlier_ += std::exchange(state_->work, {});
   try {
     const GlCurrent current(context_);
     for (const GLenum target : {GL_PRIMITIVES_GENERATED, GL_ANY_SAMPLES_PASSED}) {
@@ -73,7 +75,11 @@ void GlCanvas::forget() {
   }
 }
 
-GlCanvasWork GlCanvas::work() const { return state_ ? state_->work : GlCanvasWork(); }
+CanvasWork GlCanvas::work() const {
+  CanvasWork all = earlier_;
+  if (state_) all += state_->work;
+  return all;
+}
 
 void GlCanvas::require_begun(const char* function) const {
   if (state_ && state_->begun) return;

@@ -9,7 +9,6 @@
 
 #include "core/canvas/canvas.h"
 #include "core/gl/canvas_options.h"
-#include "core/gl/canvas_work.h"
 #include "core/gl/context.h"
 
 namespace farcull {
@@ -33,8 +32,7 @@ class GlCanvas final : public Canvas {
   std::vector<float> samples(Verb verb, const std::vector<Draw>& draws) override;
   std::vector<float> depths(Verb verb, const std::vector<Draw>& draws) override;
 
-  /// Zeros after an exception.
-  GlCanvasWork work() const;
+  CanvasWork work() const override;
 
  private:
   void forget();
@@ -48,6 +46,7 @@ class GlCanvas final : public Canvas {
   GlCanvasOptions options_;
   RasterLimits limits_;
   std::unique_ptr<CanvasState> state_;  // null after a failure
+  CanvasWork earlier_;                  // of the states before it
 };
 
 /// The same behind the interface.

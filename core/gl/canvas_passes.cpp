@@ -27,7 +27,7 @@ void CanvasState::begin(const Window& to, const Drawables& drawables) {
   const bool known = choose_elements(bytes);
   std::vector<GlStore>& chunks = current.chunks;
   chunks.resize((elements + per_chunk - 1) / per_chunk);
-  work.uploaded_bytes = 0;
+  clock.stamp(0);
   report->start(0, report->dispatches(bytes.size()) + chunks.size(), 0);
   for (std::size_t c = 0; c < chunks.size(); ++c) {
     const auto chunk =
@@ -42,7 +42,8 @@ void CanvasState::begin(const Window& to, const Drawables& drawables) {
   if (!known) current.bytes.assign(bytes.begin(), bytes.end());
   set_uniforms(store_program);
   set_uniforms(ask_program);
-  report->read("upload");
+  clock.stamp(1);
+  read_report("upload");
   begun = true;
 }
 
@@ -117,8 +118,9 @@ void CanvasState::draw_queries(const CanvasPass& laid, const CanvasRun& run, std
 
 std::vector<std::uint8_t> CanvasState::run(const Pass& pass) {
   const CanvasPass laid = lay_out(shape(), pass, true, odd);
-  work = {.queries = 1, .readbacks = 2, .uploaded_bytes = work.uploaded_bytes};
+  ++work.passes;
   const bool with_flags = options.query == QueryMode::flags;
+  clock.stamp(0);
   upload(laid, with_flags);
   if (!with_flags) {
     // New names for every pass: a query that is never issued then has no object, and no stale
@@ -140,10 +142,14 @@ std::vector<std::uint8_t> CanvasState::run(const Pass& pass) {
   glEndQuery(GL_PRIMITIVES_GENERATED);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   if (with_flags) report->pack(flags, laid.serial, laid.slots);
+  clock.stamp(1);
 
-  std::vector<std::uint8_t> seen = report->read("pass");
+  std::vector<std::uint8_t> seen = read_report("pass");
   GLuint64 drawn = kNone;
   glGetQueryObjectui64v(generated, GL_QUERY_RESULT, &drawn);
+  ++work.queries;
+  ++work.readbacks;
+  work.downloaded_bytes += sizeof drawn;
   if (drawn != expected) {
     throw_lost("pass", std::to_string(drawn) + " of " + std::to_string(expected) +
                            " primitives were drawn");
@@ -162,9 +168,27 @@ std::vector<std::uint8_t> CanvasState::run(const Pass& pass) {
   return seen;
 }
 
+// Waits, reads the report, and takes the time since the stamp 0.
+std::vector<std::uint8_t> CanvasState::read_report(const std::string& stage) {
+  const std::uint64_t bytes = report->bytes_in_all();
+  std::vector<std::uint8_t> seen = report->read(stage);
+  ++work.waits;
+  ++work.readbacks;
+  work.dispatches = report->dispatches_in_all();
+  work.downloaded_bytes += report->bytes_in_all() - bytes;
+  ++work.spans;
+  const double ms = clock.between(0, 1);
+  if (ms >= 0) {
+    ++work.timed;
+    work.device_ms += ms;
+  }
+  return seen;
+}
+
 // After report->read(), so nothing is waited for.
 std::vector<std::uint8_t> CanvasState::read_queries(std::uint32_t slots) {
   work.readbacks += slots;
+  work.downloaded_bytes += slots * sizeof(GLuint);
   std::vector<std::uint8_t> seen(slots);
   for (std::uint32_t i = 0; i < slots; ++i) {
     GLuint result = kNone;

@@ -73,6 +73,7 @@ void CanvasReport::dispatch(std::uint32_t step, const GlStore& from, std::size_t
   const auto most = static_cast<std::uint32_t>(context_.info().max_compute_groups);
   const std::uint32_t columns = std::min(groups, most);
   glDispatchCompute(columns, (groups + columns - 1) / columns, 1);
+  ++dispatches_;
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
@@ -110,6 +111,7 @@ std::vector<std::uint8_t> CanvasReport::read(const std::string& stage) {
   // Where nothing is read, no echo is found.
   std::vector<std::uint32_t> words(bits + (flags_ + 31) / 32, kNone);
   store_.read(0, words.data(), words.size() * sizeof(std::uint32_t));
+  bytes_ += words.size() * sizeof(std::uint32_t);
   check_gl(stage);
   for (std::size_t e = 0; e < echoes_.size(); ++e) {
     if (words[kHead + e] != echoes_[e]) {

@@ -46,6 +46,9 @@ class CanvasReport {
   /// expected, every work item finished and GL has no error. A flag each, where pack() was called.
   std::vector<std::uint8_t> read(const std::string& stage);
   const GlStore& store() const { return store_; }
+  /// Of all passes: dispatches that were started, and bytes that were read.
+  std::uint64_t dispatches_in_all() const { return dispatches_; }
+  std::uint64_t bytes_in_all() const { return bytes_; }
 
  private:
   struct Numbers {  // the uniforms of canvas_work.comp
@@ -61,6 +64,7 @@ class CanvasReport {
   std::vector<std::uint32_t> echoes_;     // expected: of the batches, then of the dispatches
   std::uint32_t finished_ = 0, sum_ = 0;  // expected
   std::uint32_t flags_ = 0;               // packed
+  std::uint64_t dispatches_ = 0, bytes_ = 0;
 };
 
 }  // namespace farcull

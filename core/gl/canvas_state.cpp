@@ -266,6 +266,7 @@ void CanvasState::upload(const CanvasPass& laid, bool with_flags) {
     cleared = flags.bytes() / 16 * 16;
     flags.clear(cleared);
   }
+  work.uploaded_bytes += list.size() + own.size();
   report->start(laid.runs.size(),
                 report->dispatches(list.size()) + report->dispatches(own.size()) +
                     report->dispatches(cleared),

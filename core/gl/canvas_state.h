@@ -13,7 +13,7 @@
 #include "core/gl/canvas_layout.h"
 #include "core/gl/canvas_options.h"
 #include "core/gl/canvas_report.h"
-#include "core/gl/canvas_work.h"
+#include "core/gl/clock.h"
 #include "core/gl/context.h"
 #include "core/gl/objects.h"
 
@@ -61,7 +61,8 @@ struct CanvasState {
   std::optional<CanvasReport> report;
   std::vector<GlQuery> queries;
   Window window;
-  GlCanvasWork work;
+  GlClock clock{2};  // when a pass or an upload begins and ends
+  CanvasWork work;
 
   CanvasState(const GlContext& context, DepthMode mode, const std::string& solid,
               const GlCanvasOptions& options);
@@ -108,6 +109,7 @@ struct CanvasState {
   void draw_queries(const CanvasPass& laid, const CanvasRun& run, std::uint32_t& open);
   void draw_all(CanvasProgram& program, Verb verb, const std::vector<Draw>& wanted, GLuint target);
   std::vector<std::uint8_t> read_queries(std::uint32_t slots);
+  std::vector<std::uint8_t> read_report(const std::string& stage);
   bool choose_elements(std::span<const std::byte> bytes);
 };
 

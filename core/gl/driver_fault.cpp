@@ -60,9 +60,9 @@ void dispatch(GLuint x, GLuint y, GLuint z) {
   glGetIntegerv(GL_CURRENT_PROGRAM, &program);
   if (glGetUniformLocation(static_cast<GLuint>(program), "far_lost_item") != kLostItem)
     throw std::logic_error("driver fault: the program was not compiled with this fault");
-  GLuint count = 0;
-  glGetUniformuiv(static_cast<GLuint>(program), kCount, &count);
-  glProgramUniform1ui(static_cast<GLuint>(program), kLostItem, count / 2 + 1);
+  GLuint count[4] = {};  // the uniform, or the first four words of an array
+  glGetUniformuiv(static_cast<GLuint>(program), kCount, count);
+  glProgramUniform1ui(static_cast<GLuint>(program), kLostItem, count[0] / 2 + 1);
   Dispatch::original(x, y, z);
   glProgramUniform1ui(static_cast<GLuint>(program), kLostItem, 0);
 }
@@ -104,10 +104,10 @@ void shader_source(GLuint shader, GLsizei count, const GLchar* const* texts, con
     replace(text, kCountedEnd, kEarlierCountedEnd);
   }
   if (plan->kind == Kind::kept_bits)
-    replace(text, "to[w] = 0u;", "if (u_extra.x == 0u) to[w] = 0u;");
+    replace(text, "FAR_AT(to, w) = 0u;", "if (u_extra.x == 0u) FAR_AT(to, w) = 0u;");
   // The text of lists has three steps, of which the second counts.
   if (plan->kind == Kind::wrong_count && text.find("#define FAR_STEP 1\n") != std::string::npos &&
-      text.find("atomicExchange(listed[record]") != std::string::npos) {
+      text.find("atomicExchange(FAR_AT(listed, record)") != std::string::npos) {
     replace(text, "void work(uint w) {",
             "void work(uint w) {\n  if (w == 0u) atomicAdd(counts[" + std::to_string(plan->at) +
                 "u % (u_cells * u_bins.x)], 1u);");

@@ -21,6 +21,13 @@ constexpr const char* kKernelNames =
     "#define FAR_BOOL bool\n#define FAR_SELECT(c, a, b) ((c) ? (a) : (b))\n"
     "#define FAR_UNIFORM(c) (c)\n";
 
+// An element of the array at the end of a storage block; the last one where the index is beyond it.
+// An upload, a binding or a uniform that was lost is noticed when results are read. Until then
+// indices that come from buffers may be anything, and a device without robust access must not read
+// or write outside the buffer. A storage buffer of ours is never empty.
+constexpr const char* kElement =
+    "#define FAR_AT(array, index) array[min(uint(index), uint(array.length()) - 1u)]\n";
+
 template <class Get, class Log>
 std::string log_of(GLuint object, Get get, Log log) {
   GLint length = 0;
@@ -114,7 +121,7 @@ GlProgram gl_program(const std::string& name, const std::vector<std::string>& de
                      const std::vector<ShaderText>& stages) {
   GlProgram program(glCreateProgram());
   for (const ShaderText& stage : stages) {
-    std::string text = std::string("#version 430 core\n") + kKernelNames;
+    std::string text = std::string("#version 430 core\n") + kKernelNames + kElement;
     for (const std::string& define : defines) text += "#define " + define + "\n";
     for (const std::string& part : stage.texts) text += part;
     const GLuint shader = glCreateShader(stage.stage);

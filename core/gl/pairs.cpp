@@ -48,6 +48,8 @@ std::vector<TrianglePair> GlPairs::raw_pairs(const PairTask& task, PairCounts& c
 
 std::size_t GlPairs::dispatches() const { return finder_ ? finder_->dispatches() : 0; }
 std::size_t GlPairs::uploaded_bytes() const { return finder_ ? finder_->sent_bytes() : 0; }
+std::size_t GlPairs::portions() const { return finder_ ? finder_->portions() : 0; }
+std::size_t GlPairs::reported_pairs() const { return finder_ ? finder_->reported_pairs() : 0; }
 
 std::unique_ptr<PairBackend> gl_pair_backend(const GlContext& context, std::size_t memory) {
   return std::make_unique<GlPairs>(context, GlPairOptions{.memory = memory});

@@ -29,6 +29,10 @@ class GlPairs final : public PairBackend {
   /// Of the last raw_pairs.
   std::size_t dispatches() const;
   std::size_t uploaded_bytes() const;
+  /// Portions in which pairs were read; one where all of them fitted into one buffer.
+  std::size_t portions() const;
+  /// Pairs that the programs reported, the same one as often as they did.
+  std::size_t reported_pairs() const;
 
  private:
   void forget();

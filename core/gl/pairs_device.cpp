@@ -3,6 +3,7 @@
 #include "core/gl/pairs_device.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <stdexcept>
 
@@ -137,7 +138,29 @@ std::vector<std::string> defines_of(const Source& source, std::uint32_t index) {
 constexpr std::array kSerials = {kSerialStart, kSerialItems, kSerialPairs};
 
 // Where core/gl/shaders/pair_main.glsl adds the tags of buffers to the echo.
-constexpr std::uint32_t kTagPlace = 31, kWorkPlace = 42;
+constexpr std::uint32_t kTagPlace = 37;
+
+// The uniforms, as core/gl/shaders/pair_common.glsl has them.
+std::array<std::uint32_t, kTagPlace - 1> words_of(const PairUniforms& u, const PairWork& work,
+                                                  std::uint32_t count, std::uint32_t finished) {
+  std::array<std::uint32_t, kTagPlace - 1> out{};
+  std::size_t at = 0;
+  const auto add = [&](const auto& numbers) {
+    for (const auto number : numbers) out.at(at++) = std::bit_cast<std::uint32_t>(number);
+  };
+  using Four = std::array<std::uint32_t, 4>;
+  add(Four{count, finished, u.cells, u.masked});
+  add(u.widen);
+  add(u.tile);
+  add(u.window);
+  add(u.depth);
+  add(u.bins);
+  add(Four{u.capacity, u.items, 0, 0});
+  add(u.extra);
+  add(u.numbers);
+  add(Four{work.total, work.per, work.times, 0});
+  return out;
+}
 
 GLint limit_of(GLenum name) {
   GLint value = 0;
@@ -187,9 +210,6 @@ PairQueue::PairQueue(const GlContext& context, const GlPairOptions& options)
   for (std::size_t p = 0; p <= static_cast<std::size_t>(PairProgram::tests); ++p) program(p);
   words_.assign(kTotals + 2 * kDispatches, 0);
   counters_.reserve(words_.size() * sizeof(std::uint32_t), block_);
-  GLint clock_bits = 0;
-  glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &clock_bits);
-  clock_ = clock_bits > 0;
   start(true);
   check_gl("pairs");
 }
@@ -220,7 +240,7 @@ const PairQueue::Program& PairQueue::program(std::size_t which) {
 
 void PairQueue::start(bool fresh) {
   if (fresh) dispatches_ = readbacks_ = 0;
-  for (GlQuery& stamp : stamps_) stamp = GlQuery();
+  clock_.forget();
   expected_.clear();
   needed_.clear();
   overflow_ = false;
@@ -250,33 +270,11 @@ void PairQueue::run(PairProgram which, const PairWork& work, const PairUniforms&
   const Program& used = program(index);
   const auto finished = kTotals + 2 * static_cast<std::uint32_t>(expected_.size());
   glUseProgram(used.name);
-  glUniform1ui(0, n);
-  glUniform1ui(1, finished);
-  glUniform4fv(2, 1, u.widen.data());
-  glUniform4iv(3, 1, u.tile.data());
-  glUniform2iv(4, 1, u.window.data());
-  glUniform2fv(5, 1, u.depth.data());
-  glUniform4uiv(6, 1, u.bins.data());
-  glUniform1ui(7, u.cells);
-  glUniform1ui(8, u.masked);
-  glUniform1ui(9, u.capacity);
-  glUniform1ui(10, u.items);
-  glUniform4uiv(11, 1, u.extra.data());
-  glUniform4fv(12, 1, u.numbers.data());
-  const std::array<std::uint32_t, 4> counted = {work.total, work.per, work.times, 0};
-  glUniform4uiv(13, 1, counted.data());
+  const auto all = words_of(u, work, n, finished);
+  glUniform4uiv(0, static_cast<GLsizei>(all.size() / 4), all.data());
   GlEcho echo;
-  echo.add({static_cast<std::uint32_t>(index) + 1, n, finished});
-  echo.add(u.widen);
-  echo.add(u.tile);
-  echo.add(u.window);
-  echo.add(u.depth);
-  echo.add(u.bins);
-  echo.add({u.cells, u.masked, u.capacity, u.items});
-  echo.add(u.extra);
-  echo.add(u.numbers);
-  echo.place = kWorkPlace;
-  echo.add(counted);
+  echo.add({static_cast<std::uint32_t>(index) + 1});
+  echo.add(all);
   const auto bind = [&](GLuint at, const GlStore& store) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, at, store.name());
     if ((used.bindings >> at & 1) != 0) echo.add_at(kTagPlace + at, store.tag());
@@ -329,28 +327,6 @@ void PairQueue::scan(const GlStore& numbers, const GlStore& before, std::size_t 
       counted == kSerialStart ? PairWork(first) : PairWork(count, counted, kScanned);
   for (const PairProgram step : {PairProgram::sum_numbers, PairProgram::scan_numbers})
     run(step, work, u, {{0, &numbers}, {1, &before}, {2, &sums_}});
-}
-
-// A new name each time: a stamp that is lost then has no object, and no stale time to give.
-void PairQueue::stamp(PairStamp at) {
-  if (!clock_) return;
-  GlQuery& query = stamps_[static_cast<std::size_t>(at)];
-  query = gl_make<GlQuery>(glGenQueries);
-  glQueryCounter(query, GL_TIMESTAMP);
-}
-
-double PairQueue::between(PairStamp from, PairStamp to) const {
-  std::array<GLuint64, 2> ns{};
-  for (std::size_t k = 0; k < ns.size(); ++k) {
-    const GlQuery& query = stamps_[static_cast<std::size_t>(k == 0 ? from : to)];
-    if (query == 0) return -1;
-    GLuint ready = GL_FALSE;
-    glGetQueryObjectuiv(query, GL_QUERY_RESULT_AVAILABLE, &ready);
-    if (ready == GL_TRUE) glGetQueryObjectui64v(query, GL_QUERY_RESULT, &ns[k]);
-    check_gl("clock");
-    if (ns[k] == 0) return -1;
-  }
-  return ns[1] >= ns[0] ? static_cast<double>(ns[1] - ns[0]) / 1e6 : -1;
 }
 
 void PairQueue::check_finished(const std::string& stage) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/gl/clock.h"
 #include "core/gl/context.h"
 #include "core/gl/objects.h"
 #include "core/gl/pairs_options.h"
@@ -189,10 +190,12 @@ class PairQueue {
   std::array<std::uint32_t, kTotals> read(const std::string& stage);
 
   /// Notes the time at which the device gets here, where it has a clock (GL_TIMESTAMP).
-  void stamp(PairStamp at);
+  void stamp(PairStamp at) { clock_.stamp(static_cast<std::size_t>(at)); }
   /// ms on the device between two stamps since the start; negative where they are not known. It
   /// does not wait: read() comes before. Throws Error where a stamp was lost.
-  double between(PairStamp from, PairStamp to) const;
+  double between(PairStamp from, PairStamp to) const {
+    return clock_.between(static_cast<std::size_t>(from), static_cast<std::size_t>(to));
+  }
 
   /// Counts a wait for results that read() does not make.
   void add_readback() { ++readbacks_; }
@@ -226,8 +229,7 @@ class PairQueue {
   std::array<std::uint32_t, kTotals> serials_{};  // those that were sent, at their places
   std::uint32_t serial_ = 0;                      // the last one
   std::vector<std::uint32_t> words_;
-  bool clock_ = false;
-  std::array<GlQuery, kPairStamps> stamps_;
+  GlClock clock_{kPairStamps};
 };
 
 }  // namespace farcull

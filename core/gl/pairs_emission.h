@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -22,34 +21,45 @@ class PairEmission {
   /// Decides whether pairs of the part are emitted once, which takes a bit for each two records:
   /// where they may repeat often, and there is memory for it.
   void settle(const PairLevel& pixels, PartMemory& memory);
-  /// The tests of all lists, and large triangles with each active one; false: too many. `totals`
-  /// are those of all tests together where they were done at once, else nothing.
-  bool make(PairLists& lists, const PartMemory& memory, std::optional<PairTotalWords>& totals);
-  /// The same with room for as many pairs as the forecast says; reads the totals once. False: there
-  /// was too little room for something since the part began, so that nothing is believed.
-  bool make(PairLists& lists, const PairForecast& forecast, const PartMemory& memory,
-            PairTotalWords& totals);
+  /// The tests of all lists, and large triangles with each active one; false: too many. Totals are
+  /// read once, and again with each portion of the pairs.
+  bool make(PairLists& lists, const PartMemory& memory, PairTotalWords& totals);
+  /// The same with room for as many pairs as the forecast says, up to the first portion, whose
+  /// totals are read: false where there was too little room for something since the part began, so
+  /// that nothing is believed. Else finish() follows, where the caller believes the totals.
+  bool begin_foreseen(PairLists& lists, const PairForecast& forecast, const PartMemory& memory,
+                      PairTotalWords& totals);
+  bool finish_foreseen(PairLists& lists, const PartMemory& memory, const PairTotalWords& totals);
   /// All pairs of the window; the next begin() comes before any other call.
   std::vector<TrianglePair> take();
 
+  /// Of the part: pairs that were reported, and the most work items of further tests of a level in
+  /// a portion.
+  std::size_t emitted() const { return emitted_; }
+  std::size_t most_units() const { return most_units_; }
+  /// Of the window: portions that were read, and the pairs in them.
+  std::size_t portions() const { return portions_; }
+  std::size_t reported() const { return reported_; }
+
  private:
-  // Launches work items first .. first + count - 1, which may append `capacity` pairs.
-  using Launch =
-      std::function<void(std::uint64_t first, std::uint64_t count, std::uint32_t capacity)>;
-  // Is told how many work items of further tests some work items have left.
-  using After = std::function<void(std::uint32_t more)>;
-  void emit(std::uint64_t count, std::size_t level, const PartMemory& memory, const Launch& launch,
-            const After& after);
-  void emit_tests(PairLists& lists, std::size_t l, const PartMemory& memory);
-  void emit_large(const PartMemory& memory);
+  // The work items of all tests whose number is k modulo `of`. The tests of an entry with 256
+  // others are one, and their number is that of the entry and of the 256.
+  struct Portion {
+    std::uint32_t k = 0, of = 1;
+  };
+
+  bool run_portions(PairLists& lists, const PartMemory& memory, PairTotalWords& totals);
+  void launch(PairLists& lists, const Portion& portion, const PartMemory& memory);
+  bool take_portion(const Portion& portion, const PartMemory& memory, const PairTotalWords& totals);
+  void prepare(std::size_t pairs, std::size_t units, const PartMemory& memory);
+  static std::size_t most_units_of(const PairTotalWords& totals);
   std::size_t most_bytes(const PartMemory& memory) const;
   std::size_t pair_capacity(const PartMemory& memory) const;
   std::size_t unit_capacity(const PartMemory& memory) const;
   void find_large(const PartMemory& memory);
   void run_tests(PairLists& lists, std::size_t l, bool more, const PairWork& work,
-                 std::uint64_t first, const PartMemory& memory);
-  void run_large(const PairWork& work, std::size_t sent, std::uint64_t first, std::size_t capacity);
-  void launch_all(PairLists& lists, bool more, const PartMemory& memory);
+                 const Portion& portion, const PartMemory& memory);
+  void run_large(const Portion& portion, const PartMemory& memory);
   void read_pairs(std::size_t emitted);
 
   PairRun& run_;
@@ -57,9 +67,10 @@ class PairEmission {
   GlStore pairs_, units_, settled_, large_;
   std::size_t settled_words_ = 0;  // bits of pairs that the part has emitted; 0: it keeps none
   std::optional<PairPool> found_;
-  std::size_t emitted_bytes_ = 0;  // of a part whose tests are not done at once
-  // Triangles of the scene whose pairs were too many to be emitted at once; 0: none.
-  std::size_t too_many_of_ = 0;
+  std::vector<Portion> left_;  // of the part
+  bool some_further_ = true;   // further tests are expected
+  std::size_t emitted_ = 0, most_units_ = 0;
+  std::size_t portions_ = 0, reported_ = 0;
 };
 
 }  // namespace farcull

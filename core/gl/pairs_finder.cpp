@@ -1,19 +1,35 @@
-// A window whose work is foreseen by that on the last ones is done without a wait: each dispatch
-// learns on the device how much there is to do. Where there was too little room for something, all
-// is done again, and what there is to do is read, step by step. A part of the window that is too
-// much for the memory is split in two, down to single pixels.
+// A window whose work is foreseen by that on the last ones, or guessed by the bounds of its
+// triangles, is done without a wait: each dispatch learns on the device how much there is to do.
+// Where there was too little room for something, all is done again, and what there is to do is
+// read, step by step. A part of the window that is too much for the memory is split in two, down to
+// single pixels.
 #include "core/gl/pairs_finder.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
+#include "core/gl/pairs_guess.h"
 
 namespace farcull {
 namespace {
 
 // As many views as a frame has mostly, so that the room is enough for each of them.
 constexpr std::size_t kRemembered = 4;
+
+PairWindow window_of(const PairTask& task) {
+  constexpr std::size_t kLooked = 16;  // objects
+  PairWindow out;
+  out.side = static_cast<float>(std::max(task.width, task.height));
+  out.places = {static_cast<float>(task.width), static_cast<float>(task.height)};
+  for (std::size_t o = 0; o < std::min(task.limits.size(), kLooked); ++o) {
+    const PixelBox& box = task.limits[o];
+    for (const float x : {box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z})
+      out.places.push_back(x);
+  }
+  return out;
+}
 
 void check_counted_twice(const PairTotalWords& totals, std::size_t levels) {
   bool same = totals[kTotalLargeFound] == totals[kTotalLarge] &&
@@ -52,14 +68,20 @@ std::vector<TrianglePair> PairFinder::find(const PairTask& task, PairCounts& cou
     if (run_.scene.sent_bytes() > 0) run_.device.read("pairs upload");
   } else {
     const PairPart whole{0, task.width - 1, 0, task.height - 1};
-    const std::optional<PairForecast> expected = forecast();
+    const PairWindow window = window_of(task);
+    std::optional<PairForecast> expected = forecast();
+    if (!run_.scene.gathered() && !(expected && seen_like(window))) {
+      auto guess = first_guess(task, run_.options.memory, run_.device.block());
+      if (guess && expected) guess->join(*expected);
+      expected = guess;
+    }
     if (!expected || !find_at_once(whole, *expected)) {
       split(whole);
     } else {
       run_.counts.bands = 1;
     }
     if (seen_ && run_.counts.bands == 1) {
-      last_ones_.push_front(*seen_);
+      last_ones_.push_front({*seen_, window});
       if (last_ones_.size() > kRemembered) last_ones_.pop_back();
     } else {
       last_ones_.clear();
@@ -74,12 +96,24 @@ std::vector<TrianglePair> PairFinder::find(const PairTask& task, PairCounts& cou
 // Nothing where the last windows were of another scene.
 std::optional<PairForecast> PairFinder::forecast() const {
   if (last_ones_.empty() || run_.scene.gathered()) return {};
-  PairForecast all = last_ones_.front();
+  PairForecast all = last_ones_.front().counts;
   if (all.triangles != run_.task->triangles.size()) return {};
-  for (const PairForecast& one : last_ones_) {
-    if (one.triangles == all.triangles) all.join(one);
+  for (const Seen& one : last_ones_) {
+    if (one.counts.triangles == all.triangles) all.join(one.counts);
   }
   return all.with_room();
+}
+
+// True where one of the last windows was of this view, or of one in which objects are at the same
+// places, a step of a motion apart.
+bool PairFinder::seen_like(const PairWindow& window) const {
+  constexpr float kStep = 0.125f;  // of the window
+  const auto near = [&](float a, float b) { return std::abs(a - b) <= kStep * window.side; };
+  return std::any_of(last_ones_.begin(), last_ones_.end(), [&](const Seen& one) {
+    return near(one.window.side, window.side) &&
+           std::equal(one.window.places.begin(), one.window.places.end(), window.places.begin(),
+                      window.places.end(), near);
+  });
 }
 
 void PairFinder::begin_part(const PairPart& part) {
@@ -99,11 +133,11 @@ void PairFinder::end_part(const PairTotalWords& totals) {
   seen.large = totals[kTotalLarge];
   seen.shown = totals[kTotalListed];
   seen.row_items = totals[kTotalRowItems];
-  seen.pairs = totals[kTotalPairs];
+  seen.pairs = emission_.emitted();
+  seen.more = emission_.most_units();
   for (std::size_t l = 0; l <= kMaxLevel; ++l) {
     seen.entries[l] = totals[of_level(kTotalEntries, l)];
     seen.crowded[l] = totals[of_level(kTotalParents, l)];
-    seen.more = std::max<std::size_t>(seen.more, totals[of_level(kTotalMore, l)]);
   }
   // The time of the device; unknown for the window where it is for a part.
   const auto add = [&](double& ms, PairStamp from, PairStamp to) {
@@ -126,7 +160,6 @@ void PairFinder::end_part(const PairTotalWords& totals) {
 // The whole window with one wait; false: there was not room enough.
 bool PairFinder::find_at_once(const PairPart& part, const PairForecast& forecast) {
   PartMemory memory{run_.options.memory, run_.device.block(), false};
-  if (forecast.pairs * sizeof(TrianglePair) > std::min(memory.left / 4, memory.block)) return false;
   const std::uint64_t batches = (forecast.large + kLargeBatch - 1) / kLargeBatch;
   if (batches * run_.task->active.size() >> 31 != 0) return false;  // beyond one dispatch
   const PairCounts before = run_.counts;
@@ -143,9 +176,9 @@ bool PairFinder::find_at_once(const PairPart& part, const PairForecast& forecast
   if (enough) {
     emission_.settle(lists_.level(0), memory);
     PairTotalWords totals;
-    enough = emission_.make(lists_, forecast, memory, totals);
-    const std::size_t levels = lists_.levels();
-    enough = enough && has_room(forecast, totals, levels);
+    enough = emission_.begin_foreseen(lists_, forecast, memory, totals) &&
+             has_room(forecast, totals, lists_.levels()) &&
+             emission_.finish_foreseen(lists_, memory, totals);
     if (enough) end_part(totals);
   } else {
     run_.device.read("pairs");
@@ -181,11 +214,9 @@ bool PairFinder::find_in(const PairPart& part) {
   const Stopwatch pairing;
   run_.device.stamp(PairStamp::listed);
   emission_.settle(lists_.level(0), memory);
-  std::optional<PairTotalWords> at_once;
-  if (!emission_.make(lists_, memory, at_once)) return false;
-  const bool known = at_once.has_value();
-  end_part(known ? *at_once : run_.device.read("pairs"));
-  if (!known) seen_.reset();
+  PairTotalWords totals{};
+  if (!emission_.make(lists_, memory, totals)) return false;
+  end_part(totals);
   run_.counts.pair_ms += pairing.ms();
   return true;
 }

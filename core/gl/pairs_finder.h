@@ -13,6 +13,12 @@
 
 namespace farcull {
 
+/// By what a window is known again: its pixels and where some objects are in it.
+struct PairWindow {
+  std::vector<float> places;  // px
+  float side = 0;             // px; the larger one
+};
+
 class PairFinder {
  public:
   PairFinder(const GlContext& context, const GlPairOptions& options)
@@ -21,22 +27,29 @@ class PairFinder {
   std::vector<TrianglePair> find(const PairTask& task, PairCounts& counts);
   std::size_t dispatches() const { return run_.device.dispatches(); }
   std::size_t sent_bytes() const { return run_.scene.sent_bytes(); }
+  std::size_t portions() const { return emission_.portions(); }
+  std::size_t reported_pairs() const { return emission_.reported(); }
 
  private:
+  struct Seen {
+    PairForecast counts;
+    PairWindow window;
+  };
   void split(const PairPart& part);
   bool find_in(const PairPart& part);
   bool find_at_once(const PairPart& part, const PairForecast& forecast);
   void begin_part(const PairPart& part);
   void end_part(const PairTotalWords& totals);
   std::optional<PairForecast> forecast() const;
+  bool seen_like(const PairWindow& window) const;
 
   PairRun run_;
   PairItems items_{run_};
   PairLists lists_;
   PairEmission emission_;
-  bool fresh_ = true;                   // nothing was told to the device but what was sent
-  std::optional<PairForecast> seen_;    // of the last part, where all of it is known
-  std::deque<PairForecast> last_ones_;  // of the last windows
+  bool fresh_ = true;                 // nothing was told to the device but what was sent
+  std::optional<PairForecast> seen_;  // of the last part, where all of it is known
+  std::deque<Seen> last_ones_;        // the last windows
 };
 
 }  // namespace farcull

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/stage.h"
+#include "core/canvas/work.h"
 #include "core/cull/cull.h"
 #include "core/gl/context.h"
 #include "core/pairs/pairs.h"
@@ -47,6 +48,7 @@ struct Candidates {
   std::variant<std::monostate, std::vector<ViewReport>, std::vector<PairView>, SweptObjects> by;
   std::vector<std::uint8_t> bits;  // of a drawing method, per triangle: CullResult::bits
   UsedDevice device;
+  CanvasWork asked;  // of a drawing method: of the GL device; all 0 for others
   std::vector<Stage> trace;
   double setup_ms = 0;    // context, shaders; 0 where an earlier run had made them
   double ms = 0;          // of finding, without setup

@@ -125,7 +125,9 @@ void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions&
 
     settings.fattener = fattener;
     settings.bits = std::move(out.bits);
+    CanvasWork asked = canvas.work();
     CullResult result = cull(scene, work.regions, settings, canvas, progress);
+    out.asked += canvas.work() -= asked;
     for (Stage& drawn : result.stages) {
       drawn.depends |= further;
       out.trace.push_back(std::move(drawn));

@@ -58,6 +58,22 @@ Json view_json(const PairView& view) {
           {"pair_device_ms", or_null(c.pair_device_ms)}};
 }
 
+// What drawing asked of a GL device.
+Json asked_json(const CanvasWork& work) {
+  if (work.passes == 0) return nullptr;
+  const std::optional<double> ms = work.known_ms();
+  return {{"passes", work.passes},
+          {"draw_calls", work.draws},
+          {"dispatches", work.dispatches},
+          {"state_changes", work.state_changes},
+          {"queries", work.queries},
+          {"readbacks", work.readbacks},
+          {"waits", work.waits},
+          {"uploaded_bytes", work.uploaded_bytes},
+          {"downloaded_bytes", work.downloaded_bytes},
+          {"device_ms", ms ? Json(*ms) : Json(nullptr)}};
+}
+
 Json budget_json(const std::vector<ViewReport>& views) {
   const ViewReport* widest = widest_budget(views);
   return widest ? view_json(*widest)["budget"] : Json(nullptr);
@@ -249,6 +265,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
       {"views", views},
       {"budget", budget_json(record.found.views())},
       {"device", device_json(record)},
+      {"asked", asked_json(record.found.asked)},
       {"floating_point", floating_point_json(record.callers, record.used)},
       {"stages", stages_json(record.trace)},
       {"pcs", {{"objects", record.found.object_count}, {"triangles", record.found.triangle_count}}},

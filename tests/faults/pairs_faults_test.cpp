@@ -10,8 +10,10 @@
 #include <set>
 #include <string>
 
+#include "core/base/error.h"
 #include "core/gl/context.h"
 #include "core/gl/echo.h"
+#include "core/gl/entry_point.h"
 #include "core/gl/pairs.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/core/pairs/pairs_lab.h"
@@ -172,6 +174,49 @@ TEST_P(HardPairsFaults, EveryLostCallAndFailedAllocationIsNoticed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, HardPairsFaults, testing::Range(0, 3));
+
+// A driver that sends other bytes than it was given, all of them 255, in one upload.
+class OtherBytes {
+  using SubData = GlEntryPoint<&epoxy_glBufferSubData>;
+  static inline long at = -1, uploads = 0;
+  static void sub_data(GLenum target, GLintptr offset, GLsizeiptr size, const void* data) {
+    const std::vector<unsigned char> other(static_cast<std::size_t>(size), 255);
+    SubData::original(target, offset, size, uploads++ == at ? other.data() : data);
+  }
+  SubData sub_data_{sub_data};
+
+ public:
+  explicit OtherBytes(long which) {
+    at = which;
+    uploads = 0;
+  }
+  static long count() { return uploads; }
+};
+
+// Indices that were not sent are beyond every buffer: shaders stay inside, and there is an error.
+TEST(PairsFaultsUpload, OtherBytesThanWereSentAreNoticed) {
+  const Scene scene = make_builtin_scene("two-spheres");
+  const PairSettings settings{.views = parse_views("z"), .resolution = 24};
+  const GlContext context;
+  long uploads = 1, noticed = 0;
+  std::vector<TrianglePair> right;
+  for (long at = -1; at < uploads; ++at) {
+    const OtherBytes fault(at);
+    GlPairs backend(context);
+    try {
+      const auto found = find_pairs(scene, settings, backend).candidates;
+      if (at < 0) right = found;
+      // Some bytes stand for nothing, as the tag of a buffer that no program reads.
+      EXPECT_EQ(found, right) << at;
+    } catch (const Error&) {
+      ++noticed;
+    }
+    if (at < 0) uploads = OtherBytes::count();
+    EXPECT_EQ(find_pairs(scene, settings, backend).candidates, right) << "after " << at;
+  }
+  EXPECT_FALSE(right.empty());
+  EXPECT_GE(noticed, 5) << "of " << uploads;
+}
 
 // Sums and echoes: old contents never pass for new ones. Where words were only multiplied by a
 // number of their place, both cases did.

@@ -60,9 +60,9 @@ void main() {
 #endif
 #if defined(FAR_FLAGS) && defined(FAR_PROXY)
   float stored = texelFetch(u_depth, pixel, 0).r;
-  if (depth > stored || (u_touching && depth == stored)) flags[v_slot] = u_serial;
+  if (depth > stored || (u_touching && depth == stored)) FAR_AT(flags, v_slot) = u_serial;
 #elif defined(FAR_FLAGS)
-  flags[v_slot] = u_serial;
+  FAR_AT(flags, v_slot) = u_serial;
 #elif defined(FAR_PROXY)
   gl_FragDepth = depth;
 #endif

@@ -58,21 +58,21 @@ uint far_echo() {
 void main() {
 #ifdef FAR_PROXY
   const uint corner_of[6] = uint[6](0u, 1u, 2u, 0u, 2u, 3u);
-  uvec2 item = draws[gl_VertexID / 6];
+  uvec2 item = FAR_AT(draws, gl_VertexID / 6);
   uint corner = corner_of[gl_VertexID % 6];
   uint at = item.x * 7u;
-  vec4 pair = elements[at + corner / 2u];
+  vec4 pair = FAR_AT(elements, at + corner / 2u);
   precise vec2 p = (corner % 2u == 0u ? pair.xy : pair.zw) * u_to_ndc;
-  v_solid0 = elements[at + 2u];
-  v_solid1 = elements[at + 3u];
-  v_solid2 = elements[at + 4u];
-  v_solid3 = elements[at + 5u];
-  v_solid4 = elements[at + 6u];
+  v_solid0 = FAR_AT(elements, at + 2u);
+  v_solid1 = FAR_AT(elements, at + 3u);
+  v_solid2 = FAR_AT(elements, at + 4u);
+  v_solid3 = FAR_AT(elements, at + 5u);
+  v_solid4 = FAR_AT(elements, at + 6u);
   v_fixed = v_solid4.y != 0.0 ? 1u : 0u;
   gl_Position = vec4(p, 0.0, 1.0);
 #else
-  uvec2 item = draws[gl_VertexID / 3];
-  vec4 corner = elements[item.x * 3u + uint(gl_VertexID % 3)];
+  uvec2 item = FAR_AT(draws, gl_VertexID / 3);
+  vec4 corner = FAR_AT(elements, item.x * 3u + uint(gl_VertexID % 3));
   precise vec2 p = corner.xy * u_to_ndc;
   v_fixed = corner.w != 0.0 ? 1u : 0u;
   precise float ndc = corner.w != 0.0 ? 2.0 * corner.z - 1.0 : 2.0 * (corner.z * u_scale);
@@ -82,6 +82,6 @@ void main() {
 #ifdef FAR_ECHO
   // Outside the condition, where llvmpipe reads once for all vertices that it works on together.
   uint word = head.y, echo = far_echo();
-  if (gl_VertexID == 0) report[word] = echo;
+  if (gl_VertexID == 0) FAR_AT(report, word) = echo;
 #endif
 }

@@ -32,22 +32,22 @@ uint sum_of_batch = 0u;
 
 void work(uint w) {
 #if FAR_STEP == 0
-  uvec4 words = from[w];
+  uvec4 words = FAR_AT(from, w);
   for (uint k = 0u; k < 4u; ++k) sum_of_batch += far_mixed(words[k], 4u * w + k);
 #else
   uint bits = 0u;
   for (uint i = 0u; i < 32u; ++i) {
     uint flag = w * 32u + i;
-    if (flag < u_flags && from[flag] == u_serial) bits |= 1u << i;
+    if (flag < u_flags && FAR_AT(from, flag) == u_serial) bits |= 1u << i;
   }
-  report[u_bits + w] = bits;
+  FAR_AT(report, u_bits + w) = bits;
 #endif
 }
 
 void main() {
   uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
   uint base = group * (64u * FAR_BATCH) + gl_LocalInvocationID.x;
-  if (base == 0u) report[u_echo] = far_echo();
+  if (base == 0u) FAR_AT(report, u_echo) = far_echo();
   uint done = 0u;
   for (uint k = 0u; k < FAR_BATCH; ++k) {
     uint w = base + k * 64u;
@@ -55,6 +55,6 @@ void main() {
     work(w);
     ++done;
   }
-  if (sum_of_batch != 0u) atomicAdd(report[1], sum_of_batch);
-  if (done > 0u) atomicAdd(report[0], done);
+  if (sum_of_batch != 0u) atomicAdd(FAR_AT(report, 1), sum_of_batch);
+  if (done > 0u) atomicAdd(FAR_AT(report, 0), done);
 }

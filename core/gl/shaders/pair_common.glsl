@@ -19,21 +19,24 @@ const uint kLarge = 4u;
 layout(std430, binding = 7) buffer Counters { uvec4 tag_7; uint counters[]; };  // totals, then finished work items of each dispatch
 #define FAR_TAG_7 tag_7.x
 
-layout(location = 0) uniform uint u_count;       // work items of this dispatch; with u_work.x the most that its total may be
-layout(location = 1) uniform uint u_finished;    // index of the counter of those that finished
-layout(location = 2) uniform vec4 u_widen;       // as in core/pairs/interval.glsl
-layout(location = 3) uniform ivec4 u_tile;       // pixels i0, i1, j0, j1, inclusive
-layout(location = 4) uniform ivec2 u_window;     // px
-layout(location = 5) uniform vec2 u_depth;       // near end of the window (px), slices per px
-layout(location = 6) uniform uvec4 u_bins;       // of a cell: number, shift of a slice, number of a group, number of groups - 1
-layout(location = 7) uniform uint u_cells;       // pixels of the tile
-layout(location = 8) uniform uint u_masked;      // not 0: entries whose slices no other owner touches are left out
-layout(location = 9) uniform uint u_capacity;   // that the program's output holds
-layout(location = 10) uniform uint u_items;      // records of triangles that are not whole
-layout(location = 11) uniform uvec4 u_extra;     // what one program alone needs
-layout(location = 12) uniform vec4 u_numbers;    // the same
+// All uniforms, sent by one call; u_name below says what each is.
+const uint kUniforms = 9u;
+layout(location = 0) uniform uvec4 u_all[kUniforms];
+#define u_count u_all[0].x                     // work items of this dispatch; with u_work.x the most that its total may be
+#define u_finished u_all[0].y                  // index of the counter of those that finished
+#define u_cells u_all[0].z                     // pixels of the tile
+#define u_masked u_all[0].w                    // not 0: entries whose slices no other owner touches are left out
+#define u_widen uintBitsToFloat(u_all[1])      // as in core/pairs/interval.glsl
+#define u_tile ivec4(u_all[2])                 // pixels i0, i1, j0, j1, inclusive
+#define u_window ivec2(u_all[3].xy)            // px
+#define u_depth uintBitsToFloat(u_all[3].zw)   // near end of the window (px), slices per px
+#define u_bins u_all[4]                        // of a cell: number, shift of a slice, number of a group, number of groups - 1
+#define u_capacity u_all[5].x                  // that the program's output holds
+#define u_items u_all[5].y                     // records of triangles that are not whole
+#define u_extra u_all[6]                       // what one program alone needs
+#define u_numbers uintBitsToFloat(u_all[7])    // the same
 // Where x is not 0, the total counters[x] says how many work items there are: one for each y of it, times z.
-layout(location = 13) uniform uvec4 u_work;
+#define u_work u_all[8]
 
 // The work items of this dispatch. Where the total is beyond what there is room for, or one before it was, there are none: what
 // lies in the buffers is not complete then.
@@ -73,7 +76,7 @@ void far_add(uint counter, uint n) {
     uint high = count;                                                         \
     while (high - low > 1u) {                                                  \
       uint middle = low + (high - low) / 2u;                                   \
-      if (numbers[middle] <= x) { low = middle; } else { high = middle; }      \
+      if (FAR_AT(numbers, middle) <= x) { low = middle; } else { high = middle; }      \
     }                                                                          \
     return low;                                                                \
   }

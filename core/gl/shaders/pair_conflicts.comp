@@ -6,10 +6,10 @@ layout(std430, binding = 2) buffer Masks { uvec4 tag_2; uint masks[]; };  // as 
 // u_extra.x: bits of an owner's number.
 
 void work(uint w) {
-  uint conflict = masks[w];
+  uint conflict = FAR_AT(masks, w);
   for (uint k = 0u; k < u_extra.x; ++k) {
     uint zero = (1u + 2u * k) * 2u * u_cells + w;
-    conflict |= masks[zero] & masks[zero + 2u * u_cells];
+    conflict |= FAR_AT(masks, zero) & FAR_AT(masks, zero + 2u * u_cells);
   }
-  masks[w] = conflict;
+  FAR_AT(masks, w) = conflict;
 }

@@ -27,24 +27,24 @@ void work(uint w) {
   uint place = 0u;
   if (w < u_extra.x) {
     place = w;
-    word = from_0[place];
+    word = FAR_AT(from_0, place);
   } else if (w < u_extra.y) {
     place = w - u_extra.x;
-    word = from_1[place];
+    word = FAR_AT(from_1, place);
   } else if (w < u_extra.z) {
     place = w - u_extra.y;
-    word = from_2[place];
+    word = FAR_AT(from_2, place);
   } else if (w < u_extra.w) {
     place = w - u_extra.z;
-    word = from_3[place];
+    word = FAR_AT(from_3, place);
   } else {
     place = w - u_extra.w;
-    word = from_4[place];
+    word = FAR_AT(from_4, place);
   }
   far_sum_of_batch += far_mixed(word, place);
 #elif FAR_STEP == 1
-  to[w] = from[w];
+  FAR_AT(to, w) = FAR_AT(from, w);
 #else
-  to[w] = 0u;
+  FAR_AT(to, w) = 0u;
 #endif
 }

@@ -33,10 +33,10 @@ const uint kSubCells = FAR_SUBDIVISION * FAR_SUBDIVISION;
 void work(uint cell) {
   uint begin = cell * u_extra.y;
   uint left = 0u;
-  for (uint k = 0u; k < u_extra.y; ++k) left += counts[begin + k] != 0u ? 1u : 0u;
+  for (uint k = 0u; k < u_extra.y; ++k) left += FAR_AT(counts, begin + k) != 0u ? 1u : 0u;
   if (left != 0u) atomicAdd(counters[FAR_MISMATCHES], left);
   if (u_extra.x > 0u) begin += cell / kSubCells;
-  uint n = first[begin + u_extra.y] - first[begin];
+  uint n = FAR_AT(first, begin + u_extra.y) - FAR_AT(first, begin);
   uint number = 0u;
   if (n > FAR_CROWDED) {
     uint at = atomicAdd(counters[FAR_PARENTS + u_extra.x], 1u);
@@ -48,17 +48,17 @@ void work(uint cell) {
         x = float(u_tile.x + int(cell % width));
         y = float(u_tile.z + int(cell / width));
       } else {
-        uvec4 from = above[cell / kSubCells];
+        uvec4 from = FAR_AT(above, cell / kSubCells);
         uint part = cell % kSubCells;
         float side = u_numbers.x * float(FAR_SUBDIVISION);
         x = uintBitsToFloat(from.z) + float(part % FAR_SUBDIVISION) * side;
         y = uintBitsToFloat(from.w) + float(part / FAR_SUBDIVISION) * side;
       }
-      parents[at] = uvec4(cell, n, floatBitsToUint(x), floatBitsToUint(y));
+      FAR_AT(parents, at) = uvec4(cell, n, floatBitsToUint(x), floatBitsToUint(y));
       number = at + 1u;
     }
   }
-  if (u_capacity != 0u) state[cell] = number;
+  if (u_capacity != 0u) FAR_AT(state, cell) = number;
 }
 
 #elif FAR_STEP == 2
@@ -77,70 +77,70 @@ void work(uint p) {
   uint begin = p * bins;
   for (uint c = 0u; c < kSubCells; ++c) {
     uint n = 0u;
-    for (uint k = 0u; k < u_bins.x; ++k) n += counts[begin + c * u_bins.x + k];
+    for (uint k = 0u; k < u_bins.x; ++k) n += FAR_AT(counts, begin + c * u_bins.x + k);
     if (n > FAR_CROWDED) ++crowded;
     sum += n;
     uvec2 tests = far_twice_tests(n);
     left.x += tests.x;
     left.y += tests.y + (left.x < tests.x ? 1u : 0u);
   }
-  uvec2 all = far_twice_tests(parents[p].y);
+  uvec2 all = far_twice_tests(FAR_AT(parents, p).y);
   uvec2 twice = uvec2(left.x << 1, left.y << 1 | left.x >> 31);
   if (twice.y > all.y || (twice.y == all.y && twice.x > all.x)) {
-    state[parents[p].x] = 0u;
+    FAR_AT(state, FAR_AT(parents, p).x) = 0u;
     for (uint k = 0u; k < bins; ++k) {
-      counts[begin + k] = 0u;
-      first[begin + p + k] = 0u;
+      FAR_AT(counts, begin + k) = 0u;
+      FAR_AT(first, begin + p + k) = 0u;
     }
-    first[begin + p + bins] = 0u;
+    FAR_AT(first, begin + p + bins) = 0u;
     return;
   }
   // A parent has at most 2^32 - 1 entries, of which each is in at most all its 64 cells; with half of the tests they are fewer than
   // 6 times as many. A sum beyond 32 bits is noticed where it, or that of all parents, passes them.
   uint at = atomicAdd(counters[FAR_ENTRIES + u_extra.x + 1u], sum);
-  if (at + sum < at || parents[p].y > 0x1fffffffu) counters[FAR_OVERFLOW] = 1u;
+  if (at + sum < at || FAR_AT(parents, p).y > 0x1fffffffu) counters[FAR_OVERFLOW] = 1u;
   if (crowded != 0u) atomicAdd(counters[FAR_CROWDED_CELLS + u_extra.x + 1u], crowded);
   for (uint k = 0u; k < bins; ++k) {
-    first[begin + p + k] = at;
-    at += counts[begin + k];
+    FAR_AT(first, begin + p + k) = at;
+    at += FAR_AT(counts, begin + k);
   }
-  first[begin + p + bins] = at;
+  FAR_AT(first, begin + p + bins) = at;
 }
 
 #else
 void far_add_entry(uint cell, uvec4 lo, uvec4 hi, uint record, float near, float far) {
   uint bin = far_bin(cell, hi.w, uint(far_depth_slice(near)));
 #if FAR_STEP == 1
-  atomicAdd(counts[bin], 1u);
+  atomicAdd(FAR_AT(counts, bin), 1u);
 #else
-  uint left = atomicAdd(counts[bin], 0xffffffffu);
+  uint left = atomicAdd(FAR_AT(counts, bin), 0xffffffffu);
   if (left == 0u) return;  // more than was counted: the count is not 0 in the end
-  uint at = first[bin + cell / kSubCells] + left - 1u;
+  uint at = FAR_AT(first, bin + cell / kSubCells) + left - 1u;
   if (at >= u_capacity) return;
-  sub_entries[2u * at] = uvec4(lo.xy, floatBitsToUint(near), lo.w);
-  sub_entries[2u * at + 1u] = uvec4(hi.xy, floatBitsToUint(far), hi.w);
-  sub_places[at] = uvec2(cell, record);
+  FAR_AT(sub_entries, 2u * at) = uvec4(lo.xy, floatBitsToUint(near), lo.w);
+  FAR_AT(sub_entries, 2u * at + 1u) = uvec4(hi.xy, floatBitsToUint(far), hi.w);
+  FAR_AT(sub_places, at) = uvec2(cell, record);
 #endif
 }
 
 int far_index(float p, float from) { return far_part(p, from, u_numbers.y, float(FAR_SUBDIVISION - 1u)); }
 
 void work(uint e) {
-  uvec2 place = places[e];
-  uint p = state[place.x];
+  uvec2 place = FAR_AT(places, e);
+  uint p = FAR_AT(state, place.x);
   if (p == 0u) return;
   p -= 1u;
-  uvec4 parent = parents[p];
-  uvec4 lo_bits = entries[2u * e];
-  uvec4 hi_bits = entries[2u * e + 1u];
+  uvec4 parent = FAR_AT(parents, p);
+  uvec4 lo_bits = FAR_AT(entries, 2u * e);
+  uvec4 hi_bits = FAR_AT(entries, 2u * e + 1u);
   uint record = place.y;
   float x = uintBitsToFloat(parent.z);
   float y = uintBitsToFloat(parent.w);
   float near = uintBitsToFloat(lo_bits.z);
   float far = uintBitsToFloat(hi_bits.z);
   FarRows r;
-  r.lo = records[kRecordSize * record + 3u];
-  r.hi = records[kRecordSize * record + 4u];
+  r.lo = FAR_AT(records, kRecordSize * record + 3u);
+  r.hi = FAR_AT(records, kRecordSize * record + 4u);
   int i0 = far_index(r.lo.x, x);
   int i1 = far_index(r.hi.x, x);
   int j0 = far_index(r.lo.y, y);
@@ -151,9 +151,9 @@ void work(uint e) {
     }
     return;
   }
-  r.a = records[kRecordSize * record];
-  r.b = records[kRecordSize * record + 1u];
-  r.c = records[kRecordSize * record + 2u];
+  r.a = FAR_AT(records, kRecordSize * record);
+  r.b = FAR_AT(records, kRecordSize * record + 1u);
+  r.c = FAR_AT(records, kRecordSize * record + 2u);
   for (int j = j0; j <= j1; ++j) {
     float lo;
     float hi;

@@ -20,12 +20,12 @@ layout(std430, binding = 9) buffer Shown { uvec4 tag_9; readonly uint shown[]; }
 #endif
 
 void far_record(uint at, FarTriangle t, uint code, uint from, uint to) {
-  records[kRecordSize * at] = vec4(t.a.xyz, t.margin.x);
-  records[kRecordSize * at + 1u] = vec4(t.b.xyz, t.margin.y);
-  records[kRecordSize * at + 2u] = vec4(t.c.xyz, t.margin.z);
-  records[kRecordSize * at + 3u] = t.lo;
-  records[kRecordSize * at + 4u] = t.hi;
-  record_heads[at] = uvec4(t.triangle, code, from, to);
+  FAR_AT(records, kRecordSize * at) = vec4(t.a.xyz, t.margin.x);
+  FAR_AT(records, kRecordSize * at + 1u) = vec4(t.b.xyz, t.margin.y);
+  FAR_AT(records, kRecordSize * at + 2u) = vec4(t.c.xyz, t.margin.z);
+  FAR_AT(records, kRecordSize * at + 3u) = t.lo;
+  FAR_AT(records, kRecordSize * at + 4u) = t.hi;
+  FAR_AT(record_heads, at) = uvec4(t.triangle, code, from, to);
 }
 
 #if FAR_STEP == 0
@@ -42,7 +42,7 @@ void work(uint w) {
     uint at = atomicAdd(counters[FAR_WHOLES], 1u);
     if (at >= u_extra.z) return;
     uint extent = far_pack(i1 - i0 + 1, j1 - j0 + 1, far_depth_slice(t.lo.z), far_depth_slice(t.hi.z));
-    heads[at] = uvec4(u_extra.x + w, t.code | kWhole, from, extent);
+    FAR_AT(heads, at) = uvec4(u_extra.x + w, t.code | kWhole, from, extent);
     return;
   }
   uint code = t.code;
@@ -61,12 +61,12 @@ void work(uint w) {
   uint at = atomicAdd(counters[FAR_ITEMS], 1u);
   if (at >= u_capacity) return;
   far_record(at, t, code, from, uint(i1) | uint(j1) << 16);
-  listed[at] = 0u;
-  rows[at] = row_items;
+  FAR_AT(listed, at) = 0u;
+  FAR_AT(rows, at) = row_items;
 }
 #else
 void work(uint w) {
-  uvec4 head = heads[shown[w]];
+  uvec4 head = FAR_AT(heads, FAR_AT(shown, w));
   uint at = head.x - u_extra.x;  // beyond u_extra.z where it lies before the first one, too
   FarTriangle t;
   if (at >= u_extra.z || !far_triangle(at, t)) return;

@@ -8,21 +8,21 @@ layout(std430, binding = 8) buffer Large { uvec4 tag_8; uint large[]; };  // rec
 #define FAR_TAG_8 tag_8.x
 #if FAR_STEP == 0
 void work(uint w) {
-  if ((record_heads[w].y & kLarge) == 0u) return;
+  if ((FAR_AT(record_heads, w).y & kLarge) == 0u) return;
   uint at = atomicAdd(counters[FAR_LARGE_FOUND], 1u);
-  if (at < u_capacity) large[at] = w;
+  if (at < u_capacity) FAR_AT(large, at) = w;
 }
 #else
 layout(std430, binding = 9) buffer Pairs { uvec4 tag_9; writeonly uvec2 pairs[]; };
 #define FAR_TAG_9 tag_9.x
 
-// u_extra.w: large triangles at most. u_cells: triangles that were sent. u_items: the first work item of this dispatch; each
-// FAR_LARGE_BATCH large triangles have one for each of those.
+// u_extra.w: large triangles at most. u_cells: triangles that were sent. u_items: the first of the batches of FAR_LARGE_BATCH
+// large triangles; each has a work item for each of those. Work item w is done in the portion w mod u_extra.z; this one is u_extra.x.
 
 bool far_meets_over(uint l, vec4 box_lo, vec4 box_hi) {
-  vec4 a = records[kRecordSize * l];
-  vec4 b = records[kRecordSize * l + 1u];
-  vec4 c = records[kRecordSize * l + 2u];
+  vec4 a = FAR_AT(records, kRecordSize * l);
+  vec4 b = FAR_AT(records, kRecordSize * l + 1u);
+  vec4 c = FAR_AT(records, kRecordSize * l + 2u);
   vec4 lo;
   vec4 hi;
   far_bounds(a, b, c, u_widen, lo, hi);
@@ -42,31 +42,30 @@ bool far_meets_over(uint l, vec4 box_lo, vec4 box_hi) {
 
 void work(uint w) {
   FarTriangle t;
-  uint item = u_items + w;
-  if (!far_triangle(item % u_cells, t)) return;
+  if (w % u_extra.z != u_extra.x || !far_triangle(w % u_cells, t)) return;
   // Two triangles that meet do so in a pixel of some part, where both are found.
   if (far_pixel(t.hi.x, u_window.x) < u_tile.x || far_pixel(t.lo.x, u_window.x) > u_tile.y ||
       far_pixel(t.hi.y, u_window.y) < u_tile.z || far_pixel(t.lo.y, u_window.y) > u_tile.w)
     return;
-  uint begin = item / u_cells * FAR_LARGE_BATCH;
+  uint begin = (u_items + w / u_cells) * FAR_LARGE_BATCH;
   uint end = min(begin + FAR_LARGE_BATCH, min(counters[FAR_LARGE_FOUND], u_extra.w));
   // First to the next one whose box meets the triangle's, so that few steps compute a strip.
   for (uint k = begin; k < end; ++k) {
     uint l = 0u;
     uint other = 0u;
     for (; k < end; ++k) {
-      l = large[k];
-      uvec4 head = record_heads[l];
+      l = FAR_AT(large, k);
+      uvec4 head = FAR_AT(record_heads, l);
       other = head.x;
       if (other == t.triangle || !((t.code & kSelf) != 0u || ((t.code ^ head.y) >> 3) != 0u)) continue;
-      vec4 lo = max(t.lo, records[kRecordSize * l + 3u]);
-      vec4 hi = min(t.hi, records[kRecordSize * l + 4u]);
+      vec4 lo = max(t.lo, FAR_AT(records, kRecordSize * l + 3u));
+      vec4 hi = min(t.hi, FAR_AT(records, kRecordSize * l + 4u));
       if (lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z) break;
     }
     if (k >= end) break;
     if (!far_meets_over(l, t.lo, t.hi)) continue;
     uint at = atomicAdd(counters[FAR_PAIRS], 1u);
-    if (at < u_capacity) pairs[at] = uvec2(min(t.triangle, other), max(t.triangle, other));
+    if (at < u_capacity) FAR_AT(pairs, at) = uvec2(min(t.triangle, other), max(t.triangle, other));
   }
 }
 #endif

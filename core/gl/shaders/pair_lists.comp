@@ -58,26 +58,26 @@ bool far_visit(uint cell, uint word, uint near_bits, uint far_bits, uint bin, ui
   uint regions = self ? 1u : u_extra.x;
   for (uint k = 0u; k < regions; ++k) {
     uint region = self ? 0u : 2u * u_cells * (1u + 2u * k + ((hi.w >> (3u + k)) & 1u));
-    atomicOr(masks[region + at], near_bits);
-    if (far_bits != 0u) atomicOr(masks[region + at + 1u], far_bits);
+    atomicOr(FAR_AT(masks, region + at), near_bits);
+    if (far_bits != 0u) atomicOr(FAR_AT(masks, region + at + 1u), far_bits);
   }
   return false;
 #else
   if (u_masked != 0u) {
-    uint conflict = masks[2u * cell + word] & near_bits;
-    if (far_bits != 0u) conflict |= masks[2u * cell + word + 1u] & far_bits;
+    uint conflict = FAR_AT(masks, 2u * cell + word) & near_bits;
+    if (far_bits != 0u) conflict |= FAR_AT(masks, 2u * cell + word + 1u) & far_bits;
     if (conflict == 0u) return false;
   }
 #if FAR_STEP == FAR_COUNT
-  atomicAdd(counts[bin], 1u);
+  atomicAdd(FAR_AT(counts, bin), 1u);
 #else
-  uint left = atomicAdd(counts[bin], 0xffffffffu);
+  uint left = atomicAdd(FAR_AT(counts, bin), 0xffffffffu);
   if (left == 0u) return true;  // more than was counted: the count is not 0 in the end
-  uint at = first[bin] + left - 1u;
+  uint at = FAR_AT(first, bin) + left - 1u;
   if (at >= u_capacity) return true;
-  entries[2u * at] = lo;
-  entries[2u * at + 1u] = hi;
-  places[at] = uvec2(cell, record);
+  FAR_AT(entries, 2u * at) = lo;
+  FAR_AT(entries, 2u * at + 1u) = hi;
+  FAR_AT(places, at) = uvec2(cell, record);
 #endif
   return true;
 #endif
@@ -86,20 +86,20 @@ bool far_visit(uint cell, uint word, uint near_bits, uint far_bits, uint bin, ui
 #ifdef FAR_ROWS
 void work(uint w) {
   uint record = far_record_of_row(w, min(counters[FAR_ITEMS], u_items));
-  uvec4 head = heads[record];
+  uvec4 head = FAR_AT(heads, record);
   int i0 = max(int(head.z & 0xffffu), u_tile.x);
   int i1 = min(int(head.w & 0xffffu), u_tile.y);
   int j0 = max(int(head.z >> 16), u_tile.z);
   uint spans = uint(i1 - i0) / FAR_SPAN + 1u;
-  uint part = w - rows[record];
+  uint part = w - FAR_AT(rows, record);
   int j = j0 + int(part / spans);
   int start = i0 + int(part % spans * FAR_SPAN);
   FarRows r;
-  r.a = records[kRecordSize * record];
-  r.b = records[kRecordSize * record + 1u];
-  r.c = records[kRecordSize * record + 2u];
-  r.lo = records[kRecordSize * record + 3u];
-  r.hi = records[kRecordSize * record + 4u];
+  r.a = FAR_AT(records, kRecordSize * record);
+  r.b = FAR_AT(records, kRecordSize * record + 1u);
+  r.c = FAR_AT(records, kRecordSize * record + 2u);
+  r.lo = FAR_AT(records, kRecordSize * record + 3u);
+  r.hi = FAR_AT(records, kRecordSize * record + 4u);
   float lo;
   float hi;
   float y = float(j);
@@ -124,21 +124,21 @@ void work(uint w) {
       any = true;
   }
 #if FAR_STEP == FAR_COUNT
-  if (any && atomicExchange(listed[record], 1u) == 0u) atomicAdd(counters[FAR_LISTED_ROWS], 1u);
+  if (any && atomicExchange(FAR_AT(listed, record), 1u) == 0u) atomicAdd(counters[FAR_LISTED_ROWS], 1u);
 #endif
 }
 #else
 void work(uint w) {
 #if FAR_STEP == FAR_FILL
   uint record = u_items + w;
-  vec4 least = records[kRecordSize * record + 3u];
-  vec4 most = records[kRecordSize * record + 4u];
+  vec4 least = FAR_AT(records, kRecordSize * record + 3u);
+  vec4 most = FAR_AT(records, kRecordSize * record + 4u);
 #else
   uint record = w;
   vec4 least = vec4(0.0f);
   vec4 most = vec4(0.0f);
 #endif
-  uvec4 head = heads[record];
+  uvec4 head = FAR_AT(heads, record);
   uvec4 lo = uvec4(floatBitsToUint(least.xyz), head.x);
   uvec4 hi = uvec4(floatBitsToUint(most.xyz), head.y);
   int i0 = max(int(head.z & 0xffffu), u_tile.x);
@@ -155,7 +155,7 @@ void work(uint w) {
   uint stride = uint(u_tile.y - u_tile.x + 1);
   uint cell = uint(j0 - u_tile.z) * stride + uint(i0 - u_tile.x);
   uint next_row = stride - uint(i1 - i0);
-  int left = (i1 - i0 + 1) * (j1 - j0 + 1);
+  int left = i0 <= i1 && j0 <= j1 ? (i1 - i0 + 1) * (j1 - j0 + 1) : 0;
   bool any = false;
   for (; left > 0; --left) {
     if (far_visit(cell, uint(word), near_bits, far_bits, cell * u_bins.x + bin, record, lo, hi)) any = true;
@@ -163,7 +163,7 @@ void work(uint w) {
     i = i == i1 ? i0 : i + 1;
   }
 #if FAR_STEP == FAR_COUNT
-  if (any) listed[atomicAdd(counters[FAR_LISTED], 1u)] = w;
+  if (any) FAR_AT(listed, atomicAdd(counters[FAR_LISTED], 1u)) = w;
 #endif
 }
 #endif

@@ -18,7 +18,7 @@ void far_sum(uint a, uint b, inout uint total) {
 }
 
 void far_add_sum(uint at, uint n) {
-  uint before_it = atomicAdd(sums[at], n);
+  uint before_it = atomicAdd(FAR_AT(sums, at), n);
   if (before_it + n < before_it) counters[FAR_OVERFLOW] = 1u;
 }
 
@@ -28,18 +28,18 @@ void work(uint w) {
   uint end = min(begin + 64u, all);
   uint total = 0u;
 #if FAR_STEP == 0
-  for (uint i = begin; i < end; ++i) far_sum(total, numbers[i], total);
-  sums[u_extra.w + w] = total;
+  for (uint i = begin; i < end; ++i) far_sum(total, FAR_AT(numbers, i), total);
+  FAR_AT(sums, u_extra.w + w) = total;
   if (total == 0u) return;
   far_add_sum(w >> 6, total);
   far_add_sum(u_extra.z + (w >> 12), total);
 #else
-  for (uint i = 0u; i < w >> 12; ++i) far_sum(total, sums[u_extra.z + i], total);
-  for (uint i = w >> 12 << 6; i < w >> 6; ++i) far_sum(total, sums[i], total);
-  for (uint i = w >> 6 << 6; i < w; ++i) far_sum(total, sums[u_extra.w + i], total);
+  for (uint i = 0u; i < w >> 12; ++i) far_sum(total, FAR_AT(sums, u_extra.z + i), total);
+  for (uint i = w >> 12 << 6; i < w >> 6; ++i) far_sum(total, FAR_AT(sums, i), total);
+  for (uint i = w >> 6 << 6; i < w; ++i) far_sum(total, FAR_AT(sums, u_extra.w + i), total);
   for (uint i = begin; i < end; ++i) {
-    uint here = numbers[i];
-    before[i] = total;
+    uint here = FAR_AT(numbers, i);
+    FAR_AT(before, i) = total;
     far_sum(total, here, total);
   }
   if (end == all) counters[u_extra.x] = total;

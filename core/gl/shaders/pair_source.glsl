@@ -27,18 +27,18 @@ struct FarTriangle {
 
 // The triangle at a position among those that were sent; false: nothing of it is within the limits of its owner.
 bool far_triangle(uint w, out FarTriangle t) {
-  t.triangle = active_ones[w];
+  t.triangle = FAR_AT(active_ones, w);
   uint at = u_extra.y != 0u ? w : t.triangle;
-  t.a = vec4(vertices[triangles[3u * at]].xyz, 0.0f);
-  t.b = vec4(vertices[triangles[3u * at + 1u]].xyz, 0.0f);
-  t.c = vec4(vertices[triangles[3u * at + 2u]].xyz, 0.0f);
+  t.a = vec4(FAR_AT(vertices, FAR_AT(triangles, 3u * at)).xyz, 0.0f);
+  t.b = vec4(FAR_AT(vertices, FAR_AT(triangles, 3u * at + 1u)).xyz, 0.0f);
+  t.c = vec4(FAR_AT(vertices, FAR_AT(triangles, 3u * at + 2u)).xyz, 0.0f);
   far_bounds(t.a, t.b, t.c, u_widen, t.lo, t.hi);
   t.margin = far_margin(t.lo, t.hi, u_widen);
-  uint object = 8u * owners[at];
-  t.lo.xyz = max(t.lo.xyz, vec3(uintBitsToFloat(objects[object]), uintBitsToFloat(objects[object + 1u]),
-                                uintBitsToFloat(objects[object + 2u])));
-  t.hi.xyz = min(t.hi.xyz, vec3(uintBitsToFloat(objects[object + 3u]), uintBitsToFloat(objects[object + 4u]),
-                                uintBitsToFloat(objects[object + 5u])));
-  t.code = objects[object + 6u];
+  uint object = 8u * FAR_AT(owners, at);
+  t.lo.xyz = max(t.lo.xyz, vec3(uintBitsToFloat(FAR_AT(objects, object)), uintBitsToFloat(FAR_AT(objects, object + 1u)),
+                                uintBitsToFloat(FAR_AT(objects, object + 2u))));
+  t.hi.xyz = min(t.hi.xyz, vec3(uintBitsToFloat(FAR_AT(objects, object + 3u)), uintBitsToFloat(FAR_AT(objects, object + 4u)),
+                                uintBitsToFloat(FAR_AT(objects, object + 5u))));
+  t.code = FAR_AT(objects, object + 6u);
   return t.lo.x <= t.hi.x && t.lo.y <= t.hi.y && t.lo.z <= t.hi.z;
 }

@@ -1,7 +1,9 @@
 // Pairs of entries of one cell that overlap in depth and whose bounds overlap in the image. Entries lie in groups by owner, and
 // there by the slice of their near depth, so the partners of an entry are two ranges: of the other group those with a near slice
 // within the entry's slices (for the second group: after its first), and of its own group those after it up to its far slice.
-// Step 0: each entry with up to FAR_UNIT partners. Step 1: with the partners left, FAR_UNIT a work item.
+// Step 0: each entry with up to FAR_UNIT partners. Step 1: with the partners left, FAR_UNIT a work item. The c-th FAR_UNIT partners
+// of entry e are tested in the portion (e + c) mod u_cells; with FAR_SETTLED all are, and the pair of the records r and s is reported
+// in the portion (r + s) mod u_cells, since it may be in many cells.
 layout(std430, binding = 2) buffer Pairs { uvec4 tag_2; writeonly uvec2 pairs[]; };
 #define FAR_TAG_2 tag_2.x
 layout(std430, binding = 3) buffer Units { uvec4 tag_3; uvec2 units[]; };  // work items of step 1: entry, its partners / FAR_UNIT
@@ -23,20 +25,19 @@ layout(std430, binding = 1) buffer Settled { uvec4 tag_1; uint settled[]; };
 #endif
 
 // u_extra: x level, 0 is that of pixels, y not 0 where entries of one group may collide, z work items of step 1 that there is room
-// for, w the first work item.
+// for, w the portion. u_cells: portions.
 
-void work(uint index) {
-  uint w = u_extra.w + index;
+void work(uint w) {
 #if FAR_STEP == 0
   uint e = w;
   uint skip = 0u;
 #else
-  uint e = units[w].x;
-  uint skip = units[w].y * FAR_UNIT;
+  uint e = FAR_AT(units, w).x;
+  uint skip = FAR_AT(units, w).y * FAR_UNIT;
 #endif
-  uint cell = places[e].x;
-  uvec4 lo_bits = entries[2u * e];
-  uvec4 hi_bits = entries[2u * e + 1u];
+  uint cell = FAR_AT(places, e).x;
+  uvec4 lo_bits = FAR_AT(entries, 2u * e);
+  uvec4 hi_bits = FAR_AT(entries, 2u * e + 1u);
   vec3 lo = uintBitsToFloat(lo_bits.xyz);
   vec3 hi = uintBitsToFloat(hi_bits.xyz);
   uint group = (hi_bits.w >> 3) & u_bins.w;
@@ -48,22 +49,35 @@ void work(uint index) {
   uint other_begin = 0u;
   uint others = 0u;
   if (u_bins.w != 0u) {
-    other_begin = first[other + near_slice + group];
-    others = first[other + far_slice_bin + 1u] - other_begin;
+    other_begin = FAR_AT(first, other + near_slice + group);
+    others = FAR_AT(first, other + far_slice_bin + 1u) - other_begin;
   }
   uint all = others;
-  if (u_extra.y != 0u) all += first[own + far_slice_bin + 1u] - e - 1u;
+  if (u_extra.y != 0u) all += FAR_AT(first, own + far_slice_bin + 1u) - e - 1u;
+  // Where a dispatch was lost, places may be anything: no loop is longer for it than there are entries.
+  all = min(all, uint(entries.length()) / 2u);
 #ifdef FAR_SOME_CROWDED
-  bool crowded = first[bins + u_bins.x] - first[bins] > FAR_CROWDED;
-  if (state[cell] != 0u) all = 0u;
+  bool crowded = FAR_AT(first, bins + u_bins.x) - FAR_AT(first, bins) > FAR_CROWDED;
+  if (FAR_AT(state, cell) != 0u) all = 0u;
 #endif
 #if FAR_STEP == 0
-  uint more = all > FAR_UNIT ? (all - 1u) / FAR_UNIT : 0u;
-  if (more != 0u) {
+  uint last = all > FAR_UNIT ? (all - 1u) / FAR_UNIT : 0u;
+#ifdef FAR_SETTLED
+  uint portions = 1u;
+  uint next = 1u;
+#else
+  uint portions = u_cells;
+  uint next = 1u + (u_extra.w + u_cells - (e + 1u) % u_cells) % u_cells;  // the first c > 0 of this portion
+#endif
+  if (next <= last) {
+    uint more = (last - next) / portions + 1u;
     uint to = atomicAdd(counters[FAR_MORE + u_extra.x], more);
     if (to + more < to) counters[FAR_OVERFLOW] = 1u;
-    for (uint k = 0u; k < more && to + k < u_extra.z; ++k) units[to + k] = uvec2(e, k + 1u);
+    for (uint k = 0u; k < more && to + k < u_extra.z; ++k) FAR_AT(units, to + k) = uvec2(e, next + k * portions);
   }
+#ifndef FAR_SETTLED
+  if (e % u_cells != u_extra.w) all = 0u;
+#endif
 #endif
   uint begin = min(skip, all);
   uint end = min(skip + FAR_UNIT, all);
@@ -76,8 +90,8 @@ void work(uint index) {
   int stride = u_tile.y - u_tile.x + 1;
   for (uint k = begin; k < end; ++k) {
     uint p = k < others ? other_begin + k : e + 1u + (k - others);
-    uvec4 lo2_bits = entries[2u * p];
-    uvec4 hi2_bits = entries[2u * p + 1u];
+    uvec4 lo2_bits = FAR_AT(entries, 2u * p);
+    uvec4 hi2_bits = FAR_AT(entries, 2u * p + 1u);
     vec3 lo2 = uintBitsToFloat(lo2_bits.xyz);
     vec3 hi2 = uintBitsToFloat(hi2_bits.xyz);
     bool hit = lo.x <= hi2.x && lo2.x <= hi.x && lo.y <= hi2.y && lo2.y <= hi.y && lo.z <= hi2.z && lo2.z <= hi.z &&
@@ -89,22 +103,22 @@ void work(uint index) {
     uint at = uint(j * stride + i);
     bool elsewhere = hit && dedupe && (hi2_bits.w & kWhole) != 0u && i >= 0 && j >= 0 && at != cell;
 #ifdef FAR_SOME_CROWDED
-    if (elsewhere) elsewhere = first[(at + 1u) * u_bins.x] - first[at * u_bins.x] <= FAR_CROWDED;
+    if (elsewhere) elsewhere = FAR_AT(first, (at + 1u) * u_bins.x) - FAR_AT(first, at * u_bins.x) <= FAR_CROWDED;
 #endif
     bool emit = hit && !elsewhere;
 #ifdef FAR_SETTLED
     // Whoever sets the bit emits the pair. If that does not fit the output, all bits are cleared before it is done again.
     if (emit) {
-      uint r = places[e].y;
-      uint s = places[p].y;
+      uint r = FAR_AT(places, e).y;
+      uint s = FAR_AT(places, p).y;
       uint number = min(r, s) * u_items + max(r, s);
       uint bit = 1u << (number & 31u);
-      emit = (settled[number >> 5] & bit) == 0u && (atomicOr(settled[number >> 5], bit) & bit) == 0u;
+      emit = (r + s) % u_cells == u_extra.w && (FAR_AT(settled, number >> 5) & bit) == 0u && (atomicOr(FAR_AT(settled, number >> 5), bit) & bit) == 0u;
     }
 #endif
     if (emit) {
       uint to = atomicAdd(counters[FAR_PAIRS], 1u);
-      if (to < u_capacity) pairs[to] = uvec2(min(lo_bits.w, lo2_bits.w), max(lo_bits.w, lo2_bits.w));
+      if (to < u_capacity) FAR_AT(pairs, to) = uvec2(min(lo_bits.w, lo2_bits.w), max(lo_bits.w, lo2_bits.w));
     }
   }
   far_sum_of_batch += end - begin;

@@ -171,20 +171,35 @@ TEST(GlCanvas, AsksForFewDrawsAndReadbacks) {
       GlCanvas canvas(lab::context(), fattener.mode, fattener.solid,
                       {.query = query, .storage_limit = limit});
       canvas.begin(layers.window, drawables);
+      const CanvasWork upload = canvas.work();
       const Pass pass = layers.pass(drawables, 0, 1);
       EXPECT_EQ(canvas.run(pass), std::vector<std::uint8_t>(layers.cells(), 1));
-      const GlCanvasWork work = canvas.work();
+      CanvasWork work = canvas.work();
+      work -= upload;
       const std::size_t bytes = drawables.elements() * 7 * 16;
       const std::size_t per_chunk = static_cast<std::size_t>(limit) / (7 * 16);
       const std::size_t chunks = limit == 0 ? 1 : drawables.elements() / (per_chunk - 1) + 1;
-      EXPECT_EQ(work.uploaded_bytes, bytes);
+      EXPECT_EQ(upload.uploaded_bytes, bytes);
+      EXPECT_EQ(upload.draws + upload.passes, 0u);
+      EXPECT_EQ(upload.readbacks, 1u);
+      EXPECT_EQ(work.passes, 1u);
+      EXPECT_EQ(work.waits, 1u);
+      // A draw is 8 bytes, and lists may have room between their batches.
+      EXPECT_GE(work.uploaded_bytes, 8 * pass.draws.size());
+      EXPECT_GT(work.dispatches, 0u);
+      EXPECT_EQ(work.spans, 1u);
+      EXPECT_EQ(work.timed > 0, work.device_ms > 0);  // the device has a clock, or not
       EXPECT_EQ(work.state_changes, pass.steps.size());
       if (query == QueryMode::flags) {
         EXPECT_LE(work.draws, pass.steps.size() * (1 + chunks));
         EXPECT_EQ(work.queries, 1u);
         EXPECT_EQ(work.readbacks, 2u);  // the report with the flags, and the number of primitives
+        // Echoes, and a bit for each slot.
+        EXPECT_LE(work.downloaded_bytes, 4 * (work.draws + work.dispatches + 16) + pass.slots / 8);
       } else {
         EXPECT_GE(work.queries, pass.slots);
+        EXPECT_GE(work.readbacks, pass.slots);
+        EXPECT_GE(work.downloaded_bytes, 4 * pass.slots);
       }
     }
   }
@@ -201,17 +216,43 @@ TEST(GlCanvas, SendsNothingTwice) {
   const std::vector<std::uint8_t> right(layers.cells(), 1);
   for (int frame = 0; frame < 3; ++frame) {
     for (const Drawables& view : views) {
+      const std::uint64_t before = canvas.work().uploaded_bytes;
       canvas.begin(layers.window, view);
-      EXPECT_EQ(canvas.work().uploaded_bytes, frame == 0 ? view.elements() * 7 * 16 : 0);
+      EXPECT_EQ(canvas.work().uploaded_bytes - before, frame == 0 ? view.elements() * 7 * 16 : 0);
       EXPECT_EQ(canvas.run(layers.pass(view, 0, 1)), right);
     }
   }
   // Whatever changes is sent.
   Drawables moved = views[1];
   moved.proxies.back().corners[0] -= 0.125f;
+  const std::uint64_t before = canvas.work().uploaded_bytes;
   canvas.begin(layers.window, moved);
-  EXPECT_EQ(canvas.work().uploaded_bytes, moved.elements() * 7 * 16);
+  EXPECT_EQ(canvas.work().uploaded_bytes - before, moved.elements() * 7 * 16);
   EXPECT_EQ(canvas.run(layers.pass(moved, 0, 1)), right);
+}
+
+// Counts go on after a failure, which drops all that lies on the device.
+TEST(GlCanvas, CountsGoOnAfterAFault) {
+  const Layers layers;
+  const Fattener fattener = obb_fattener();
+  std::optional<DriverFault> fault(DriverFaultKind::lost_draw);
+  GlCanvas canvas(lab::context(), fattener.mode, fattener.solid);
+  const Drawables drawables = lab::fattened(layers.window, fattener, 0.75, layers.patches);
+  canvas.begin(layers.window, drawables);
+  const Pass pass = layers.pass(drawables, 0, 1);
+  canvas.run(pass);
+  const CanvasWork clean = canvas.work();
+  fault->strike();
+  EXPECT_THROW(canvas.run(pass), Error);
+  fault.reset();
+  const CanvasWork failed = canvas.work();
+  EXPECT_EQ(failed.passes, clean.passes + 1);
+  EXPECT_GE(failed.draws, clean.draws);
+  canvas.begin(layers.window, drawables);
+  canvas.run(pass);
+  const CanvasWork again = canvas.work();
+  EXPECT_EQ(again.passes, failed.passes + 1);
+  EXPECT_EQ(again.uploaded_bytes - failed.uploaded_bytes, clean.uploaded_bytes);
 }
 
 TEST(GlCanvas, ReversedDepthTestIsADefectThatShows) {

@@ -2,9 +2,13 @@
 // give the same, and the CULLIDE family is ordered as it should be.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "experiments/measure/family.h"
 #include "experiments/method/plan.h"
 #include "experiments/method/run.h"
+#include "experiments/record/output.h"
+#include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/core/scene/scenes.h"
 #include "tests/experiments/method/plan_lab.h"
@@ -177,6 +181,56 @@ TEST(GlMethods, ContactsOfAllThatIsMissedAreCounted) {
   EXPECT_EQ(record.verification->examples.size(), kExamples);
   EXPECT_EQ(record.missed->touching + record.missed->penetrating,
             record.verification->false_negatives);
+}
+
+// What a run asked of its device is in its record, and adds up with its stages.
+TEST(GlMethods, WhatADrawingRunAskedIsInItsRecord) {
+  for (const Method method : kDrawing) {
+    const Scene scene = scene_for("degenerate", method);
+    for (const QueryMode query : {QueryMode::flags, QueryMode::occlusion}) {
+      SCOPED_TRACE(std::string(to_string(method)) + (query == QueryMode::flags ? " flags" : ""));
+      RunOptions options = options_of(method);
+      options.query = query;
+      const Record record = run(scene, options, session());
+      const CanvasWork& work = record.found.asked;
+      const Stage drawn = work_of(record.trace);
+      const nlohmann::ordered_json json = to_json(scene, record)["asked"];
+      ASSERT_GT(work.passes, 0u);
+      EXPECT_EQ(json["passes"], work.passes);
+      EXPECT_EQ(json["draw_calls"], work.draws);
+      EXPECT_EQ(json["uploaded_bytes"], work.uploaded_bytes);
+      // A pass has two steps at least, each with a draw call of its own for the control items.
+      EXPECT_GE(work.draws, 2 * work.passes);
+      EXPECT_GE(work.state_changes, 2 * work.passes);
+      // Each slot is a query, and so are a control item of each step and one for all primitives.
+      if (query == QueryMode::flags) {
+        EXPECT_EQ(work.queries, work.passes);
+        EXPECT_EQ(work.readbacks, work.waits + work.passes);
+      } else {
+        EXPECT_GE(work.queries, drawn.queries + work.passes);
+        EXPECT_GE(work.readbacks, drawn.queries + work.passes);
+        EXPECT_GE(work.downloaded_bytes, 4 * drawn.queries);
+      }
+      // Each pass is waited for once, and so is each upload.
+      EXPECT_GT(work.waits, work.passes);
+      EXPECT_EQ(work.spans, work.waits);
+      EXPECT_GE(work.uploaded_bytes, 8 * drawn.draws);
+      EXPECT_EQ(json["device_ms"].is_null(), work.timed < work.spans);
+      if (work.known_ms()) {
+        EXPECT_GT(*work.known_ms(), 0);
+        EXPECT_LT(*work.known_ms(), record.ms.setup + record.ms.cull);
+      }
+      EXPECT_NE(run_table(scene, record, "").find("\nasked "), std::string::npos);
+    }
+  }
+  // On the cores of the CPU there is no device to ask.
+  RunOptions options = options_of(Method::far);
+  options.device = "native";
+  Session native("native");
+  const Scene scene = make_builtin_scene("degenerate");
+  const Record record = run(scene, options, native);
+  EXPECT_TRUE(to_json(scene, record)["asked"].is_null());
+  EXPECT_EQ(run_table(scene, record, "").find("\nasked "), std::string::npos);
 }
 
 TEST(GlMethods, BothQueryModesGiveTheSame) {

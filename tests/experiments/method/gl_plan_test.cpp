@@ -12,7 +12,8 @@ constexpr struct {
 
 TEST(GlPlan, RunsFollowIt) {
   Session session("software");
-  for (const std::string& name : lab::scene_names(false)) {
+  // Rules that depend on more triangles are tested on the CPU (planner_test.cpp).
+  for (const std::string& name : lab::scene_names(false, 3000)) {
     Scene scene = make_builtin_scene(name);
     for (const Method method : all_methods()) {
       if (!draws(method)) continue;

@@ -12,10 +12,10 @@
 
 namespace farcull::lab {
 
-/// Every built-in scene, of the packaged meshes or not, cut down to about 20,000 triangles (fewer
+/// Every built-in scene, of the packaged meshes or not, cut down to about so many triangles (fewer
 /// under a sanitizer) where its name takes a size.
-inline std::vector<std::string> scene_names(bool of_packaged_meshes) {
-  constexpr double kTriangles = trials(20000);
+inline std::vector<std::string> scene_names(bool of_packaged_meshes, int triangles = 20000) {
+  const double kTriangles = trials(triangles);
   std::vector<std::string> names;
   for (const BuiltinScene& scene : builtin_scenes()) {
     if (scene.needs_meshes != of_packaged_meshes) continue;
