@@ -13,8 +13,9 @@ namespace farcull {
 namespace {
 
 constexpr std::size_t kGuessedCells = std::size_t{1} << 20;  // where triangles are counted
-constexpr std::size_t kPairsOfEntry =
-    256;  // reported, on average; a buffer may be larger than used
+// Chosen so that nearly all built-in scenes have room enough (docs/device-work.md). Where there is
+// too little, the work is done again; where there is more than needed, memory stays unused.
+constexpr std::size_t kPairsOfEntry = 256;                // reported, on average
 constexpr std::size_t kMostUnits = std::size_t{1} << 22;  // work items of further tests
 constexpr float kUnsure = 0x1p-8f;  // px, far more than the rounding of bounds
 // Cutting a cell leaves entries that are in several of its parts: guessed as twice as many in all.
@@ -107,6 +108,7 @@ std::optional<PairForecast> first_guess(const PairTask& task, std::size_t memory
       const float pixels =
           interval::far_footprint(grid.corner(t, 0), grid.corner(t, 1), grid.corner(t, 2),
                                   bounds.hi.x - bounds.lo.x, bounds.hi.y - bounds.lo.y);
+      // The device may round the pixels otherwise: near the limit both are counted.
       if (pixels > 0.99f * large) ++guess.large;
       if (pixels > 1.01f * large) continue;
       guess.row_items += height * ((width - 1) / kSpan + 1);

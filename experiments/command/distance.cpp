@@ -268,7 +268,7 @@ int DistanceCommand::run() const {
     require_no_distances();
     const DiagramOptions options = diagram_.parse(threads());
     check_scene(scene_);
-    return run_neighbours(scene_, options, checked(outputs_, scene_files(scene_, {})));
+    return run_diagram(scene_, options, checked(outputs_, scene_files(scene_, {})));
   }
   const DistanceOptions options = parse();
   check_scene(scene_);

@@ -57,8 +57,8 @@ DiagramOptions DiagramArguments::parse(unsigned threads) const {
   return out;
 }
 
-int run_neighbours(const std::vector<std::string>& words, const DiagramOptions& options,
-                   const Outputs& outputs) {
+int run_diagram(const std::vector<std::string>& words, const DiagramOptions& options,
+                const Outputs& outputs) {
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");

@@ -24,7 +24,7 @@ class DiagramArguments {
 
 /// Writes the record of the scene to the outputs. The exit status: 0 done, 1 the reliable form lost
 /// a nearest object.
-int run_neighbours(const std::vector<std::string>& scene, const DiagramOptions& options,
-                   const Outputs& outputs);
+int run_diagram(const std::vector<std::string>& scene, const DiagramOptions& options,
+                const Outputs& outputs);
 
 }  // namespace farcull

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The file as it is called from the folder of the record.
+// The path of the file, relative to the folder of the record.
 std::string beside(const std::string& file, const std::string& record) {
   // Of folders behind links, `..` is not the one that the path names.
   const fs::path folder = fs::weakly_canonical(fs::absolute(record).parent_path());
@@ -100,7 +100,7 @@ int RunCommand::plan_tiles(const RunOptions& options) const {
   if (const Progress progress = terminal.callback()) progress("reading the scene");
   const std::vector<IgnoredNames> names = ignored();
   const Census census = take_census(source(), options.clearance, !names.empty());
-  if (!names.empty()) ignored_objects(names_of(census), names);  // says which name is none
+  if (!names.empty()) ignored_objects(names_of(census), names);  // throws if a name matches no object
   const Cuts cuts = choose_cuts(census, tiles);
   const std::vector<TileCount> counts = count_tiles(source(), cuts, options.clearance);
   terminal.clear();

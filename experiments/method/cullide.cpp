@@ -125,9 +125,10 @@ void cull_by_offsets(const Scene& scene, const DrawPlan& work, const RunOptions&
 
     settings.fattener = fattener;
     settings.bits = std::move(out.bits);
-    CanvasWork asked = canvas.work();
+    const CanvasWork before = canvas.work();
     CullResult result = cull(scene, work.regions, settings, canvas, progress);
-    out.asked += canvas.work() -= asked;
+    CanvasWork now = canvas.work();
+    out.asked += now -= before;
     for (Stage& drawn : result.stages) {
       drawn.depends |= further;
       out.trace.push_back(std::move(drawn));

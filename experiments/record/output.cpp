@@ -59,7 +59,7 @@ Json view_json(const PairView& view) {
 }
 
 // What drawing asked of a GL device.
-Json asked_json(const CanvasWork& work) {
+Json device_work_json(const CanvasWork& work) {
   if (work.passes == 0) return nullptr;
   const std::optional<double> ms = work.known_ms();
   return {{"passes", work.passes},
@@ -265,7 +265,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
       {"views", views},
       {"budget", budget_json(record.found.views())},
       {"device", device_json(record)},
-      {"asked", asked_json(record.found.asked)},
+      {"device_work", device_work_json(record.found.asked)},
       {"floating_point", floating_point_json(record.callers, record.used)},
       {"stages", stages_json(record.trace)},
       {"pcs", {{"objects", record.found.object_count}, {"triangles", record.found.triangle_count}}},

@@ -199,17 +199,17 @@ std::string work_line(const Record& record) {
 }
 
 // What drawing asked of a GL device.
-std::string asked_line(const Record& record) {
+std::string device_work_line(const Record& record) {
   const CanvasWork& work = record.found.asked;
   if (work.passes == 0) return "";
   const std::optional<double> ms = work.known_ms();
   return fmt::format(
-      "asked      {}: {}, {}, {}, {}; {} kB up, {} kB down; {}\n",
+      "work       {}: {}, {}, {}, {}; {} kB up, {} kB down; {}\n",
       counted(work.passes, "pass", "passes"), counted(work.draws, "draw call", "draw calls"),
       counted(work.state_changes, "state change", "state changes"),
       counted(work.readbacks, "readback", "readbacks"), counted(work.waits, "wait", "waits"),
       grouped((work.uploaded_bytes + 1023) / 1024), grouped((work.downloaded_bytes + 1023) / 1024),
-      ms ? fmt::format("{:.1f} ms by the device's clock", *ms) : "the device has no clock");
+      ms ? fmt::format("{:.1f} ms by the device's clock", *ms) : "device time not known");
 }
 
 // The window that was looked at where the scene chose.
@@ -380,7 +380,7 @@ std::string run_table(const Scene& scene, const Record& record, const std::strin
            : "");
   out += contacts_line(record) + limit_line(record) + ignored_line(record);
   out += work_line(record);
-  out += asked_line(record);
+  out += device_work_line(record);
   out += fmt::format(
       "time       {:.1f} ms = setup {:.1f} + cull {:.1f} + exact {:.1f}{}\n", record.ms.total,
       record.ms.setup, record.ms.cull, record.ms.exact,

@@ -109,7 +109,7 @@ void require_alike(const Source& first, const Source& other) {
       {"/tile/axis", "is cut along another axis"},
       {"/tile/cuts", "is cut elsewhere"},
       {"/method", "is of another method"},
-      {"/tile/asked", "was run with other options"},
+      {"/tile/options", "was run with other options"},
       {"/tile/list/columns", "has other columns in its list"},
       {"/tile/list/kinds", "has other kinds of contact in its list"},
       {"/commit", "is of another version of farcull"}};
@@ -345,7 +345,7 @@ MergedTiles merge_tiles(const std::vector<std::string>& records, const std::stri
                {"tiles", merged.tiles},
                {"axis", at<Json>(sources.front(), "/tile/axis")},
                {"cuts", at<Json>(sources.front(), "/tile/cuts")},
-               {"asked", at<Json>(sources.front(), "/tile/asked")}};
+               {"options", at<Json>(sources.front(), "/tile/options")}};
   for (const char* count : counts)
     json[count] = sum_of(sources, (std::string("/") + count).c_str());
   json["contacts"] = contacts_of(sources);

@@ -103,7 +103,7 @@ Json tile_json(const TileRun& run, const TileList* list) {
       {"home_triangles", run.part.home},
       {"degenerate_triangles", run.record.degenerate_triangles},
       {"candidates_elsewhere", run.elsewhere},
-      {"asked",
+      {"options",
        {{"resolution", o.resolution},
         {"views", o.views},
         {"clearance", o.clearance},

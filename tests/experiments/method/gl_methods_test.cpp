@@ -194,7 +194,7 @@ TEST(GlMethods, WhatADrawingRunAskedIsInItsRecord) {
       const Record record = run(scene, options, session());
       const CanvasWork& work = record.found.asked;
       const Stage drawn = work_of(record.trace);
-      const nlohmann::ordered_json json = to_json(scene, record)["asked"];
+      const nlohmann::ordered_json json = to_json(scene, record)["device_work"];
       ASSERT_GT(work.passes, 0u);
       EXPECT_EQ(json["passes"], work.passes);
       EXPECT_EQ(json["draw_calls"], work.draws);
@@ -229,7 +229,7 @@ TEST(GlMethods, WhatADrawingRunAskedIsInItsRecord) {
   Session native("native");
   const Scene scene = make_builtin_scene("degenerate");
   const Record record = run(scene, options, native);
-  EXPECT_TRUE(to_json(scene, record)["asked"].is_null());
+  EXPECT_TRUE(to_json(scene, record)["device_work"].is_null());
   EXPECT_EQ(run_table(scene, record, "").find("\nasked "), std::string::npos);
 }
 

@@ -127,7 +127,7 @@ TEST_F(MergeTiles, RefuseWhatIsNotOfOneScene) {
   change(2, [](Json& json) { json["commit"] = "0123456"; });
   expect_refused("is of another version");
   run(2, kTiles, "field:9000");
-  change(2, [](Json& json) { json["tile"]["asked"]["clearance"] = 1; });
+  change(2, [](Json& json) { json["tile"]["options"]["clearance"] = 1; });
   expect_refused("was run with other options");
   run(2, kTiles, "field:9000");
   change(2, [](Json& json) { json["tile"]["list"]["columns"] = "a,b"; });

@@ -164,7 +164,7 @@ TEST(Tiles, SayWhichObjectsTheyIgnore) {
   Session session("native");
   TileQuestion question{.options = native(0), .tile = {1, 2}};
   const auto asked = [&] {
-    return json_of(run_tile(source_of(scene), question, session))["tile"]["asked"];
+    return json_of(run_tile(source_of(scene), question, session))["tile"]["options"];
   };
   const Json none = asked();
   scene.ignored = {{0, 1}};
@@ -182,8 +182,8 @@ TEST(Tiles, SayWhichObjectsTheyIgnore) {
   scene.source_face.back() += 1;
   const TileRun other = run_tile(source_of(scene), question, session);
   EXPECT_EQ(one.part.hash, other.part.hash);
-  EXPECT_EQ(json_of(one)["tile"]["asked"], json_of(other)["tile"]["asked"]);
-  EXPECT_NE(json_of(one, true)["tile"]["asked"], json_of(other, true)["tile"]["asked"]);
+  EXPECT_EQ(json_of(one)["tile"]["options"], json_of(other)["tile"]["options"]);
+  EXPECT_NE(json_of(one, true)["tile"]["options"], json_of(other, true)["tile"]["options"]);
 }
 
 // Missed pairs have the numbers of the whole scene.

@@ -41,7 +41,7 @@ class Counting final : public PairBackend {
 
 constexpr std::size_t kOutput = std::size_t{256} << 20;  // GlPairOptions::memory, bytes
 
-// docs/experiments.md, "What a GPU is asked per view". A portion of the pairs is nine dispatches at
+// docs/device-work.md. A portion of the pairs is nine dispatches at
 // most, and one that sets bits to 0; its totals and its pairs are read. Where the first one was too
 // large, it is done again in smaller ones.
 std::uint64_t most_dispatches(const Asked& a) {
@@ -96,11 +96,11 @@ void expect_few(const Case& c, PairCounts& sum) {
 }
 
 // Built-in scenes that a software device does within a second or so; others by name, separated by
-// blanks: FARCULL_ASKED="two-bunnies fans". A row has what the view asked that asked most: on the
-// first frame and on a later one dispatches and readbacks, and the pairs that it reported.
+// blanks: FARCULL_DEVICE_WORK="two-bunnies fans". A row has what the view asked that asked most: on
+// the first frame and on a later one dispatches and readbacks, and the pairs that it reported.
 TEST(GlPairs, AskForFewDispatchesAndReadbacks) {
   std::vector<Case> cases;
-  const char* const asked = std::getenv("FARCULL_ASKED");
+  const char* const asked = std::getenv("FARCULL_DEVICE_WORK");
   std::istringstream names(asked ? asked
                                  : "two-spheres random-soup needles degenerate ground crowd");
   for (std::string name; names >> name;)
