@@ -39,9 +39,9 @@ enum PairTotal : std::uint32_t {
   kTotalRows,  // two words
   kSerialPairs = kTotalRows + 2,
   kTotalOverflow,
-  kTotalPairs,
-  kTotalTests,                   // two words
-  kTotalMore = kTotalTests + 2,  // work items of further tests, of each level
+  kTotalPairs,                    // two words
+  kTotalTests = kTotalPairs + 2,  // two words
+  kTotalMore = kTotalTests + 2,   // work items of further tests, of each level
   kTotals = kTotalMore + kMaxLevel + 1,
 };
 /// The total of a level.

@@ -224,7 +224,8 @@ bool PairEmission::run_portions(PairLists& lists, const PartMemory& memory,
 // left to be done again, with more room, or in smaller portions. False: too many for the part.
 bool PairEmission::take_portion(const Portion& portion, const PartMemory& memory,
                                 const PairTotalWords& totals) {
-  const std::size_t emitted = totals[kTotalPairs], more = most_units_of(totals);
+  const std::uint64_t emitted = two_words(totals, kTotalPairs);
+  const std::size_t more = most_units_of(totals);
   if (emitted <= pair_capacity(memory) && more <= unit_capacity(memory)) {
     if (overflow(totals, memory)) return false;
     read_pairs(emitted);
@@ -237,21 +238,24 @@ bool PairEmission::take_portion(const Portion& portion, const PartMemory& memory
   if (settled_words_ > 0) run_.device.zero(settled_, settled_words_, true);
   const std::size_t most = most_bytes(memory);
   const std::size_t units = more * kUnitBytes;
-  std::size_t bytes = emitted * sizeof(TrianglePair);
+  std::uint64_t bytes = emitted * sizeof(TrianglePair);
   // Further tests that did not run would have reported as many pairs each.
   const std::uint64_t tests = two_words(totals, kTotalTests);
-  if (more > unit_capacity(memory) && tests > 0)
-    bytes += bytes / tests * more * kUnit + bytes % tests * more * kUnit / tests;
+  if (more > unit_capacity(memory) && tests > 0) {
+    const double all = static_cast<double>(bytes) *
+                       (1 + static_cast<double>(more) * kUnit / static_cast<double>(tests));
+    bytes = static_cast<std::uint64_t>(std::min(all, 0x1p60));
+  }
   units_.reserve(std::min(units, most), most);
-  pairs_.reserve(std::min(bytes, most), most);
+  pairs_.reserve(static_cast<std::size_t>(std::min<std::uint64_t>(bytes, most)), most);
   if (units <= most && bytes <= most) {
     left_.push_back(portion);
     return true;
   }
   // Portions differ a little in their pairs, so there is a sixteenth more room than for the mean.
-  const std::size_t needed = std::max(units, bytes);
+  const std::uint64_t needed = std::max<std::uint64_t>(units, bytes);
   const std::uint64_t parts = std::max<std::uint64_t>((needed + needed / 16) / most + 1, 2);
-  if (parts * portion.of > kMostPortions) {
+  if (parts > kMostPortions / portion.of) {
     throw Error("GL pairs", "one work item has more pairs than fit its memory",
                 "use --device cpu or a larger --resolution");
   }

@@ -75,6 +75,7 @@ std::vector<TrianglePair> PairFinder::find(const PairTask& task, PairCounts& cou
       if (guess && expected) guess->join(*expected);
       expected = guess;
     }
+    if (run_.options.step_by_step) expected.reset();
     if (!expected || !find_at_once(whole, *expected)) {
       split(whole);
     } else {

@@ -133,11 +133,11 @@ std::optional<PairForecast> first_guess(const PairTask& task, std::size_t memory
     guess.entries[l + 1] = kCutEntries * guess.entries[l];
     crowded = guess.crowded[l] * kSubdivision * kSubdivision;
   }
-  if (bytes_of(guess) > memory / 4 * 3) {
-    // Where there is no memory to cut crowded pixels, there may be none: masks leave entries out.
-    guess.levels = 0;
-    guess.crowded.fill(0);
-    std::fill(guess.entries.begin() + 1, guess.entries.end(), 0);
+  // Where there is no memory to cut crowded pixels so often, they may not be so crowded: masks
+  // leave entries out.
+  while (guess.levels > 0 && bytes_of(guess) > memory / 4 * 3) {
+    guess.entries[guess.levels] = 0;
+    guess.crowded[--guess.levels] = 0;
   }
   if (bytes_of(guess) > memory / 4 * 3) return {};
   std::size_t entries = 0;
@@ -146,7 +146,8 @@ std::optional<PairForecast> first_guess(const PairTask& task, std::size_t memory
   if (cells.largest > static_cast<int>(kUnit)) {
     guess.more = std::min(entries * (static_cast<std::size_t>(cells.largest) / kUnit), kMostUnits);
   }
-  const std::size_t most = std::min(memory, block) / sizeof(TrianglePair);
+  // More pairs than this cost a second pass of the tests, but a device need not have the memory.
+  const std::size_t most = std::min(memory / 2, block) / sizeof(TrianglePair);
   guess.pairs = std::min(kPairsOfEntry * entries, most - std::min<std::size_t>(most, 1));
   return guess;
 }

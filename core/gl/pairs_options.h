@@ -11,6 +11,9 @@ struct GlPairOptions {
   std::size_t memory = std::size_t{256} << 20;
   /// Bytes; as if a storage block held no more than this. 0: the device's own limit.
   long storage_limit = 0;
+  /// Counts are read between the steps, also where they are foreseen or could be guessed. It takes
+  /// more time; the answer does not depend on it. For tests of the steps.
+  bool step_by_step = false;
 };
 
 }  // namespace farcull

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdio>
 #include <optional>
 #include <random>
@@ -19,6 +20,7 @@
 #include "tests/core/pairs/pairs_lab.h"
 #include "tests/core/pairs/repeated_scenes.h"
 #include "tests/faults/flat_scene.h"
+#include "tests/faults/other_shader_text.h"
 #include "tests/faults/outcomes.h"
 
 namespace farcull {
@@ -99,7 +101,8 @@ TEST(PairsFaultsTwin, AnUncheckedProgramGivesWrongAnswers) {
 }
 
 // Parts that two spheres do not need: crowded pixels that are cut, large triangles, pairs that
-// repeat, and a window in parts, whose triangles are sent piece by piece.
+// repeat, a window in parts, whose triangles are sent piece by piece, counts that are read between
+// the steps, and pairs in portions.
 struct Hard {
   const char* name;
   Scene scene;
@@ -135,8 +138,12 @@ class HardPairsFaults : public testing::TestWithParam<int> {
         return {"crowds", lab::with_self(crumbs(540, 0.05)), {}};
       case 1:
         return {"parts", crumbs(120, 0.8), {.memory = 160'000, .storage_limit = 30'000}};
-      default:
+      case 2:
         return {"repeats", lab::coincident(40, 1e-3, 7), {}};
+      case 3:
+        return {"step by step", lab::with_self(crumbs(540, 0.05)), {.step_by_step = true}};
+      default:
+        return {"portions", lab::coincident(100, 1e-3, 7), {.storage_limit = 70'000}};
     }
   }
   const Hard hard_ = hard(GetParam());
@@ -154,9 +161,11 @@ TEST_P(HardPairsFaults, EveryLostCallAndFailedAllocationIsNoticed) {
   open();
   ASSERT_FALSE(truth_.empty());
   const PairCounts counts = find().views.at(0).counts;
-  EXPECT_EQ(counts.crowded > 0, GetParam() == 0);
-  EXPECT_TRUE(counts.large > 0 || GetParam() == 2);
+  const bool coincident = GetParam() == 2 || GetParam() == 4;
+  EXPECT_EQ(counts.crowded > 0, GetParam() == 0 || GetParam() == 3);
+  EXPECT_TRUE(counts.large > 0 || coincident);
   EXPECT_EQ(counts.bands > 1, GetParam() == 1);
+  EXPECT_EQ(backend_->portions() > 1, GetParam() == 1 || GetParam() == 4);
   const auto again = [&] { open(); };
   const auto answer = [&] { return right(); };
   const std::string name = hard_.name;
@@ -173,7 +182,56 @@ TEST_P(HardPairsFaults, EveryLostCallAndFailedAllocationIsNoticed) {
                          lab::try_gl_faults(GlFault::out_of_memory, again, answer));
 }
 
-INSTANTIATE_TEST_SUITE_P(, HardPairsFaults, testing::Range(0, 3));
+INSTANTIATE_TEST_SUITE_P(, HardPairsFaults, testing::Range(0, 5));
+
+// More pairs than 32 bits count, by shaders that count each one so often that the total is exactly
+// 2^32: no answer that takes them for none.
+class PairsFaultsTotal : public testing::Test {
+ protected:
+  // A scene of which so many pairs are reported that 2^32 is a multiple of their number.
+  void SetUp() override {
+    for (int n = 2; n < 40 && !found(); ++n) {
+      scene_ = lab::coincident(n, 1e-3, 7);
+      GlPairs backend(context_);
+      find(backend);
+      pairs_ = backend.reported_pairs();
+    }
+    ASSERT_TRUE(found());
+    ASSERT_FALSE(lab::truth_of(scene_).empty());
+  }
+  bool found() const { return pairs_ >= 4 && pairs_ <= 64 && std::has_single_bit(pairs_); }
+  std::vector<TrianglePair> find(GlPairs& backend) const {
+    return find_pairs(scene_, {.views = parse_views("z"), .resolution = 2}, backend).candidates;
+  }
+  lab::ShaderChange counted_often() const {
+    return {"#define FAR_ONE_PAIR 1u",
+            "#define FAR_ONE_PAIR " + std::to_string((std::uint64_t{1} << 32) / pairs_) + "u"};
+  }
+
+  const GlContext context_;
+  Scene scene_;
+  std::size_t pairs_ = 0;
+};
+
+TEST_F(PairsFaultsTotal, Of64BitsIsNotTakenForNone) {
+  const lab::OtherShaderText text{counted_often()};
+  GlPairs backend(context_);
+  EXPECT_GT(text.replaced(), 0);
+  try {
+    find(backend);
+    ADD_FAILURE() << "there was an answer";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.reason, "one work item has more pairs than fit its memory");
+  }
+}
+
+// The twin: without the second word of the total there is an answer, of no pairs.
+TEST_F(PairsFaultsTotal, Of32BitsIsTakenForNone) {
+  const lab::OtherShaderText text{counted_often(),
+                                  {"atomicAdd(counters[FAR_PAIRS + 1u], 1u)", "place += 0u"}};
+  GlPairs backend(context_);
+  EXPECT_TRUE(find(backend).empty());
+}
 
 // A driver that sends other bytes than it was given, all of them 255, in one upload.
 class OtherBytes {

@@ -10,6 +10,7 @@
 #include "core/gl/entry_point.h"
 #include "core/gl/voronoi.h"
 #include "tests/core/proximity/voronoi_slices_lab.h"
+#include "tests/faults/other_shader_text.h"
 #include "tests/faults/outcomes.h"
 
 namespace farcull {
@@ -17,6 +18,7 @@ namespace {
 
 using lab::expect_no_wrong_answer;
 using lab::GlFault;
+using lab::OtherShaderText;
 
 // Triangles in one plane, so that the grid has one slice and an answer few calls.
 Scene flat_scene() {
@@ -95,20 +97,6 @@ using DepthFunc = GlEntryPoint<&epoxy_glDepthFunc>;
 GLenum other_function = GL_LESS;
 void other_depth_func(GLenum) { DepthFunc::original(other_function); }
 
-using ShaderSource = GlEntryPoint<&epoxy_glShaderSource>;
-std::string text_from, text_to;
-int replaced = 0;
-void other_source(GLuint shader, GLsizei count, const GLchar* const* texts, const GLint* lengths) {
-  std::string text = texts[0];
-  for (std::size_t at = text.find(text_from); at != std::string::npos;
-       at = text.find(text_from, at + text_to.size())) {
-    text.replace(at, text_from.size(), text_to);
-    ++replaced;
-  }
-  const GLchar* one = text.c_str();
-  ShaderSource::original(shader, count, &one, lengths);
-}
-
 // What is said with another depth test; empty where there is an answer.
 class VoronoiFaultsDepth : public VoronoiFaults {
  protected:
@@ -137,23 +125,18 @@ TEST_F(VoronoiFaultsDepth, AnotherTestIsRefused) {
 
 // The twin: without the comparison of the last pass the wrong answer is given.
 TEST_F(VoronoiFaultsDepth, WithoutTheComparisonAnotherTestGivesAWrongAnswer) {
-  const ShaderSource source(&other_source);
-  text_from = "flags |= kWrong;";
-  text_to = ";";
-  replaced = 0;
+  const OtherShaderText text{{"flags |= kWrong;", ";"}};
   open();
-  EXPECT_EQ(replaced, 3);
+  EXPECT_EQ(text.replaced(), 3);
   EXPECT_EQ(said(GL_ALWAYS, false), "");
   EXPECT_FALSE(right);
 }
 
 TEST_F(VoronoiFaultsDepth, AWorseRootIsRefused) {
-  const ShaderSource source(&other_source);
-  text_from = "float length = sqrt(square);";
-  text_to = "float length = sqrt(square) * 1.00001;";
-  replaced = 0;
+  const OtherShaderText text{
+      {"float length = sqrt(square);", "float length = sqrt(square) * 1.00001;"}};
   open();
-  EXPECT_EQ(replaced, 1);
+  EXPECT_EQ(text.replaced(), 1);
   EXPECT_EQ(said(GL_LESS, false), "a square root is too inexact");
   open();
   EXPECT_EQ(said(GL_LESS, true), "a square root is too inexact");
@@ -162,12 +145,9 @@ TEST_F(VoronoiFaultsDepth, AWorseRootIsRefused) {
 // A distance that a device computes wrongly without any of this being broken is for the probes to
 // find (assumption A4): here every distance is that of another point.
 TEST_F(VoronoiFaultsDepth, AnotherCentreGivesAnotherAnswer) {
-  const ShaderSource source(&other_source);
-  text_from = "float(pixel.x) + 0.5";
-  text_to = "float(pixel.x) + 3.5";
-  replaced = 0;
+  const OtherShaderText text{{"float(pixel.x) + 0.5", "float(pixel.x) + 3.5"}};
   open();
-  EXPECT_EQ(replaced, 1);
+  EXPECT_EQ(text.replaced(), 1);
   EXPECT_EQ(said(GL_LESS, true), "");
   EXPECT_FALSE(right);
 }

@@ -69,6 +69,14 @@ void far_add(uint counter, uint n) {
   if (before + n < before) atomicAdd(counters[counter + 1u], 1u);
 }
 
+// The place of one more pair in the output. Of a total beyond 32 bits the places begin anew, but the total is known.
+#define FAR_ONE_PAIR 1u
+uint far_next_pair() {
+  uint place = atomicAdd(counters[FAR_PAIRS], FAR_ONE_PAIR);
+  if (place + FAR_ONE_PAIR < place) atomicAdd(counters[FAR_PAIRS + 1u], 1u);
+  return place;
+}
+
 // The last of the `count` ascending numbers that is <= x, as an index; the first of them is 0.
 #define FAR_LAST_AT_MOST(name, numbers)                                        \
   uint name(uint x, uint count) {                                              \

@@ -64,7 +64,7 @@ void work(uint w) {
     }
     if (k >= end) break;
     if (!far_meets_over(l, t.lo, t.hi)) continue;
-    uint at = atomicAdd(counters[FAR_PAIRS], 1u);
+    uint at = far_next_pair();
     if (at < u_capacity) FAR_AT(pairs, at) = uvec2(min(t.triangle, other), max(t.triangle, other));
   }
 }

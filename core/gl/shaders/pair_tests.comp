@@ -117,7 +117,7 @@ void work(uint w) {
     }
 #endif
     if (emit) {
-      uint to = atomicAdd(counters[FAR_PAIRS], 1u);
+      uint to = far_next_pair();
       if (to < u_capacity) FAR_AT(pairs, to) = uvec2(min(lo_bits.w, lo2_bits.w), max(lo_bits.w, lo2_bits.w));
     }
   }
