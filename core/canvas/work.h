@@ -1,4 +1,4 @@
-// What a canvas asks of a GL device.
+// Counts of what a canvas sends to a GL device and reads from it.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What the first window of a scene needs room for, before a GL device has counted anything. For
+// Estimates the room for the first window of a scene, before a GL device has counted anything. For
 // core/gl/pairs*.cpp alone.
 #pragma once
 

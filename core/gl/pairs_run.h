@@ -43,8 +43,8 @@ inline std::uint64_t two_words(const PairTotalWords& totals, PairTotal low) {
   return std::uint64_t{totals[low]} | std::uint64_t{totals[low + 1]} << 32;
 }
 
-/// What the work on a window needs room for, as counted by the last windows: with it no count has
-/// to be read before all is done.
+/// Room for the work on a window, as counted by the last windows or guessed (pairs_guess.h): with
+/// it no count has to be read before all is done.
 struct PairForecast {
   std::size_t triangles = 0;  // of the scene it is about
   std::size_t wholes = 0, items = 0, large = 0, shown = 0, pairs = 0, more = 0;

@@ -66,7 +66,7 @@ struct PairCounts {
   std::uint64_t undrawable = 0;  // triangles that the view could not show: joined by boxes
   // On a GL device, else 0: kernels that were started, and waits for results to be read.
   std::uint64_t dispatches = 0, readbacks = 0;
-  // How often the work was done again, since what was expected of the last views was too little.
+  // How often the work was done again, since the room that was expected to do was too little.
   std::uint64_t redone = 0;
   double prepare_ms = 0;                         // to pixel space
   double mark_ms = 0, list_ms = 0, pair_ms = 0;  // CPU: summed over threads

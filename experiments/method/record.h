@@ -1,4 +1,4 @@
-// What a run leaves: what was asked and planned, what each stage found, and how long it took.
+// The record of a run: what was asked and planned, what each stage found, and how long it took.
 #pragma once
 
 #include <cstdint>

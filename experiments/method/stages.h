@@ -26,7 +26,8 @@ std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& rec
 void count_kept(const Scene& scene, Candidates& found);
 
 /// Decides the candidates by exact predicates, with the clearance and the limit of record.options.
-/// Sets collisions, decided, complete and ms.exact, and adds a stage to the trace.
+/// Sets collisions, decided, complete and ms.exact. Adds a stage to the trace, unless the method
+/// has decided already.
 void decide_stage(const Scene& scene, Session& session, const Progress& progress, Record& record);
 
 /// If record.options ask for it: accounts for every pair that is not in `left`. Sets verification
