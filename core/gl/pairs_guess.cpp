@@ -112,7 +112,9 @@ std::optional<PairForecast> first_guess(const PairTask& task, std::size_t memory
       if (pixels > 0.99f * large) ++guess.large;
       if (pixels > 1.01f * large) continue;
       guess.row_items += height * ((width - 1) / kSpan + 1);
-      listed += std::min(width * height, static_cast<std::size_t>(pixels));
+      // The footprint is that of the triangle. Its solid is about half a pixel larger to each side,
+      // so it meets about one more for each row and column.
+      listed += std::min(width * height, static_cast<std::size_t>(pixels) + width + height);
     }
     cells.add(item);
   }
@@ -133,7 +135,7 @@ std::optional<PairForecast> first_guess(const PairTask& task, std::size_t memory
     guess.entries[l + 1] = kCutEntries * guess.entries[l];
     crowded = guess.crowded[l] * kSubdivision * kSubdivision;
   }
-  // Where there is no memory to cut crowded pixels so often, they may not be so crowded: masks
+  // Where there is little memory to cut crowded pixels so often, they may not be so crowded: masks
   // leave entries out.
   while (guess.levels > 0 && bytes_of(guess) > memory / 4 * 3) {
     guess.entries[guess.levels] = 0;
