@@ -100,7 +100,8 @@ int RunCommand::plan_tiles(const RunOptions& options) const {
   if (const Progress progress = terminal.callback()) progress("reading the scene");
   const std::vector<IgnoredNames> names = ignored();
   const Census census = take_census(source(), options.clearance, !names.empty());
-  if (!names.empty()) ignored_objects(names_of(census), names);  // throws if a name matches no object
+  if (!names.empty())
+    ignored_objects(names_of(census), names);  // throws if a name matches no object
   const Cuts cuts = choose_cuts(census, tiles);
   const std::vector<TileCount> counts = count_tiles(source(), cuts, options.clearance);
   terminal.clear();
