@@ -26,7 +26,8 @@ class PairEmission {
   bool make(PairLists& lists, const PartMemory& memory, PairTotalWords& totals);
   /// The same with room for as many pairs as the forecast says, up to the first portion, whose
   /// totals are read: false where there was too little room for something since the part began, so
-  /// that nothing is believed. Else finish() follows, where the caller believes the totals.
+  /// that nothing is believed. Else finish_foreseen() follows, where the caller believes the
+  /// totals.
   bool begin_foreseen(PairLists& lists, const PairForecast& forecast, const PartMemory& memory,
                       PairTotalWords& totals);
   bool finish_foreseen(PairLists& lists, const PartMemory& memory, const PairTotalWords& totals);

@@ -253,7 +253,7 @@ TEST(CanvasFaultList, HasEveryCallOfTheSources) {
   EXPECT_GE(files, 12);
 }
 
-// Elements of storage buffers of a shader that are read or written without FAR_AT (echo.glsl),
+// Elements of storage buffers of a shader that are read or written without FAR_AT (objects.cpp),
 // which keeps every index inside the buffer. Totals have places that no buffer decides.
 std::set<std::string> unclamped(const std::string& text) {
   static const std::regex block("layout\\(std430[^{]*\\{([^}]*)\\}"), array("(\\w+)\\[\\]");

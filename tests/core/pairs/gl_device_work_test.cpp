@@ -41,9 +41,9 @@ class Counting final : public PairBackend {
 
 constexpr std::size_t kOutput = std::size_t{256} << 20;  // GlPairOptions::memory, bytes
 
-// docs/device-work.md. A portion of the pairs is nine dispatches at
-// most, and one that sets bits to 0; its totals and its pairs are read. Where the first one was too
-// large, it is done again in smaller ones.
+// As docs/device-work.md says. A portion of the pairs is nine dispatches at most, and one that sets
+// bits to 0; its totals and its pairs are read. Where the first one was too large, it is done again
+// in smaller ones.
 std::uint64_t most_dispatches(const Asked& a) {
   return 40 + (a.portions > 1 ? 10 * a.portions : 0);
 }
