@@ -83,8 +83,7 @@ std::size_t bytes_of(const PairForecast& f) {
 std::optional<PairForecast> first_guess(const PairTask& task, std::size_t memory,
                                         std::size_t block) {
   const PairGrid grid(task);
-  const float large =
-      std::max<float>(kLargePixels, 0.125f * static_cast<float>(task.active.size()));
+  const float large = large_pixels(task.active.size());
   CellCounts cells(task.width, task.height);
   PairForecast guess;
   guess.triangles = task.triangles.size();

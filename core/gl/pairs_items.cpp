@@ -17,8 +17,7 @@ constexpr std::size_t kGuessedRecords = 8, kGuessPart = 16;
 
 void PairItems::launch(std::size_t whole_capacity, std::size_t capacity) {
   PairUniforms u = run_.common;
-  u.numbers[0] =
-      std::max<float>(kLargePixels, 0.125f * static_cast<float>(run_.task->active.size()));
+  u.numbers[0] = large_pixels(run_.task->active.size());
   u.capacity = static_cast<std::uint32_t>(capacity);
   u.extra = {0, run_.scene.gathered(), static_cast<std::uint32_t>(whole_capacity), 0};
   run_.scene.for_each_piece([&](std::size_t first, std::size_t count) {

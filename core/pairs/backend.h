@@ -3,6 +3,7 @@
 // (core/gl/pairs.h).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -36,6 +37,9 @@ constexpr int kMaxLevel = 3;
 /// A triangle that meets more pixels than this, and more than an eighth of the number of active
 /// triangles, is large: compared with each of them directly.
 constexpr int kLargePixels = 256;
+inline float large_pixels(std::size_t active) {
+  return std::max<float>(kLargePixels, 0.125f * static_cast<float>(active));
+}
 
 /// One view of the scene as a backend sees it.
 struct PairTask {

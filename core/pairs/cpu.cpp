@@ -127,8 +127,7 @@ class CpuPairs : public PairBackend {
   // Bounds of all active triangles: the small ones as items of the bands that they meet.
   void sort_into_bands(const PairGrid& grid, const Bands& bands, std::size_t chunks) {
     const PairTask& task = grid.task();
-    const float large = std::max<float>(
-        kLargePixels, 0.125f * static_cast<float>(std::max(task.active.size(), sample_of_)));
+    const float large = large_pixels(std::max(task.active.size(), sample_of_));
     items_.resize(chunks);
     std::vector<std::vector<Large>> large_of(chunks);
     for_chunks(

@@ -25,7 +25,12 @@ Promise promise_of(const RunOptions& options, const UsedDevice& device, Session&
   promise.reason =
       promise.holds ? "nothing rests on a device" : "the method, or its radius, promises nothing";
   if (!promise.holds || !device.relies) return promise;
-  promise.verdict = session.verdict(*device.relies);
+  try {
+    promise.verdict = session.verdict(*device.relies);
+  } catch (...) {
+    session.forget_device();
+    throw;
+  }
   promise.holds = promise.verdict->holds;
   promise.reason = to_string(*promise.verdict, *device.relies);
   return promise;
@@ -49,12 +54,7 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
   if (!record.found.pairs.empty() && record.found.triangles.empty())
     count_kept(scene, record.found);
   record.trace.insert(record.trace.end(), record.found.trace.begin(), record.found.trace.end());
-  try {
-    record.promise = promise_of(options, record.found.device, session);
-  } catch (...) {
-    session.forget_device();
-    throw;
-  }
+  record.promise = promise_of(options, record.found.device, session);
   record.ms.setup = record.found.setup_ms;
   record.ms.cull = planned.ms + record.found.ms;
   decide_stage(scene, session, progress, record);

@@ -17,7 +17,8 @@ namespace farcull {
 Candidates find(const Scene& scene, const Plan& plan, Session& session,
                 const Progress& progress = {});
 
-/// The promise of the method on the device that it used, whose verdict is the session's.
+/// The promise of the method on the device that it used, whose verdict is the session's. After an
+/// exception the session has forgotten its device, as after find().
 Promise promise_of(const RunOptions& options, const UsedDevice& device, Session& session);
 
 /// Plans, finds, decides and, where the options ask for it, accounts for every pair. Throws Error

@@ -50,12 +50,7 @@ Record run_part(const TileScene& part, const RunOptions& options, const Slab& sl
     record.found = find(scene, planned, session, progress);
   }  // the plan goes, to make room
   record.trace.insert(record.trace.end(), record.found.trace.begin(), record.found.trace.end());
-  try {
-    record.promise = promise_of(options, record.found.device, session);
-  } catch (...) {
-    session.forget_device();
-    throw;
-  }
+  record.promise = promise_of(options, record.found.device, session);
   record.ms.setup = record.found.setup_ms;
   record.ms.cull += record.found.ms;
   verify_stage(scene, record.found.pairs, progress, record);  // the candidates of all tiles
