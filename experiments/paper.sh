@@ -37,7 +37,7 @@ if [[ -n $out ]]; then
   folder=$(dirname "$out")/figures
   mkdir -p "$folder"
 fi
-"$figures" "$root/tests/cases/crossings-beside-pixel-corners.obj" "$folder"
+"$figures" "$root/tests/cases/published-far-loses-this-pair.obj" "$folder"
 for tool in pandoc pdflatex rsvg-convert; do
   if ! command -v "$tool" >/dev/null; then
     echo "paper: NOT RUN: $tool is missing (Debian: pandoc texlive-latex-base texlive-latex-recommended lmodern librsvg2-bin)"

@@ -264,9 +264,9 @@ PaperFigure strip_figure() {
   return {"paper-strip", d.svg()};
 }
 
-std::vector<PaperFigure> paper_figures(const std::string& crossings) {
+std::vector<PaperFigure> paper_figures(const std::string& pair) {
   return {ball_figure(),   coverage_figure(), entry_and_exit_figure(),
-          passes_figure(), strip_figure(),    published_figure(crossings)};
+          passes_figure(), strip_figure(),    published_figure(pair)};
 }
 
 }  // namespace farcull

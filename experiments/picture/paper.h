@@ -13,10 +13,10 @@ struct PaperFigure {
   std::string svg;
 };
 
-/// The figures in the order of the paper. `crossings`: the path of
-/// tests/cases/crossings-beside-pixel-corners.obj, which the last one is drawn from. Throws Error
+/// The figures in the order of the paper. `pair`: the path of
+/// tests/cases/published-far-loses-this-pair.obj, which the last one is drawn from. Throws Error
 /// where it cannot be read.
-std::vector<PaperFigure> paper_figures(const std::string& crossings);
+std::vector<PaperFigure> paper_figures(const std::string& pair);
 
 // Each by itself. Those of paper_cull.cpp come last.
 PaperFigure ball_figure();
@@ -24,6 +24,6 @@ PaperFigure coverage_figure();
 PaperFigure entry_and_exit_figure();
 PaperFigure strip_figure();
 PaperFigure passes_figure();
-PaperFigure published_figure(const std::string& crossings);
+PaperFigure published_figure(const std::string& pair);
 
 }  // namespace farcull

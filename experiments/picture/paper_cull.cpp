@@ -1,4 +1,4 @@
-// The two passes on a scene of twelve triangles, and the crossings that the published radius loses.
+// The two passes on a scene of twelve triangles, and the pair that FAR as published loses.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,8 +14,6 @@
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/shapes.h"
 #include "experiments/scenes/scene_file.h"
-#include "offsets/fit.h"
-#include "offsets/minkowski.h"
 #include "offsets/obb.h"
 
 namespace farcull {
@@ -65,122 +63,115 @@ void draw_bits(Drawing& d, double top, const std::string& heading,
   }
 }
 
-// A proxy's corners as a device with 8 subpixel bits draws them.
-constexpr double kGrid = 256;
-std::vector<DrawnPoint> corners_of(const std::array<float, 8>& proxy, bool snapped) {
-  std::vector<DrawnPoint> out;
-  for (std::size_t i = 0; i < 8; i += 2) {
-    const DrawnPoint p = {proxy[i], proxy[i + 1]};
-    out.push_back(
-        snapped ? DrawnPoint{std::rint(p[0] * kGrid) / kGrid, std::rint(p[1] * kGrid) / kGrid} : p);
-  }
-  return out;
-}
-
-// How far p is inside the convex polygon, which goes around counterclockwise: the least distance
-// from the lines of its edges.
-double inside(const std::vector<DrawnPoint>& polygon, const DrawnPoint& p) {
-  double out = HUGE_VAL;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const DrawnPoint &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    const double x = b[0] - a[0], y = b[1] - a[1];
-    out = std::min(out, (x * (p[1] - a[1]) - y * (p[0] - a[0])) / std::hypot(x, y));
-  }
-  return out;
-}
-
-// Two crossing segments beside the corner of a pixel, in pixel space relative to that corner.
-struct Crossing {
+// What the published path draws of two triangles, in pixel space, where a corner of four pixels is
+// the origin.
+constexpr double kGrid = 256;  // of a device with 8 subpixel bits
+struct Pair {
   std::array<Patch, 2> patches;
   Window window;
   double radius;
 
-  std::vector<DrawnPoint> proxy(int which, double of_radius, bool snapped) const {
-    return corners_of(proxy_rectangle(patches[which].points(), of_radius, proxy_bounds(window)),
-                      snapped);
+  // The triangles of the surface of the box around `which`, as computed or as the device draws
+  // them.
+  std::vector<std::vector<DrawnPoint>> surface(int which, double of_radius, bool snapped) const {
+    Drawables drawn;
+    obb_surface_fattener().fatten(patches[which], of_radius, proxy_bounds(window), drawn);
+    const auto at = [&](double x) { return snapped ? std::rint(x * kGrid) / kGrid : x; };
+    std::vector<std::vector<DrawnPoint>> out;
+    for (const auto& t : drawn.triangles)
+      out.push_back({{at(t[0]), at(t[1])}, {at(t[4]), at(t[5])}, {at(t[8]), at(t[9])}});
+    return out;
   }
-  bool hit(int which, const DrawnPoint& c) const {
-    const auto points = patches[which].points();
-    float entry = 0, exit = 0;
-    return minkowski_fattener().solid.interval(
-        static_cast<float>(c[0]), static_cast<float>(c[1]),
-        minkowski_solid(points[0], points[1], points[2], radius), entry, exit);
+  // How far the centre c of a pixel is inside what is drawn of `which`, at the most.
+  double inside(int which, const DrawnPoint& c) const {
+    double out = -HUGE_VAL;
+    for (const auto& t : surface(which, radius, true)) {
+      double least = HUGE_VAL;
+      const auto side = [&t](int i, const DrawnPoint& p) {
+        const DrawnPoint &from = t[i], &to = t[(i + 1) % 3];
+        const double x = to[0] - from[0], y = to[1] - from[1];
+        return (x * (p[1] - from[1]) - y * (p[0] - from[0])) / std::hypot(x, y);
+      };
+      const double turn = side(0, t[2]);
+      if (turn == 0 || std::isnan(turn)) continue;  // no area: draws nothing
+      for (int i = 0; i < 3; ++i) least = std::min(least, std::copysign(1, turn) * side(i, c));
+      out = std::max(out, least);
+    }
+    return out;
   }
 };
 
-// The third triangle of either object of the case, moved so that the whole numbers nearest to where
-// they cross become the origin.
-Crossing first_crossing(const std::string& path) {
+Pair pair_of(const std::string& path) {
   const std::filesystem::path file(path);
   const std::string text =
       "{\"objects\": [{\"mesh\": \"" + file.filename().string() + "\", \"split\": \"groups\"}]}";
   const Scene scene = parse_scene_file(text, (file.parent_path() / "scene.json").string());
-  if (scene.objects.size() != 2 || scene.objects[0].triangle_count < 3)
-    throw Error(path, "is not the case of the crossings", "restore the file");
-  const Regions regions = find_regions(scene);
-  const Window window = *fit_window(parse_view("z"), regions.places, 16);
-  Crossing out{{}, window, published_radius(depth_step(window, 32))};
-  for (int o = 0; o < 2; ++o) {
-    std::array<Vec3, 3> corners = scene.corners(scene.objects[o].first_triangle + 2);
-    const Vec3 q = 0.5 * (corners[0] + corners[1]);
-    for (Vec3& p : corners) p -= Vec3(std::rint(q[0]), std::rint(q[1]), 0);
-    out.patches[o] = clip_to_region(window, corners);
-  }
+  if (scene.objects.size() != 2 || scene.triangles.size() != 2)
+    throw Error(path, "is not the case of two triangles", "restore the file");
+  const Window window = *fit_window(parse_view("z"), find_regions(scene).places, 2);
+  Pair out{{}, window, published_radius(depth_step(window, 32))};
+  for (int o = 0; o < 2; ++o) out.patches[o] = clip_to_region(window, scene.corners(o));
   return out;
 }
 
-void draw_four_centres(Drawing& d, const Crossing& crossing) {
-  d.begin({10, 40, 400, 400, {-1.25, -1.25}, {1.25, 1.25}});
+constexpr std::array<const char*, 2> kPairColours = {"#07a", "#b30"};
+constexpr std::array<const char*, 2> kPairNames = {"rising", "falling"};
+// Words over lines.
+constexpr const char* kHalo =
+    R"(fill="{}" font-size="13" stroke="#fff" stroke-width="4" paint-order="stroke")";
+
+void draw_four_centres(Drawing& d, const Pair& pair) {
+  d.begin({10, 40, 400, 400, {-2.3, -2.3}, {2.3, 2.3}});
   d.pixels();
-  const std::array<const char*, 2> colours = {"#07a", "#b30"};
-  const std::array<std::string, 2> names = {"rising", "falling"};
-  double farthest = 0;
-  d.outline(crossing.proxy(0, crossing.radius, true),
-            R"(fill="#9ab" fill-opacity="0.3" stroke="#234" stroke-width="2")");
+  for (int o = 0; o < 2; ++o) {
+    const std::string colour = kPairColours[o];
+    for (const auto& t : pair.surface(o, pair.radius, true)) {
+      d.outline(t, fmt::format(R"(fill="{0}" fill-opacity="0.08" stroke="{0}" stroke-width="0.7")",
+                               colour));
+    }
+    const auto& corners = pair.patches[o].corners;
+    d.line({{corners[0][0], corners[0][1]}, {corners[1][0], corners[1][1]}},
+           fmt::format(R"(stroke="{}" stroke-width="3")", colour));
+  }
+  double least = HUGE_VAL;
   for (const double y : {-0.5, 0.5}) {
     for (const double x : {-0.5, 0.5}) {
       const DrawnPoint c = {x, y};
       d.dot(c, 5, R"(fill="#fff" stroke="#000" stroke-width="2")");
       for (int o = 0; o < 2; ++o) {
-        farthest =
-            std::max(farthest, std::abs(inside(crossing.proxy(o, crossing.radius, true), c)));
+        const double in = pair.inside(o, c);
+        if (in < 0) least = std::min(least, -in);
         const double down = (y > 0 ? -24 : 18) + 18 * o;
-        d.words(c, x > 0 ? 12 : -12, down, names[o] + (crossing.hit(o, c) ? ": hit" : ": miss"),
-                x > 0 ? "start" : "end", fmt::format(R"(fill="{}" font-size="13")", colours[o]));
+        d.words(c, x > 0 ? 12 : -12, down,
+                kPairNames[o] + std::string(in >= 0 ? ": hit" : ": miss"), x > 0 ? "start" : "end",
+                fmt::format(kHalo, kPairColours[o]));
       }
     }
   }
-  d.words({0, -1.25}, 0, -8,
-          fmt::format("distance of the four centres from the edges: {}", farthest), "middle",
+  d.words({0, -2.3}, 0, -6, fmt::format("each miss by {:.5f} px at least", least), "middle",
           R"(font-size="13")");
-  const Vec3 q = 0.5 * (crossing.patches[0].corners[0] + crossing.patches[0].corners[1]);
-  d.dot({q[0], q[1]}, 3, R"(fill="#000")");
-  d.words({0, 0}, 8, -6, "Q");
 }
 
-void draw_edges(Drawing& d, const Crossing& crossing) {
+void draw_edges(Drawing& d, const Pair& pair) {
   constexpr double kReach = 0.012;
   const Budget budget = budget_for({.subpixel_bits = 8, .depth_bits = 32, .max_resolution = 4096},
-                                   viewport_side(crossing.window.width));
-  d.begin({430, 40, 400, 400, {0.5 - kReach, 0.5 - kReach}, {0.5 + kReach, 0.5 + kReach}});
-  d.outline(crossing.proxy(0, crossing.radius, true),
-            R"(fill="#9ab" fill-opacity="0.3" stroke="#234" stroke-width="4")");
-  d.outline(crossing.proxy(0, crossing.radius, false),
-            R"(fill="none" stroke="#07a" stroke-width="2" stroke-dasharray="6 4")");
-  d.outline(crossing.proxy(1, crossing.radius, false),
-            R"(fill="none" stroke="#b30" stroke-width="2" stroke-dasharray="2 4")");
-  d.outline(crossing.proxy(0, budget.radius(), true),
-            R"(fill="none" stroke="#283" stroke-width="2.5")");
-  d.dot({0.5, 0.5}, 5, R"(fill="#fff" stroke="#000" stroke-width="2")");
-  d.words({0.5, 0.5}, -10, 18, "c", "end");
-  const DrawnPoint corner = {0.5 - kReach, 0.5 - kReach};
-  const auto legend = [&](double down, const std::string& text, const char* colour) {
-    d.words(corner, 6, down, text, "start", fmt::format(R"(fill="{}" font-size="13")", colour));
+                                   viewport_side(std::max(pair.window.width, pair.window.height)));
+  d.begin({430, 40, 400, 400, {-0.5 - kReach, 0.5 - kReach}, {-0.5 + kReach, 0.5 + kReach}});
+  const auto draw = [&](double radius, bool snapped, const std::string& style) {
+    for (const auto& t : pair.surface(0, radius, snapped)) d.outline(t, "fill=\"none\" " + style);
   };
-  legend(-70, "rising, published radius, as computed", "#07a");
-  legend(-50, "falling, the same", "#b30");
-  legend(-30, "both, snapped to 2^-8 px: c is on the edge", "#234");
-  legend(-10, "rising, radius of the budget, snapped", "#283");
+  draw(pair.radius, true, R"(stroke="#07a" stroke-width="4")");
+  draw(pair.radius, false, R"(stroke="#000" stroke-width="1.5")");
+  draw(budget.radius(), true, R"(stroke="#283" stroke-width="2.5")");
+  d.dot({-0.5, 0.5}, 5, R"(fill="#fff" stroke="#000" stroke-width="2")");
+  d.words({-0.5, 0.5}, -10, -10, "c", "end");
+  const DrawnPoint corner = {-0.5 + kReach, 0.5 - kReach};
+  const auto legend = [&](double down, const std::string& text, const char* colour) {
+    d.words(corner, -6, down, text, "end", fmt::format(R"(fill="{}" font-size="13")", colour));
+  };
+  legend(-50, "rising, radius of the budget, snapped", "#283");
+  legend(-30, "published radius, as computed: c is inside", "#000");
+  legend(-10, "the same, snapped to 2^-8 px: c is outside", "#07a");
 }
 
 }  // namespace
@@ -210,19 +201,17 @@ PaperFigure passes_figure() {
   return {"paper-passes", d.svg()};
 }
 
-PaperFigure published_figure(const std::string& crossings) {
-  const Crossing crossing = first_crossing(crossings);
-  Drawing d(
-      840, 450, "Why the published radius fails",
-      "Two segments cross 2^-11 px to the right of a pixel's corner. After snapping, all four "
-      "centres lie on the edges of both proxies, and only the two on the right are hit by "
-      "both.");
+PaperFigure published_figure(const std::string& pair_file) {
+  const Pair pair = pair_of(pair_file);
+  Drawing d(840, 450, "Why the published radius fails",
+            "Two triangles that pierce each other, seen edge-on, and the boxes that are drawn for "
+            "them. After snapping, each box misses two of the four centres around the corner where "
+            "they meet, and no centre is in both.");
   d.begin({10, 0, 820, 40, {0, 0}, {820, 40}});
-  d.words({0, 14}, 0, 0,
-          fmt::format("radius {:.5f} px: four pixels around the corner", crossing.radius));
-  d.words({420, 14}, 0, 0, "0.024 px around the upper right centre");
-  draw_four_centres(d, crossing);
-  draw_edges(d, crossing);
+  d.words({0, 14}, 0, 0, fmt::format("radius {:.5f} px: the boxes as drawn", pair.radius));
+  d.words({420, 14}, 0, 0, "0.024 px around the upper left centre");
+  draw_four_centres(d, pair);
+  draw_edges(d, pair);
   return {"paper-published", d.svg()};
 }
 

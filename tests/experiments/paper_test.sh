@@ -64,7 +64,7 @@ cmp -s "$work/good/paper.pdf" "$work/again/paper.pdf" || fail "the same text giv
 broken "a letter that LaTeX lacks" docs/budget.md 's/^# The error budget/&\n\nA letter: ऄ./'
 broken "a figure that is none" docs/reliability.md 's/paper-ball/paper-bull/'
 broken "a citation without an entry" docs/reliability.md 's/@far2004/@far1904/'
-broken "a case that is none" tests/cases/crossings-beside-pixel-corners.obj '/^o falling/,$d'
+broken "a case that is none" tests/cases/published-far-loses-this-pair.obj '/^o falling/,$d'
 # The twin of the margins: tables at their own width.
 sed -i 's/{ Table = Table }/{}/' "$bad/experiments/paper.lua"
 paper "$bad" "$work/wide" || fail "tables at their own width give no PDF: $(cat "$work/wide/said")"
