@@ -148,7 +148,7 @@ void draw_four_centres(Drawing& d, const Pair& pair) {
       }
     }
   }
-  d.words({0, -2.3}, 0, -6, fmt::format("each miss by {:.5f} px at least", least), "middle",
+  d.words({0, -2.3}, 0, -6, fmt::format("least miss: {:.5f} px", least), "middle",
           R"(font-size="13")");
 }
 
