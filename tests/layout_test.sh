@@ -317,6 +317,7 @@ type_names() {
   local -a there
   mapfile -t there < <(present "${ours[@]}")
   ((${#there[@]})) || return 0
+  # shellcheck disable=SC2016  # the dollars are those of awk
   find "${there[@]}" -type f \( -name '*.h' -o -name '*.cpp' -o -name '*.inl' \) -print0 | LC_ALL=C sort -z |
     xargs -0r awk '
       # Forgets what the last file left open.
