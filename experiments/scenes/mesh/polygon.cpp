@@ -38,6 +38,20 @@ class ExactSum {
     if (plus == sums_[0].rend()) return 0;
     return *plus > *minus ? 1 : -1;
   }
+  // Greater for a greater absolute value, but for those that agree in their first bits: the number
+  // of the highest word that is not 0, and that word.
+  std::pair<std::size_t, std::uint64_t> magnitude() const {
+    const int which = sign() < 0 ? 1 : 0;
+    const Words &greater = sums_[which], &less = sums_[1 - which];
+    std::pair<std::size_t, std::uint64_t> out;
+    std::uint64_t borrow = 0;
+    for (std::size_t k = 0; k < greater.size(); ++k) {
+      const std::uint64_t word = greater[k] - less[k] - borrow;
+      borrow = greater[k] < less[k] || (borrow > 0 && greater[k] == less[k]) ? 1 : 0;
+      if (word > 0) out = {k, word};
+    }
+    return out;
+  }
 
  private:
   using Words = std::array<std::uint64_t, 68>;  // the least first
@@ -80,20 +94,22 @@ struct Plane {
 };
 
 // Twice the area of the polygon in a plane, by Newell's formula, without rounding.
-int exact_area_sign(std::span<const Vec3> points, int u, int v) {
+ExactSum exact_area(std::span<const Vec3> points, int u, int v) {
   ExactSum area;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3& a = points[i];
     const Vec3& b = points[i + 1 == points.size() ? 0 : i + 1];
     area.add_difference(a[u], b[v], a[v], b[u]);
   }
-  return area.sign();
+  return area;
 }
 
-// The plane along the axis closest to the normal. With n corners a product of two differences has
-// three roundings and is in at most 2 n sums: a relative error of each product of at most
-// (2 n + 3) kUnit to first order, and less than (4 n + 8) kUnit of the computed products with all
-// higher orders (n < 2^32). Each of the 2 n products errs by kTiny / 2 more if it underflows.
+// The plane along the axis of the largest component of the normal, or of one that is half as large
+// or more. With n corners a product of two differences has three roundings and is in at most 2 n
+// sums: a relative error of each product of at most (2 n + 3) kUnit to first order, and less than
+// (4 n + 8) kUnit of the computed products with all higher orders (n < 2^32). Each of the 2 n
+// products errs by kTiny / 2 more if it underflows. Where the largest component is above that bound
+// for each of the three, it has its sign, and no other one is twice as large.
 Plane plane_of(std::span<const Vec3> points) {
   Vec3 normal = Vec3::Zero(), terms = Vec3::Zero();
   Vec3 a = Vec3::Zero();  // from the first corner
@@ -106,19 +122,18 @@ Plane plane_of(std::span<const Vec3> points) {
     a = b;
   }
   const double n = static_cast<double>(points.size());
+  const double bound = (4 * n + 8) * kUnit * terms.sum() + 4 * n * kTiny;
   int axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
-  const bool certain = std::abs(normal[axis]) > (4 * n + 8) * kUnit * terms[axis] + 4 * n * kTiny;
-  Plane plane{(axis + 1) % 3, (axis + 2) % 3};
   int sign = normal[axis] > 0 ? 1 : -1;
-  if (!certain) {
-    sign = 0;
-    for (int k = 0; k < 3 && sign == 0; ++k) {
-      plane = {(axis + k + 1) % 3, (axis + k + 2) % 3};
-      sign = exact_area_sign(points, plane.u, plane.v);
-    }
-    plane.has_area = sign != 0;
+  if (!(std::abs(normal[axis]) > bound)) {  // also where that is no number
+    std::array<ExactSum, 3> exact;
+    for (int k = 0; k < 3; ++k) exact[k] = exact_area(points, (k + 1) % 3, (k + 2) % 3);
+    axis =
+        static_cast<int>(std::ranges::max_element(exact, {}, &ExactSum::magnitude) - exact.begin());
+    sign = exact[axis].sign();
   }
+  Plane plane{(axis + 1) % 3, (axis + 2) % 3, sign != 0};
   if (sign < 0) std::swap(plane.u, plane.v);
   return plane;
 }

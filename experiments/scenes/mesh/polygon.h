@@ -26,12 +26,11 @@ enum class Triangulation {
 
 /// Triangles of a polygon, as positions in `corners`: always size - 2 of them (none if too_large),
 /// in the orientation of the polygon; some may be degenerate where corners are collinear. The
-/// polygon is cut in its projection along a coordinate axis, which only drops a coordinate: the
-/// axis nearest to its normal, if rounding leaves no doubt that the projection has an area, else
-/// one in which it has. A simple planar polygon is cut into triangles as `whole` says; so is one
-/// that touches itself along a seam, where that can be done, and one that is not planar, if its
-/// projection is simple. A polygon whose corners are collinear is whole. `by` is for tests of what
-/// another sign does. Precondition: 3 corners or more, finite.
+/// polygon is cut in its projection along the axis nearest to its normal, up to a factor of 2
+/// between components; the projection only drops a coordinate. A simple planar polygon is cut into
+/// triangles as `whole` says; so is one that is not planar, if its projection is simple, and one
+/// that touches itself along a seam, where that can be done. A polygon whose corners are collinear
+/// is whole. `by` is for tests of what another sign does. Precondition: 3 corners or more, finite.
 Triangulation triangulate(std::span<const Vec3> corners,
                           std::vector<std::array<std::uint32_t, 3>>& triangles, Turn by = turn);
 

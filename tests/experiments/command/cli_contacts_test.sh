@@ -82,8 +82,28 @@ for method in far-pairs exact i-collide; do
   ((cases += 1))
   cmp -s ignored.csv by.csv || fail "ignored by $method" 'other pairs'
 done
+printf '\xEF\xBB\xBFfloor:spike\r\nfin:spike\r\n' >marked.txt
+good 'a byte order mark' 0 run "${all[@]}" --ignore-file marked.txt --pairs by.csv
+((cases += 1))
+cmp -s ignored.csv by.csv || fail 'a byte order mark' 'other pairs'
 good 'ignored in frames' 0 verify two-spheres --frames 2 --ignore first:second
 expect 'ignored in frames' "$out" ' 52,428,800 ignored \+ 0 missed$'
+# An object of the first frame that is gone in the second one; and one that comes in the second.
+printf '%s\n' 'v 1 1 -1' 'v 1 1 1' 'v 1 3 0' 'g a' 'f 1 2 3' >parts_2.obj
+cat parts_2.obj - <<<$'v 4 1 -1\nv 4 1 1\nv 4 3 0\ng b\nf 4 5 6' >parts_1.obj
+printf '{"objects": [{"mesh": "parts_%%d.obj", "split": "groups"}, {"mesh": "floor.obj"}]}' >parts.json
+good 'an object that goes' 0 verify parts.json --frames 1:2 --ignore '*/b:floor' --pairs frames.csv
+((cases += 1))
+cmp -s frames.csv <(printf 'frame,object_a,triangle_a,object_b,triangle_b\n1,0,0,2,0\n2,0,0,1,0\n') ||
+  fail 'an object that goes' 'other pairs'
+bad 'an object that comes' "--ignore: '\*/b:floor' names '\*/b', and no object is called so" \
+  run parts.json --frames 2:2 --ignore '*/b:floor'
+sed 's|^{|{"ignore": [["*/b", "floor"]], |' parts.json >ignores.json
+good 'an object that goes, in the file' 0 verify ignores.json --frames 1:2 --pairs file.csv
+((cases += 1))
+cmp -s frames.csv file.csv || fail 'an object that goes, in the file' 'other pairs'
+bad 'an object that comes, in the file' "ignores\.json:1: ignore\[0\] names '\*/b', and no object is called so" \
+  run ignores.json --frames 2:2
 
 good 'a limit' 0 verify "${all[@]}" --limit 2 --pairs - --json first.json
 ((cases += 1))

@@ -120,9 +120,12 @@ std::vector<Spot> simple_polygon(rational::Draws& random) {
 }
 
 // The corners as doubles, in the plane of u and v. They are rounded, which moves no corner over an
-// edge; or exactly sheared, so that the polygon is nearly a segment.
+// edge; or moved exactly by a matrix of Fibonacci numbers, whose determinant is 1 or -1, so that
+// the polygon becomes a sliver of the same area.
 Polygon placed(const std::vector<Spot>& spots, rational::Draws& random, int u) {
   const int kind = random.below(4);
+  std::array<double, 3> f = {0, 1, 1};
+  for (int k = random.below(60); k > 0; --k) f = {f[1], f[2], f[1] + f[2]};
   Polygon out;
   for (const Spot& s : spots) {
     Vec3 p = Vec3::Zero();
@@ -131,7 +134,7 @@ Polygon placed(const std::vector<Spot>& spots, rational::Draws& random, int u) {
     y = s[1];
     if (kind == 0) x *= 0.001, y *= 0.001;
     if (kind == 1) x = 1000 + x * 0.001, y = y * 0.001 - 300;
-    if (kind == 2) y = x + y * 0x1p-49;  // |y| < 16
+    if (kind == 2) x = s[0] * f[2] + s[1] * f[1], y = s[0] * f[1] + s[1] * f[0];
     if (random.coin()) p[(u + 2) % 3] = 1e-20 * random.uniform(-1, 1);  // not planar
     out.push_back(p);
   }
