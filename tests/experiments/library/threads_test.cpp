@@ -107,7 +107,7 @@ TEST(LibraryThreads, ColliderFromTwoThreadsAnswersRightlyOrRefuses) {
 }
 
 TEST(LibraryThreads, DistanceFinderFromTwoThreadsAnswersRightlyOrRefuses) {
-  const Flat flat(make_builtin_scene("crowd"));
+  const Flat flat(make_builtin_scene("needles"));
   const auto squares = [](const std::vector<DistanceAnswer>& answers) {
     std::vector<std::string> out;
     for (const DistanceAnswer& a : answers) out.push_back(a.squared);
