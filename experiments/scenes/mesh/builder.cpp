@@ -58,7 +58,9 @@ void MeshBuilder::add_face(std::span<const std::uint32_t> corners, long line) {
 
   std::vector<std::array<std::uint32_t, 3>> triangles;
   triangles.reserve(corners.size() - 2);
-  if (triangulate(points, triangles) == Triangulation::too_large) {
+  const Triangulation made = triangulate(points, triangles);
+  if (made == Triangulation::folded) mesh_.folded.push_back(faces_);
+  if (made == Triangulation::too_large) {
     throw Error(name_,
                 fmt::format("face {} is a polygon with {} vertices that is not convex, too large "
                             "to triangulate here",

@@ -105,6 +105,17 @@ cmp -s frames.csv file.csv || fail 'an object that goes, in the file' 'other pai
 bad 'an object that comes, in the file' "ignores\.json:1: ignore\[0\] names '\*/b', and no object is called so" \
   run ignores.json --frames 2:2
 
+# A polygon that crosses itself is named.
+printf '%s\n' 'v 0 0 0' 'v 3 0 0' 'v 3 3 0' 'v 0 2 0' 'g a' 'f 1 2 3' 'g b' 'f 1 3 2 4' >folded.obj
+printf '{"objects": [{"mesh": "folded.obj", "split": "groups"}]}' >folded.json
+good 'a folded polygon' 0 run folded.json
+expect 'a folded polygon' "$out" '^folded: 2 objects, 3 triangles, 1 polygon folded: face 1 of folded/b$'
+good 'a folded polygon, as JSON' 0 run folded.json --json -
+expect 'a folded polygon, as JSON' <(tr -d ' \n' <"$out") \
+  '"folded_polygons":1,"folded":\[\{"object":"folded/b","face":1\}\],'
+good 'a folded polygon of distances' 0 distance folded.json
+expect 'a folded polygon of distances' "$out" '1 polygon folded: face 1 of folded/b$'
+
 good 'a limit' 0 verify "${all[@]}" --limit 2 --pairs - --json first.json
 ((cases += 1))
 cmp -s "$out" <(head -n 3 plain.csv) || fail 'a limit' 'other pairs'

@@ -156,6 +156,12 @@ TEST(MeshReaders, TriangulatePolygonsInPlaceAndKeepTheirFace) {
   EXPECT_EQ(mesh.group, (std::vector<std::uint32_t>(5, 0)));
 }
 
+TEST(MeshReaders, NameTheFacesThatAreFolded) {
+  const std::string corners = "OFF\n4 4 0\n0 0 0\n3 0 0\n3 3 0\n0 2 0\n";
+  const Mesh mesh = off(corners + "3 0 1 2\n4 0 2 1 3\n4 0 1 2 3\n4 1 3 0 2\n");
+  EXPECT_EQ(mesh.folded, (std::vector<std::uint32_t>{1, 3}));
+}
+
 // Whatever a few flipped, lost or repeated bytes make of a file, it is read or refused with an
 // Error.
 TEST(MeshReaders, SurviveDamagedBytes) {
