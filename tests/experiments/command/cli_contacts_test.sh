@@ -105,6 +105,12 @@ cmp -s frames.csv file.csv || fail 'an object that goes, in the file' 'other pai
 bad 'an object that comes, in the file' "ignores\.json:1: ignore\[0\] names '\*/b', and no object is called so" \
   run ignores.json --frames 2:2
 
+# A polygon whose triangles a rounded sign would put outside of it, where the triangle is.
+printf '%s\n' 'v .002 .002 0' 'v .004 .002 0' 'v .006 -.003 0' 'v -.006 -.006 0' 'v -.003 .001 0' \
+  'v -.003 -.005 0' 'v .003 -.003 0' 'f 1 2 3 4 5 6 7' >seven.obj
+triangle outside -.0003 -.0026 -.001 -.0003 -.0026 .001 -.0002 -.0026 .001
+good 'a triangle outside a polygon' 0 verify seven.obj outside.obj
+expect 'a triangle outside a polygon' "$out" '^colliding +0 pairs$'
 # A polygon that crosses itself is named.
 printf '%s\n' 'v 0 0 0' 'v 3 0 0' 'v 3 3 0' 'v 0 2 0' 'g a' 'f 1 2 3' 'g b' 'f 1 3 2 4' >folded.obj
 printf '{"objects": [{"mesh": "folded.obj", "split": "groups"}]}' >folded.json
