@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Checks the layout of the repository: which folder includes which, which libraries a folder uses,
-# which file starts threads, where source files lie, and that the paths named in the pages exist.
+# which file starts threads, that a type has its name alone in its namespace, where source files lie,
+# and that the paths named in the pages exist.
 #   tests/layout_test.sh [ROOT]          checks ROOT (default: this repository). It prints one line
 #                                        for each violation, and then exits with status 1.
 #   tests/layout_test.sh --graph [ROOT]  prints the folders by level and the arrows between them
@@ -308,6 +309,90 @@ thread_starts() {
     grep -v '^core/base/parallel\.cpp:' || true
 }
 
+# Prints a violation for each type that two files define in one namespace: to a linker they are one
+# type, and which of its functions a program gets is chance (tests/odr.sh asks the linker). Types of
+# anonymous namespaces, nested types and specializations are no such types. A name that one file
+# defines twice stands in the branches of an #if.
+type_names() {
+  local -a there
+  mapfile -t there < <(present "${ours[@]}")
+  ((${#there[@]})) || return 0
+  # shellcheck disable=SC2016  # the dollars are those of awk
+  find "${there[@]}" -type f \( -name '*.h' -o -name '*.cpp' -o -name '*.inl' \) -print0 | LC_ALL=C sort -z |
+    xargs -0r awk '
+      # Forgets what the last file left open.
+      FNR == 1 { depth = blocks = hidden = comment = 0; statement = raw = ""; directive = 0 }
+      raw != "" {
+        at = index($0, raw)
+        if (!at) next
+        $0 = substr($0, at + length(raw))
+        raw = ""
+      }
+      directive || /^[ \t]*#/ { directive = /\\$/; next }
+      {
+        # Without strings, characters and comments. A raw string may end in a later line.
+        text = ""
+        while (match($0, /R"[^ ()\\"]*\(|"([^"\\]|\\.)*"|[^0-9A-Za-z]\047([^\047\\]|\\.)+\047|\/\/|\/\*|\*\//)) {
+          found = substr($0, RSTART, RLENGTH)
+          if (!comment) text = text substr($0, 1, RSTART - 1) " "
+          $0 = substr($0, RSTART + RLENGTH)
+          if (found == "*/") comment = 0
+          else if (comment) continue
+          else if (found == "/*") comment = 1
+          else if (found == "//") $0 = ""
+          else if (found ~ /^R"/) {
+            raw = ")" substr(found, 3, length(found) - 3) "\""
+            at = index($0, raw)
+            if (!at) { $0 = ""; break }
+            $0 = substr($0, at + length(raw))
+            raw = ""
+          } else text = text " \"\" "
+        }
+        if (!comment) text = text $0
+        while (match(text, /[{};]/)) {
+          mark = substr(text, RSTART, 1)
+          if (!blocks) statement = statement " " substr(text, 1, RSTART - 1)
+          text = substr(text, RSTART + 1)
+          if (mark == "{") opened()
+          else if (mark == "}") closed()
+          if (!blocks) statement = ""
+        }
+        if (!blocks) statement = statement " " text
+      }
+      function opened(   words, name) {
+        if (blocks) { ++blocks; return }
+        words = statement
+        gsub(/\[\[[^\]]*\]\]|alignas *\([^)]*\)/, " ", words)
+        gsub(/[ \t]+/, " ", words)
+        sub(/ $/, "", words)
+        if (words ~ /^ (inline )?namespace( [A-Za-z0-9_:]+)?$/ || words ~ /^ extern ""$/) {
+          name = words
+          sub(/^ (inline )?(namespace|extern) ?/, "", name)
+          inside[++depth] = name == "\"\"" || name == "" ? "" : name "::"
+          anonymous[depth] = name == ""
+          hidden += anonymous[depth]
+          return
+        }
+        blocks = 1
+        if (hidden || !match(words, / (struct|class|union|enum|enum class|enum struct) [A-Za-z0-9_]+( final)?( :[^:].*)?$/))
+          return
+        name = substr(words, RSTART)
+        sub(/^ (enum )?(struct|class|union|enum) /, "", name)
+        sub(/[^A-Za-z0-9_].*/, "", name)
+        if (words ~ /[(=]/ && words !~ /^ template/) return
+        for (level = depth; level > 0; --level) name = inside[level] name
+        if (!(name in file)) {
+          file[name] = FILENAME
+          place[name] = FILENAME ":" FNR
+        } else if (file[name] != FILENAME)
+          print FILENAME ":" FNR ": defines " name ", and so does " place[name] ": a type name once a namespace"
+      }
+      function closed() {
+        if (blocks) { --blocks; return }
+        hidden -= anonymous[depth--]
+      }'
+}
+
 # Prints a violation for each path in README.md and docs/*.md that does not exist: paths in
 # backticks and in indented blocks that begin with one of our folders, and the targets of links.
 # NAME and * in a path stand for any text. A path without an ending, such as verify/accounting,
@@ -408,6 +493,7 @@ check() {
     fi
     thread_starts | sed -E \
       's/^([^:]*:[0-9]+:).*/\1 starts a thread: only core\/base\/parallel.cpp does, which sets the arithmetic of each/'
+    type_names
     page_paths
     top_level
   )
@@ -623,6 +709,31 @@ break_threads() {
   rm core/base/parallel.cpp
 }
 
+# types FIRST SECOND VERDICT: two files in which these types are defined.
+types() {
+  printf '#include <vector>\n%s\n' "$1" >verify/first.h
+  printf '#include <vector>\n%s\n' "$2" >verify/second.cpp
+  expect "types '$1' and '$2'" "$3" \
+    "$(verdict verify/second.cpp 'so does verify/first.h:2: a type name once a namespace')"
+  rm verify/first.h verify/second.cpp
+}
+
+break_types() {
+  local in='namespace farcull {' text
+  for text in 'class A {};' 'struct A final : B<int> {};' 'enum class A : int { x };' 'template <class T = int> struct A {};' \
+    'struct alignas(64) [[nodiscard]] A {};' 'const char* s = "{\"}"; struct A {};' "char c = '{'; struct A {};" \
+    '/* { */ struct A {}; // }' 'const int n = 1'"'"'000; struct A {};' 'int f(int x) { return x; } struct A {};' \
+    $'const char* s = R"(\n{)"; struct A {};' $'\n#define X {\\\n{\nstruct A {};'; do
+    types "$in struct A {}; }" "$in $text }" caught
+  done
+  types "namespace farcull::deep { struct A {}; }" "$in namespace deep { struct A {}; } }" caught
+  types "$in struct A {}; }" "$in namespace deep { struct A {}; } }" pass
+  types "$in struct A {}; }" "$in namespace { struct A {}; } }" pass
+  types "$in struct A {}; }" "$in struct B { struct A {}; }; }" pass
+  types "$in struct A {}; }" "$in struct A; struct B::A {}; template <> struct A<int> {}; }" pass
+  types "$in struct A {}; }" "$in void f() { struct A {}; } struct A* g() {} }" pass
+}
+
 # page TEXT VERDICT REASON: a page that says TEXT.
 page() {
   printf '%s\n' "$1" >docs/page.md
@@ -706,6 +817,7 @@ self_test() {
   break_cycles
   break_places
   break_threads
+  break_types
   break_pages
   # The top level, as a plain folder and as a git checkout.
   break_top_level

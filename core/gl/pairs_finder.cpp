@@ -18,9 +18,9 @@ namespace {
 // As many views as a frame has mostly, so that the room is enough for each of them.
 constexpr std::size_t kRemembered = 4;
 
-PairWindow window_of(const PairTask& task) {
+SeenWindow window_of(const PairTask& task) {
   constexpr std::size_t kLooked = 16;  // objects
-  PairWindow out;
+  SeenWindow out;
   out.side = static_cast<float>(std::max(task.width, task.height));
   out.places = {static_cast<float>(task.width), static_cast<float>(task.height)};
   for (std::size_t o = 0; o < std::min(task.limits.size(), kLooked); ++o) {
@@ -68,7 +68,7 @@ std::vector<TrianglePair> PairFinder::find(const PairTask& task, PairCounts& cou
     if (run_.scene.sent_bytes() > 0) run_.device.read("pairs upload");
   } else {
     const PairPart whole{0, task.width - 1, 0, task.height - 1};
-    const PairWindow window = window_of(task);
+    const SeenWindow window = window_of(task);
     std::optional<PairForecast> expected = forecast();
     if (!run_.scene.gathered() && !(expected && seen_like(window))) {
       auto guess = first_guess(task, run_.options.memory, run_.device.block());
@@ -107,7 +107,7 @@ std::optional<PairForecast> PairFinder::forecast() const {
 
 // True where one of the last windows was of this view, or of one in which objects are at the same
 // places, a step of a motion apart.
-bool PairFinder::seen_like(const PairWindow& window) const {
+bool PairFinder::seen_like(const SeenWindow& window) const {
   constexpr float kStep = 0.125f;  // of the window
   const auto near = [&](float a, float b) { return std::abs(a - b) <= kStep * window.side; };
   return std::any_of(last_ones_.begin(), last_ones_.end(), [&](const Seen& one) {

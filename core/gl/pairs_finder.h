@@ -14,7 +14,7 @@
 namespace farcull {
 
 /// By what a window is known again: its pixels and where some objects are in it.
-struct PairWindow {
+struct SeenWindow {
   std::vector<float> places;  // px
   float side = 0;             // px; the larger one
 };
@@ -33,7 +33,7 @@ class PairFinder {
  private:
   struct Seen {
     PairForecast counts;
-    PairWindow window;
+    SeenWindow window;
   };
   void split(const PairPart& part);
   bool find_in(const PairPart& part);
@@ -41,7 +41,7 @@ class PairFinder {
   void begin_part(const PairPart& part);
   void end_part(const PairTotalWords& totals);
   std::optional<PairForecast> forecast() const;
-  bool seen_like(const PairWindow& window) const;
+  bool seen_like(const SeenWindow& window) const;
 
   PairRun run_;
   PairItems items_{run_};

@@ -38,6 +38,14 @@ struct Object {
   bool self = false;                 // its own triangles are tested against each other as well
 };
 
+/// A polygon of a file that is folded: it is not simple, so that its triangles overlap or face both
+/// ways.
+struct FoldedFace {
+  std::uint32_t object = 0;
+  std::uint32_t face = 0;  // as in Scene::source_face
+  auto operator<=>(const FoldedFace&) const = default;
+};
+
 /// Objects own contiguous, ascending, gapless ranges of triangles. Object and triangle order is the
 /// order of the input.
 struct Scene {
@@ -50,6 +58,7 @@ struct Scene {
   std::vector<Object> objects;
   std::vector<ObjectPair> ignored = {};  // objects that are not tested against each other; as
                                          // in_order() of core/scene/ignored.h gives them
+  std::vector<FoldedFace> folded = {};   // polygons to warn of; sorted
 
   std::array<Vec3, 3> corners(std::uint32_t triangle) const;
 };

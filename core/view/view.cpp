@@ -2,10 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/text.h"
 #include "core/view/rounding.h"
 
 namespace farcull {
@@ -86,9 +86,12 @@ View parse_view(const std::string& text) {
   Vec3 depth;
   for (int i = 0; i < 3; ++i) {
     const std::string& part = parts[i];
-    const std::optional<double> number = parse_number<double>(part);
-    if (!number || !std::isfinite(*number)) throw bad("has a component that is no finite number");
-    depth[i] = *number;
+    const char* const end = part.data() + part.size();
+    const auto [after, code] = std::from_chars(part.data(), end, depth[i]);
+    if (code == std::errc::result_out_of_range && after == end)
+      throw bad("has a component beyond what a double holds, 5e-324 to 1.7e308");
+    if (code != std::errc() || after != end || !std::isfinite(depth[i]))
+      throw bad("has a component that is no finite number");
   }
   const double largest = depth.cwiseAbs().maxCoeff();
   if (largest == 0) throw bad("is the zero direction");

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -426,7 +427,9 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
                           .columns = columns(),
                           .certificates = outputs.certificate.has_value()};
   if (const std::vector<IgnoredNames> names = ignored(); !names.empty()) {
-    question.ignored = [names](const Scene& scene) { return ignored_objects(scene, names); };
+    question.ignored = [names, lacking = Lacking::refused](const Scene& scene) mutable {
+      return ignored_objects(scene, names, std::exchange(lacking, Lacking::passed_over));
+    };
   }
   if (progress) progress("reading the scene");
   FrameSource source(scene_, range, self_);

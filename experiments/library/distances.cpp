@@ -79,6 +79,7 @@ struct DistanceFinder::State {
   DistanceOptions options;
   Scene scene;  // of the last call
   DistanceMemory memory;
+  std::atomic_flag used;
 
   explicit State(const DistanceFinderOptions& from) : given(from), options(checked(from)) {}
 };
@@ -91,8 +92,7 @@ DistanceFinder::DistanceFinder(DistanceFinder&&) noexcept = default;
 DistanceFinder& DistanceFinder::operator=(DistanceFinder&&) noexcept = default;
 
 std::vector<DistanceAnswer> DistanceFinder::find(const ColliderInput& input) {
-  return translated([&] {
-    State& state = *state_;
+  return exclusive(state_, "DistanceFinder", [&](State& state) {
     take(input, state.given.self, state.given.self_objects, state.scene);
     std::vector<DistanceAnswer> out;
     if (!nothing_asked(state.scene, state.options).empty()) return out;

@@ -26,7 +26,8 @@ class ColliderError : public std::runtime_error {
  public:
   ColliderError(const std::string& what, std::string where, std::string reason, std::string remedy);
 
-  std::string where;   // "vertices", "triangles", "object_starts", an option, or a step on a device
+  std::string where;   // "vertices", "triangles", "object_starts", an option, an object of the
+                       // library, or a step on a device
   std::string reason;  // what is wrong there
   std::string remedy;  // what to do next
 };
@@ -157,7 +158,9 @@ struct ColliderResult {
 };
 
 /// Finds colliding pairs again and again: buffers, threads' memory, the GL context and its programs
-/// stay from call to call. An object is used by one thread at a time. The EGL context that the
+/// stay from call to call. An object serves one call at a time, of any thread: a call meanwhile,
+/// and a call of an object that was moved from, throws ColliderError and changes nothing. Moving
+/// and destroying an object are no calls: no other thread may use it then. The EGL context that the
 /// caller has made current is current again after each call.
 class Collider {
  public:
@@ -199,7 +202,7 @@ struct ColliderFound {
 ///
 /// Memory O(triangles), whatever the number of pairs. It compares boxes of triangles on the cores
 /// of the CPU, so every pair that collides is found, and it is slower than a Collider where nearly
-/// all pairs are wanted. An object is used by one thread at a time.
+/// all pairs are wanted. An object serves one call at a time, as a Collider does.
 class ColliderStream {
  public:
   /// Copies the input. Throws ColliderError as Collider::find(), and naming `device` for gl, which
@@ -214,8 +217,8 @@ class ColliderStream {
   /// those of one triangle more for each thread, so that the caller can stop between two calls.
   /// Throws std::bad_alloc without memory; each later call then throws ColliderError.
   bool next(std::vector<ColliderFound>& pairs);
-  /// Candidates that exact tests have decided up to now. Unlike the pairs it may depend on the
-  /// number of threads.
+  /// Candidates that exact tests have decided up to now, by the calls that have ended. Unlike the
+  /// pairs it may depend on the number of threads.
   std::uint64_t decided() const;
   /// After the end: as in ColliderResult. Where exactly as many pairs collide as the limit allows,
   /// it may depend on the number of threads.
@@ -264,8 +267,8 @@ struct DistanceAnswer {
 };
 
 /// Finds distances again and again: the nearest triangles of one call are the first guess of the
-/// next, which is about a scene that has moved a little, or any other. An object is used by one
-/// thread at a time.
+/// next, which is about a scene that has moved a little, or any other. An object serves one call at
+/// a time, as a Collider does.
 class DistanceFinder {
  public:
   /// Throws ColliderError naming the option that is bad.

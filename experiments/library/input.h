@@ -1,6 +1,8 @@
 // What the functions of the library do with their input and with errors.
 #pragma once
 
+#include <atomic>
+#include <memory>
 #include <vector>
 
 #include "core/base/error.h"
@@ -22,6 +24,27 @@ auto translated(const Call& call) {
   } catch (const Error& error) {
     throw ColliderError(error.what(), error.where, error.reason, error.remedy);
   }
+}
+
+/// The call with the state of an object of the library, by one call at a time. Throws ColliderError
+/// naming the object where its state was moved from it, and where another call uses it: one of
+/// another thread, or one of this thread that a signal handler interrupts. State has a member
+/// `std::atomic_flag used`, which is marked while the call runs.
+template <class State, class Call>
+auto exclusive(const std::unique_ptr<State>& state, const char* object, const Call& call) {
+  return translated([&] {
+    if (!state)
+      throw Error(object, "was moved from",
+                  "use the object that it was moved to, or make a new one");
+    if (state->used.test_and_set(std::memory_order_acquire))
+      throw Error(object, "is in use by another thread or call", "make one for each thread");
+    struct Mark {
+      std::atomic_flag& used;
+      ~Mark() { used.clear(std::memory_order_release); }
+    };
+    const Mark mark{state->used};
+    return call(*state);
+  });
 }
 
 /// Copies the input into the scene of the last call, whose memory is used again. self: every object

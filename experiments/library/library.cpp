@@ -64,6 +64,7 @@ struct Collider::State {
   RunOptions run;
   Session session;
   Scene scene;  // of the last call
+  std::atomic_flag used;
 
   explicit State(const ColliderOptions& given)
       : options(given), run(run_options(given)), session(device_of(given), given.threads, Say()) {
@@ -169,13 +170,13 @@ Collider::Collider(Collider&&) noexcept = default;
 Collider& Collider::operator=(Collider&&) noexcept = default;
 
 ColliderResult Collider::find(const ColliderInput& input) {
-  return translated([&] {
+  return exclusive(state_, "Collider", [&](State& state) {
     const Stopwatch start;
-    take(input, state_->options.self, state_->options.self_objects, state_->scene);
+    take(input, state.options.self, state.options.self_objects, state.scene);
     try {
-      return state_->find(start);
+      return state.find(start);
     } catch (...) {
-      state_->session.forget_device();
+      state.session.forget_device();
       throw;
     }
   });

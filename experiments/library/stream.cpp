@@ -13,6 +13,7 @@
 namespace farcull {
 namespace {
 
+constexpr const char* kName = "ColliderStream";
 constexpr std::size_t kPart = std::size_t{1} << 16;  // candidates at a time
 
 }  // namespace
@@ -26,6 +27,7 @@ struct ColliderStream::State {
   std::uint64_t decided = 0, given = 0;
   bool complete = false;
   bool failed = false;  // a call began and did not end: what it found is lost
+  std::atomic_flag used;
 
   State(const ColliderInput& input, const ColliderOptions& of)
       : options(of), threads(of.threads > 0 ? of.threads : std::thread::hardware_concurrency()) {
@@ -91,11 +93,15 @@ ColliderStream::ColliderStream(ColliderStream&&) noexcept = default;
 ColliderStream& ColliderStream::operator=(ColliderStream&&) noexcept = default;
 
 bool ColliderStream::next(std::vector<ColliderFound>& pairs) {
-  return translated([&] { return state_->next(pairs); });
+  return exclusive(state_, kName, [&](State& state) { return state.next(pairs); });
 }
 
-std::uint64_t ColliderStream::decided() const { return state_->decided; }
+std::uint64_t ColliderStream::decided() const {
+  return exclusive(state_, kName, [](const State& state) { return state.decided; });
+}
 
-bool ColliderStream::complete() const { return state_->complete; }
+bool ColliderStream::complete() const {
+  return exclusive(state_, kName, [](const State& state) { return state.complete; });
+}
 
 }  // namespace farcull

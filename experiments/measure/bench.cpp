@@ -46,7 +46,7 @@ std::optional<Disagreement> compare(const Scene& scene, const std::string& first
   return out;
 }
 
-BenchRow cold_row(const Contestant& c, const BenchAnswer& answer) {
+BenchRow cold_row(const BenchContestant& c, const BenchAnswer& answer) {
   BenchRow row{.name = c.name, .device = c.device, .peer = c.peer, .library = c.library};
   row.setup_ms = c.setup_ms;
   row.candidate_pairs = answer.candidate_pairs;
@@ -56,11 +56,11 @@ BenchRow cold_row(const Contestant& c, const BenchAnswer& answer) {
 
 }  // namespace
 
-BenchResult bench(const Scene& scene, const std::vector<Contestant>& contestants,
+BenchResult bench(const Scene& scene, const std::vector<BenchContestant>& contestants,
                   const BenchOptions& options, const Progress& progress) {
   BenchResult result;
-  std::vector<const Contestant*> running;
-  for (const Contestant& c : contestants) {
+  std::vector<const BenchContestant*> running;
+  for (const BenchContestant& c : contestants) {
     if (c.left_out.empty()) {
       running.push_back(&c);
     } else {
@@ -74,7 +74,7 @@ BenchResult bench(const Scene& scene, const std::vector<Contestant>& contestants
   std::vector<TrianglePair> agreed;  // the pairs of the first contestant
   const std::vector<Timed> timed =
       measure_in_turns(running.size(), rounds, [&](std::size_t i, int round) {
-        const Contestant& c = *running[i];
+        const BenchContestant& c = *running[i];
         if (progress) {
           progress(round < 0 ? c.name + ", cold"
                              : fmt::format("{}, {} of {}", c.name, round + 1, options.repeat));

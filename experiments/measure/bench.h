@@ -18,7 +18,7 @@
 namespace farcull {
 
 /// A method or a library that takes part.
-struct Contestant {
+struct BenchContestant {
   std::string name;
   std::string device = "cpu";  // or the renderer
   bool peer = false;
@@ -60,7 +60,7 @@ struct Disagreement {
 
 struct BenchResult {
   std::vector<BenchRow> rows;
-  std::vector<Contestant> left_out;
+  std::vector<BenchContestant> left_out;
   std::optional<Disagreement> disagreement;  // the first; no ratio means anything with it
   std::optional<std::size_t> fastest_peer;   // into rows
 };
@@ -71,10 +71,10 @@ void validate(const BenchOptions& options);
 /// Our methods and the peers that the options name, set up. Ours: far-pairs on the CPU and, as far
 /// as there is a device, on GL; far; exact. Throws Error for one that was asked for by name and
 /// cannot run at all in this build or on this machine.
-std::vector<Contestant> contestants(const Scene& scene, const BenchOptions& options,
-                                    const Progress& progress = {});
+std::vector<BenchContestant> contestants(const Scene& scene, const BenchOptions& options,
+                                         const Progress& progress = {});
 
-BenchResult bench(const Scene& scene, const std::vector<Contestant>& contestants,
+BenchResult bench(const Scene& scene, const std::vector<BenchContestant>& contestants,
                   const BenchOptions& options, const Progress& progress = {});
 
 /// The median of a row over that of the fastest peer; empty without a peer.

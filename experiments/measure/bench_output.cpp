@@ -90,7 +90,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const BenchOptions& options,
   Json rows = Json::array();
   for (const BenchRow& row : result.rows) rows.push_back(row_json(result, row));
   Json left_out = Json::array();
-  for (const Contestant& c : result.left_out)
+  for (const BenchContestant& c : result.left_out)
     left_out.push_back({{"name", c.name}, {"device", c.device}, {"reason", c.left_out}});
   const BenchRow* best = best_far_pairs(result);
   const std::optional<double> ratio = best ? ratio_to_fastest(result, *best) : std::nullopt;
@@ -142,7 +142,7 @@ std::string bench_table(const Scene& scene, const BenchOptions& options,
                best ? fmt::format("{:.2f}", row.total_ms.median / best->total_ms.median) : ""});
   }
   out += table.text();
-  for (const Contestant& c : result.left_out)
+  for (const BenchContestant& c : result.left_out)
     out += fmt::format("left out: {}: {}\n", c.name, c.left_out);
   out +=
       "\nms: from the triangles to the sorted pairs, median of n runs; low, high: its 95 % "

@@ -78,7 +78,7 @@ class ContestantList {
   explicit ContestantList(const Progress& progress) : progress_(progress) {}
 
   template <class SetUp>
-  void add(Contestant contestant, bool by_name, const char* option, const SetUp& set_up) {
+  void add(BenchContestant contestant, bool by_name, const char* option, const SetUp& set_up) {
     if (progress_) progress_("setting up " + contestant.name);
     if (contestant.left_out.empty()) {
       const Stopwatch watch;
@@ -95,7 +95,7 @@ class ContestantList {
     all.push_back(std::move(contestant));
   }
 
-  std::vector<Contestant> all;
+  std::vector<BenchContestant> all;
 
  private:
   const Progress& progress_;
@@ -108,7 +108,7 @@ void add_methods(const Scene& scene, const BenchOptions& options, ContestantList
   // does.
   const bool gl_by_name = by_name && !options.device.empty();
   std::shared_ptr<Session> gl;
-  const auto on_gl = [&](Contestant& c, Method method) {
+  const auto on_gl = [&](BenchContestant& c, Method method) {
     if (!gl) gl = gl_session(options);
     c.device = gl->context().info().renderer;
     c.run = method_run(method, gl, options.device.empty() ? "gl" : options.device);
@@ -117,13 +117,13 @@ void add_methods(const Scene& scene, const BenchOptions& options, ContestantList
     const Method method = parse_method(name);
     const std::string refused =
         has_self(scene) && !tests_self(method) ? "it tests no object against itself" : "";
-    list.add({.name = name, .left_out = refused}, by_name, "--methods", [&](Contestant& c) {
+    list.add({.name = name, .left_out = refused}, by_name, "--methods", [&](BenchContestant& c) {
       c.run = method_run(method, std::make_shared<Session>("native", options.threads), "native");
     });
     const bool slow = draws(method) && options.device.empty() && !GlContext::hardware_listed();
     if (!looks(method) || no_gl || slow) continue;
     list.add({.name = name, .device = "gl", .left_out = refused}, gl_by_name, "--methods",
-             [&](Contestant& c) {
+             [&](BenchContestant& c) {
                on_gl(c, method);
                if (draws(method)) {
                  gl->canvas(obb_fattener(), {});
@@ -140,11 +140,11 @@ void add_peers(const Scene& scene, const BenchOptions& options, ContestantList& 
   const bool by_name = options.peers != "all";
   for (const Peer& peer : peers) {
     if (std::find(names.begin(), names.end(), peer.name) == names.end()) continue;
-    Contestant contestant{.name = peer.name, .peer = true, .library = peer.library};
+    BenchContestant contestant{.name = peer.name, .peer = true, .library = peer.library};
     contestant.left_out = peer.missing;
     if (contestant.left_out.empty() && peer.refuses) contestant.left_out = peer.refuses(scene);
     list.add(contestant, by_name, "--peers",
-             [&](Contestant& c) { c.run = peer.set_up(options.threads); });
+             [&](BenchContestant& c) { c.run = peer.set_up(options.threads); });
   }
 }
 
@@ -166,8 +166,8 @@ void validate(const BenchOptions& options) {
   }
 }
 
-std::vector<Contestant> contestants(const Scene& scene, const BenchOptions& options,
-                                    const Progress& progress) {
+std::vector<BenchContestant> contestants(const Scene& scene, const BenchOptions& options,
+                                         const Progress& progress) {
   ContestantList list(progress);
   add_methods(scene, options, list);
   add_peers(scene, options, list);

@@ -58,7 +58,7 @@ std::string Drawing::path(const std::vector<DrawnPoint>& points) const {
   return out;
 }
 
-void Drawing::begin(const DrawnPanel& panel) {
+void Drawing::begin(const DrawingPanel& panel) {
   panel_ = panel;
   ++panels_;
   body_ += fmt::format(

@@ -13,7 +13,7 @@ using DrawnPoint = std::array<double, 2>;
 
 /// A rectangle of the sheet, in sheet units from its upper left corner, that shows a part of the
 /// plane. Both axes have the same scale if the two rectangles have the same proportions.
-struct DrawnPanel {
+struct DrawingPanel {
   double left, top, width, height;  // on the sheet
   DrawnPoint lo, hi;                // what it shows
 };
@@ -25,7 +25,7 @@ class Drawing {
   Drawing(double width, double height, const std::string& title, const std::string& description);
 
   /// What follows is drawn in this panel; what is outside of it is cut off, words excepted.
-  void begin(const DrawnPanel& panel);
+  void begin(const DrawingPanel& panel);
   /// The lines between pixels, which lie at whole numbers, and the centres of the pixels.
   void pixels();
   /// `style`: SVG attributes such as stroke="#000".
@@ -49,7 +49,7 @@ class Drawing {
   std::string path(const std::vector<DrawnPoint>& points) const;
 
   std::string head_, body_;
-  DrawnPanel panel_{0, 0, 1, 1, {0, 0}, {1, 1}};
+  DrawingPanel panel_{0, 0, 1, 1, {0, 0}, {1, 1}};
   int panels_ = 0;
 };
 

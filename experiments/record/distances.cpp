@@ -279,6 +279,7 @@ std::string distances_table(const Scene& scene, const DistanceRecord& record) {
                   counted(scene.triangles.size(), "triangle", "triangles"));
   if (record.degenerate_triangles > 0)
     out += fmt::format(", {} of them degenerate", grouped(record.degenerate_triangles));
+  out += folded_text(scene);
   out += "\nasked      " + question_text(record.options) + "\n";
   out += fmt::format("answered   {}\n", counted(record.distances.size(), "pair", "pairs"));
   out += least_line(scene, record.distances) + "\n";

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "commit.h"
 #include "experiments/record/tables.h"
@@ -189,7 +190,11 @@ Json not_asked_json(const Scene& scene) {
 }
 
 Json scene_json(const Scene& scene, std::uint64_t degenerate_triangles, const std::string& hash) {
+  constexpr std::size_t kNamed = 100;
   const std::string nothing = nothing_to_test(scene).reason;
+  Json folded = Json::array();
+  for (const FoldedFace& f : std::span(scene.folded).first(std::min(kNamed, scene.folded.size())))
+    folded.push_back({{"object", scene.objects[f.object].name}, {"face", f.face}});
   return {{"name", scene.name},
           {"objects", scene.objects.size()},
           {"self_objects", self_objects(scene)},
@@ -197,6 +202,8 @@ Json scene_json(const Scene& scene, std::uint64_t degenerate_triangles, const st
           {"nothing_to_test", nothing.empty() ? Json(nullptr) : Json(nothing)},
           {"triangles", scene.triangles.size()},
           {"degenerate_triangles", degenerate_triangles},
+          {"folded_polygons", scene.folded.size()},
+          {"folded", folded},
           {"hash", hash}};
 }
 

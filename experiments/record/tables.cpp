@@ -20,9 +20,26 @@ std::string scene_line(const Scene& scene, const Record& record) {
                   counted(scene.triangles.size(), "triangle", "triangles"));
   if (record.degenerate_triangles > 0)
     line += fmt::format(", {} of them degenerate", grouped(record.degenerate_triangles));
+  line += folded_text(scene);
   if (record.options.seed) line += fmt::format(", seed {}", *record.options.seed);
   return line + "\n";
 }
+
+}  // namespace
+
+std::string folded_text(const Scene& scene) {
+  if (scene.folded.empty()) return "";
+  std::string out = fmt::format(", {} folded", counted(scene.folded.size(), "polygon", "polygons"));
+  const std::size_t shown = std::min(kExamplesShown, scene.folded.size());
+  for (std::size_t k = 0; k < shown; ++k) {
+    const FoldedFace& f = scene.folded[k];
+    out +=
+        fmt::format("{} face {} of {}", k == 0 ? ":" : ",", f.face, scene.objects[f.object].name);
+  }
+  return out + (shown < scene.folded.size() ? ", ..." : "");
+}
+
+namespace {
 
 std::string device_text(const Record& record) {
   if (record.found.device.cpu && draws(record.options.method)) {

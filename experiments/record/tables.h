@@ -36,6 +36,10 @@ std::string not_asked_text(const Scene& scene);
 /// The same as a line of its own, with the options that ask it; empty where there is nothing.
 std::string not_asked_line(const Scene& scene, const std::string& options = "--self");
 
+/// ", 2 polygons folded: face 7 of fin, face 9 of fin": faces of a file that are not simple; empty
+/// where there are none.
+std::string folded_text(const Scene& scene);
+
 /// The lines that say what was run, on what, and what was not asked.
 std::string run_heading(const Scene& scene, const Record& record);
 

@@ -19,6 +19,8 @@ constexpr const char* kRemedy =
     "give two names of objects with a colon between, as in a:b or link*:gripper; a name is that of "
     "the mesh file without its ending, or that in the scene file";
 
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 /// Whether the name fits a pattern, in which a * stands for any characters. The last * is tried
 /// with one character more whenever the rest does not fit.
 bool fits(std::string_view name, std::string_view pattern) {
@@ -81,7 +83,8 @@ std::vector<ObjectPair> pairs_of(const std::vector<std::uint32_t>& first,
 constexpr const char* kOneObject = "names one object; only --self tests an object against itself";
 
 /// Appends the pairs that one text names.
-void append(const Scene& scene, const IgnoredNames& names, std::vector<ObjectPair>& out) {
+void append(const Scene& scene, const IgnoredNames& names, Lacking lacking,
+            std::vector<ObjectPair>& out) {
   const std::string_view text = names.text;
   const auto fail = [&](const std::string& reason) {
     throw Error(names.where, fmt::format("'{}' {}", names.text, reason),
@@ -107,6 +110,8 @@ void append(const Scene& scene, const IgnoredNames& names, std::vector<ObjectPai
     }
   }
   if (text.find(':') == std::string_view::npos) fail("has no colon");
+  if (lacking == Lacking::passed_over && (places == 0 || (first.size() == 1 && first == second)))
+    return;
   if (places == 0) fail(fmt::format("names '{}', and no object is called so", unknown));
   if (places > 1) fail("can be divided at more than one colon");
   if (first.size() == 1 && first == second) fail(kOneObject);
@@ -118,21 +123,21 @@ void append(const Scene& scene, const IgnoredNames& names, std::vector<ObjectPai
 
 std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& first,
                                       const std::string& second, const std::string& where,
-                                      const std::string& what, long line) {
+                                      const std::string& what, long line, Lacking lacking) {
   const auto objects = [&](const std::string& pattern) {
     std::vector<std::uint32_t> out = objects_of(scene, pattern);
     if (doubtful(scene, pattern, out)) {
       throw Error(where, fmt::format("{} names '{}', which {}", what, pattern, kDoubtful),
                   "call the object something without a *", line);
     }
-    if (!out.empty()) return out;
+    if (!out.empty() || lacking == Lacking::passed_over) return out;
     throw Error(where, fmt::format("{} names '{}', and no object is called so", what, pattern),
                 "give names of objects, in which * stands for any characters; the scene has " +
                     some_names(scene),
                 line);
   };
   const std::vector<std::uint32_t> a = objects(first), b = objects(second);
-  if (a.size() == 1 && a == b) {
+  if (a.size() == 1 && a == b && lacking == Lacking::refused) {
     throw Error(where, fmt::format("{} names '{}' alone", what, scene.objects[a[0]].name),
                 "give two different objects; whether an object is tested against itself is said "
                 "by self",
@@ -159,6 +164,7 @@ std::vector<IgnoredNames> read_ignored(const std::string& path) {
   long line = 0;
   for (std::string text; std::getline(file, text);) {
     ++line;
+    if (line == 1 && text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
     if (text.ends_with('\r')) text.pop_back();
     if (!text.empty() && !text.starts_with('#')) out.push_back({text, path, line});
   }
@@ -167,10 +173,10 @@ std::vector<IgnoredNames> read_ignored(const std::string& path) {
   return out;
 }
 
-std::vector<ObjectPair> ignored_objects(const Scene& scene,
-                                        const std::vector<IgnoredNames>& names) {
+std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<IgnoredNames>& names,
+                                        Lacking lacking) {
   std::vector<ObjectPair> out;
-  for (const IgnoredNames& one : names) append(scene, one, out);
+  for (const IgnoredNames& one : names) append(scene, one, lacking, out);
   return in_order(std::move(out));
 }
 

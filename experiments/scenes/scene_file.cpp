@@ -157,7 +157,8 @@ class SceneFile {
   }
 
   // Precondition: the scene has the objects of the file; of them only the names are read.
-  std::vector<ObjectPair> read_ignored(const json& pairs, const Scene& scene) const {
+  std::vector<ObjectPair> read_ignored(const json& pairs, const Scene& scene,
+                                       Lacking lacking = Lacking::refused) const {
     const std::string form = "write \"ignore\": [[\"NAME\", \"NAME\"], ...]";
     require(pairs.is_array(), "ignore", "must be an array", form);
     std::vector<ObjectPair> out;
@@ -168,7 +169,7 @@ class SceneFile {
               place, "must be an array of two names", form);
       const std::vector<ObjectPair> named =
           pairs_between(scene, pair[0].get<std::string>(), pair[1].get<std::string>(), path_, place,
-                        ignore_lines_.at(k));
+                        ignore_lines_.at(k), lacking);
       out.insert(out.end(), named.begin(), named.end());
     }
     return in_order(std::move(out));
@@ -327,8 +328,12 @@ Parsed parsed(const std::string& text, const std::string& path) {
 Scene parse(const std::string& text, const std::string& path, MeshCache& meshes) {
   const Parsed file = parsed(text, path);
   SceneFile reader(path, file.ignore_lines, meshes);
+  const bool later_frame = !meshes.numbered_paths().empty();  // the first one has read them
   Scene scene = reader.read(file.root).finish();
-  if (file.root.contains("ignore")) scene.ignored = reader.read_ignored(file.root["ignore"], scene);
+  if (file.root.contains("ignore")) {
+    scene.ignored = reader.read_ignored(file.root["ignore"], scene,
+                                        later_frame ? Lacking::passed_over : Lacking::refused);
+  }
   return scene;
 }
 

@@ -6,7 +6,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -59,6 +61,19 @@ std::string folder_of(const std::string& path) {
 
 // Path of the file that is being written; empty between files.
 char half_written[4096] = "";
+
+// The path under which a file is written before it is put in place: in the same folder, and named
+// like it as far as the folder's file system lets a name be so long. A character of UTF-8 is not
+// cut.
+std::string beside(const std::string& path) {
+  const std::string end = ".part-" + std::to_string(::getpid());
+  const std::size_t name = path.rfind('/') + 1;  // 0 if there is none
+  const long most = ::pathconf(folder_of(path).c_str(), _PC_NAME_MAX);
+  const std::size_t room = (most > 0 ? static_cast<std::size_t>(most) : NAME_MAX) - end.size();
+  std::size_t size = std::min(path.size(), name + room);
+  while (size > name && size < path.size() && (path[size] & 0xC0) == 0x80) --size;
+  return path.substr(0, size) + end;
+}
 
 extern "C" void remove_half_written(int signal) {
   ::unlink(half_written);
@@ -133,18 +148,23 @@ void check_output(const std::string& path) {
   }
   const Target target = target_of(path);
   if (S_ISDIR(target.mode)) refuse(path, EISDIR);
+  struct stat status = {};
+  if (!target.exists && ::lstat(path.c_str(), &status) != 0 && errno == ENAMETOOLONG)
+    refuse(path, errno);
+  if (!target.direct && beside(target.path).size() >= sizeof half_written)
+    refuse(path, ENAMETOOLONG);
   if (target.exists && ::access(target.path.c_str(), W_OK) != 0) refuse(path, errno);
   if (!target.direct && ::access((folder_of(target.path) + "/").c_str(), W_OK | X_OK) != 0)
     refuse(path, errno);
 }
 
 int replace_file(const std::string& path, const std::string& text) {
-  const std::string beside = path + ".part-" + std::to_string(::getpid());
-  if (beside.size() >= sizeof half_written) return ENAMETOOLONG;
+  const std::string half = beside(path);
+  if (half.size() >= sizeof half_written) return ENAMETOOLONG;
   struct stat status = {};
   const bool exists = ::stat(path.c_str(), &status) == 0;
-  HalfWritten part(beside);
-  std::FILE* file = std::fopen(beside.c_str(), "wb");
+  HalfWritten part(half);
+  std::FILE* file = std::fopen(half.c_str(), "wb");
   if (file == nullptr) return errno;
   if (exists) ::fchmod(::fileno(file), status.st_mode & 07777);
   const int failure = write_and_close(file, text, true);
@@ -177,10 +197,10 @@ StreamedOutput::StreamedOutput(const std::string& path) : path_(path) {
                 "name a file");
   }
   place_ = target.path;
-  const std::string beside = place_ + ".part-" + std::to_string(::getpid());
-  if (beside.size() >= sizeof half_written) refuse(path_, ENAMETOOLONG);
-  part_ = std::make_unique<HalfWritten>(beside);
-  file_ = std::fopen(beside.c_str(), "wb");
+  const std::string half = beside(place_);
+  if (half.size() >= sizeof half_written) refuse(path_, ENAMETOOLONG);
+  part_ = std::make_unique<HalfWritten>(half);
+  file_ = std::fopen(half.c_str(), "wb");
   if (file_ == nullptr) refuse(path_, errno);
   if (target.exists) ::fchmod(::fileno(file_), target.mode & 07777);
 }

@@ -7,7 +7,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
     farcull::FARCULL_FUZZ_TARGET(data, size);
-  } catch (const farcull::Finding& finding) {
+  } catch (const farcull::FuzzFinding& finding) {
     std::fprintf(stderr, "finding: %s\n", finding.what.c_str());
     std::abort();
   }

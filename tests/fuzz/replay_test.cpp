@@ -136,7 +136,7 @@ std::string finding_of(Target target, const std::string& bytes, Answer& answer) 
   try {
     answer = target(data.data(), data.size());
     return "";
-  } catch (const Finding& finding) {
+  } catch (const FuzzFinding& finding) {
     return finding.what;
   } catch (const std::exception& error) {
     return std::string("not an Error of a reader: ") + error.what();
@@ -204,8 +204,8 @@ constexpr AllocationLimits kTight = {.once_per_byte = 2, .all_per_byte = 4, .con
 TEST(FuzzHarness, FindsAnAllocationThatTheInputDoesNotPayFor) {
   const auto reserve = [](std::size_t bytes) { return std::vector<char>(bytes).size(); };
   EXPECT_EQ(answer_of(kTight, 1000, [&] { return reserve(3000); }), 3000u);
-  EXPECT_THROW(answer_of(kTight, 1000, [&] { return reserve(3025); }), Finding);
-  EXPECT_THROW(answer_of(kTight, 1000, [&] { return reserve(std::size_t{1} << 40); }), Finding);
+  EXPECT_THROW(answer_of(kTight, 1000, [&] { return reserve(3025); }), FuzzFinding);
+  EXPECT_THROW(answer_of(kTight, 1000, [&] { return reserve(std::size_t{1} << 40); }), FuzzFinding);
   // Beyond the limit of all that is alive, though no single one is too large.
   const auto pile = [](std::size_t blocks) {
     std::vector<std::string> all(blocks);
@@ -213,7 +213,7 @@ TEST(FuzzHarness, FindsAnAllocationThatTheInputDoesNotPayFor) {
     return blocks;
   };
   EXPECT_EQ(answer_of(kTight, 1000, [&] { return pile(8); }), 8u);
-  EXPECT_THROW(answer_of(kTight, 1000, [&] { return pile(12); }), Finding);
+  EXPECT_THROW(answer_of(kTight, 1000, [&] { return pile(12); }), FuzzFinding);
   // What was freed does not count.
   const auto churn = [] {
     std::size_t sum = 0;
@@ -234,13 +234,13 @@ TEST(FuzzHarness, FindsOtherExceptions) {
       finding_of([](const std::uint8_t*, std::size_t) -> Answer { throw std::length_error(""); },
                  bytes, answer),
       "");
-  EXPECT_NE(finding_of([](const std::uint8_t*, std::size_t) -> Answer { throw Finding{"x"}; },
+  EXPECT_NE(finding_of([](const std::uint8_t*, std::size_t) -> Answer { throw FuzzFinding{"x"}; },
                        bytes, answer),
             "");
   const auto refuse = []() -> int { throw Error("file", "wrong", "correct it"); };
   EXPECT_EQ(answer_of(kTight, 0, refuse), std::nullopt);
   const auto helpless = []() -> int { throw Error("file", "wrong", ""); };
-  EXPECT_THROW(answer_of(kTight, 0, helpless), Finding);
+  EXPECT_THROW(answer_of(kTight, 0, helpless), FuzzFinding);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 //
 // Any bytes may be given, and the only answers are a value or an Error that says what is wrong and
 // what to do. Whatever else happens is a finding: another exception, a value that breaks its
-// contract (Finding), more memory than the input pays for, or what a sanitizer reports.
+// contract (FuzzFinding), more memory than the input pays for, or what a sanitizer reports.
 #pragma once
 
 #include <cstddef>
@@ -35,15 +35,15 @@ Answer fuzz_check(const std::uint8_t* data, std::size_t size);
 Answer fuzz_distances(const std::uint8_t* data, std::size_t size);
 
 /// A contract that does not hold. No std::exception, so that nothing under test catches it.
-struct Finding {
+struct FuzzFinding {
   std::string what;
 };
 
 inline void require(bool condition, const std::string& what) {
-  if (!condition) throw Finding{what};
+  if (!condition) throw FuzzFinding{what};
 }
 
-/// The value of the call, none where it throws Error; a Finding where it takes more memory than
+/// The value of the call, none where it throws Error; a FuzzFinding where it takes more memory than
 /// `limits` allow for an input of this size.
 template <class Call>
 auto answer_of(const AllocationLimits& limits, std::size_t input_bytes, const Call& call)

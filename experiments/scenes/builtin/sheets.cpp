@@ -25,7 +25,7 @@ std::uint32_t at(std::uint32_t i, std::uint32_t j) { return i * (kCells + 1) + j
 // rise flaps of 12 by 1 cells, over the cells beyond: on these edges three triangles meet. The
 // raised vertices come after those of the grid.
 Mesh sheet() {
-  auto [vertices, triangles, source_face, group, group_names] = grid(kCells);
+  auto [vertices, triangles, source_face, group, group_names, folded] = grid(kCells);
   for (const std::uint32_t line : {6u, 12u}) {
     const auto first = static_cast<std::uint32_t>(vertices.size());
     for (std::uint32_t j = 3; j <= kCells - 3; ++j) {

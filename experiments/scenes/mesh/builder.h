@@ -39,11 +39,6 @@ class MeshBuilder {
   std::uint32_t faces_ = 0;
 };
 
-/// Triangles of a polygon, as positions in `corners`: always size - 2 of them. See mesh.h; false
-/// where it gave up.
-bool triangulate(std::span<const Vec3> corners,
-                 std::vector<std::array<std::uint32_t, 3>>& triangles);
-
 Mesh parse_obj(std::string_view bytes, const std::string& name);
 Mesh parse_off(std::string_view bytes, const std::string& name);
 Mesh parse_ply(std::string_view bytes, const std::string& name);

@@ -25,17 +25,17 @@ bool has_mesh_extension(const std::string& path);
 /// where nothing is known about it.
 std::optional<Error> foreign_mesh(const std::string& path);
 
-/// Reads a mesh. A polygon of n vertices becomes n-2 triangles in place: by ear clipping in its
-/// dominant plane, so a planar simple polygon keeps its area, convex or not; what is neither gets
-/// some triangulation of its corners. OBJ: `o` and `g` name the group of the faces that follow,
-/// whichever came last. Other formats: one group, "default". STL: corners at one exact position
-/// become one vertex (0.0 and -0.0 are one position), the first one read. What gzip has compressed
-/// is decompressed, whatever the name says; lines are those of the text. Throws Error (where =
-/// path, line where the format has lines) if the file is missing, is not a regular file, cannot be
-/// read, is malformed or shorter or longer than it claims, holds NaN, infinity or a value beyond
-/// double, an index out of range, a polygon of fewer than 3 vertices, more than 2^32 - 1 triangles,
-/// no triangle, or gzip data that are cut, damaged or suspiciously small (gzip.h). The Error for
-/// contents of a known format that is not read names its converter.
+/// Reads a mesh. A polygon of n vertices becomes n-2 triangles in place: as polygon.h
+/// says: a planar simple polygon keeps its area exactly, convex or not; one that is folded gets
+/// some triangulation of its corners, and is named in Mesh::folded. OBJ: `o` and `g` name the group
+/// of the faces that follow, whichever came last. Other formats: one group, "default". STL: corners
+/// at one exact position become one vertex (0.0 and -0.0 are one position), the first one read.
+/// What gzip has compressed is decompressed, whatever the name says; lines are those of the text.
+/// Throws Error (where = path, line where the format has lines) if the file is missing, is not a
+/// regular file, cannot be read, is malformed or shorter or longer than it claims, holds NaN,
+/// infinity or a value beyond double, an index out of range, a polygon of fewer than 3 vertices,
+/// more than 2^32 - 1 triangles, no triangle, or gzip data that are cut, damaged or suspiciously
+/// small (gzip.h). The Error for contents of a known format that is not read names its converter.
 Mesh load_mesh(const std::string& path);
 
 /// The same on bytes in memory; `name` stands for the path in errors. Any bytes may be given.

@@ -18,6 +18,8 @@ struct Mesh {
   std::vector<std::uint32_t> source_face;               // per triangle: 0-based face of the file
   std::vector<std::uint32_t> group;                     // per triangle: index into group_names
   std::vector<std::string> group_names;                 // valid UTF-8, in order of first mention
+  std::vector<std::uint32_t> folded =
+      {};  // faces of the file that are folded (polygon.h), ascending
 };
 
 }  // namespace farcull

@@ -138,7 +138,7 @@ void SceneBuilder::add(const Mesh& mesh, const std::string& name, Split split,
   std::vector<std::uint32_t> size(parts, 0);
   for (const std::uint32_t p : part) ++size[p];
   const auto used = std::count_if(size.begin(), size.end(), [](std::uint32_t n) { return n > 0; });
-  std::vector<std::uint32_t> next(parts);
+  std::vector<std::uint32_t> next(parts), object_of_part(parts);
   auto start = static_cast<std::uint32_t>(scene_.triangles.size());
   for (std::uint32_t p = 0; p < parts; ++p) {
     next[p] = start;
@@ -146,6 +146,7 @@ void SceneBuilder::add(const Mesh& mesh, const std::string& name, Split split,
       std::string label = clean_name(name);
       if (used > 1)
         label += split == Split::kGroups ? "/" + mesh.group_names[p] : fmt::format("/{}", p + 1);
+      object_of_part[p] = static_cast<std::uint32_t>(scene_.objects.size());
       scene_.objects.push_back({free_name(label), start, size[p], self});
     }
     start += size[p];
@@ -155,9 +156,13 @@ void SceneBuilder::add(const Mesh& mesh, const std::string& name, Split split,
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
     const std::uint32_t to = next[part[t]]++;
+    if (std::ranges::binary_search(mesh.folded, mesh.source_face[t]))
+      scene_.folded.push_back({object_of_part[part[t]], mesh.source_face[t]});
     scene_.triangles[to] = {first_vertex + a, first_vertex + b, first_vertex + c};
     scene_.source_face[to] = mesh.source_face[t];
   }
+  std::ranges::sort(scene_.folded);
+  scene_.folded.erase(std::unique(scene_.folded.begin(), scene_.folded.end()), scene_.folded.end());
 }
 
 Scene SceneBuilder::take_part() {

@@ -44,7 +44,8 @@ class SceneBuilder {
   /// Appends a mesh as one object or several. Within an object triangles keep the order of the
   /// file. A part is called NAME/GROUP or NAME/1, NAME/2, ...; a mesh with a single part keeps
   /// NAME. `self`: each part is tested against itself as well. A name that the scene has already
-  /// gets the first suffix "#2", "#3", ... that is free. Throws Error if a placed coordinate is not
+  /// gets the first suffix "#2", "#3", ... that is free. Folded faces are named in Scene::folded.
+  /// Throws Error if a placed coordinate is not
   /// finite or the scene would have more than 2^32 - 1 triangles or vertices.
   void add(const Mesh& mesh, const std::string& name, Split split, const Placement& placement,
            bool self = false);

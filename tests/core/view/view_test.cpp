@@ -40,6 +40,24 @@ TEST(View, ErrorsNameTheOptionAndTheText) {
   }
 }
 
+TEST(View, TellsANumberThatNoDoubleHoldsFromNoNumber) {
+  for (const auto& [text, reason] : std::vector<std::pair<std::string, std::string>>{
+           {"1e-400:0:1", "beyond what a double holds"},
+           {"0:-1e-400:1", "beyond what a double holds"},
+           {"1e400:0:1", "beyond what a double holds"},
+           {"inf:0:1", "no finite number"},
+           {"1e-400x:0:1", "no finite number"},
+           {"x:0:1", "no finite number"}}) {
+    try {
+      parse_view(text);
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      EXPECT_NE(error.reason.find(reason), std::string::npos) << error.reason;
+    }
+  }
+  EXPECT_NO_THROW(parse_view("5e-324:0:0"));
+}
+
 TEST(View, ListsKeepTheirOrderAndNames) {
   const std::vector<View> views = parse_views("z,-x,1:1:0.5,1e-300:0:0");
   ASSERT_EQ(views.size(), 4u);

@@ -30,7 +30,7 @@ class CheckDistances : public testing::Test {
              folder.write("high.obj", "v 0 0 5\nv 1 0 5\nv 0 1 5\n" + face)};
     scene = load_scene(files);
   }
-  Answer answer(const DistanceCertificate& c, const std::string& json = "") {
+  ProgramAnswer answer(const DistanceCertificate& c, const std::string& json = "") {
     return check({folder.write("d.json", to_text(c)), files, json});
   }
   DistanceCertificate certificate(Pairs pairs, double within = kInfinity, std::uint64_t k = 0) {
@@ -44,7 +44,7 @@ class CheckDistances : public testing::Test {
 
 TEST_F(CheckDistances, ProvedIsStatus0AndSaysWhat) {
   const auto says = [&](const DistanceCertificate& c, const std::string& line) {
-    const Answer found = answer(c);
+    const ProgramAnswer found = answer(c);
     EXPECT_EQ(found.status, 0);
     EXPECT_EQ(found.line(), "proved: " + line);
     EXPECT_NE(found.text.find("in integers"), std::string::npos);
@@ -72,7 +72,7 @@ TEST_F(CheckDistances, ProvedIsStatus0AndSaysWhat) {
 TEST_F(CheckDistances, RefutedIsStatus1AndNamesThePairWithItsDistance) {
   DistanceCertificate c = certificate(Pairs::objects);
   c.distances[0].squared = "5/1";
-  const Answer found = answer(c);
+  const ProgramAnswer found = answer(c);
   EXPECT_EQ(found.status, 1);
   EXPECT_EQ(found.line(),
             "refuted: the square of the distance in distances[0] is not that of its triangles");
@@ -95,7 +95,7 @@ TEST_F(CheckDistances, RefutedIsStatus1AndNamesThePairWithItsDistance) {
 TEST_F(CheckDistances, NotProvedIsStatus1) {
   DistanceCertificate c = certificate(Pairs::objects);
   c.distances[0].features = {0, 6};
-  const Answer found = answer(c);
+  const ProgramAnswer found = answer(c);
   EXPECT_EQ(found.status, 1);
   EXPECT_EQ(found.line(),
             "not proved: distances[0] does not say where the nearest points lie: vertex 0 and "
@@ -106,12 +106,12 @@ TEST_F(CheckDistances, NotProvedIsStatus1) {
 // As a certificate of pairs.
 TEST_F(CheckDistances, AnotherSceneIsNotProved) {
   const std::string file = folder.write("d.json", to_text(certificate(Pairs::objects)));
-  const Answer other = check({file, {files[0], files[1]}, ""});
+  const ProgramAnswer other = check({file, {files[0], files[1]}, ""});
   EXPECT_EQ(other.status, 1);
   EXPECT_EQ(other.line(), "not proved: the certificate is of another scene: objects 3, given 2");
   EXPECT_EQ(other.text.find("decided"), std::string::npos) << other.text;
   // `self` is part of the scene.
-  const Answer self = check({file, files, "", true});
+  const ProgramAnswer self = check({file, files, "", true});
   EXPECT_EQ(self.status, 1);
   EXPECT_NE(self.line().find("which objects are self"), std::string::npos);
 }

@@ -10,15 +10,15 @@
 namespace farcull {
 
 /// The command's status and what it printed.
-struct Answer {
+struct ProgramAnswer {
   int status = -1;
   std::string text;
   std::string line() const { return text.substr(0, text.find('\n')); }
 };
 
-inline Answer check(const CheckArguments& arguments) {
+inline ProgramAnswer check(const CheckArguments& arguments) {
   testing::internal::CaptureStdout();
-  Answer answer;
+  ProgramAnswer answer;
   try {
     answer.status = run_check(arguments);
   } catch (...) {

@@ -39,7 +39,7 @@ class Check : public testing::Test {
 };
 
 TEST_F(Check, ProvedIsStatus0) {
-  const Answer answer = check({written(), {"random-soup"}, ""});
+  const ProgramAnswer answer = check({written(), {"random-soup"}, ""});
   EXPECT_EQ(answer.status, 0);
   EXPECT_EQ(answer.text.substr(0, answer.text.find('\n')),
             "proved: these " + grouped(record.collisions.pairs.size()) +
@@ -57,7 +57,7 @@ TEST_F(Check, RefutedIsStatus1AndNamesThePair) {
       break;
     }
   }
-  const Answer answer = check({written(), {"random-soup"}, "-"});
+  const ProgramAnswer answer = check({written(), {"random-soup"}, "-"});
   EXPECT_EQ(answer.status, 1);
   const nlohmann::json json = nlohmann::json::parse(answer.text);
   EXPECT_EQ(json["verdict"], "refuted");
@@ -88,7 +88,7 @@ TEST_F(Check, ComparesTheListThatIsGiven) {
     SCOPED_TRACE(with);
     for (const std::string& same :
          {pairs_csv(scene, record), list, list.substr(0, list.size() - 1)}) {
-      const Answer answer = check_list(same, with);
+      const ProgramAnswer answer = check_list(same, with);
       EXPECT_EQ(answer.status, 0);
       const nlohmann::json json = nlohmann::json::parse(answer.text);
       EXPECT_EQ(json["verdict"], "proved");
@@ -107,7 +107,7 @@ TEST_F(Check, ComparesTheListThatIsGiven) {
           std::tuple(list + "0,0,0,0\n", last + ": ", 1u, std::size_t{0}),
           std::tuple(list + list.substr(second, third - second),
                      last + ": the pair is that of line 2", 1u, std::size_t{0})}) {
-      const Answer answer = check_list(other, with);
+      const ProgramAnswer answer = check_list(other, with);
       EXPECT_EQ(answer.status, 1);
       const nlohmann::json json = nlohmann::json::parse(answer.text);
       EXPECT_EQ(json["verdict"], with ? "not proved" : "refuted");
@@ -142,9 +142,10 @@ TEST_F(Check, NamesEachPairThatIsDropped) {
     std::vector<TrianglePair> fewer = record.collisions.pairs;
     const TrianglePair dropped = fewer[i];
     fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
-    const Answer answer = check({.certificate = "",
-                                 .scene = {"random-soup"},
-                                 .pairs = folder.write("pairs.csv", pair_list(scene, fewer))});
+    const ProgramAnswer answer =
+        check({.certificate = "",
+               .scene = {"random-soup"},
+               .pairs = folder.write("pairs.csv", pair_list(scene, fewer))});
     EXPECT_EQ(answer.status, 1);
     const std::vector<std::uint32_t> owner = owners(scene);
     const auto place = [&](std::uint32_t t) {
@@ -168,7 +169,7 @@ TEST_F(Check, ListsAndCertificatesOfAClearance) {
   const std::string list = folder.write("pairs.csv", pairs_csv(scene, record));
   const std::string near = folder.write("near.json", to_text(certificate));
   const std::vector<std::string> soup = {"random-soup"};
-  const Answer proved = check({.certificate = near, .scene = soup, .pairs = list});
+  const ProgramAnswer proved = check({.certificate = near, .scene = soup, .pairs = list});
   EXPECT_EQ(proved.status, 0);
   EXPECT_EQ(proved.text.substr(0, proved.text.find('\n')),
             "proved: these " + grouped(record.collisions.pairs.size()) +
@@ -178,13 +179,13 @@ TEST_F(Check, ListsAndCertificatesOfAClearance) {
   EXPECT_EQ(check({.certificate = "", .scene = soup, .pairs = list, .clearance = clearance}).status,
             0);
   // The twins: another clearance of the question, by one unit in the last place.
-  const Answer other =
+  const ProgramAnswer other =
       check({.certificate = near, .scene = soup, .clearance = std::nextafter(clearance, 1)});
   EXPECT_EQ(other.status, 1);
   EXPECT_NE(other.text.find("another clearance: 0.01, not 0.01000"), std::string::npos)
       << other.text;
   EXPECT_EQ(check({.certificate = plain, .scene = soup, .clearance = clearance}).status, 1);
-  const Answer none = check({.certificate = "", .scene = soup, .pairs = list});
+  const ProgramAnswer none = check({.certificate = "", .scene = soup, .pairs = list});
   EXPECT_EQ(none.status, 1);
   EXPECT_EQ(none.text.substr(0, 8), "refuted:");
   EXPECT_EQ(check({.certificate = plain, .scene = soup, .pairs = list}).status, 1);
@@ -219,7 +220,7 @@ class CheckFrames : public testing::Test {
 };
 
 TEST_F(CheckFrames, EachIsProved) {
-  const Answer answer = check(arguments());
+  const ProgramAnswer answer = check(arguments());
   EXPECT_EQ(answer.status, 0);
   EXPECT_NE(answer.text.find("\nproved: in each of 4 frames these pairs of the scene meet, and no "
                              "others: "),
@@ -252,7 +253,7 @@ TEST_F(CheckFrames, EachIsProved) {
 TEST_F(CheckFrames, OfAnotherFrameIsNotProved) {
   const std::string of_4 = read_file(numbered(pattern, 4), 1 << 24);
   folder.write("c_005.json", of_4);
-  const Answer answer = check(arguments());
+  const ProgramAnswer answer = check(arguments());
   EXPECT_EQ(answer.status, 1);
   EXPECT_NE(answer.text.find("\n      5  not proved "), std::string::npos) << answer.text;
   EXPECT_NE(answer.text.find("of another scene"), std::string::npos);
@@ -271,7 +272,7 @@ TEST_F(CheckFrames, APairThatIsDroppedIsNamedWithItsFrame) {
   fewer.certificate = "";
   fewer.pairs = pairs;
   fewer.json = "-";
-  const Answer answer = check(fewer);
+  const ProgramAnswer answer = check(fewer);
   EXPECT_EQ(answer.status, 1);
   const nlohmann::json json = nlohmann::json::parse(answer.text);
   EXPECT_EQ(json["frames"][0]["verdict"], "proved");
@@ -306,12 +307,12 @@ TEST_F(Check, AForgedCertificateClaimsNothingOfTheRun) {
   certificate.claims.kept += record.collisions.pairs.size();
   certificate.claims.culled -= record.collisions.pairs.size();
   certificate.run.method = "far";
-  const Answer forged = check({written(), {"random-soup"}});
+  const ProgramAnswer forged = check({written(), {"random-soup"}});
   EXPECT_EQ(forged.status, 1);
   EXPECT_EQ(forged.text.substr(0, 58),
             "not proved: the certificate is of another list of pairs: l");
   certificate.list_sha256 = pair_list_hash(scene, record.collisions.pairs);
-  const Answer of_the_scene = check({written(), {"random-soup"}});
+  const ProgramAnswer of_the_scene = check({written(), {"random-soup"}});
   EXPECT_EQ(of_the_scene.status, 0);
   EXPECT_NE(of_the_scene.text.find("  that the method was far\n  which pairs the run kept"),
             std::string::npos);
@@ -319,7 +320,7 @@ TEST_F(Check, AForgedCertificateClaimsNothingOfTheRun) {
 }
 
 TEST_F(Check, SaysWhatWasNotAsked) {
-  const Answer answer = check({written(), {"random-soup"}, "-"});
+  const ProgramAnswer answer = check({written(), {"random-soup"}, "-"});
   const nlohmann::json unasked = nlohmann::json::parse(answer.text)["scene"]["self_not_asked"];
   EXPECT_EQ(unasked["objects"], scene.objects.size());
   EXPECT_EQ(unasked["pairs"], certificate.not_asked.pairs);
@@ -330,7 +331,7 @@ TEST_F(Check, SaysWhatWasNotAsked) {
 
 TEST_F(Check, AnotherSceneIsStatus1) {
   const std::string json = folder.path("result.json");
-  const Answer answer = check({written(), {"two-tori"}, json});
+  const ProgramAnswer answer = check({written(), {"two-tori"}, json});
   EXPECT_EQ(answer.status, 1);
   EXPECT_EQ(answer.text.substr(0, 11), "not proved:");
   EXPECT_EQ(nlohmann::json::parse(read_file(json, 1 << 20))["verdict"], "not proved");

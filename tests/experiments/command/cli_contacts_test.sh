@@ -82,8 +82,45 @@ for method in far-pairs exact i-collide; do
   ((cases += 1))
   cmp -s ignored.csv by.csv || fail "ignored by $method" 'other pairs'
 done
+printf '\xEF\xBB\xBFfloor:spike\r\nfin:spike\r\n' >marked.txt
+good 'a byte order mark' 0 run "${all[@]}" --ignore-file marked.txt --pairs by.csv
+((cases += 1))
+cmp -s ignored.csv by.csv || fail 'a byte order mark' 'other pairs'
 good 'ignored in frames' 0 verify two-spheres --frames 2 --ignore first:second
 expect 'ignored in frames' "$out" ' 52,428,800 ignored \+ 0 missed$'
+# An object of the first frame that is gone in the second one; and one that comes in the second.
+printf '%s\n' 'v 1 1 -1' 'v 1 1 1' 'v 1 3 0' 'g a' 'f 1 2 3' >parts_2.obj
+cat parts_2.obj - <<<$'v 4 1 -1\nv 4 1 1\nv 4 3 0\ng b\nf 4 5 6' >parts_1.obj
+printf '{"objects": [{"mesh": "parts_%%d.obj", "split": "groups"}, {"mesh": "floor.obj"}]}' >parts.json
+good 'an object that goes' 0 verify parts.json --frames 1:2 --ignore '*/b:floor' --pairs frames.csv
+((cases += 1))
+cmp -s frames.csv <(printf 'frame,object_a,triangle_a,object_b,triangle_b\n1,0,0,2,0\n2,0,0,1,0\n') ||
+  fail 'an object that goes' 'other pairs'
+bad 'an object that comes' "--ignore: '\*/b:floor' names '\*/b', and no object is called so" \
+  run parts.json --frames 2:2 --ignore '*/b:floor'
+sed 's|^{|{"ignore": [["*/b", "floor"]], |' parts.json >ignores.json
+good 'an object that goes, in the file' 0 verify ignores.json --frames 1:2 --pairs file.csv
+((cases += 1))
+cmp -s frames.csv file.csv || fail 'an object that goes, in the file' 'other pairs'
+bad 'an object that comes, in the file' "ignores\.json:1: ignore\[0\] names '\*/b', and no object is called so" \
+  run ignores.json --frames 2:2
+
+# A polygon whose triangles a rounded sign would put outside of it, where the triangle is.
+printf '%s\n' 'v .002 .002 0' 'v .004 .002 0' 'v .006 -.003 0' 'v -.006 -.006 0' 'v -.003 .001 0' \
+  'v -.003 -.005 0' 'v .003 -.003 0' 'f 1 2 3 4 5 6 7' >seven.obj
+triangle outside -.0003 -.0026 -.001 -.0003 -.0026 .001 -.0002 -.0026 .001
+good 'a triangle outside a polygon' 0 verify seven.obj outside.obj
+expect 'a triangle outside a polygon' "$out" '^colliding +0 pairs$'
+# A polygon that crosses itself is named.
+printf '%s\n' 'v 0 0 0' 'v 3 0 0' 'v 3 3 0' 'v 0 2 0' 'g a' 'f 1 2 3' 'g b' 'f 1 3 2 4' >folded.obj
+printf '{"objects": [{"mesh": "folded.obj", "split": "groups"}]}' >folded.json
+good 'a folded polygon' 0 run folded.json
+expect 'a folded polygon' "$out" '^folded: 2 objects, 3 triangles, 1 polygon folded: face 1 of folded/b$'
+good 'a folded polygon, as JSON' 0 run folded.json --json -
+expect 'a folded polygon, as JSON' <(tr -d ' \n' <"$out") \
+  '"folded_polygons":1,"folded":\[\{"object":"folded/b","face":1\}\],'
+good 'a folded polygon of distances' 0 distance folded.json
+expect 'a folded polygon of distances' "$out" '1 polygon folded: face 1 of folded/b$'
 
 good 'a limit' 0 verify "${all[@]}" --limit 2 --pairs - --json first.json
 ((cases += 1))

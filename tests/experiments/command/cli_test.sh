@@ -199,7 +199,7 @@ for command in run verify compare; do
   bad "$command with an empty device" '--device: ' "$command" two-spheres --device ''
   bad "$command with device 99" '--device: ' "$command" two-spheres --device 99
   bad "$command with device -1" '--device: ' "$command" two-spheres --device -1
-  for views in q 'x,' '' x,x 0:0:0 1:1 nan:1:1 1e999:0:0 x:y:z; do
+  for views in q 'x,' '' x,x 0:0:0 1:1 nan:1:1 1e999:0:0 1e-400:0:1 x:y:z; do
     bad "$command --views '$views'" '--views: ' "$command" two-spheres --views "$views"
   done
   for option in --views --device --json; do
@@ -243,6 +243,17 @@ bad 'scenes with an argument' 'extra: no built-in scene' scenes extra
 bad 'scenes with two arguments' 'far-apart: ' scenes two-tori far-apart --write new
 bad 'a scene that is not written' 'two-spheres: .*--write' scenes two-spheres
 bad 'writing no scene' '--write: ' scenes --write new
+# Names as long as the system takes, though a part of the file is written under another name.
+printf -v name 'n%.0s' {1..255}
+printf -v wide '\xc3\xa4%.0s' {1..127}
+bad 'a name that is too long' 'n+: cannot be written: File name too long' run "${spheres[@]}" --json "n$name"
+printf -v deep './%.0s' {1..2045}
+bad 'a path that is too long' '[./]+x: cannot be written: File name too long' run "${spheres[@]}" --json "${deep}x"
+for long in "$name" "$wide"; do
+  good 'a long name' 0 run "${spheres[@]}" --json "$long" --pairs "${long/?/p}"
+  expect 'a long name' "$long" '"colliding_pairs"'
+  rm -f -- "$long" "${long/?/p}"
+done
 bad 'writing to no folder' '--write: ' scenes two-spheres --write ''
 bad 'writing into a missing folder' 'missing/new: the folder cannot be made: No such' \
   scenes far-apart --write missing/new

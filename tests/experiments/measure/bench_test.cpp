@@ -183,8 +183,8 @@ TEST(Bench, PeersAgreeOnScenesOfNothing) {
   EXPECT_EQ(expect_agreement(scene).rows[0].pairs, 0u);
 }
 
-Contestant says(const std::string& name, std::function<std::vector<TrianglePair>()> pairs) {
-  Contestant contestant{.name = name, .peer = true};
+BenchContestant says(const std::string& name, std::function<std::vector<TrianglePair>()> pairs) {
+  BenchContestant contestant{.name = name, .peer = true};
   contestant.run = [pairs](const Scene&) { return BenchAnswer{.pairs = pairs()}; };
   return contestant;
 }
@@ -196,14 +196,14 @@ TEST(Bench, CatchesACorruptedPeer) {
   options.repeat = 3;
   const std::vector<TrianglePair> right = all_colliding_pairs(scene).pairs;
   ASSERT_GT(right.size(), 10u);
-  const Contestant good = says("good", [&] { return right; });
+  const BenchContestant good = says("good", [&] { return right; });
   EXPECT_FALSE(bench(scene, {good, good}, options).disagreement);
 
   const std::size_t last = right.size() - 1;
   for (const std::size_t at : {std::size_t{0}, right.size() / 2, last}) {
     std::vector<TrianglePair> less = right;
     less.erase(less.begin() + static_cast<std::ptrdiff_t>(at));
-    const Contestant bad = says("bad", [=] { return less; });
+    const BenchContestant bad = says("bad", [=] { return less; });
     for (const auto& order : {std::vector{good, bad}, std::vector{bad, good}}) {
       const BenchResult result = bench(scene, order, options);
       ASSERT_TRUE(result.disagreement);
@@ -233,7 +233,7 @@ TEST(Bench, CatchesACorruptedPeer) {
   EXPECT_FALSE(describe(scene, *beyond.disagreement).empty());
 
   int runs = 0;
-  const Contestant late = says("late", [&] {
+  const BenchContestant late = says("late", [&] {
     std::vector<TrianglePair> pairs = right;
     if (++runs == 4) pairs.pop_back();
     return pairs;
@@ -251,7 +251,7 @@ TEST(Bench, RepeatsNothingBeyondTheLimit) {
   options.limit_s = 0.02;
   int fast_runs = 0;
   int slow_runs = 0;
-  const std::vector<Contestant> both = {
+  const std::vector<BenchContestant> both = {
       says("fast", [&] { return ++fast_runs, std::vector<TrianglePair>{}; }), says("slow", [&] {
         ++slow_runs;
         std::this_thread::sleep_for(std::chrono::milliseconds(30));
@@ -272,11 +272,11 @@ TEST(Bench, RepeatsNothingBeyondTheLimit) {
 TEST(Bench, MemoryIsThePeakBeyondWhatWasThere) {
   const Scene scene = make_builtin_scene("far-apart");
   const std::vector<char> before(100 << 20, 1);
-  const std::vector<Contestant> both = {says("frugal", [] { return std::vector<TrianglePair>{}; }),
-                                        says("greedy", [] {
-                                          std::vector<char> much(50 << 20, 1);
-                                          return std::vector<TrianglePair>(much[7] - 1);
-                                        })};
+  const std::vector<BenchContestant> both = {
+      says("frugal", [] { return std::vector<TrianglePair>{}; }), says("greedy", [] {
+        std::vector<char> much(50 << 20, 1);
+        return std::vector<TrianglePair>(much[7] - 1);
+      })};
   const BenchResult result = bench(scene, both, quick());
   ASSERT_TRUE(result.rows[0].peak_mib && result.rows[1].peak_mib) << "VmHWM cannot be reset";
   EXPECT_LT(*result.rows[0].peak_mib, 10);
@@ -340,7 +340,7 @@ TEST(Bench, LeavesOutAloudWhatCannotRun) {
   options.methods = "all";
   const BenchResult result = bench(scene, contestants(scene, options), options);
   std::set<std::string> out;
-  for (const Contestant& contestant : result.left_out) {
+  for (const BenchContestant& contestant : result.left_out) {
     out.insert(contestant.name);
     EXPECT_FALSE(contestant.left_out.empty());
     EXPECT_NE(bench_table(scene, options, result).find("left out: " + contestant.name + ": "),

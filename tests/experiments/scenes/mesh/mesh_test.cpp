@@ -6,22 +6,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
 
-#include "experiments/scenes/mesh/builder.h"
 #include "experiments/scenes/mesh/text.h"
 #include "tests/experiments/scenes/mesh/mesh_samples.h"
 
 namespace farcull {
 namespace {
-
-double twice_area(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-}
 
 // ---- numbers and text
 
@@ -135,122 +129,7 @@ TEST(LoadMesh, RefusesAFileOfATerabyteWithoutReadingIt) {
   expect_error(error_of([&] { load_mesh(path); }), path, 0, "bytes");
 }
 
-// ---- polygons
-
-double covered(const std::vector<Vec3>& corners, std::size_t& triangle_count) {
-  std::vector<Triangle> triangles;
-  EXPECT_TRUE(triangulate(corners, triangles));
-  triangle_count = triangles.size();
-  double area = 0;
-  for (const auto& [a, b, c] : triangles) {
-    EXPECT_TRUE(a < corners.size() && b < corners.size() && c < corners.size());
-    const double part = twice_area(corners[a], corners[b], corners[c]);
-    EXPECT_GE(part, 0) << "a triangle is turned over";
-    area += part;
-  }
-  return area;
-}
-
-double shoelace(const std::vector<Vec3>& corners) {
-  double area = 0;
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
-    area += twice_area(corners[0], corners[i], corners[i + 1]);
-  }
-  return area;
-}
-
-TEST(Triangulate, KeepsTheAreaOfSimplePolygons) {
-  const std::vector<std::vector<Vec3>> polygons = {
-      {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}},  // square
-      {{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}},  // dart
-      {{4, 0, 0}, {1, 1, 0}, {0, 4, 0}, {0, 0, 0}},  // dart from a sharp corner
-      {{1, 1, 0}, {0, 4, 0}, {0, 0, 0}, {4, 0, 0}},  // dart from its notch
-      {{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, 4, 0}, {0, 4, 0}},  // corners on edges
-      {{0, 0, 0},
-       {6, 0, 0},
-       {6, 4, 0},
-       {5, 4, 0},
-       {5, 1, 0},
-       {1, 1, 0},
-       {1, 4, 0},
-       {0, 4, 0}},                                                                    // U
-      {{0, 0, 0}, {1, 3, 0}, {2, 0, 0}, {3, 3, 0}, {4, 0, 0}, {4, 5, 0}, {0, 5, 0}},  // teeth
-      // A square with a hole, cut open along a seam that is walked twice.
-      {{0, 0, 0},
-       {6, 0, 0},
-       {6, 6, 0},
-       {0, 6, 0},
-       {0, 0, 0},
-       {2, 2, 0},
-       {2, 4, 0},
-       {4, 4, 0},
-       {4, 2, 0},
-       {2, 2, 0}},
-  };
-  for (std::size_t i = 0; i < polygons.size(); ++i) {
-    std::size_t triangles = 0;
-    EXPECT_EQ(covered(polygons[i], triangles), shoelace(polygons[i])) << i;
-    EXPECT_EQ(triangles, polygons[i].size() - 2) << i;
-  }
-}
-
-TEST(Triangulate, KeepsTheAreaOfRandomStars) {
-  std::mt19937_64 words(11);
-  for (int round = 0; round < 200; ++round) {
-    const std::size_t n = 4 + words() % 40;
-    std::vector<Vec3> star;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double r = 1.0 + static_cast<double>(words() % 100) / 10;
-      const double angle = 2 * 3.14159265358979 * static_cast<double>(i) / static_cast<double>(n);
-      star.emplace_back(r * std::cos(angle), r * std::sin(angle), 0);
-    }
-    std::size_t triangles = 0;
-    EXPECT_NEAR(covered(star, triangles), shoelace(star), 1e-11);
-    EXPECT_EQ(triangles, n - 2);
-  }
-}
-
-TEST(Triangulate, SeesAnyPlaneEitherSideAndAnySize) {
-  const std::vector<Vec3> dart = {{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}};
-  std::vector<Triangle> expected;
-  ASSERT_TRUE(triangulate(dart, expected));
-  for (const double size : {1.0, 1e-300, 4e307}) {
-    for (int axis = 0; axis < 3; ++axis) {
-      std::vector<Vec3> turned;
-      for (const Vec3& p : dart) {
-        turned.push_back(Vec3(p[(3 - axis) % 3], p[(4 - axis) % 3], p[(5 - axis) % 3]) * size / 4);
-      }
-      std::vector<Triangle> triangles;
-      ASSERT_TRUE(triangulate(turned, triangles));
-      EXPECT_EQ(triangles, expected) << size << " " << axis;
-    }
-  }
-  // Backwards the notch is still the corner that both triangles share.
-  const std::vector<Vec3> back = {dart[3], dart[2], dart[1], dart[0]};
-  std::vector<Triangle> triangles;
-  ASSERT_TRUE(triangulate(back, triangles));
-  for (const auto& t : triangles) EXPECT_EQ(std::count(t.begin(), t.end(), 1u), 1);
-}
-
-TEST(Triangulate, GivesTwoLessThanCornersHoweverDegenerate) {
-  const double big = std::numeric_limits<double>::max();
-  const std::vector<std::vector<Vec3>> polygons = {
-      std::vector<Vec3>(5, Vec3(1, 2, 3)),                      // a point
-      {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}},             // a segment
-      {{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}},             // a bow tie
-      {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}},  // walks back
-      {{-big, -big, 0},
-       {big, -big, 0},
-       {-big / 2, -big / 2, 0},
-       {-big, big, 0}},                              // differences overflow
-      {{0, 0, 0}, {1, 0, 1}, {1, 1, 0}, {0, 1, 1}},  // not planar
-  };
-  for (const std::vector<Vec3>& polygon : polygons) {
-    std::vector<Triangle> triangles;
-    EXPECT_TRUE(triangulate(polygon, triangles));
-    EXPECT_EQ(triangles.size(), polygon.size() - 2);
-  }
-}
+// ---- polygons (polygon_test.cpp has more)
 
 TEST(Triangulate, ConvexOfAnySizeButConcaveOnlyToItsLimit) {
   const auto wheel = [](std::size_t n, bool notched) {
@@ -275,6 +154,12 @@ TEST(MeshReaders, TriangulatePolygonsInPlaceAndKeepTheirFace) {
       off("OFF\n5 3 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n-1 0.5 0\n3 0 1 2\n5 0 1 2 3 4\n3 2 1 0\n");
   EXPECT_EQ(mesh.source_face, (std::vector<std::uint32_t>{0, 1, 1, 1, 2}));
   EXPECT_EQ(mesh.group, (std::vector<std::uint32_t>(5, 0)));
+}
+
+TEST(MeshReaders, NameTheFacesThatAreFolded) {
+  const std::string corners = "OFF\n4 4 0\n0 0 0\n3 0 0\n3 3 0\n0 2 0\n";
+  const Mesh mesh = off(corners + "3 0 1 2\n4 0 2 1 3\n4 0 1 2 3\n4 1 3 0 2\n");
+  EXPECT_EQ(mesh.folded, (std::vector<std::uint32_t>{1, 3}));
 }
 
 // Whatever a few flipped, lost or repeated bytes make of a file, it is read or refused with an
