@@ -27,7 +27,7 @@ std::atomic<std::size_t> freed{0};
 
 }  // namespace
 
-extern "C" void free(void* block) {
+extern "C" [[gnu::visibility("default")]] void free(void* block) {
   const std::size_t bytes = ::malloc_usable_size(block);
   if (bytes > 0 && bytes <= kMostBytes) {
     std::memset(block, kFreed, bytes);
@@ -36,7 +36,7 @@ extern "C" void free(void* block) {
   ::__libc_free(block);
 }
 
-extern "C" int pthread_cond_broadcast(pthread_cond_t* condition) {
+extern "C" [[gnu::visibility("default")]] int pthread_cond_broadcast(pthread_cond_t* condition) {
   using Broadcast = int (*)(pthread_cond_t*);
   // Of two versions on x86, dlsym may give the older one, which is of another type of condition.
   static const auto real = [] {
