@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 #include "core/gl/canvas.h"
 #include "core/gl/context.h"
+#include "core/gl/driver_threads.h"
 #include "core/gl/pairs.h"
 #include "core/gl/picture.h"
 #include "core/gl/probe.h"
@@ -29,6 +30,9 @@ GlContext::~GlContext() = default;
 const GlInfo& GlContext::info() const { refuse(); }
 std::vector<GlDevice> GlContext::list_devices() { return {}; }
 bool GlContext::hardware_listed() { refuse(); }
+
+int driver_threads(const std::string&) { return 0; }
+std::string risk_of_threads(const std::string&) { return ""; }
 
 std::unique_ptr<Canvas> gl_canvas(const GlContext&, DepthMode, const SolidProgram&,
                                   const GlCanvasOptions&) {

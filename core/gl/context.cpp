@@ -14,6 +14,7 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/text.h"
+#include "core/gl/driver_threads.h"
 
 namespace farcull {
 namespace {
@@ -55,6 +56,7 @@ void require_memory() {
 // EGL itself, without a display: extensions of the client library. libepoxy aborts the process
 // where libEGL is missing, so its presence is asked for first.
 void require_egl() {
+  note_asked_threads();
   require_memory();
   if (!epoxy_has_egl()) throw Error("EGL", "libEGL.so.1 cannot be loaded", kInstall);
   const std::string client = text(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS));

@@ -23,7 +23,8 @@ std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions
                           {{"A6"}, probe::queries},
                           {{"A7"}, probe::commands},
                           {{"A7"}, probe::pair_commands, false, true},
-                          {{"A8"}, probe::memory, true, true}};
+                          {{"A8"}, probe::memory, true, true},
+                          {{"A10"}, probe::driver, true, true}};
   const GlCurrent current(context);
   std::vector<ProbeResult> out;
   for (const Group& group : groups) {

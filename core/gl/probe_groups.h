@@ -17,6 +17,7 @@ std::vector<ProbeResult> commands(const GlContext& context, const ProbeOptions& 
 std::vector<ProbeResult> pair_commands(const GlContext& context,
                                        const ProbeOptions& options);                     // A7
 std::vector<ProbeResult> memory(const GlContext& context, const ProbeOptions& options);  // A8
+std::vector<ProbeResult> driver(const GlContext& context, const ProbeOptions& options);  // A10
 /// One of A5.
 ProbeResult texels(const ProbeOptions& options);
 

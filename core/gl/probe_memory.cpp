@@ -1,10 +1,11 @@
 // A8: values that a dispatch or a draw wrote are seen after the barrier, and atomics neither lose
 // nor double. A missing or weak barrier shows only on devices that reorder: these probes can
 // refute, on the device that they run on. And A5's texels: a shader reads the depth that was
-// stored, to the bit.
+// stored, to the bit. And A10: the driver has no threads that are known to damage memory.
 #include <algorithm>
 #include <array>
 
+#include "core/gl/driver_threads.h"
 #include "core/gl/probe_groups.h"
 #include "core/gl/probe_target.h"
 #include "embedded/probe_coverage_frag.h"
@@ -187,6 +188,16 @@ ProbeResult texels(const ProbeOptions& options) {
 
 std::vector<ProbeResult> memory(const GlContext&, const ProbeOptions& options) {
   return {atomics(options), dispatches(options), draws(options)};
+}
+
+// Memory that a driver damages cannot be seen from outside. Of one fault the cause is known.
+std::vector<ProbeResult> driver(const GlContext& context, const ProbeOptions& options) {
+  Worst threads;
+  threads.add(driver_threads(context.info().renderer) + (options.one_thread ? 1 : 0));
+  const std::string risk = risk_of_threads(context.info().renderer);
+  return {result("A10", "threads that may write to freed memory", threads, 0, "threads",
+                 risk.empty() ? "other damage that a driver may do to memory is not looked for"
+                              : risk)};
 }
 
 }  // namespace farcull::probe

@@ -46,6 +46,7 @@ struct ProbeOptions {
   bool skipped_faults = false;      // A7: no fault happens
   bool plain_atomics = false;       // A8: a read and a write instead of an atomic
   bool unordered_reads = false;     // A8: what is read may not have been written yet
+  bool one_thread = false;          // A10: the driver draws in a thread of its own
 };
 
 }  // namespace farcull

@@ -166,6 +166,9 @@ int command_line(int argc, char** argv) {
   prepare_output();
   // Mesa would print warnings about the devices that it tries. Our own message reports the outcome.
   ::setenv("EGL_LOG_LEVEL", "fatal", 0);
+  // llvmpipe's own threads may damage our memory (docs/drivers.md). No thread runs yet, so the
+  // environment may be changed.
+  ::setenv("LP_NUM_THREADS", "0", 0);
   try {
     // For this thread; core/base/parallel.h sets the threads that it starts. oneTBB's threads copy
     // the environment of the thread that first uses it, which is this one.

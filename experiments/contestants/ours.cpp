@@ -146,6 +146,7 @@ Contestant far_pairs_of_library(const std::string& says) {
 
 int main(int argc, char** argv) {
   using namespace farcull;
+  ::setenv("LP_NUM_THREADS", "0", 0);  // as farcull does (docs/drivers.md)
   const char* const reliable = "misses no pair; exact tests decide what is left";
   const char* const loses = "can miss a pair that is smaller than a pixel (docs/methods.md)";
   const char* const published = "to see what the published method loses";

@@ -17,6 +17,7 @@
 #include "core/base/stopwatch.h"
 #include "core/base/terminal.h"
 #include "core/gl/canvas.h"
+#include "core/gl/driver_threads.h"
 #include "core/gl/probe.h"
 #include "core/native/canvas.h"
 #include "core/native/lanes.h"
@@ -74,6 +75,12 @@ std::string devices_table(const std::vector<GlDevice>& devices, int chosen) {
   return out;
 }
 
+std::string threads_text(const GlInfo& gl) {
+  if (gl.kind != "software") return "those of the hardware";
+  const int threads = driver_threads(gl.renderer);
+  return threads == 0 ? "0: the driver draws in ours" : std::to_string(threads) + " of the driver (A10)";
+}
+
 std::string limits_table(const GlInfo& gl, int resolution) {
   return fmt::format(
       "\nchosen: {}\n"
@@ -86,10 +93,12 @@ std::string limits_table(const GlInfo& gl, int resolution) {
       "  resolution limit  {}\n"
       "  compute groups    {}\n"
       "  storage block     {} bytes\n"
-      "  reset detection   {}\n",
+      "  reset detection   {}\n"
+      "  threads           {}\n",
       gl.renderer, gl.vendor, gl.version, gl.glsl, gl.subpixel_bits, gl.max_texture_size,
       gl.max_viewport, resolution, gl.max_compute_groups, gl.max_storage_block,
-      gl.reset_detection ? "yes" : "no: a reset is seen by lost commands alone (A7)");
+      gl.reset_detection ? "yes" : "no: a reset is seen by lost commands alone (A7)",
+      threads_text(gl));
 }
 
 // The floating-point environment, found out by arithmetic: the caller's, and the one in force.
@@ -104,7 +113,7 @@ std::string probes_table(const std::vector<ProbeResult>& probes) {
                                 "bound", "", "samples");
   int failed = 0;
   for (const ProbeResult& p : probes) {
-    out += fmt::format("{}  {:<52} {:>9} {:>9}  {:<20} {:>9}  {}\n", p.assumption, p.name,
+    out += fmt::format("{:<3} {:<52} {:>9} {:>9}  {:<20} {:>9}  {}\n", p.assumption, p.name,
                        number(p.measured), number(p.bound), p.unit, p.samples,
                        p.pass ? "pass" : "FAIL");
     if (!p.note.empty()) out += fmt::format("      {}\n", p.note);
@@ -328,7 +337,8 @@ int doctor_command(const DoctorArguments& arguments) {
           {"max_resolution", resolution},
           {"max_compute_groups", gl.max_compute_groups},
           {"max_storage_block", gl.max_storage_block},
-          {"reset_detection", gl.reset_detection}}},
+          {"reset_detection", gl.reset_detection},
+          {"threads", gl.kind == "software" ? Json(driver_threads(gl.renderer)) : Json(nullptr)}}},
         {"floating_point", arithmetic},
         {"probes", probes_json(probes)},
         {"verdict_files", {{"drawing", verdicts.drawing.file}, {"pairs", verdicts.pairs.file}}},

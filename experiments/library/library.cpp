@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
+#include "core/gl/driver_threads.h"
 #include "core/view/view.h"
 #include "experiments/library/answers.h"
 #include "experiments/library/farcull.h"
@@ -102,7 +103,10 @@ void Collider::State::report_device(const UsedDevice& used, ColliderReport& repo
   }
   const Promise kept = promise_of(run, used, session);
   report.promises = kept.holds;
-  report.promises_reason = used.gl ? kept.reason : "on the CPU nothing rests on a device";
+  report.promises_reason = "on the CPU nothing rests on a device";
+  if (!used.gl) return;
+  const std::string risk = risk_of_threads(used.gl->renderer);
+  report.promises_reason = kept.reason + (risk.empty() ? "" : "; " + risk);
 }
 
 ColliderResult Collider::State::find(const Stopwatch& start) {

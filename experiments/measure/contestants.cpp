@@ -1,6 +1,4 @@
 // Who takes part in a benchmark: methods by the one pipeline, peers by their own set-up.
-#include <cstdlib>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,13 +63,6 @@ BenchRun method_run(Method method, std::shared_ptr<Session> session, const std::
   };
 }
 
-/// The session that the GL methods share. With llvmpipe, the device that there is without a GPU,
-/// rasterizing takes its threads from the environment.
-std::shared_ptr<Session> gl_session(const BenchOptions& options) {
-  ::setenv("LP_NUM_THREADS", std::to_string(options.threads).c_str(), 1);
-  return std::make_shared<Session>(options.device.empty() ? "gl" : options.device, options.threads);
-}
-
 /// Sets up one contestant. What cannot run is left out, or an Error where it was asked for by name.
 class ContestantList {
  public:
@@ -107,11 +98,12 @@ void add_methods(const Scene& scene, const BenchOptions& options, ContestantList
   // Without --device, drawing on GL is measured where hardware answers, and far-pairs where any
   // does.
   const bool gl_by_name = by_name && !options.device.empty();
-  std::shared_ptr<Session> gl;
+  const std::string gl_device = options.device.empty() ? "gl" : options.device;
+  std::shared_ptr<Session> gl;  // that the methods share
   const auto on_gl = [&](BenchContestant& c, Method method) {
-    if (!gl) gl = gl_session(options);
+    if (!gl) gl = std::make_shared<Session>(gl_device, options.threads);
     c.device = gl->context().info().renderer;
-    c.run = method_run(method, gl, options.device.empty() ? "gl" : options.device);
+    c.run = method_run(method, gl, gl_device);
   };
   for (const std::string& name : chosen("--methods", options.methods, kMethods)) {
     const Method method = parse_method(name);

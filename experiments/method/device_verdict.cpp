@@ -25,6 +25,7 @@
 #include "core/base/count.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
+#include "core/gl/driver_threads.h"
 #include "core/gl/probe.h"
 #include "experiments/method/kernel_probes.h"
 #include "probed.h"
@@ -232,7 +233,7 @@ Json probe_json(const ProbeResult& p) {
 }
 
 const char* assumptions(Reliance reliance) {
-  return reliance == Reliance::pairs ? "A4, A7 and A8" : "A1 to A8";
+  return reliance == Reliance::pairs ? "A4, A7, A8 and A10" : "A1 to A8 and A10";
 }
 
 }  // namespace
@@ -263,6 +264,7 @@ VerdictInputs verdict_inputs(const GlInfo& device, Reliance reliance) {
                          std::to_string(device.max_compute_groups) + " " +
                          std::to_string(device.max_storage_block)},
           {"sources", FARCULL_PROBED},
+          {"threads", std::to_string(driver_threads(device.renderer))},
           {"processor", device.kind == "software" ? processor() : ""},
           {"environment", driver_environment()}};
 }

@@ -14,8 +14,8 @@ namespace farcull {
 
 struct ProbeResult;  // core/gl/probe.h
 
-/// What a method relies on a device for. pairs: FAR pairs on GL, A4 in compute shaders, A7 and A8.
-/// drawing: far, A1 to A8.
+/// What a method relies on a device for. pairs: FAR pairs on GL, A4 in compute shaders, A7, A8,
+/// A10. drawing: far, A1 to A8 and A10.
 enum class Reliance { pairs, drawing };
 
 struct DeviceVerdict {
@@ -35,8 +35,8 @@ struct DeviceVerdict {
 std::string to_string(const DeviceVerdict& verdict, Reliance reliance);
 
 /// All that code generation and arithmetic on this device depend on, by name: the device, its
-/// driver and limits, the sources of kernels and probes, the features of the processor (of a
-/// software device), and the variables of the environment that drivers read.
+/// driver, threads and limits, the sources of kernels and probes, the features of the processor (of
+/// a software device), and the variables of the environment that drivers read.
 using VerdictInputs = std::vector<std::pair<std::string, std::string>>;
 VerdictInputs verdict_inputs(const GlInfo& device, Reliance reliance);
 

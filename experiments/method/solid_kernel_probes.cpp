@@ -73,7 +73,8 @@ std::vector<ProbeResult> all_probes(const GlContext& context,
   for (ProbeResult& r : pair_kernel_probes(context)) out.push_back(std::move(r));
   for (ProbeResult& r : solid_kernel_probes(context)) out.push_back(std::move(r));
   std::stable_sort(out.begin(), out.end(), [](const ProbeResult& a, const ProbeResult& b) {
-    return a.assumption < b.assumption;
+    return std::pair(a.assumption.size(), a.assumption) <
+           std::pair(b.assumption.size(), b.assumption);  // A10 after A2
   });
   return out;
 }

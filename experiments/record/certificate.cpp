@@ -8,14 +8,16 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/count.h"
 #include "core/base/error.h"
+#include "core/gl/driver_threads.h"
 
 namespace farcull {
 namespace {
 
 // As docs/reliability.md names them.
-const std::vector<std::string>& assumptions() {
-  static const std::vector<std::string> lines = {
+std::vector<std::string> assumptions_about(const GlInfo& device) {
+  std::vector<std::string> lines = {
       "A1: vertex arithmetic through the viewport transform errs by no more than its term of the "
       "budget",
       "A2: window coordinates snap by at most 2^-b px per axis, b = GL_SUBPIXEL_BITS",
@@ -26,7 +28,13 @@ const std::vector<std::string>& assumptions() {
       "A6: a query is zero only if no sample passed",
       "A7: every command ran, or the failure is seen",
       "A8: what a dispatch or a draw wrote is seen after the barrier; atomics neither lose nor "
-      "double"};
+      "double",
+      "A10: the driver damages no memory of the process"};
+  if (device.kind == "software")
+    lines.back() += "; it drew in " +
+                    counted(static_cast<std::uint64_t>(driver_threads(device.renderer)), "thread",
+                            "threads") +
+                    " of its own";
   return lines;
 }
 
@@ -60,7 +68,7 @@ Certificate certificate_of(const Scene& scene, const Record& record) {
   if (record.found.device.gl) {
     const GlInfo& device = *record.found.device.gl;
     run.device = {device.vendor, device.renderer, device.version, device.glsl};
-    run.assumptions = assumptions();
+    run.assumptions = assumptions_about(device);
   }
   return make_certificate(scene, kept, record.collisions.all(), std::move(run), options.clearance);
 }

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "commit.h"
+#include "core/gl/driver_threads.h"
 #include "experiments/record/tables.h"
 #include "verify/certificate/not_asked.h"
 #include "verify/certificate/pair_list.h"
@@ -97,7 +98,9 @@ Json device_json(const Record& record) {
               {"glsl", device.glsl},
               {"subpixel_bits", device.subpixel_bits},
               {"depth_bits", record.found.device.depth_bits},
-              {"reset_detection", device.reset_detection}};
+              {"reset_detection", device.reset_detection},
+              {"threads", device.kind == "software" ? Json(driver_threads(device.renderer))
+                                                    : Json(nullptr)}};
   out["reason"] = record.found.device.note;
   if (chooses_views(record.options.method)) out.erase("depth_bits");
   return out;

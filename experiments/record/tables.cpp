@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/gl/driver_threads.h"
 #include "core/scene/members.h"
 #include "experiments/system/text_table.h"
 #include "verify/certificate/not_asked.h"
@@ -48,12 +49,13 @@ std::string device_text(const Record& record) {
   }
   if (record.found.device.cpu) return "cpu: " + record.found.device.note;
   if (!record.found.device.gl) return "none: " + record.found.device.note;
-  const std::string resets =
-      record.found.device.gl->reset_detection ? "" : "; it does not report when it resets";
+  const GlInfo& gl = *record.found.device.gl;
+  std::string warnings = gl.reset_detection ? "" : "; it does not report when it resets";
+  if (const std::string risk = risk_of_threads(gl.renderer); !risk.empty()) warnings += "; " + risk;
   if (chooses_views(record.options.method))
-    return record.found.device.gl->renderer + ": " + record.found.device.note + resets;
-  return fmt::format("{}, {} depth bits, {} subpixel bits{}", record.found.device.gl->renderer,
-                     record.found.device.depth_bits, record.found.device.gl->subpixel_bits, resets);
+    return gl.renderer + ": " + record.found.device.note + warnings;
+  return fmt::format("{}, {} depth bits, {} subpixel bits{}", gl.renderer,
+                     record.found.device.depth_bits, gl.subpixel_bits, warnings);
 }
 
 // Where the promise of the method rests on a device.

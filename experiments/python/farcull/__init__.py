@@ -14,6 +14,13 @@ is wrong raises :class:`InputError` or :class:`Error` with ``where``, ``reason``
 MemoryError where there is no memory; there is no answer then.
 """
 
+import os
+
+# Mesa's llvmpipe draws without threads, which may damage the memory of this process. It reads the
+# variable when a display is opened. A value of the caller's own stands, and reports name it.
+os.environ.setdefault("LP_NUM_THREADS", "0")
+del os
+
 from ._errors import Error, InputError
 from . import _farcull
 

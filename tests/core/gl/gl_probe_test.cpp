@@ -47,7 +47,7 @@ TEST(GlProbe, EveryAssumptionIsProbedAndHolds) {
     EXPECT_FALSE(r.name.empty() || r.unit.empty() || r.note.empty()) << r.name;
     probed.insert(r.assumption);
   }
-  EXPECT_EQ(probed, (std::set<std::string>{"A1", "A2", "A3", "A4", "A5", "A6", "A7", "A8"}));
+  EXPECT_EQ(probed, (std::set<std::string>{"A1", "A2", "A3", "A4", "A5", "A6", "A7", "A8", "A10"}));
 }
 
 TEST(GlProbe, OtherSeedsPassToo) {
@@ -187,6 +187,12 @@ TEST(GlProbe, FailsWhereReadsComeBeforeWrites) {
 }
 
 // FAR pairs relies on no rasterizer, and what it relies on is the same either way.
+TEST(GlProbe, FailsWhereTheDriverHasAThread) {
+  ProbeOptions options = kBrief;
+  options.one_thread = true;
+  EXPECT_EQ(failures(options, "A10"), Names{"threads that may write to freed memory"});
+}
+
 TEST(GlProbe, PairsAloneRunWhatFarPairsReliesOn) {
   std::set<std::string> all, alone;
   for (const ProbeResult& r : run({.brief = true}, "")) {
@@ -203,6 +209,7 @@ TEST(GlProbe, PairsAloneRunWhatFarPairsReliesOn) {
   }
   EXPECT_EQ(all, alone);
   EXPECT_TRUE(alone.count("A8 atomics"));
+  EXPECT_TRUE(alone.count("A10 threads that may write to freed memory"));
   EXPECT_TRUE(alone.count("A7 faults are noticed, far-pairs"));
 }
 

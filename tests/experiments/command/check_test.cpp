@@ -365,9 +365,14 @@ TEST_F(Check, CertificateOfARunTellsWhatDrew) {
   EXPECT_EQ(run.radius_px, 0.8);
   EXPECT_EQ(run.views.size(), 2u);
   EXPECT_EQ(run.device.value().renderer, "some device");
-  ASSERT_EQ(run.assumptions.size(), 8u);
+  ASSERT_EQ(run.assumptions.size(), 9u);
   for (std::size_t a = 0; a < 8; ++a)
     EXPECT_TRUE(run.assumptions[a].starts_with("A" + std::to_string(a + 1))) << run.assumptions[a];
+  EXPECT_TRUE(run.assumptions.back().starts_with("A10: ")) << run.assumptions.back();
+  EXPECT_EQ(run.assumptions.back().find("thread"), std::string::npos);
+  record.found.device.gl->kind = "software";
+  const std::string last = certificate_of(scene, record).run.assumptions.back();
+  EXPECT_TRUE(last.ends_with("; it drew in 0 threads of its own")) << last;
   EXPECT_FALSE(certificate.run.device.has_value());  // of the method exact
   EXPECT_EQ(certificate.run.resolution, 0u);
 }

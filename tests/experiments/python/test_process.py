@@ -355,3 +355,35 @@ def test_a_thousand_frames_leak_nothing():
     print(f"{before:.1f} MB after 200 frames, {after:.1f} MB after 1000")
     # A frame that is kept, 1000 of them 72 kB each, would be 58 MB more.
     assert after - before < 8, (before, after)
+
+
+# Mesa's llvmpipe has no threads where farcull was imported first. The twin: another user of EGL has
+# opened a display before, with two threads.
+@pytest.mark.parametrize("threads", [0, 2])
+def test_threads_of_llvmpipe_are_named(threads):
+    earlier = f"""
+    import ctypes, os
+    os.environ["LP_NUM_THREADS"] = "{threads}"
+    egl = ctypes.CDLL("libEGL.so.1")
+    for name in ["eglGetPlatformDisplay", "eglCreateContext"]:
+        getattr(egl, name).restype = ctypes.c_void_p
+    surfaceless, opengl = 0x31DD, 0x30A2
+    display = ctypes.c_void_p(egl.eglGetPlatformDisplay(surfaceless, None, None))
+    assert egl.eglInitialize(display, None, None) and egl.eglBindAPI(opengl)
+    assert egl.eglCreateContext(display, None, None, None)
+    del os.environ["LP_NUM_THREADS"]
+    """
+    out = python(
+        earlier
+        + """
+    import farcull
+    assert os.environ["LP_NUM_THREADS"] == "0"
+    report = farcull.collide([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [2, 1, 0]], [0, 1], device="gl").report
+    print(report.device, report.promises, report.promises_reason, sep="|")
+    """
+    )
+    device, promises, reason = out.strip().split("|")
+    if "llvmpipe" not in device:
+        pytest.skip(f"the device is {device}")
+    assert promises == str(threads == 0), reason
+    assert ("draws in 2 threads" in reason) == (threads == 2), reason

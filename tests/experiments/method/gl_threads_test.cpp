@@ -1,0 +1,92 @@
+// Threads of a software device are named, and no promise rests on them. Each test runs twice: as all
+// others, without such threads, and with LP_NUM_THREADS=2, where it is its own twin.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "core/gl/driver_threads.h"
+#include "core/gl/probe.h"
+#include "experiments/library/farcull.h"
+#include "experiments/method/run.h"
+#include "experiments/record/certificate.h"
+#include "experiments/record/output.h"
+#include "experiments/record/tables.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/experiments/method/cache_lab.h"
+
+namespace farcull {
+namespace {
+
+class GlThreads : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (context.info().renderer.find("llvmpipe") == std::string::npos)
+      GTEST_SKIP() << "the software device is " << context.info().renderer;
+    // The other probes pass in tests of their own.
+    for (const auto& [reliance, use] : {std::pair(Reliance::drawing, ProbeUse::drawing),
+                                        std::pair(Reliance::pairs, ProbeUse::pairs)})
+      keep_verdict(context.info(), reliance, run_probes(context, {.only = "A10", .use = use}), 0);
+  }
+
+  static RunOptions options(Method method) {
+    RunOptions out{.method = method, .verify = false};
+    out.device = "software";
+    out.resolution = method == Method::far ? 64 : 0;
+    return out;
+  }
+
+  // Opened before the folder is another one: Mesa keeps its shaders below it.
+  static const GlContext& opened() {
+    static const GlContext context("software");
+    return context;
+  }
+
+  const GlContext& context = opened();
+  const lab::CacheFolder folder;  // for the verdicts
+  const int asked = std::atoi(std::getenv("LP_NUM_THREADS"));  // tests/environment.cpp
+  const std::string words =
+      asked == 1 ? "draws in 1 thread " : "draws in " + std::to_string(asked) + " threads ";
+};
+
+TEST_F(GlThreads, AreCounted) {
+  EXPECT_EQ(driver_threads(context.info().renderer), asked);
+  EXPECT_EQ(driver_threads("softpipe"), 0);
+  EXPECT_EQ(risk_of_threads(context.info().renderer).empty(), asked == 0);
+  bool among_the_inputs = false;
+  for (const auto& [name, value] : verdict_inputs(context.info(), Reliance::pairs))
+    among_the_inputs |= name == "threads" && value == std::to_string(asked);
+  EXPECT_TRUE(among_the_inputs);
+}
+
+TEST_F(GlThreads, RunsNameThemAndPromiseNothing) {
+  const Scene scene = make_builtin_scene("two-spheres");
+  for (const Method method : {Method::far, Method::far_pairs}) {
+    Session session("software");
+    const Record record = run(scene, options(method), session);
+    EXPECT_EQ(record.promise.holds, asked == 0) << record.promise.reason;
+    EXPECT_EQ(record.promise.reason.find("A10 threads") == std::string::npos, asked == 0);
+    EXPECT_EQ(to_json(scene, record)["device"]["threads"], asked);
+    const std::string table = run_table(scene, record);
+    EXPECT_EQ(table.find(words) == std::string::npos, asked == 0) << table;
+    const std::string line = certificate_of(scene, record).run.assumptions.back();
+    EXPECT_TRUE(line.starts_with("A10") && line.find(" in " + std::to_string(asked) + " thread") !=
+                                               std::string::npos)
+        << line;
+  }
+}
+
+TEST_F(GlThreads, TheLibraryNamesThemAndPromisesNothing) {
+  const std::vector<double> vertices = {0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, -1, 1, 1, 1, 2, 1, 1};
+  const std::vector<std::uint32_t> triangles = {0, 1, 2, 3, 4, 5}, objects = {0, 1};
+  Collider collider({.device = ColliderDevice::gl});
+  const ColliderResult found =
+      collider.find({.vertices = vertices, .triangles = triangles, .object_starts = objects});
+  EXPECT_EQ(found.pairs.size(), 1u);
+  EXPECT_EQ(found.report.promises, asked == 0) << found.report.promises_reason;
+  EXPECT_EQ(found.report.promises_reason.find(words) == std::string::npos, asked == 0)
+      << found.report.promises_reason;
+}
+
+}  // namespace
+}  // namespace farcull
