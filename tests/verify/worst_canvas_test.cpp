@@ -77,7 +77,7 @@ TEST(WorstFar, MissesNothingOnRandomScenes) {
       const Outcome out = far_on(canvas, scene, fattener, seed % 4 ? "x,y,z" : "1:2:0.5,-x",
                                  1 + static_cast<int>(seed * seed % 61));
       EXPECT_EQ(out.accounting.false_negatives, 0u);
-      culled += scene.triangles.size() - out.live;
+      culled += scene.triangles.size() - out.live.size();
     }
   }
   EXPECT_GT(culled, 300 * kScenes / 40) << "a method that keeps everything would pass";
