@@ -49,6 +49,9 @@ TEST(WorstLemma, LemmasFailWithoutTheInputTerm) {
 TEST(WorstLemma, LemmasFailWithoutTheDoubleTerm) {
   lab::expect_term_needed(canvases(), "double", 20'000);
 }
+TEST(WorstLemma, ErrorsThatTurnEdgesAreTried) {
+  lab::expect_turned_edges_noticed(canvases(), 24'000);
+}
 TEST(WorstLemma, LemmasFailWithoutTheVertexTerm) {
   lab::expect_term_needed(canvases(), "vertex", 20'000);
 }

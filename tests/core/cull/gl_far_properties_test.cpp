@@ -12,13 +12,14 @@ lab::MakeCanvas canvases(const GlCanvasOptions& options = {}) {
 }
 
 TEST(GlFarProperty, NoFamilyOfExtremeScenesLosesAPair) {
-  lab::expect_far_survives_all_families(canvases(), 60, 60, "gl");
+  lab::expect_far_survives_all_families(canvases(),
+                                        {.canvas = "gl", .fixed = 30, .of_the_day = 30});
 }
 
 TEST(GlFarProperty, NorWithOcclusionQueriesOn24BitDepth) {
   lab::expect_far_survives_all_families(
-      canvases({.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}), 15, 5,
-      "gl24");
+      canvases({.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}),
+      {.canvas = "gl24", .fixed = 8, .of_the_day = 4});
 }
 
 TEST(GlFarProperty, KeptCasesStayMended) { EXPECT_GT(lab::replay_cases(canvases()), 0); }

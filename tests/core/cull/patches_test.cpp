@@ -168,7 +168,7 @@ TEST(FarSelfTwin, BitsReadInTheOppositeOrderLosePairs) {
 std::pair<Scene, Asked> extreme(const lab::Family& family, const Fattener& fattener,
                                 std::uint64_t seed) {
   rc::Random random(lab::family_seed(family, fattener) + seed);
-  const lab::Given given = lab::given()(random, 40).value();
+  const lab::Given given = lab::given(24)(random, 40).value();
   Scene scene = lab::scene_of(given, family);
   for (Object& object : scene.objects) object.self = true;
   return {scene,
