@@ -22,6 +22,12 @@ inline std::array<std::uint64_t, 2> seeds(std::uint64_t fixed) {
   return {fixed, seed_of_day(fixed)};
 }
 
+/// The seed of scene i of n: one half has the fixed seeds 0 .. n / 2 - 1, the other those of the
+/// day.
+inline std::uint64_t nth_seed(std::uint64_t i, std::uint64_t n) {
+  return i < n / 2 ? i : seed_of_day(i);
+}
+
 /// A file of the build tree for a minimized input that failed, to be moved to tests/cases. Makes
 /// the folder.
 std::filesystem::path failure_file(const std::string& name);

@@ -120,7 +120,9 @@ Asked asked_of(std::uint64_t seed) {
 Found crumpled_sum(const Fattener& fattener, int scenes, Twin twin = Twin::none) {
   WorstCanvas canvas(fattener.solid);
   Found sum;
-  for (int seed = 0; seed < scenes; ++seed) {
+  for (int n = 0; n < scenes; ++n) {
+    // The twins lose pairs by fixed seeds.
+    const std::uint64_t seed = twin == Twin::none ? nth_seed(n, scenes) : n;
     Asked asked = asked_of(seed);
     asked.twin = twin;
     const Found found = far_self_on(canvas, crumpled(seed), fattener, asked);
@@ -182,15 +184,18 @@ TEST(FarSelf, MissesNothingInTheFamiliesOfExtremeScenes) {
     WorstCanvas canvas(fattener.solid);
     for (const lab::Family& family : lab::families()) {
       SCOPED_TRACE(std::string(family.name) + ", " + fattener.name);
-      Found sum;
+      std::uint64_t colliding = 0;
       lab::AtRisk at_risk = {};
       for (const std::uint64_t first : seeds(0)) {
         for (std::uint64_t seed = first; seed < first + 3; ++seed) {
           auto [scene, asked] = extreme(family, fattener, seed);
-          const Found found = far_self_on(canvas, scene, fattener, asked);
-          EXPECT_EQ(found.missed, 0u) << "seed " << seed;
+          lab::expect_not(
+              [&](const Scene& of) { return far_self_on(canvas, of, fattener, asked).missed > 0; },
+              scene, std::string("self-") + family.name + "-" + fattener.name,
+              "views " + asked.views + " resolution " + std::to_string(asked.resolution) +
+                  " : against itself, patches of " + std::to_string(asked.patch));
           if (first != 0) continue;
-          sum.colliding += found.colliding;
+          colliding += all_colliding_pairs(scene, {.threads = 1}).pairs.size();
           for (std::size_t i = 0; i < lab::kSmaller.size(); ++i) {
             asked.factor = lab::kSmaller[i];
             at_risk[i] += far_self_on(canvas, scene, fattener, asked).missed;
@@ -198,7 +203,7 @@ TEST(FarSelf, MissesNothingInTheFamiliesOfExtremeScenes) {
         }
       }
       std::printf("%-5s %-16s %4llu pairs, at risk %s\n", fattener.name.c_str(), family.name,
-                  static_cast<unsigned long long>(sum.colliding), lab::text_of(at_risk).c_str());
+                  static_cast<unsigned long long>(colliding), lab::text_of(at_risk).c_str());
       for (const std::uint64_t lost : at_risk) EXPECT_GT(lost, 0u) << "this proves nothing";
     }
   }
