@@ -117,16 +117,19 @@ Asked asked_of(std::uint64_t seed) {
 }
 
 // The sums over scenes, of the same seeds for every twin.
-Found crumpled_sum(const Fattener& fattener, int scenes, Twin twin = Twin::none) {
+Found crumpled_sum(const Fattener& fattener, int scenes, Twin twin = Twin::none,
+                   double factor = 1) {
   WorstCanvas canvas(fattener.solid);
   Found sum;
   for (int n = 0; n < scenes; ++n) {
-    // The twins lose pairs by fixed seeds.
-    const std::uint64_t seed = twin == Twin::none ? nth_seed(n, scenes) : n;
+    // What loses pairs does so by fixed seeds.
+    const bool promises = twin == Twin::none && factor == 1;
+    const std::uint64_t seed = promises ? nth_seed(n, scenes) : n;
     Asked asked = asked_of(seed);
     asked.twin = twin;
+    asked.factor = factor;
     const Found found = far_self_on(canvas, crumpled(seed), fattener, asked);
-    if (twin == Twin::none) {
+    if (promises) {
       EXPECT_EQ(found.missed, 0u) << "seed " << seed;
     }
     sum.missed += found.missed;
@@ -144,12 +147,15 @@ TEST(FarSelf, MissesNothingOnSheetsThatPierceThemselves) {
     constexpr int kTried = trials(kScenes, 3);
     const Found sum = crumpled_sum(fattener, kTried);
     EXPECT_GT(sum.colliding, 1000u * kTried / kScenes) << "there is no pair to miss";
-    EXPECT_GT(sum.culled, 0u) << "a method that keeps everything would pass";
     EXPECT_GT(sum.avoided, 0u) << "a method that keeps everything would pass";
-    std::printf("%s: %llu pairs collide, %llu triangles culled, %llu box pairs avoided\n",
-                fattener.name.c_str(), static_cast<unsigned long long>(sum.colliding),
-                static_cast<unsigned long long>(sum.culled),
-                static_cast<unsigned long long>(sum.avoided));
+    const std::uint64_t at_risk = crumpled_sum(fattener, 4, Twin::none, 0).missed;
+    EXPECT_GT(at_risk, 0u) << "no pair is lost without a radius: this proves nothing";
+    std::printf(
+        "%s: %llu pairs collide, %llu triangles culled, %llu box pairs avoided; %llu pairs at risk "
+        "at 0\n",
+        fattener.name.c_str(), static_cast<unsigned long long>(sum.colliding),
+        static_cast<unsigned long long>(sum.culled), static_cast<unsigned long long>(sum.avoided),
+        static_cast<unsigned long long>(at_risk));
   }
 }
 
@@ -187,7 +193,7 @@ TEST(FarSelf, MissesNothingInTheFamiliesOfExtremeScenes) {
       std::uint64_t colliding = 0;
       lab::AtRisk at_risk = {};
       for (const std::uint64_t first : seeds(0)) {
-        for (std::uint64_t seed = first; seed < first + (first == 0 ? 8 : 4); ++seed) {
+        for (std::uint64_t seed = first; seed < first + (first == 0 ? 5 : 2); ++seed) {
           auto [scene, asked] = extreme(family, fattener, seed);
           lab::expect_not(
               [&](const Scene& of) { return far_self_on(canvas, of, fattener, asked).missed > 0; },
@@ -195,7 +201,8 @@ TEST(FarSelf, MissesNothingInTheFamiliesOfExtremeScenes) {
               "views " + asked.views + " resolution " + std::to_string(asked.resolution) +
                   " : against itself, patches of " + std::to_string(asked.patch));
           if (first != 0) continue;
-          colliding += all_colliding_pairs(scene, {.threads = 1}).pairs.size();
+          const ExactResult truth = all_colliding_pairs(scene, {.threads = 1});
+          colliding += truth.pairs.size() + truth.neighbour_pairs.size();
           for (std::size_t i = 0; i < lab::kSmaller.size(); ++i) {
             asked.factor = lab::kSmaller[i];
             at_risk[i] += far_self_on(canvas, scene, fattener, asked).missed;
