@@ -14,6 +14,10 @@ set -euo pipefail
 source "$(dirname -- "${BASH_SOURCE[0]}")/../experiments/setup.sh"
 cd "$farcull_root"
 
+# Random tests try new inputs every day, and the same ones again with the same number.
+export FARCULL_SEED=${FARCULL_SEED:-$(date -u +%Y%m%d)}
+echo "tests: seed of the day $FARCULL_SEED; FARCULL_SEED=$FARCULL_SEED replays it"
+
 sanitize=${CI:+inner}
 if [[ ${1-} == --sanitize ]]; then
   sanitize=all

@@ -167,10 +167,15 @@ Window lab_window(int side, double depth) {
   return w;
 }
 
-// Moves each corner by kMaxDoubleError along the axes, as double arithmetic may.
+// Moves each corner by kMaxDoubleError along the axes, as double arithmetic may: all by one vector,
+// which moves the points of the triangle farthest, or each by its own, which turns its edges.
 void displace(std::array<Vec3, 3>& corners, Random& random) {
-  const Vec3 by(random.sign(), random.sign(), random.sign());
-  for (Vec3& c : corners) c += by * kMaxDoubleError;
+  const bool turn = random.below(2) != 0;
+  Vec3 by(0, 0, 0);
+  for (Vec3& c : corners) {
+    if (turn || by[0] == 0) by = Vec3(random.sign(), random.sign(), random.sign());
+    c += by * kMaxDoubleError;
+  }
 }
 
 // Compares a point with the samples of a pixel that contains it.

@@ -35,8 +35,9 @@ struct LemmaSettings {
   std::uint64_t seed = 0;
   /// The radius in px for a view's budget and depth step.
   std::function<double(const Budget& budget, double depth_step)> radius;
-  /// Displaces what is drawn by as much as double arithmetic may (kMaxDoubleError per axis), away
-  /// from the pixel centre: the budget's "double" term at its worst.
+  /// Displaces what is drawn by as much as double arithmetic may (kMaxDoubleError per axis and
+  /// corner): a half of the triangles as a whole, which is the budget's "double" term at its worst,
+  /// the others each corner by itself, which turns edges.
   bool displace = false;
   /// The samples are what the depth buffer holds (Canvas::depths), the only ones that
   /// fixed-function depth has. A monotone rounding of both ends costs nothing (docs/reliability.md,

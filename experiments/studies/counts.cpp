@@ -27,6 +27,7 @@ NamedCounts named(const RunCounts& c) {
                      {"promises", c.promises},
                      {"scene_hash", c.scene_hash}};
   if (c.revoked) out.push_back({"revoked", true});
+  add(out, "at_risk", c.at_risk);
   add(out, "object_triangles", c.object_triangles);
   if (c.drawn) {
     out.insert(out.end(), {{"queries", c.drawn->queries},

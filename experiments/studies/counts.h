@@ -51,7 +51,10 @@ struct NeighbourCounts {
 
 /// Counts of a RunPoint.
 struct RunCounts : AnswerCounts {
-  std::uint64_t missed_penetrating = 0;   // of `missed` (verify/contact.h); the rest touches
+  std::uint64_t missed_penetrating = 0;  // of `missed` (verify/contact.h); the rest touches
+  /// Pairs that the same run misses with 0.9 of its radius; empty: not asked. Where there are none,
+  /// that nothing was missed says nothing of the radius.
+  std::optional<std::uint64_t> at_risk = {};
   std::uint64_t colliding_triangles = 0;  // of the truth
   std::uint64_t kept_triangles = 0, kept_objects = 0;
   bool promises = false;  // the method, by its options; a miss then breaks the promise

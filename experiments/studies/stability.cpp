@@ -77,8 +77,19 @@ std::vector<Point> grid(const GridChoice& choice) {
   return out;
 }
 
+// With the pairs at risk of a radius.
+PointResult measure_with_risk(const RunPoint& run, Lab& lab) {
+  PointResult out = measure_run(run, lab);
+  auto* counts = std::get_if<RunCounts>(&out.counts);
+  if (run.method != far || counts == nullptr) return out;
+  RunPoint smaller = run;
+  smaller.radius = RadiusRule{.factor = 0.9};
+  counts->at_risk = std::get<RunCounts>(measure_run(smaller, lab).counts).missed;
+  return out;
+}
+
 PointResult measure(const Point& point, Lab& lab) {
-  if (const auto* run = std::get_if<RunPoint>(&point)) return measure_run(*run, lab);
+  if (const auto* run = std::get_if<RunPoint>(&point)) return measure_with_risk(*run, lab);
   PointResult out = measure_peer(std::get<PeerPoint>(point), lab, 1);
   if (auto* counts = std::get_if<PeerCounts>(&out.counts)) {
     counts->colliding_triangles.reset();

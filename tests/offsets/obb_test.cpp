@@ -14,6 +14,7 @@
 
 #include "core/base/glsl_shim.h"
 #include "tests/core/base/rational.h"
+#include "tests/core/base/seed.h"
 #include "verify/box_line.h"
 
 namespace farcull {
@@ -100,6 +101,7 @@ Points random_points(Random& random) {
 TEST(ObbOf, HoldsHullAndBallOfEveryPolygon) {
   Random random(501);
   for (int n = 0; n < 30'000; ++n) {
+    if (n == 15'000) random = Random(seed_of_day(501));
     const Points points = random_points(random);
     const double radius = random.below(4) == 0   ? 0
                           : random.below(3) == 0 ? std::abs(random.scaled(-20, 8))
@@ -162,6 +164,7 @@ TEST(ObbKernel, TheFilterInDoubleHoldsTheExactInterval) {
   Random random(508);
   int hits = 0;
   for (int n = 0; n < 100'000; ++n) {
+    if (n == 50'000) random = Random(seed_of_day(508));
     Solid solid;
     float cx, cy;
     adversarial(random, solid, cx, cy);
@@ -180,6 +183,7 @@ void expect_holds_adversarial(Kernel kernel, int cases) {
   Random random(503);
   Tally tally;
   for (int n = 0; n < cases; ++n) {
+    if (n == cases / 2) random = Random(seed_of_day(503));
     Solid solid;
     float cx, cy;
     adversarial(random, solid, cx, cy);
@@ -231,6 +235,7 @@ TEST(ObbKernel, HoldsTheExactIntervalOfRealBoxes) {
   Random random(504);
   Tally tally;
   for (int n = 0; n < 60'000; ++n) {
+    if (n == 30'000) random = Random(seed_of_day(504));
     const Points points = random_points(random);
     const Solid solid = obb_of(points, 0.715);
     for_pixels(points, 12, random, [&](float cx, float cy) {
@@ -246,6 +251,7 @@ TEST(ObbKernel, HoldsTheExactIntervalOfRealBoxes) {
 TEST(ObbKernel, HoldsEveryPointOfThePixel) {
   Random random(505);
   for (int n = 0; n < 60'000; ++n) {
+    if (n == 30'000) random = Random(seed_of_day(505));
     const Points points = random_points(random);
     const Solid solid = obb_of(points, 0.7072);
     for (int k = 0; k < 8; ++k) {

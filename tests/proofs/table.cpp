@@ -76,7 +76,9 @@ std::string least_value(const Bound& bound) {
     const double middle = 0.5 * (low + high);
     (is_proved(bound, middle) ? high : low) = middle;
   }
-  return shown(bound, high, 4);
+  // Rounded up to four digits it may look like more than ours, which is shown with six.
+  const std::string least = shown(bound, high, 4);
+  return parsed(bound, least) > bound.value ? shown(bound, high, 6) : least;
 }
 
 std::string row(const Bound& bound, const std::string& least) {

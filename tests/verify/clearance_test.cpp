@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "experiments/lemma/pair_generators.h"
+#include "tests/core/base/seed.h"
 #include "tests/verify/reference.h"
 #include "verify/disjoint_distance.h"
 #include "verify/exact.h"
@@ -150,9 +151,10 @@ Count count(int pairs, std::uint64_t seed) {
 }
 
 TEST(ClearanceFilter, NeverContradictsExactArithmetic) {
-  const Count c = count<FilterBounds>(3000, 1);
+  const Count c = count<FilterBounds>(1500, 1);
   EXPECT_EQ(c.wrong, 0);
-  EXPECT_GT(c.decided, 1500);
+  EXPECT_GT(c.decided, 750);
+  EXPECT_EQ(count<FilterBounds>(1500, seed_of_day(1)).wrong, 0);
 }
 
 struct NoPoint : FilterBounds {

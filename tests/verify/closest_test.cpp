@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/core/base/seed.h"
 #include "tests/core/base/trials.h"
 #include "tests/verify/closest_reference.h"
 #include "tests/verify/hard_pairs.h"
@@ -168,15 +169,16 @@ TEST(ClosestPoints, AsTheReferenceOnPairsOfEveryKind) {
   const int count = trials(100000, 2000);
   int touching = 0;
   for (int n = 0; n < count && !::testing::Test::HasFailure(); ++n) {
+    if (n == count / 2) random = PairRandom(seed_of_day(19));
     const auto& [name, make] = all[n % all.size()];
     const PairOfTriangles pair = make(random);
     SCOPED_TRACE(name + " " + std::to_string(n));
     if (!hard_pairs::finite(pair)) continue;
     expect_as_reference(pair.a, pair.b);
     if (n % 8 == 0) expect_sound(pair.a, pair.b);
-    touching += squared_distance(pair.a, pair.b).is_zero();
+    touching += n < count / 2 && squared_distance(pair.a, pair.b).is_zero();
   }
-  EXPECT_GT(touching, count / 20);
+  EXPECT_GT(touching, count / 40);
 }
 
 // The twin: a reference that leaves out edges against edges differs.

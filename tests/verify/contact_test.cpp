@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/core/base/rational.h"
+#include "tests/core/base/seed.h"
 #include "tests/verify/reference.h"
 #include "verify/exact.h"
 
@@ -217,6 +218,7 @@ TEST(Contact, AsTheReferenceAmongDoublesOfEverySize) {
   std::uint64_t penetrating = 0;
   std::uint64_t touching = 0;
   for (int n = 0; n < 4000; ++n) {
+    if (n == 2000) random = Random(seed_of_day(501));
     std::array<double, 5> values{};
     for (double& value : values) {
       value = n % 2 == 0 ? random.uniform(-1, 1) : random.scaled(-40, 40);
@@ -235,10 +237,10 @@ TEST(Contact, AsTheReferenceAmongDoublesOfEverySize) {
     ASSERT_EQ(contact_of(b, a), expected) << "pair " << n;
     const auto& order = kPermutations[random.below(6)];
     ASSERT_EQ(contact_of(reordered(a, order), b), expected) << "pair " << n;
-    if (intersects(a, b)) ++(expected == kPenetrating ? penetrating : touching);
+    if (n < 2000 && intersects(a, b)) ++(expected == kPenetrating ? penetrating : touching);
   }
-  EXPECT_GT(penetrating, 100u);
-  EXPECT_GT(touching, 100u);
+  EXPECT_GT(penetrating, 50u);
+  EXPECT_GT(touching, 50u);
 }
 
 TEST(CountContacts, CountsEachPairWhateverTheThreads) {

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "tests/core/base/seed.h"
 #include "tests/verify/reference.h"
 
 namespace farcull {
@@ -248,6 +249,7 @@ TEST(Intersects, RandomPairsOnSmallGrids) {
   std::mt19937 random(7);
   std::array<int, 2> answers = {0, 0};
   for (int n = 0; n < 300'000; ++n) {
+    if (n == 150'000) random.seed(static_cast<unsigned>(seed_of_day(7)));
     const int size = 2 + n % 5;
     std::array<Triangle, 2> pair;
     for (Triangle& t : pair) {
@@ -255,10 +257,10 @@ TEST(Intersects, RandomPairsOnSmallGrids) {
     }
     const bool expected = reference::intersects(pair[0], pair[1]);
     ASSERT_EQ(intersects(pair[0], pair[1]), expected) << text(pair[0], pair[1]);
-    ++answers[expected];
+    answers[expected] += n < 150'000;  // by the fixed seed
   }
-  EXPECT_GT(answers[0], 50'000);
-  EXPECT_GT(answers[1], 50'000);
+  EXPECT_GT(answers[0], 25'000);
+  EXPECT_GT(answers[1], 25'000);
 }
 
 // Any finite double is as likely as any other, so coordinates of one pair differ by hundreds of
@@ -268,6 +270,7 @@ TEST(Intersects, RandomPairsOfArbitraryBits) {
   std::mt19937_64 random(13);
   std::array<int, 2> answers = {0, 0};
   for (int n = 0; n < 2'000; ++n) {
+    if (n == 1'000) random.seed(seed_of_day(13));
     std::array<Triangle, 2> pair;
     for (Triangle& t : pair) {
       for (Vec3& p : t) {
@@ -285,10 +288,10 @@ TEST(Intersects, RandomPairsOfArbitraryBits) {
     if (n % 7 == 0) b[0] = a[0] / 4 + a[1] / 4 + a[2] / 2;
     const bool expected = reference::intersects(a, b);
     ASSERT_EQ(intersects(a, b), expected) << text(a, b);
-    ++answers[expected];
+    answers[expected] += n < 1'000;  // by the fixed seed
   }
-  EXPECT_GT(answers[0], 500);
-  EXPECT_GT(answers[1], 500);
+  EXPECT_GT(answers[0], 250);
+  EXPECT_GT(answers[1], 250);
 }
 
 /// Twelve or so values that meet in all combinations: equal and nearly equal, huge and subnormal.

@@ -95,6 +95,14 @@ double excess(const Rows& rows) {
 }
 std::string excess_text(const Rows& rows) { return rounded(excess(rows)); }
 
+// Pairs that 0.9 of the radius would miss; of methods without a radius nothing.
+std::string risk_text(const Rows& rows) {
+  const bool asked = std::any_of(rows.begin(), rows.end(), [](const Row* row) {
+    return count_of(*row, "at_risk").has_value();
+  });
+  return asked ? grouped(total(rows, "at_risk")) : "-";
+}
+
 Panel panel_of(const Family& family, const std::string& y) {
   const bool zero = std::any_of(family.tracks.begin(), family.tracks.end(),
                                 [](const Track& track) { return track.places.contains(0); });
@@ -194,11 +202,13 @@ DataTable short_table(const std::vector<Family>& families) {
       .name = "stability",
       .caption =
           "Pairs in all scenes of a family together: colliding ones, those of them that "
-          "a method missed, and those that a library reported though they do not "
-          "collide. Then how many triangles culling kept for each one that collides, in "
+          "a method missed, those that it would miss with 0.9 of its radius (at risk: where "
+          "there are none, the scenes do not show that the radius is large enough), and those "
+          "that a library reported though they do not collide. Then how many triangles culling "
+          "kept for each one that collides, in "
           "the first scene of the family and in its last: \"2.14 at 10\" are 2.14 "
           "triangles where what the family changes is 10",
-      .columns = columns({"family", "method"}, {"scenes", "colliding", "missed", "wrong",
+      .columns = columns({"family", "method"}, {"scenes", "colliding", "missed", "at risk", "wrong",
                                                 "kept, first scene", "kept, last scene"})};
   for (const Family& family : families) {
     for (const auto& [method, places] : family.tracks) {
@@ -207,8 +217,9 @@ DataTable short_table(const std::vector<Family>& families) {
       for (const auto& [at, rows] : places) all.insert(all.end(), rows.begin(), rows.end());
       out.rows.push_back({family.name + (family.axis.empty() ? "" : ", " + family.axis), method,
                           grouped(all.size()), grouped(total(all, "colliding")),
-                          grouped(total(all, "missed")), grouped(total(all, "wrong")),
-                          kept_at(*places.begin()), kept_at(*places.rbegin())});
+                          grouped(total(all, "missed")), risk_text(all),
+                          grouped(total(all, "wrong")), kept_at(*places.begin()),
+                          kept_at(*places.rbegin())});
     }
   }
   return out;

@@ -5,13 +5,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "experiments/lemma/lemma.h"
 #include "offsets/minkowski.h"
 #include "offsets/obb.h"
+#include "tests/core/base/seed.h"
 #include "tests/core/canvas/lab.h"
 #include "verify/exact.h"
 
@@ -23,10 +26,11 @@ inline std::vector<Fattener> fatteners() { return {obb_fattener(), minkowski_fat
 
 inline std::vector<LemmaRow> lemma_rows(const MakeCanvas& make, const Fattener& fattener,
                                         std::uint64_t points, bool displace,
-                                        std::function<double(const Budget&, double)> radius) {
+                                        std::function<double(const Budget&, double)> radius,
+                                        std::uint64_t seed = kSeed) {
   LemmaSettings settings;
   settings.points = points;
-  settings.seed = kSeed;
+  settings.seed = seed;
   settings.displace = displace;
   settings.radius = std::move(radius);
   return lemma_experiment(*make(fattener), fattener, settings);
@@ -43,16 +47,19 @@ inline double radius_without(const std::string& term, Budget b) {
 }
 
 /// Lemmas 1 and 2: no point of any generator is violated at the budget radius, for both offsets,
-/// also where double arithmetic displaces by all it may.
+/// also where double arithmetic displaces by all it may. A half of the points is of the fixed seed,
+/// a half of the day's.
 inline void expect_lemmas(const MakeCanvas& make, std::uint64_t points) {
   for (const Fattener& fattener : fatteners()) {
     for (const bool displace : {false, true}) {
-      const auto budget = [](const Budget& b, double) { return b.radius(); };
-      for (const LemmaRow& row : lemma_rows(make, fattener, points, displace, budget)) {
-        SCOPED_TRACE(fattener.name + ", " + row.generator);
-        EXPECT_GE(row.points, points / lemma_generators().size());
-        EXPECT_EQ(row.no_sample, 0u);
-        EXPECT_EQ(row.not_bounding, 0u);
+      for (const std::uint64_t seed : seeds(kSeed)) {
+        const auto budget = [](const Budget& b, double) { return b.radius(); };
+        for (const LemmaRow& row : lemma_rows(make, fattener, points / 2, displace, budget, seed)) {
+          SCOPED_TRACE(fattener.name + ", " + row.generator + ", seed " + std::to_string(seed));
+          EXPECT_GE(row.points, points / 2 / lemma_generators().size());
+          EXPECT_EQ(row.no_sample, 0u);
+          EXPECT_EQ(row.not_bounding, 0u);
+        }
       }
     }
   }
@@ -65,6 +72,39 @@ inline void expect_term_needed(const MakeCanvas& make, const std::string& term,
     const auto without = [&term](const Budget& b, double) { return radius_without(term, b); };
     EXPECT_GT(lemma_total(lemma_rows(make, fattener, points, true, without)).violations(), 0u)
         << term << ", " << fattener.name;
+  }
+}
+
+/// The twin of displacing each corner by itself: a fattener that moves a patch back by the error of
+/// its first corner, for which the term "double" would be superfluous if all corners erred alike.
+/// Where errors turn edges, points are lost; where each corner is moved back, none is. The corners
+/// of this generator are next to whole numbers, so that a fraction tells the error.
+inline void expect_turned_edges_noticed(const MakeCanvas& make, std::uint64_t points) {
+  for (const Fattener& fattener : fatteners()) {
+    for (const bool each : {false, true}) {
+      Fattener undone = fattener;
+      undone.fatten_inside = nullptr;
+      undone.fatten = [fattener, each](const Patch& patch, double radius, const ProxyBounds& bounds,
+                                       Drawables& out) {
+        Patch back = patch;
+        for (int i = 0; i < patch.count; ++i) {
+          for (int k = 0; k < 2; ++k) {
+            const double x = patch.corners[each ? i : 0][k];
+            back.corners[i][k] -= std::copysign(kMaxDoubleError, x - std::round(x));
+          }
+        }
+        fattener.fatten(back, radius, bounds, out);
+      };
+      LemmaSettings settings;
+      settings.points = points;
+      settings.generator = "exact pixel corners";
+      settings.seed = kSeed;
+      settings.displace = true;
+      settings.radius = [](const Budget& b, double) { return radius_without("double", b); };
+      const LemmaRow row = lemma_experiment(*make(undone), undone, settings).at(0);
+      EXPECT_EQ(row.violations() > 0, !each)
+          << fattener.name << ", " << row.violations() << " of " << row.points;
+    }
   }
 }
 
@@ -164,22 +204,24 @@ inline int count_unseen(const Seen& seen) {
                           std::count(seen.backward.begin(), seen.backward.end(), 0));
 }
 
-/// Theorem 1: triangles that share a point see each other, whichever is stored.
+/// Theorem 1: triangles that share a point see each other, whichever is stored. Here and below
+/// every other round is of the day's seed.
 inline void expect_theorem1(const MakeCanvas& make, int rounds) {
   for (const Fattener& fattener : fatteners()) {
     SCOPED_TRACE(fattener.name);
-    Random random(kSeed);
+    Random random(kSeed), of_the_day(seed_of_day(kSeed));
     const std::unique_ptr<Canvas> canvas = make(fattener);
     const Window w = window(960, 64);
     int unseen_without_radius = 0;
     for (int round = 0; round < rounds; ++round) {
-      const Pairs pairs = touching_pairs(random, 10);
+      const bool fixed = round % 2 == 0;
+      const Pairs pairs = touching_pairs(fixed ? random : of_the_day, 10);
       for (std::size_t i = 0; i < pairs.first.size(); ++i)
         ASSERT_TRUE(intersects(pairs.first[i], pairs.second[i]));
       EXPECT_EQ(count_unseen(ask_pairs(*canvas, fattener, pairs, w, 1)), 0) << "round " << round;
-      unseen_without_radius += count_unseen(ask_pairs(*canvas, fattener, pairs, w, 0));
+      if (fixed) unseen_without_radius += count_unseen(ask_pairs(*canvas, fattener, pairs, w, 0));
     }
-    EXPECT_GT(unseen_without_radius, 20 * rounds) << "the twin without a radius must fail";
+    EXPECT_GT(unseen_without_radius, 10 * rounds) << "the twin without a radius must fail";
 
     const Window small = window(512, 64);
     const Pairs corners = corner_pairs(random, small);
@@ -194,11 +236,12 @@ inline void expect_theorem1(const MakeCanvas& make, int rounds) {
 inline void expect_corollary1(const MakeCanvas& make, int rounds) {
   for (const Fattener& fattener : fatteners()) {
     SCOPED_TRACE(fattener.name);
-    Random random(kSeed);
+    Random fixed(kSeed), of_the_day(seed_of_day(kSeed));
     const std::unique_ptr<Canvas> canvas = make(fattener);
     const Window w = window(960, 64);
-    int unseen = 0, intersecting = 0;
+    int unseen = 0, intersecting = 0;  // by the fixed seed
     for (int round = 0; round < rounds; ++round) {
+      Random& random = round % 2 == 0 ? fixed : of_the_day;
       Pairs pairs;
       for (int cell = 0; cell < 100; ++cell) {
         const Vec3 centre(96 * (cell % 10) - 432, 96 * (cell / 10) - 432, 0);
@@ -213,15 +256,15 @@ inline void expect_corollary1(const MakeCanvas& make, int rounds) {
       const Seen seen = ask_pairs(*canvas, fattener, pairs, w, 1);
       for (std::size_t i = 0; i < pairs.first.size(); ++i) {
         const bool meet = intersects(pairs.first[i], pairs.second[i]);
-        intersecting += meet;
+        intersecting += meet && round % 2 == 0;
         for (const auto* answers : {&seen.forward, &seen.backward}) {
-          unseen += !(*answers)[i];
+          unseen += !(*answers)[i] && round % 2 == 0;
           EXPECT_FALSE(meet && !(*answers)[i]) << "round " << round << ", pair " << i;
         }
       }
     }
-    EXPECT_GT(unseen, 15 * rounds) << "a canvas that sees everything would pass";
-    EXPECT_GT(intersecting, 8 * rounds)
+    EXPECT_GT(unseen, 15 * rounds / 2) << "a canvas that sees everything would pass";
+    EXPECT_GT(intersecting, 8 * rounds / 2)
         << "the generator makes too few intersecting pairs to find a miss";
   }
 }

@@ -12,16 +12,14 @@ lab::MakeCanvas canvases(const GlCanvasOptions& options = {}) {
 }
 
 TEST(GlFarProperty, NoFamilyOfExtremeScenesLosesAPair) {
-  lab::expect_far_survives_all_families(canvases(), 250, "gl");
+  lab::expect_far_survives_all_families(canvases(),
+                                        {.canvas = "gl", .fixed = 30, .of_the_day = 30});
 }
 
 TEST(GlFarProperty, NorWithOcclusionQueriesOn24BitDepth) {
   lab::expect_far_survives_all_families(
-      canvases({.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}), 15, "gl24");
-}
-
-TEST(GlFarProperty, EveryFamilyLosesPairsAtTheRadiusThatItNames) {
-  lab::expect_every_family_loses_pairs(canvases(), "gl");
+      canvases({.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}),
+      {.canvas = "gl24", .fixed = 8, .of_the_day = 4});
 }
 
 TEST(GlFarProperty, KeptCasesStayMended) { EXPECT_GT(lab::replay_cases(canvases()), 0); }

@@ -11,6 +11,7 @@
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/scene_file.h"
 #include "offsets/obb.h"
+#include "tests/core/base/seed.h"
 #include "tests/core/gl/gl_lab.h"
 #include "tests/core/scene/scenes.h"
 #include "verify/accounting.h"
@@ -44,16 +45,19 @@ void expect_right(const Scene& scene, const Record& record) {
 
 TEST(GlFar, MissesNothingOnRandomScenes) {
   std::uint64_t colliding = 0, culled = 0;
-  for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+  for (std::uint64_t n = 1; n <= 150; ++n) {
+    const bool fixed = n % 2 != 0;
+    const std::uint64_t seed = fixed ? n : seed_of_day(n);
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Scene scene = random_scene(seed);
-    const Record record = run(scene, 1 + static_cast<int>(seed * seed % 97));
+    const Record record = run(scene, 1 + static_cast<int>(n * n % 97));
     expect_right(scene, record);
+    if (!fixed) continue;
     colliding += record.collisions.pairs.size();
     culled += scene.triangles.size() - record.found.triangle_count;
   }
-  EXPECT_GT(colliding, 10'000u) << "too few intersecting pairs to find a miss";
-  EXPECT_GT(culled, 1'000u) << "a method that keeps everything would pass";
+  EXPECT_GT(colliding, 5'000u) << "too few intersecting pairs to find a miss";
+  EXPECT_GT(culled, 500u) << "a method that keeps everything would pass";
 }
 
 TEST(GlFar, MissesNothingOnBuiltInScenes) {

@@ -51,6 +51,9 @@ TEST(NativeLemma, LemmasFailWithoutTheDoubleTerm) {
   lab::expect_term_needed(canvases(), "double", 20'000);
   lab::expect_term_needed(worst(), "double", 20'000);
 }
+TEST(NativeLemma, ErrorsThatTurnEdgesAreTried) {
+  lab::expect_turned_edges_noticed(canvases(), 24'000);
+}
 TEST(NativeLemma, LemmasFailWithoutTheInputTermOnTheWorstCanvas) {
   lab::expect_term_needed(worst(), "input", 400'000);
 }
@@ -117,13 +120,12 @@ TEST(NativeLemma, Theorem1IntersectingTrianglesSeeEachOther) {
 TEST(NativeLemma, Corollary1UnseenMeansDisjoint) { lab::expect_corollary1(canvases(), 40); }
 
 TEST(NativeFarProperty, NoFamilyOfExtremeScenesLosesAPair) {
-  lab::expect_far_survives_all_families(canvases(), trials(250, 40), "native");
+  lab::expect_far_survives_all_families(
+      canvases(), {.canvas = "native", .fixed = 30, .of_the_day = trials(60, 10)});
 }
 TEST(NativeFarProperty, NorOn24BitDepth) {
-  lab::expect_far_survives_all_families(canvases({.depth_bits = 24}), 50, "native24");
-}
-TEST(NativeFarProperty, EveryFamilyLosesPairsAtTheRadiusThatItNames) {
-  lab::expect_every_family_loses_pairs(canvases(), "native");
+  lab::expect_far_survives_all_families(canvases({.depth_bits = 24}),
+                                        {.canvas = "native24", .fixed = 12, .of_the_day = 5});
 }
 TEST(NativeFarProperty, KeptCasesStayMended) { EXPECT_GT(lab::replay_cases(canvases()), 0); }
 

@@ -433,8 +433,7 @@ TEST(GlPairsProperty, EqualTheCpusOnExtremeFamilies) {
   Both both(shared());
   for (const lab::Family& family : lab::families()) {
     EXPECT_TRUE(rc::check(family.name, [&] {
-      const auto specs = *rc::gen::container<std::vector<lab::Spec>>(lab::spec());
-      Scene scene = lab::scene_of(specs, family);
+      Scene scene = lab::scene_of(*lab::given(), family);
       const int kind = *rc::gen::inRange(0, 1000);
       if (kind % 2 == 0) scene = with_self(std::move(scene), 1 + kind % 3);
       PairSettings settings = settings_of(static_cast<std::uint64_t>(kind));

@@ -13,6 +13,7 @@
 #include "core/canvas/kernel_case.h"
 #include "tests/core/base/chance.h"
 #include "tests/core/base/rational.h"
+#include "tests/core/base/seed.h"
 #include "tests/core/base/trials.h"
 #include "verify/interval_cases.h"
 
@@ -92,6 +93,7 @@ Tally compare(Evaluate evaluate, int triangles, float shrink = 0) {
   Random random(11);
   Tally tally;
   for (int n = 0; n < triangles; ++n) {
+    if (n == triangles / 2) random = Random(seed_of_day(11));
     if (triangles > 100) glsl_chance::rounding() = static_cast<glsl_chance::Rounding>(n % 3);
     const IntervalCase c = interval_cases::random_case(random);
     const FloatTriangle& t = c.corners;
@@ -216,6 +218,7 @@ TEST(Interval, PartsOfAPixelAreExactHoweverTheDeviceRounds) {
   Random random(14);
   int seen[8] = {};
   for (int n = 0; n < trials(300'000); ++n) {
+    if (n == trials(150'000)) random = Random(seed_of_day(14));
     const CutCell cell = random_cut(random);
     glsl_chance::rounding() = std::array{Rounding::random, Rounding::up, Rounding::down}[n % 3];
     const int part =
@@ -250,6 +253,7 @@ TEST(Interval, ADivisionWouldMoveTheBorderOfAPart) {
 TEST(Interval, SlicesNeverDecrease) {
   Random random(13);
   for (int n = 0; n < 100000; ++n) {
+    if (n == 50000) random = Random(seed_of_day(13));
     const float near = static_cast<float>(random.scaled(-4, 12));
     const float scale = static_cast<float>(64 / std::exp2(random.uniform(-10, 14)));
     const float z = near + static_cast<float>(random.scaled(-10, 14));

@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <variant>
 
 #include "core/base/error.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/points.h"
+#include "experiments/studies/study.h"
 
 namespace farcull {
 namespace {
@@ -51,6 +53,24 @@ TEST(RunPoint, StartsICollideWithoutListsEachTimeWhereNothingMoves) {
   const std::string first = stages_of(moving);
   EXPECT_NE(stages_of(moving), first);
   EXPECT_THROW(measure_run(repeated(moving, 2), lab), std::logic_error);
+}
+
+// Crossings at the corners of pixels: 0.9 of the radius loses some, the budget none. A method
+// without a radius has nothing at risk of it.
+TEST(RunPoint, OfScenesThatGoToAnExtremeSaysHowManyPairsAreAtRisk) {
+  Lab lab("native");
+  const auto counts_of = [&lab](RunPoint point) {
+    point.scene = PixelCorners{};
+    point.views = "z";
+    point.resolution = 96;
+    return std::get<RunCounts>(stability_study().measure(point, lab).counts);
+  };
+  const RunCounts far =
+      counts_of({.method = Method::far, .offset = "obb", .radius = kBudgetRadius});
+  EXPECT_EQ(far.missed, 0u);
+  ASSERT_TRUE(far.at_risk.has_value());
+  EXPECT_GT(*far.at_risk, 0u);
+  EXPECT_FALSE(counts_of({.method = Method::cullide}).at_risk.has_value());
 }
 
 TEST(RunPoint, GivesTheSameCountsInEveryRepeat) {

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "experiments/report/chapters/chapter.h"
 #include "experiments/report/chapters/rows.h"
@@ -294,7 +296,9 @@ Rows stability_rows(std::uint64_t far_misses) {
         .add(stability_point(scene, "far"), run_counts(last ? far_misses : 0, true))
         .add(stability_point(scene, "exact"), run_counts(0, false));
   }
-  rows.add(stability_point("gap:216:-1e3", "far"), run_counts(0, true))
+  Json risk = run_counts(0, true);
+  risk["at_risk"] = 7;
+  rows.add(stability_point("gap:216:-1e3", "far"), risk)
       .add(stability_point("gap:216:1e3", "far"), run_counts(0, true))
       .add(stability_point("crowd:60@offset-1e9", "far"), run_counts(0, true))
       .add(stability_point("cloth:450:1e8", "far-pairs", 40), run_counts(0, true))
@@ -325,6 +329,12 @@ TEST(StabilityChapter, SaysWhoMissesAndWhatIsKept) {
   EXPECT_EQ(slivers.series[0].name, "CULLIDE");
   EXPECT_EQ(slivers.series[0].x, (std::vector<double>{1e2, 1e12}));
   EXPECT_EQ(slivers.series[0].y, (std::vector<double>{25, 100}));
+  std::map<std::string, std::string> at_risk;  // of FAR, by family
+  for (const auto& row : chapter.tables.at(0).rows) {
+    if (row.at(1).starts_with("FAR (OBB)")) at_risk[row.at(0).substr(0, 8)] = row.at(5);
+  }
+  EXPECT_EQ(at_risk["overlaps"], "7");
+  EXPECT_EQ(at_risk["gaps, ga"], "-") << "not asked there";
 }
 
 TEST(StabilityChapter, ShoutsAMissOfWhatPromises) {
