@@ -99,7 +99,9 @@ std::vector<IntervalAnswer> device_intervals(const GlContext& context,
 std::vector<SliceAnswer> device_slices(const GlContext& context, std::span<const SliceCase> cases) {
   std::vector<std::uint32_t> words;
   for (const SliceCase& c : cases)
-    words.insert(words.end(), {bits(c.z), bits(c.near), bits(c.slices_per_px), bits(c.x)});
+    words.insert(words.end(),
+                 {bits(c.z), bits(c.steps_per_px), static_cast<std::uint32_t>(c.first_step),
+                  static_cast<std::uint32_t>(c.slices_per_step), bits(c.x), 0, 0, 0});
   const std::vector<std::uint32_t> got =
       compute(context, "slices", {embedded::interval_glsl, embedded::probe_slices_comp}, words,
               cases.size(), 2);
