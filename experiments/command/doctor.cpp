@@ -7,7 +7,7 @@ namespace farcull {
 
 CLI::App* DoctorCommand::add_to(CLI::App& app) {
   CLI::App* command =
-      add_command(app, "doctor", "the devices, and whether each keeps the assumptions A1-A8");
+      add_command(app, "doctor", "the devices, and whether each keeps the assumptions A1-A9");
   add_option(*command, "--device", device_, "DEVICE", kDeviceHelp);
   add_option(*command, "--json", json_, "FILE", kJsonHelp);
   add_footer(
@@ -15,7 +15,7 @@ CLI::App* DoctorCommand::add_to(CLI::App& app) {
       "Examples:\n  farcull doctor\n  farcull doctor --device native\n"
       "  farcull doctor --device software --json -\n\n"
       "What the probes find is kept for later runs, in $XDG_CACHE_HOME/farcull or\n"
-      "~/.cache/farcull: far on OpenGL promises where all of A1 to A8 pass, far-pairs where\n"
+      "~/.cache/farcull: far on OpenGL promises where all of A1 to A9 pass, far-pairs where\n"
       "A4, A7 and A8 do. A run without such a verdict on its device, driver and build makes\n"
       "one itself.\n\n"
       "Exit status 1: the native canvas or the device breaks an assumption; what relies on it\n"

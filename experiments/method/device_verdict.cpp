@@ -232,7 +232,7 @@ Json probe_json(const ProbeResult& p) {
 }
 
 const char* assumptions(Reliance reliance) {
-  return reliance == Reliance::pairs ? "A4, A7 and A8" : "A1 to A8";
+  return reliance == Reliance::pairs ? "A4, A7 and A8" : "A1 to A9";
 }
 
 }  // namespace

@@ -26,7 +26,9 @@ const std::vector<std::string>& assumptions() {
       "A6: a query is zero only if no sample passed",
       "A7: every command ran, or the failure is seen",
       "A8: what a dispatch or a draw wrote is seen after the barrier; atomics neither lose nor "
-      "double"};
+      "double",
+      "A9: gl_FragCoord names the pixel of the fragment; flat inputs and uniforms arrive to the "
+      "bit"};
   return lines;
 }
 
