@@ -113,7 +113,7 @@ measure() {
   touch "$folder/measured"
 }
 
-assumptions=(A1 A2 A3 A4 A5 A6 A7 A8 A10)
+assumptions=(A1 A2 A3 A4 A5 A6 A7 A8 A9 A10)
 probes_table() {
   local driver json
   echo "| driver | what it is | answers as | probes that pass | $(printf '%s |' "${assumptions[@]}")"

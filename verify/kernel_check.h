@@ -29,8 +29,7 @@ void check_minkowski(const SolidCase& c, const SolidAnswer& answer, bool ordinar
                      KernelTally& tally);
 /// A triangle of FAR pairs.
 void check_interval(const IntervalCase& c, const IntervalAnswer& answer, KernelTally& tally);
-/// Slices in the order of z, all with the same near end and scale: never decreasing, 0 .. 63, and
-/// at most one off. Pixels: the integer part.
+/// Slices: exactly those of rationals. Pixels: the integer part.
 void check_slices(const std::vector<SliceCase>& cases, const std::vector<SliceAnswer>& answers,
                   KernelTally& tally);
 
@@ -47,7 +46,7 @@ KernelTriangle kernel_triangle(std::uint64_t seed, std::uint64_t index, float cx
 Solid adversarial_box(std::uint64_t seed, std::uint64_t index, float cx, float cy);
 Solid adversarial_minkowski(std::uint64_t seed, std::uint64_t index, float cx, float cy);
 std::vector<IntervalCase> interval_kernel_cases(std::uint64_t seed, std::size_t count);
-/// As check_slices takes them.
+/// All in one window; its slices never decrease with z, in which order they are.
 std::vector<SliceCase> slice_kernel_cases(std::uint64_t seed, std::size_t count);
 
 }  // namespace farcull

@@ -3,10 +3,13 @@
 #include "verify/worst_canvas.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
+
+#include "core/base/glsl_worst.h"
 
 namespace farcull {
 namespace {
@@ -61,8 +64,12 @@ bool surely_beside(const float* a, const float* b, const Point& c, double orient
   return orientation * (left - right) > lost;
 }
 
-// The depth buffer's place of a depth, for a scale of depth_scale().
-float mapped(float z, float scale) { return std::min(std::max(0.5f + z * scale, 0.25f), 0.75f); }
+// Spreads the bits of a word.
+std::uint64_t mixed(std::uint64_t x) {
+  x = (x ^ x >> 31) * 0x9e3779b97f4a7c15u;
+  x = (x ^ x >> 29) * 0xbf58476d1ce4e5b9u;
+  return x ^ x >> 32;
+}
 
 // First and last index of the pixels whose centre is in [lo, hi].
 std::pair<int, int> pixels(double lo, double hi, int size) {
@@ -85,15 +92,37 @@ void WorstCanvas::begin(const Window& window, const Drawables& drawables) {
   drawables_ = &drawables;
 }
 
-float WorstCanvas::stored_depth(float mapped) const {
+// What the depth buffer holds of a depth where all programs round to nearest; of 24 bits, as the
+// multiple of 2^-24 below.
+float WorstCanvas::held(float z) const {
+  const float mapped = std::min(std::max(0.5f + z * depth_scale(window_), 0.25f), 0.75f);
   if (options_.depth_bits == 32) return mapped;
   return static_cast<float>(std::floor(mapped * 0x1p24) * 0x1p-24);
+}
+
+// The same of the program that stores or of the one that asks. Each operation may round either way,
+// and the map is one of two neighbours, up and down, as the ranges give them.
+float WorstCanvas::held(float z, Verb verb) const {
+  if (options_.exact_samples) return held(z);
+  const bool ask = verb == Verb::ask;
+  std::uint64_t down = ask ? ~std::uint64_t{0} : 0;  // a bit for each choice
+  if (options_.rounding_seed != 0)
+    down =
+        mixed(mixed(options_.rounding_seed * 2 + (ask ? 1 : 0)) ^ std::bit_cast<std::uint32_t>(z));
+  const auto goes_down = [&] { return (std::exchange(down, down >> 1) & 1) != 0; };
+  using glsl_worst::Worst;
+  const auto end = [&](const Worst& range) { return goes_down() ? range.lo() : range.hi(); };
+  float depth = std::clamp(end(Worst(0.5f) + Worst(z) * Worst(depth_scale(window_))), 0.25f, 0.75f);
+  if (ask) depth = end(Worst(depth) + Worst(options_.asked_behind));
+  if (options_.depth_bits == 32) return depth;
+  constexpr double kMost = 0x1p24 - 1;  // OpenGL 4.6, 2.3.5.2: either neighbour of the product
+  const double steps = depth * kMost;   // exact, of 48 bits
+  return static_cast<float>((goes_down() ? std::floor(steps) : std::ceil(steps)) * 0x1p-24);
 }
 
 template <class Visit>
 void WorstCanvas::rasterize_triangle(std::uint32_t element, const Visit& visit) const {
   const int width = window_.width, height = window_.height;
-  const float scale = depth_scale(window_);
   const std::array<float, 12>& t = drawables_->triangles[element];
   const Point a = {t[0], t[1]}, b = {t[4], t[5]}, c = {t[8], t[9]};
   const double area = cross(a, b, c);
@@ -107,7 +136,7 @@ void WorstCanvas::rasterize_triangle(std::uint32_t element, const Visit& visit) 
                    wc = cross(a, b, p) / area;
       if (wa <= 0 || wb <= 0 || wc <= 0) continue;
       const float z = static_cast<float>(wa * t[2] + wb * t[6] + wc * t[10]);
-      visit(static_cast<std::size_t>(y) * width + x, z, mapped(z, scale));
+      visit(static_cast<std::size_t>(y) * width + x, z, held(z));
     }
   }
 }
@@ -137,7 +166,6 @@ bool WorstCanvas::covers(const Proxy& proxy, double orientation, double cx, doub
 template <class Visit>
 void WorstCanvas::rasterize_proxy(std::uint32_t element, Verb verb, const Visit& visit) const {
   const int width = window_.width, height = window_.height;
-  const float scale = depth_scale(window_);
   const Proxy& proxy = drawables_->proxies[element];
   Point nominal[4];
   double lo[2] = {HUGE_VAL, HUGE_VAL}, hi[2] = {-HUGE_VAL, -HUGE_VAL};
@@ -161,13 +189,13 @@ void WorstCanvas::rasterize_proxy(std::uint32_t element, Verb verb, const Visit&
                                  entry, exit))
         continue;
       const float z = verb == Verb::store ? entry : exit;
-      visit(static_cast<std::size_t>(y) * width + x, z, mapped(z, scale));
+      visit(static_cast<std::size_t>(y) * width + x, z, held(z, verb));
     }
   }
 }
 
-// Calls visit(pixel, px, mapped) for each fragment of an element: px is the entry or exit depth,
-// mapped its place in the depth buffer.
+// Calls visit(pixel, px, held) for each fragment of an element: px is the entry or exit depth, held
+// what the depth buffer holds of it, or compares with what it holds.
 template <class Visit>
 void WorstCanvas::rasterize(std::uint32_t element, Verb verb, const Visit& visit) const {
   if (element == kEverywhere) {
@@ -188,8 +216,7 @@ std::vector<std::uint8_t> WorstCanvas::run(const Pass& pass) {
     for (std::uint32_t i = step.first; i < step.first + step.count; ++i) {
       const Draw& draw = pass.draws[i];
       if (step.verb == Verb::ask && seen[draw.slot]) continue;
-      rasterize(draw.element, step.verb, [&](std::size_t pixel, float, float mapped) {
-        const float d = stored_depth(mapped);
+      rasterize(draw.element, step.verb, [&](std::size_t pixel, float, float d) {
         if (step.verb == Verb::store) {
           depth[pixel] = std::min(depth[pixel], d);
         } else if (d > depth[pixel] || (pass.touching && d == depth[pixel])) {
@@ -206,8 +233,7 @@ std::vector<float> WorstCanvas::depths(Verb verb, const std::vector<Draw>& draws
   std::vector<float> out(static_cast<std::size_t>(window_.width) * window_.height,
                          store ? 1.0f : 0.0f);
   for (const Draw& draw : draws) {
-    rasterize(draw.element, verb, [&](std::size_t pixel, float, float mapped) {
-      const float d = stored_depth(mapped);
+    rasterize(draw.element, verb, [&](std::size_t pixel, float, float d) {
       out[pixel] = store ? std::min(out[pixel], d) : std::max(out[pixel], d);
     });
   }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/canvas/asked_depth.h"
 #include "core/canvas/canvas.h"
 
 namespace farcull {
@@ -18,16 +19,22 @@ struct WorstCanvasOptions {
   /// Keeps what core/native/canvas.h promises, and no more: corners are not moved, but the floats
   /// that compare a pixel centre with an edge are rounded as badly as IEEE 754 allows.
   bool exact_samples = false;
+  /// What is asked lies this far behind D(exit), as on a GL device; less in twins.
+  float asked_behind = kAskedBehind;
+  /// 0: each program rounds depths as badly as it may, what is stored up and what is asked down.
+  /// Else the seed by which each program, independently, rounds each depth up or down.
+  std::uint64_t rounding_seed = 0;
 };
 
 /// Proxies (A1 to A4): a pixel gets a fragment only if its centre is inside the quadrilateral for
 /// every choice of corners that the roundings of the vertex stage, the division by w, the viewport
 /// transform and snapping allow, ties lost. The solid is evaluated with
 /// SolidProgram::interval_worst: discarded where some rounding discards, entry as late and exit as
-/// early as any rounding makes them. Depths (A5): the mapped depth rounds down, so that nearer ones
-/// are merged with farther ones as little as possible; a query sees exactly what passes (A6).
-/// Triangles (fixed depth) are sampled at pixel centres without displacement: that path promises
-/// nothing.
+/// early as any rounding makes them. Depths (A4, A5): storing and asking are two programs, and each
+/// rounds the map, and converts to 24 bits, in a direction of its own; with exact_samples both
+/// round to nearest, as the native canvas does. A query sees exactly what passes (A6). Triangles
+/// (fixed depth) are sampled at pixel centres without displacement, and their depths are rounded
+/// alike: that path promises nothing.
 class WorstCanvas final : public Canvas {
  public:
   explicit WorstCanvas(const SolidProgram& solid, const WorstCanvasOptions& options = {});
@@ -46,7 +53,8 @@ class WorstCanvas final : public Canvas {
   void rasterize_proxy(std::uint32_t element, Verb verb, const Visit& visit) const;
   template <class Visit>
   void rasterize(std::uint32_t element, Verb verb, const Visit& visit) const;
-  float stored_depth(float mapped) const;
+  float held(float z) const;
+  float held(float z, Verb verb) const;
 
   SolidProgram solid_;
   WorstCanvasOptions options_;

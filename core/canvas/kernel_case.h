@@ -41,7 +41,8 @@ struct IntervalAnswer {
 
 /// far_slice of core/pairs/interval.glsl, and the conversion to an integer that chooses a pixel.
 struct SliceCase {
-  float z, near, slices_per_px;
+  float z, steps_per_px;
+  std::int32_t first_step, slices_per_step;
   float x;
 };
 struct SliceAnswer {

@@ -60,6 +60,11 @@ std::vector<IntervalAnswer> device_intervals(const GlContext&, std::span<const I
   refuse();
 }
 
+std::vector<std::uint8_t> device_seen(const GlContext&, const SolidProgram&,
+                                      std::span<const SolidCase>, std::span<const SolidCase>,
+                                      double) {
+  refuse();
+}
 std::vector<SliceAnswer> device_slices(const GlContext&, std::span<const SliceCase>) { refuse(); }
 
 Image draw_picture(const GlContext&, const Scene&, const Window&, std::span<const PictureTriangle>,

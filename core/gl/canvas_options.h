@@ -1,6 +1,12 @@
 // Options of the canvas on OpenGL.
 #pragma once
 
+#include <bit>
+#include <cstdint>
+#include <string>
+
+#include "core/canvas/asked_depth.h"
+
 namespace farcull {
 
 enum class DepthFormat { float32, fixed24 };
@@ -9,6 +15,11 @@ enum class DepthFormat { float32, fixed24 };
 /// triangles at fixed depth rely on early fragment tests. occlusion: GL_ANY_SAMPLES_PASSED, many in
 /// flight, as published.
 enum class QueryMode { flags, occlusion };
+
+/// The define with which canvas.frag asks, by the bits of the slack.
+inline std::string ask_define(float behind = kAskedBehind) {
+  return "FAR_ASK uintBitsToFloat(" + std::to_string(std::bit_cast<std::uint32_t>(behind)) + "u)";
+}
 
 struct GlCanvasOptions {
   DepthFormat depth_format = DepthFormat::float32;

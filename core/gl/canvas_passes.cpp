@@ -236,7 +236,7 @@ void CanvasState::draw_all(CanvasProgram& program, Verb verb, const std::vector<
 
 std::vector<float> CanvasState::depths(Verb verb, const std::vector<Draw>& wanted) {
   const bool exits = verb == Verb::ask && mode == DepthMode::fragment;
-  if (exits && exit_program.name == 0) exit_program = program("exit", {"FAR_ASK"});
+  if (exits && exit_program.name == 0) exit_program = program("exit", {ask_define()});
   draw_all(exits ? exit_program : store_program, verb, wanted, depth_target);
   std::vector<float> out(static_cast<std::size_t>(window.width) * window.height, -1);
   glReadPixels(kBorder, kBorder, window.width, window.height, GL_DEPTH_COMPONENT, GL_FLOAT,
@@ -251,7 +251,7 @@ std::vector<float> CanvasState::samples(Verb verb, const std::vector<Draw>& want
   CanvasProgram& values_program = verb == Verb::store ? entry_values : exit_values;
   if (values_program.name == 0) {
     values_program = verb == Verb::store ? program("entry values", {"FAR_VALUE"})
-                                         : program("exit values", {"FAR_VALUE", "FAR_ASK"});
+                                         : program("exit values", {"FAR_VALUE", ask_define()});
   }
   const GlTexture values = texture(GL_R32F);
   const GlFramebuffer target = gl_make<GlFramebuffer>(glGenFramebuffers);

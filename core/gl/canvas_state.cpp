@@ -90,7 +90,8 @@ CanvasState::CanvasState(const GlContext& c, DepthMode m, const std::string& s,
                                                 static_cast<GLint>(sizeof(GpuDraw))));
   per_chunk = std::max<std::size_t>(1, block / (16 * vec4s()));
   store_program = program("store", {});
-  ask_program = with_flags ? program("ask", {"FAR_ASK", "FAR_FLAGS"}) : program("ask", {"FAR_ASK"});
+  ask_program =
+      with_flags ? program("ask", {ask_define(), "FAR_FLAGS"}) : program("ask", {ask_define()});
   report.emplace(context, block, alignment);
   vertex_array = gl_make<GlVertexArray>(glGenVertexArrays);
   check_gl("canvas");

@@ -153,9 +153,10 @@ std::array<std::uint32_t, kTagPlace - 1> words_of(const PairUniforms& u, const P
   add(u.widen);
   add(u.tile);
   add(u.window);
-  add(u.depth);
+  add(std::array{u.steps_per_px});
+  add(std::array{u.first_step});
   add(u.bins);
-  add(Four{u.capacity, u.items, 0, 0});
+  add(Four{u.capacity, u.items, static_cast<std::uint32_t>(u.slices_per_step), 0});
   add(u.extra);
   add(u.numbers);
   add(Four{work.total, work.per, work.times, 0});

@@ -91,7 +91,8 @@ struct PairUniforms {
   std::array<float, 4> widen{};
   std::array<std::int32_t, 4> tile{};
   std::array<std::int32_t, 2> window{};
-  std::array<float, 2> depth{};
+  float steps_per_px = 1;  // DepthSlices
+  std::int32_t first_step = 0, slices_per_step = 0;
   std::array<std::uint32_t, 4> bins{1, 6, 1, 0};
   std::uint32_t cells = 0;
   std::uint32_t masked = 0;

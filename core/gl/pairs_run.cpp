@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/pairs/grid.h"
 
 namespace farcull {
 
@@ -62,8 +63,10 @@ void PairRun::begin(const PairTask& t) {
   common = {};
   common.widen = {t.widening.x, t.widening.y, t.widening.z, 0};
   common.window = {t.width, t.height};
-  // As in PairGrid.
-  common.depth = {t.near_px, kSlices / std::max(t.far_px - t.near_px, 0x1p-20f)};
+  const DepthSlices slices = depth_slices(t.near_px, t.far_px);
+  common.steps_per_px = slices.steps_per_px;
+  common.first_step = slices.first_step;
+  common.slices_per_step = slices.slices_per_step;
   common.masked =
       std::any_of(t.self.begin(), t.self.end(), [](std::uint8_t self) { return self == 0; });
   owners = scene.begin(t);
@@ -71,10 +74,11 @@ void PairRun::begin(const PairTask& t) {
 
 void check_lists(const PairTotalWords& totals) {
   if (totals[kTotalMismatches] == 0) return;
-  throw Error("GL pairs",
-              std::to_string(totals[kTotalMismatches]) +
-                  " lists were not filled with as many entries as were counted",
-              "a compute invocation was lost: run again, or with another --device");
+  throw Error(
+      "GL pairs",
+      std::to_string(totals[kTotalMismatches]) + " lists were not filled as they were counted",
+      "a compute invocation was lost, or two programs of this device round differently: run "
+      "again, or with another --device");
 }
 
 bool overflow(const PairTotalWords& totals, const PartMemory& memory) {

@@ -17,8 +17,8 @@ std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions
     bool drawing = true, pairs = false;  // who relies on it; of A4, pairs on a part alone
   };
   const Group groups[] = {{{"A1", "A2"}, probe::edges},
-                          {{"A3"}, probe::coverage},
-                          {{"A4"}, probe::arithmetic, true, true},
+                          {{"A3", "A9"}, probe::coverage},
+                          {{"A4", "A9"}, probe::arithmetic, true, true},
                           {{"A5"}, probe::depth_tests},
                           {{"A6"}, probe::queries},
                           {{"A7"}, probe::commands},
@@ -44,7 +44,7 @@ std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions
     }
     for (ProbeResult& r : results) {
       r.drawing = group.drawing;
-      r.pairs = r.pairs || (group.pairs && (r.assumption != "A4" || r.broke_off));
+      r.pairs = r.pairs || (group.pairs && (group.assumptions.front() != "A4" || r.broke_off));
       if (wanted(r.assumption)) out.push_back(std::move(r));
     }
   }

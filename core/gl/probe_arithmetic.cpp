@@ -1,4 +1,4 @@
-// A4: what shaders compute, and what reaches them.
+// A4 and A9: what shaders compute, and what reaches them.
 #include <algorithm>
 #include <array>
 
@@ -214,12 +214,12 @@ ProbeResult transport(const ProbeOptions& options) {
   const std::vector<std::uint32_t> back = words_of(uniforms, values.size());
   for (std::size_t i = 0; i < values.size(); ++i)
     wrong.count(back[i] != std::bit_cast<std::uint32_t>(values[i]));
-  return result("A4", "flat varyings and uniforms", wrong, 0, "wrong words",
+  return result("A9", "flat varyings and uniforms", wrong, 0, "wrong words",
                 "every word of 65,536 proxies as the canvas passes them on, and 256 of uniforms");
 }
 
-// canvas.frag itself on sorted depths: what the depth buffer holds must not fall, lie in [1/4, 3/4]
-// and be the same whether it was an entry or an exit.
+// canvas.frag itself on sorted depths: what the depth buffer holds must not fall, lie in [1/4,
+// 3/4], or as far behind as an exit is asked, and an exit at an entry must not be before it.
 ProbeResult depth_map(const ProbeOptions& options, DepthBuffer format) {
   constexpr int kSide = 256;
   constexpr std::size_t kPixels = static_cast<std::size_t>(kSide) * kSide;
@@ -228,7 +228,7 @@ ProbeResult depth_map(const ProbeOptions& options, DepthBuffer format) {
   const GlProgram store =
       proxy_program("store", {embedded::probe_solid_frag, embedded::canvas_frag});
   const GlProgram ask =
-      proxy_program("ask", {embedded::probe_solid_frag, embedded::canvas_frag}, {"FAR_ASK"});
+      proxy_program("ask", {embedded::probe_solid_frag, embedded::canvas_frag}, {ask_define()});
   Worst wrong;
   for (const float reach : {3.0f, 130.0f, 8200.0f, 1048576.0f}) {
     std::vector<float> z;
@@ -257,15 +257,18 @@ ProbeResult depth_map(const ProbeOptions& options, DepthBuffer format) {
     // A quarter and three quarters, floats exactly, fixed point to a step of 2^-24.
     const std::uint32_t least = floats ? std::bit_cast<std::uint32_t>(0.25f) : 0x3fffff00u;
     const std::uint32_t most = floats ? std::bit_cast<std::uint32_t>(0.75f) : 0xc0000100u;
+    const std::uint32_t behind = floats ? std::bit_cast<std::uint32_t>(0.75f + kAskedBehind)
+                                        : most + static_cast<std::uint32_t>(kAskedBehind * 0x1p32);
     for (std::size_t i = 0; i < kPixels; ++i) {
-      wrong.count(entry[i] < least || entry[i] > most || exit[i] != entry[i] ||
-                  (i > 0 && entry[i] < entry[i - 1]));
+      wrong.count(entry[i] < least || entry[i] > most || exit[i] < entry[i] || exit[i] > behind ||
+                  (i > 0 && (entry[i] < entry[i - 1] || exit[i] < exit[i - 1])));
     }
   }
-  return result("A4", format == DepthBuffer::float32 ? "depth map, 32F" : "depth map, 24 bits",
-                wrong, 0, "wrong depths",
-                "canvas.frag on sorted depths, neighbouring floats among them: order, range, entry "
-                "as exit");
+  return result(
+      "A4", format == DepthBuffer::float32 ? "depth map, 32F" : "depth map, 24 bits", wrong, 0,
+      "wrong depths",
+      "canvas.frag on sorted depths, neighbouring floats among them: order, range, an exit "
+      "not before an entry at the same depth");
 }
 
 }  // namespace

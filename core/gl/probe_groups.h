@@ -9,8 +9,9 @@
 namespace farcull::probe {
 
 std::vector<ProbeResult> edges(const GlContext& context, const ProbeOptions& options);     // A1, A2
-std::vector<ProbeResult> coverage(const GlContext& context, const ProbeOptions& options);  // A3
-std::vector<ProbeResult> arithmetic(const GlContext& context, const ProbeOptions& options);   // A4
+std::vector<ProbeResult> coverage(const GlContext& context, const ProbeOptions& options);  // A3, A9
+std::vector<ProbeResult> arithmetic(const GlContext& context,
+                                    const ProbeOptions& options);  // A4, A9
 std::vector<ProbeResult> depth_tests(const GlContext& context, const ProbeOptions& options);  // A5
 std::vector<ProbeResult> queries(const GlContext& context, const ProbeOptions& options);      // A6
 std::vector<ProbeResult> commands(const GlContext& context, const ProbeOptions& options);     // A7

@@ -66,6 +66,36 @@ std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProg
   return out;
 }
 
+std::vector<std::uint8_t> device_seen(const GlContext& context, const SolidProgram& solid,
+                                      std::span<const SolidCase> stored,
+                                      std::span<const SolidCase> asked, double depth) {
+  constexpr auto kCases = static_cast<std::uint32_t>(kSolidCases);
+  Drawables drawables;
+  Pass pass;
+  pass.slots = kCases;
+  pass.steps = {{Verb::store, 0, kCases}, {Verb::ask, kCases, kCases}};
+  for (const std::span<const SolidCase> cases : {stored, asked}) {
+    if (cases.size() != kSolidCases) throw std::logic_error("device_seen: not as many cases");
+    for (std::uint32_t i = 0; i < kCases; ++i) {
+      pass.draws.push_back({static_cast<std::uint32_t>(drawables.proxies.size()), i});
+      drawables.proxies.push_back(probe::pixel_box(static_cast<int>(i), kSolidSide));
+      drawables.proxies.back().solid = cases[i].solid;
+      drawables.first.push_back(static_cast<std::uint32_t>(drawables.proxies.size()));
+    }
+  }
+  const GlCurrent current(context);
+  std::vector<std::uint8_t> out(kCases, 1);
+  for (const GlCanvasOptions& options :
+       {GlCanvasOptions{}, GlCanvasOptions{.query = QueryMode::occlusion},
+        GlCanvasOptions{.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}}) {
+    GlCanvas canvas(context, DepthMode::fragment, solid, options);
+    canvas.begin(probe::window(kSolidSide, kSolidSide, depth), drawables);
+    const std::vector<std::uint8_t> seen = canvas.run(pass);
+    for (std::uint32_t i = 0; i < kCases; ++i) out[i] = out[i] != 0 && seen[i] != 0;
+  }
+  return out;
+}
+
 std::vector<IntervalAnswer> device_intervals(const GlContext& context,
                                              std::span<const IntervalCase> cases,
                                              const std::string& before) {
@@ -99,7 +129,9 @@ std::vector<IntervalAnswer> device_intervals(const GlContext& context,
 std::vector<SliceAnswer> device_slices(const GlContext& context, std::span<const SliceCase> cases) {
   std::vector<std::uint32_t> words;
   for (const SliceCase& c : cases)
-    words.insert(words.end(), {bits(c.z), bits(c.near), bits(c.slices_per_px), bits(c.x)});
+    words.insert(words.end(),
+                 {bits(c.z), bits(c.steps_per_px), static_cast<std::uint32_t>(c.first_step),
+                  static_cast<std::uint32_t>(c.slices_per_step), bits(c.x), 0, 0, 0});
   const std::vector<std::uint32_t> got =
       compute(context, "slices", {embedded::interval_glsl, embedded::probe_slices_comp}, words,
               cases.size(), 2);

@@ -25,10 +25,17 @@ inline SolidCase solid_case_at(std::size_t i) {
 }
 
 /// The answers of `solid` for kSolidCases cases, each with the centre of solid_case_at. This
-/// function and the next two make the context current while they run. Throws Error as GlCanvas
+/// function and those below make the context current while they run. Throws Error as GlCanvas
 /// does.
 std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProgram& solid,
                                        std::span<const SolidCase> cases);
+
+/// Whether each of kSolidCases solids is seen behind the one that is stored in its pixel, by the
+/// programs of the method, in a window this deep (px): with flags, with queries, and with queries
+/// on 24 bits, all three. Where the two are the same solid and the line hits it, it must be.
+std::vector<std::uint8_t> device_seen(const GlContext& context, const SolidProgram& solid,
+                                      std::span<const SolidCase> stored,
+                                      std::span<const SolidCase> asked, double depth);
 
 /// The answers of the kernel of FAR pairs; `before` stands before its text, for twins that must
 /// fail.

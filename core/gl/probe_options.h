@@ -6,12 +6,12 @@
 
 namespace farcull {
 
-/// The user of an assumption. drawing: the canvas, A1 to A8. pairs: FAR pairs, which rasterizes
+/// The user of an assumption. drawing: the canvas, A1 to A10. pairs: FAR pairs, which rasterizes
 /// nothing: A4 in compute shaders, A7 and A8.
 enum class ProbeUse { all, drawing, pairs };
 
 struct ProbeResult {
-  std::string assumption;  // "A1" .. "A8"
+  std::string assumption;  // "A1" .. "A9"
   std::string name;
   double measured = 0;  // the worst seen, in `unit`
   double bound = 0;     // in `unit`
@@ -36,10 +36,10 @@ struct ProbeOptions {
   bool no_vertex_term = false;      // A1: vertex arithmetic may not err at all
   bool dropped_triangle = false;    // A3: the second triangle of each proxy is lost
   bool fat_zero_area = false;       // A3: the triangles without area get one
-  bool shifted_pixel = false;       // A3: gl_FragCoord is half a pixel off
+  bool shifted_pixel = false;       // A9: gl_FragCoord is half a pixel off
   bool exact_arithmetic = false;    // A4: operations may not round
   bool loose_text = false;          // A4: shaders without `precise`
-  bool damaged_operand = false;     // A4: one bit of one operand changes on its way
+  bool damaged_operand = false;     // A4, A9: one bit of one operand changes on its way
   bool reversed_depth_map = false;  // A4: farther is mapped nearer
   bool blind_queries = false;       // A6: queries end before their draws or ask in front of all
   bool damaged_texel = false;       // A5: one bit of one texel changes on its way

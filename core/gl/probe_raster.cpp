@@ -1,4 +1,4 @@
-// A1 .. A3: the places of edges, and the pixels that triangles cover.
+// A1 .. A3: the places of edges, and the pixels that triangles cover. Of A9: gl_FragCoord.
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -384,7 +384,7 @@ std::vector<ProbeResult> coverage(const GlContext& context, const ProbeOptions& 
   out.push_back(result("A3", "no area covers nothing",
                        zero_area(medium, random, options.fat_zero_area), 0, "fragments",
                        "triangles that are points and segments, half of them on pixel centres"));
-  out.push_back(result("A3", "gl_FragCoord names the pixel", misplaced, 0, "pixels",
+  out.push_back(result("A9", "gl_FragCoord names the pixel", misplaced, 0, "pixels",
                        "every pixel of the same three targets"));
   return out;
 }

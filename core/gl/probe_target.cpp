@@ -198,7 +198,7 @@ std::vector<std::uint32_t> words_of(const GlBuffer& buffer, std::size_t words) {
   return out;
 }
 
-Window window(int width, int height) {
+Window window(int width, int height, double depth) {
   Window out;
   out.view = parse_view("z");
   out.origin = Vec3::Zero();
@@ -206,7 +206,7 @@ Window window(int width, int height) {
   out.pixel_size = 1;
   out.width = width;
   out.height = height;
-  out.hi = Vec3(0.5 * width, 0.5 * height, 100);
+  out.hi = Vec3(0.5 * width, 0.5 * height, depth);
   out.lo = -out.hi;
   return out;
 }

@@ -114,7 +114,7 @@ void bind_zeros(GlBuffer& buffer, GLuint binding, std::size_t words);
 std::vector<std::uint32_t> words_of(const GlBuffer& buffer, std::size_t words);
 
 /// The shape that GlCanvas sees.
-Window window(int width, int height);
+Window window(int width, int height, double depth = 100);
 /// A canvas's solid with the depths of `quad`.
 SolidProgram depth_solid();
 

@@ -3,12 +3,40 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "core/pairs/backend.h"
 #include "core/pairs/interval.h"
 
 namespace farcull {
+
+/// What far_slice takes, for a window between two depths (px): steps of a power of two, at most 2^9
+/// a px (a window that is so thin that 64 slices need finer ones gains nothing by slices) and at
+/// most 2^14 in all, shared evenly by at most kSlices slices.
+struct DepthSlices {
+  float steps_per_px;
+  std::int32_t first_step;
+  std::int32_t slices_per_step;  // times 2^16
+
+  int of(float z) const {
+    return interval::far_slice(z, steps_per_px, first_step, slices_per_step);
+  }
+};
+
+inline DepthSlices depth_slices(float near_px, float far_px) {
+  constexpr double kMostSteps = 0x1p14, kMostStep = 0x1p30 - 1;
+  for (int e = 9;; --e) {
+    const double first =
+        std::clamp(std::trunc(std::ldexp(double{near_px}, e)), -kMostStep, kMostStep);
+    const double last =
+        std::clamp(std::trunc(std::ldexp(double{far_px}, e)), -kMostStep, kMostStep);
+    const double steps = std::max(last - first, 0.0) + 1;
+    if (steps > kMostSteps) continue;
+    return {std::ldexp(1.0f, e), static_cast<std::int32_t>(first),
+            static_cast<std::int32_t>(std::min(0x1p16, std::floor(kSlices * 0x1p16 / steps)))};
+  }
+}
 
 /// A triangle in the window: the pixels of its bounds and the slices of its depth.
 struct PairItem {
@@ -54,11 +82,11 @@ class PairGrid {
   }
   /// The item of a triangle with bounds that are not empty.
   PairItem item(std::uint32_t triangle, const PairBounds& bounds) const;
-  int slice(float z) const { return interval::far_slice(z, task_.near_px, slices_per_px_); }
+  int slice(float z) const { return slices_.of(z); }
 
  private:
   PairTask task_;
-  float slices_per_px_;
+  DepthSlices slices_;
 };
 
 struct PairTile {
@@ -87,6 +115,6 @@ inline PairItem PairGrid::item(std::uint32_t triangle, const PairBounds& b) cons
 }
 
 inline PairGrid::PairGrid(const PairTask& task)
-    : task_(task), slices_per_px_(kSlices / std::max(task.far_px - task.near_px, 0x1p-20f)) {}
+    : task_(task), slices_(depth_slices(task.near_px, task.far_px)) {}
 
 }  // namespace farcull

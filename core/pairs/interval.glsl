@@ -141,10 +141,15 @@ FAR_KERNEL bool far_depths(FAR_INOUT(FarStrip) strip, float from, float to, FAR_
   return near <= far;
 }
 
-// The depth slice of z: never decreasing in z, so two intervals with a common depth have a common slice.
-FAR_KERNEL int far_slice(float z, float near, float slices_per_px) {
-  FAR_PRECISE float s = (z - near) * slices_per_px;
-  return int(clamp(s, 0.0f, 63.0f));
+// The depth slice of z, 0 .. 63: never decreasing in z, so two intervals with a common depth have a common slice. It is exact for
+// any rounding, so it is one number in all programs (docs/budget.md, "Slices"): steps_per_px is a power of two, int() drops the
+// fraction, and the rest is whole numbers. first_step: of the near end; slices_per_step: times 2^16, at most 2^16.
+FAR_KERNEL int far_slice(float z, float steps_per_px, int first_step, int slices_per_step) {
+  FAR_PRECISE float steps = z * steps_per_px;
+  int step = int(clamp(steps, -1073741824.0f, 1073741824.0f)) - first_step;
+  step = step < 0 ? 0 : (step > 16383 ? 16383 : step);
+  int slice = (step * slices_per_step) >> 16;
+  return slice < 63 ? slice : 63;
 }
 
 // The part of a cell, 0 .. last, that holds p; from: the cell's lower border (px), parts_per_px: a power of two. Exact for any

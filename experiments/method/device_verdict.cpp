@@ -233,7 +233,7 @@ Json probe_json(const ProbeResult& p) {
 }
 
 const char* assumptions(Reliance reliance) {
-  return reliance == Reliance::pairs ? "A4, A7, A8 and A10" : "A1 to A8 and A10";
+  return reliance == Reliance::pairs ? "A4, A7, A8 and A10" : "A1 to A10";
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace farcull {
 struct ProbeResult;  // core/gl/probe.h
 
 /// What a method relies on a device for. pairs: FAR pairs on GL, A4 in compute shaders, A7, A8,
-/// A10. drawing: far, A1 to A8 and A10.
+/// A10. drawing: far, A1 to A10.
 enum class Reliance { pairs, drawing };
 
 struct DeviceVerdict {

@@ -18,6 +18,7 @@ struct KernelProbeOptions {
   bool brief = false;            // about a third of the samples
   bool bare = false;             // kernels that widen nothing
   bool reversed_slices = false;  // depth slices from far to near
+  bool late_stores = false;      // what is stored is another solid than what is asked
 };
 
 /// What FAR pairs relies on: far_bounds, far_margin, far_strip and far_depths on triangles of every

@@ -22,13 +22,14 @@ std::vector<ProbeResult> pair_kernel_probes(const GlContext& context,
         return tally;
       }));
   out.push_back(result(
-      "depth slices, float to int", "far_slice in the order of depth, neighbours and borders", [&] {
+      "depth slices, float to int",
+      "far_slice as rationals give it, at borders of steps and beside them", [&] {
         KernelTally tally;
         for (std::uint64_t window = 0; window < (options.brief ? 3 : 8); ++window) {
           const std::vector<SliceCase> cases = slice_kernel_cases(options.seed * 64 + window, 8192);
           std::vector<SliceCase> sent = cases;
           if (options.reversed_slices) {
-            for (SliceCase& c : sent) c.slices_per_px = -c.slices_per_px;
+            for (SliceCase& c : sent) c.steps_per_px = -c.steps_per_px;
           }
           check_slices(cases, device_slices(context, sent), tally);
         }

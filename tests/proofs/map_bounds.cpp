@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/canvas/asked_depth.h"
 #include "core/canvas/canvas.h"
 #include "core/view/budget.h"
 #include "core/view/rounding.h"
@@ -184,6 +185,22 @@ std::string depth_map(double steps, bool fixed) {
   return raw_script(definitions, known, claim);
 }
 
+// One program stores, up wherever it rounds; another one asks, down wherever it rounds, so many
+// steps behind. Every other way to round lies between, since each operation is monotone. The two
+// halves of the map have floats of different units.
+std::string asked_behind(double steps) {
+  const std::string slack = literal(steps * 0x1p-24), most = "16777215";  // 2^24 - 1
+  const std::string definitions =
+      "@up_ = float<ieee_32,up>;\n@dn_ = float<ieee_32,dn>;\n@ceil_ = fixed<0,up>;\n"
+      "@floor_ = fixed<0,dn>;\ns = up_(0.5 + up_(x));\na = dn_(0.5 + dn_(x));\nb = dn_(a + " +
+      slack + ");\nstored = ceil_(s * " + most + ");\nasked = floor_(b * " + most + ");";
+  const std::string claim = "b - s >= 0 /\\ asked - stored >= 0";
+  return definitions + "\n{ (x in [-0.25,0] -> " + claim + ") /\\ (x in [0,0.25] -> " + claim +
+         ") }\nb - s -> (b - (a + " + slack + ")) + " + slack +
+         " - (s - a);\nasked - stored -> (asked - b * " + most + ") + (b - s) * " + most +
+         " - (stored - s * " + most + ");\n";
+}
+
 }  // namespace
 
 std::vector<Bound> map_bounds() {
@@ -217,6 +234,11 @@ std::vector<Bound> map_bounds() {
       {"depth.map_24", "the same, stored with 24 bits", "depth_rounding(24)",
        "core/canvas/canvas.cpp", depth_rounding(24), "",
        [](double x) { return depth_map(x, true); }},
+      {"depth.behind",
+       "what is asked is seen where the exit is at the entry that another program stored, in "
+       "either "
+       "format, in steps of 2^-24",
+       "kAskedBehind", "core/canvas/asked_depth.h", kAskedBehind * 0x1p24, "", asked_behind},
   };
 }
 

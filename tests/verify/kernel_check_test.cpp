@@ -74,7 +74,7 @@ KernelTally slices(const std::function<void(SliceAnswer&)>& change) {
   const std::vector<SliceCase> cases = slice_kernel_cases(3, 20'000);
   std::vector<SliceAnswer> answers;
   for (const SliceCase& c : cases) {
-    answers.push_back({interval::far_slice(c.z, c.near, c.slices_per_px),
+    answers.push_back({interval::far_slice(c.z, c.steps_per_px, c.first_step, c.slices_per_step),
                        static_cast<std::int32_t>(glsl::clamp(c.x, 0.0f, 65536.0f))});
     change(answers.back());
   }

@@ -1,6 +1,6 @@
 // Stores or asks one fragment. FAR_VALUE: its depth in px is written out as well.
 // FAR_PROXY: depth from the solid's own data (its function stands before this text); entry
-// when storing, exit when asking. FAR_ASK: ask. FAR_FLAGS: an asked fragment raises its slot's flag, which is to write this
+// when storing, exit when asking. FAR_ASK: ask, so far behind the depth of the exit (kAskedBehind). FAR_FLAGS: an asked fragment raises its slot's flag, which is to write this
 // pass's serial number there: of a proxy, after comparing with the stored depth itself; of a triangle, after the depth test.
 // Otherwise an occlusion query counts.
 uniform ivec4 u_window;  // first pixel and size of the window inside the render target
@@ -56,6 +56,11 @@ void main() {
 #endif
     precise float mapped = 0.5 + z;
     depth = clamp(mapped, 0.25, 0.75);
+#ifdef FAR_ASK
+    // What is stored was mapped by another program, which may have rounded otherwise.
+    precise float behind = depth + FAR_ASK;
+    depth = behind;
+#endif
   }
 #endif
 #if defined(FAR_FLAGS) && defined(FAR_PROXY)

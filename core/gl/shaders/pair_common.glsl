@@ -29,7 +29,9 @@ layout(location = 0) uniform uvec4 u_all[kUniforms];
 #define u_widen uintBitsToFloat(u_all[1])      // as in core/pairs/interval.glsl
 #define u_tile ivec4(u_all[2])                 // pixels i0, i1, j0, j1, inclusive
 #define u_window ivec2(u_all[3].xy)            // px
-#define u_depth uintBitsToFloat(u_all[3].zw)   // near end of the window (px), slices per px
+#define u_steps_per_px uintBitsToFloat(u_all[3].z)  // as far_slice takes them
+#define u_first_step int(u_all[3].w)
+#define u_slices_per_step int(u_all[5].z)
 #define u_bins u_all[4]                        // of a cell: number, shift of a slice, number of a group, number of groups - 1
 #define u_capacity u_all[5].x                  // that the program's output holds
 #define u_items u_all[5].y                     // records of triangles that are not whole
@@ -51,7 +53,7 @@ uint far_count() {
 uint far_group() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 
 int far_pixel(float x, int count) { return int(clamp(x, 0.0f, float(count - 1))); }
-int far_depth_slice(float z) { return far_slice(z, u_depth.x, u_depth.y); }
+int far_depth_slice(float z) { return far_slice(z, u_steps_per_px, u_first_step, u_slices_per_step); }
 
 // Entries of a cell lie in bins by the last bit of their owner's number (where there are two groups), then by near slice.
 uint far_bin(uint cell, uint code, uint slice) {

@@ -28,21 +28,30 @@ void far_record(uint at, FarTriangle t, uint code, uint from, uint to) {
   FAR_AT(record_heads, at) = uvec4(t.triangle, code, from, to);
 }
 
+// The pixels i0, j0, i1, j1 of its bounds.
+ivec4 far_pixels(FarTriangle t) {
+  return ivec4(far_pixel(t.lo.x, u_window.x), far_pixel(t.lo.y, u_window.y), far_pixel(t.hi.x, u_window.x), far_pixel(t.hi.y, u_window.y));
+}
+
+uint far_extent(FarTriangle t, ivec4 at) {
+  return far_pack(at.z - at.x + 1, at.w - at.y + 1, far_depth_slice(t.lo.z), far_depth_slice(t.hi.z));
+}
+
 #if FAR_STEP == 0
 void work(uint w) {
   FarTriangle t;
   if (!far_triangle(w, t)) return;
-  int i0 = far_pixel(t.lo.x, u_window.x);
-  int i1 = far_pixel(t.hi.x, u_window.x);
-  int j0 = far_pixel(t.lo.y, u_window.y);
-  int j1 = far_pixel(t.hi.y, u_window.y);
+  ivec4 pixels = far_pixels(t);
+  int i0 = pixels.x;
+  int j0 = pixels.y;
+  int i1 = pixels.z;
+  int j1 = pixels.w;
   if (i1 < u_tile.x || i0 > u_tile.y || j1 < u_tile.z || j0 > u_tile.w) return;
   uint from = uint(i0) | uint(j0) << 16;
   if ((i1 - i0 + 1) * (j1 - j0 + 1) <= FAR_WHOLE_PIXELS) {
     uint at = atomicAdd(counters[FAR_WHOLES], 1u);
     if (at >= u_extra.z) return;
-    uint extent = far_pack(i1 - i0 + 1, j1 - j0 + 1, far_depth_slice(t.lo.z), far_depth_slice(t.hi.z));
-    FAR_AT(heads, at) = uvec4(u_extra.x + w, t.code | kWhole, from, extent);
+    FAR_AT(heads, at) = uvec4(u_extra.x + w, t.code | kWhole, from, far_extent(t, pixels));
     return;
   }
   uint code = t.code;
@@ -68,8 +77,14 @@ void work(uint w) {
 void work(uint w) {
   uvec4 head = FAR_AT(heads, FAR_AT(shown, w));
   uint at = head.x - u_extra.x;  // beyond u_extra.z where it lies before the first one, too
+  if (at >= u_extra.z) return;
   FarTriangle t;
-  if (at >= u_extra.z || !far_triangle(at, t)) return;
+  // Lists follow the pixels and slices of the head, and tests the bounds of the record, which another program computes again: where
+  // the two differ, nothing is believed.
+  bool same = far_triangle(at, t);
+  ivec4 pixels = far_pixels(t);
+  if (!same || (uint(pixels.x) | uint(pixels.y) << 16) != head.z || far_extent(t, pixels) != head.w)
+    atomicAdd(counters[FAR_MISMATCHES], 1u);
   far_record(u_items + w, t, head.y, head.z, head.w);
 }
 #endif

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/canvas/kernel_case.h"
+#include "core/pairs/grid.h"
 #include "tests/core/base/chance.h"
 #include "tests/core/base/rational.h"
 #include "tests/core/base/seed.h"
@@ -250,20 +251,73 @@ TEST(Interval, ADivisionWouldMoveTheBorderOfAPart) {
   EXPECT_LE(most, 2.5 * 0x1p-23 * (1 + 0x1p-20));
 }
 
-TEST(Interval, SlicesNeverDecrease) {
-  Random random(13);
-  for (int n = 0; n < 100000; ++n) {
-    if (n == 50000) random = Random(seed_of_day(13));
-    const float near = static_cast<float>(random.scaled(-4, 12));
-    const float scale = static_cast<float>(64 / std::exp2(random.uniform(-10, 14)));
-    const float z = near + static_cast<float>(random.scaled(-10, 14));
-    const float next = random.coin() ? std::nextafter(z, HUGE_VALF)
-                                     : z + static_cast<float>(std::exp2(random.uniform(-20, 14)));
-    const int slice = interval::far_slice(z, near, scale);
-    ASSERT_LE(slice, interval::far_slice(next, near, scale));
-    ASSERT_GE(slice, 0);
-    ASSERT_LT(slice, 64);
+// A window's depths, and one beside the border of a step, inside or beyond.
+struct DeepWindow {
+  float near, far, z;
+};
+
+DeepWindow random_depths(Random& random) {
+  DeepWindow out{};
+  out.near = static_cast<float>(random.scaled(-4, 20));
+  out.far = out.near + static_cast<float>(std::exp2(random.uniform(-20, 20)));
+  out.z = static_cast<float>(
+      random.uniform(1.1 * out.near - 0.1 * out.far, 1.1 * out.far - 0.1 * out.near));
+  if (random.coin()) {
+    const float steps = depth_slices(out.near, out.far).steps_per_px;
+    out.z = std::trunc(out.z * steps) / steps;
+    const float end = random.coin() ? HUGE_VALF : -HUGE_VALF;
+    for (int k = random.below(3); k > 0; --k) out.z = std::nextafter(out.z, end);
   }
+  if (random.below(8) == 0) out.z = static_cast<float>(random.scaled(-149, 20));
+  return out;
+}
+
+// docs/budget.md, "Slices". A double holds the product; the fraction that is dropped is its own.
+TEST(Interval, SlicesAreExactHoweverTheDeviceRounds) {
+  using glsl_chance::Rounding;
+  Random random(13);
+  std::array<int, kSlices> seen{};
+  for (int n = 0; n < trials(300'000); ++n) {
+    if (n == trials(150'000)) random = Random(seed_of_day(13));
+    const DeepWindow w = random_depths(random);
+    const DepthSlices cut = depth_slices(w.near, w.far);
+    ASSERT_EQ(std::exp2(std::ilogb(cut.steps_per_px)), cut.steps_per_px);
+    glsl_chance::rounding() = std::array{Rounding::random, Rounding::up, Rounding::down}[n % 3];
+    const int slice =
+        interval_chance::far_slice(w.z, cut.steps_per_px, cut.first_step, cut.slices_per_step);
+    const double step = std::trunc(double(w.z) * cut.steps_per_px) - cut.first_step;
+    const double exact = std::floor(std::clamp(step, 0.0, 16383.0) * cut.slices_per_step / 65536);
+    ASSERT_EQ(slice, std::min(exact, 63.0)) << w.z << " in " << w.near << " .. " << w.far;
+    ASSERT_EQ(slice, cut.of(w.z));
+    ++seen[slice];
+    // A window deeper than some steps has all its slices but one or two.
+    if (w.far - w.near > 1) {
+      ASSERT_LE(cut.of(w.near), 0);
+      ASSERT_GE(cut.of(w.far), 61);
+    }
+  }
+  glsl_chance::rounding() = Rounding::random;
+  for (const int count : seen) EXPECT_GT(count, trials(500));
+}
+
+// The difference from the near end rounds, so two programs that round otherwise differ.
+TEST(Interval, ADifferenceFromTheNearEndWouldMoveTheBorderOfASlice) {
+  using glsl_chance::Chance;
+  using glsl_chance::Rounding;
+  Random random(13);
+  int differ = 0;
+  for (int n = 0; n < trials(300'000); ++n) {
+    const DeepWindow w = random_depths(random);
+    int slices[2];
+    for (const Rounding rounding : {Rounding::up, Rounding::down}) {
+      glsl_chance::rounding() = rounding;
+      const Chance at = (Chance(w.z) - w.near) * Chance(kSlices / (w.far - w.near));
+      slices[rounding == Rounding::up] = static_cast<int>(clamp(at, 0.0f, 63.0f));
+    }
+    differ += slices[0] != slices[1];
+  }
+  glsl_chance::rounding() = Rounding::random;
+  EXPECT_GT(differ, trials(100));
 }
 
 }  // namespace
