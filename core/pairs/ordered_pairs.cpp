@@ -2,6 +2,10 @@
 // The pairs of a triangle a are those with b > a, so that pairs in the order of a are in order.
 #include "core/pairs/ordered_pairs.h"
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 #include <algorithm>
 #include <array>
 
@@ -14,6 +18,23 @@ namespace {
 
 /// Bit k: the box overlaps box k of the block.
 unsigned overlapping(const WideBoxes& block, const Box& box) {
+#ifdef __SSE2__
+  std::array<__m128d, 3> lo, hi;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    lo[axis] = _mm_set1_pd(box.lo[static_cast<Eigen::Index>(axis)]);
+    hi[axis] = _mm_set1_pd(box.hi[static_cast<Eigen::Index>(axis)]);
+  }
+  unsigned out = 0;
+  for (std::size_t k = 0; k < kWide; k += 2) {
+    const auto meets = [&](std::size_t axis) {
+      return _mm_and_pd(_mm_cmple_pd(_mm_load_pd(&block.column[axis][k]), hi[axis]),
+                        _mm_cmpge_pd(_mm_load_pd(&block.column[axis + 3][k]), lo[axis]));
+    };
+    const __m128d all = _mm_and_pd(_mm_and_pd(meets(0), meets(1)), meets(2));
+    out |= static_cast<unsigned>(_mm_movemask_pd(all)) << k;
+  }
+  return out;
+#else
   std::array<std::uint8_t, kWide> meets;
   meets.fill(1);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -27,6 +48,7 @@ unsigned overlapping(const WideBoxes& block, const Box& box) {
   unsigned out = 0;
   for (std::size_t k = 0; k < kWide; ++k) out |= static_cast<unsigned>(meets[k]) << k;
   return out;
+#endif
 }
 
 }  // namespace
