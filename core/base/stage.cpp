@@ -184,6 +184,8 @@ std::string reason_of(const Stage& stage) {
              " are cheaper than a further view";
     case Reason::enough_views:
       return "enough views were looked at";
+    case Reason::given_up:
+      return "given up after " + n + " pairs of intervals: it takes nothing away";
     case Reason::keeps_sample:
       return "it keeps all of a sample of the candidates";
     case Reason::sweep:
@@ -198,6 +200,15 @@ std::string reason_of(const Stage& stage) {
       return "boxes of all triangles";
     case Reason::join_unresolvable:
       return "no view can resolve the scene: pairs by their boxes alone";
+    case Reason::join_uneven:
+      return "triangles lie unevenly, most of them in a small part of their object's box: pairs by "
+             "a tree over the boxes of all triangles";
+    case Reason::join_many_runs:
+      return "boxes of more than " + n +
+             " pairs of runs overlap: pairs by a tree over the boxes of all triangles";
+    case Reason::join_many_tests:
+      return "view " + stage.detail + " was given up after " + n +
+             " pairs of intervals: pairs by a tree over the boxes of all triangles";
     case Reason::predicates:
       return "exact predicates on the candidates";
     case Reason::no_candidates:
@@ -221,6 +232,8 @@ std::string reason_of(const Stage& stage) {
       return "if the round before culled at least one triangle in " + n + at_most_rounds(stage);
     case Reason::if_candidates:
       return "if there are candidates";
+    case Reason::if_more_tests:
+      return "if a view compares more than " + n + " pairs of intervals: a tree over all boxes";
   }
   return "";
 }

@@ -2,12 +2,35 @@
 // device is believed then.
 #include "core/gl/pairs.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <stdexcept>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/gl/pairs_finder.h"
+#include "core/pairs/cpu.h"
 
 namespace farcull {
+namespace {
+
+// Whether an eighth of the triangles has more than a 64th of the work that may be done. A device
+// tells how much it did when it has done it, so this is asked before.
+bool takes_too_much(const PairTask& task) {
+  constexpr std::size_t kOneOf = 8;
+  if (task.most_tests == UINT64_MAX || std::max(task.width, task.height) > kMostCpuPixels)
+    return false;
+  std::vector<std::uint32_t> some;
+  for (std::size_t k = 0; k < task.active.size(); k += kOneOf) some.push_back(task.active[k]);
+  PairTask part = task;
+  part.active = some;
+  part.most_tests = task.most_tests / (kOneOf * kOneOf);
+  PairCounts counts;
+  cpu_sample_backend(task.active.size())->raw_pairs(part, counts);
+  return counts.given_up;
+}
+
+}  // namespace
 
 GlPairs::GlPairs(const GlContext& context, const GlPairOptions& options)
     : context_(context), options_(options) {
@@ -35,6 +58,11 @@ std::string GlPairs::name() const { return context_.info().renderer; }
 std::vector<TrianglePair> GlPairs::raw_pairs(const PairTask& task, PairCounts& counts) {
   if (task.width < 1 || task.height < 1 || task.width > 65536 || task.height > 65536) {
     throw std::logic_error("GlPairs: a window of no pixels, or of more than 65536 along a side");
+  }
+  if (takes_too_much(task)) {
+    counts = {};
+    counts.given_up = true;
+    return {};
   }
   const GlCurrent current(context_);
   try {

@@ -31,7 +31,8 @@ void PairEmission::begin() {
   // The pairs of a portion may come on top of it.
   portions_ = reported_ = 0;
   found_.emplace(1,
-                 std::max(run_.options.memory / kBufferPart / sizeof(TrianglePair), kLeastBuffer));
+                 std::max(run_.options.memory / kBufferPart / sizeof(TrianglePair), kLeastBuffer),
+                 run_.task->narrow);
 }
 
 std::vector<TrianglePair> PairEmission::take() {
@@ -208,7 +209,7 @@ bool PairEmission::finish_foreseen(PairLists& lists, const PartMemory& memory,
 // The portions that are left.
 bool PairEmission::run_portions(PairLists& lists, const PartMemory& memory,
                                 PairTotalWords& totals) {
-  while (!left_.empty()) {
+  while (!left_.empty() && !run_.counts.given_up) {
     const Portion portion = left_.back();
     left_.pop_back();
     run_.device.reset(kPairTotals);
@@ -232,6 +233,7 @@ bool PairEmission::take_portion(const Portion& portion, const PartMemory& memory
     emitted_ += emitted;
     most_units_ = std::max(most_units_, more);
     run_.counts.tests += two_words(totals, kTotalTests);
+    run_.counts.given_up = run_.counts.tests > run_.task->most_tests;
     return true;
   }
   // Bits say that pairs were emitted which did not fit.

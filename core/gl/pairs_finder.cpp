@@ -81,7 +81,7 @@ std::vector<TrianglePair> PairFinder::find(const PairTask& task, PairCounts& cou
     } else {
       run_.counts.bands = 1;
     }
-    if (seen_ && run_.counts.bands == 1) {
+    if (seen_ && run_.counts.bands == 1 && !run_.counts.given_up) {
       last_ones_.push_front({*seen_, window});
       if (last_ones_.size() > kRemembered) last_ones_.pop_back();
     } else {
@@ -91,7 +91,9 @@ std::vector<TrianglePair> PairFinder::find(const PairTask& task, PairCounts& cou
   run_.counts.dispatches = run_.device.dispatches();
   run_.counts.readbacks = run_.device.readbacks();
   counts = run_.counts;
-  return emission_.take();
+  std::vector<TrianglePair> pairs = emission_.take();
+  if (counts.given_up) pairs.clear();
+  return pairs;
 }
 
 // Nothing where the last windows were of another scene.
@@ -223,6 +225,7 @@ bool PairFinder::find_in(const PairPart& part) {
 }
 
 void PairFinder::split(const PairPart& part) {
+  if (run_.counts.given_up) return;
   const PairCounts before = run_.counts;
   run_.counts.crowded = 0;
   if (find_in(part)) {

@@ -72,7 +72,7 @@ struct PairRun {
   const PairTask* task = nullptr;
   PairOwners owners;
   PairUniforms common;  // of the part
-  PairCounts counts;    // of the window
+  PairCounts counts;    // of the window; given_up: no more is done
 };
 
 /// Throws Error unless every list was filled in as it was counted.

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -55,6 +56,12 @@ struct PairTask {
   int height = 0;          // px; 0 <= i < width, 0 <= j < height
   float near_px = 0;       // the depth range of the window, for the slices
   float far_px = 0;
+  /// Work after which the answer is given up: pairs of intervals compared, pixels of triangles and
+  /// entries of their lists, and large triangles times active ones.
+  std::uint64_t most_tests = UINT64_MAX;
+  /// Takes away pairs of which the caller knows that they are none, so that lists that fill up stay
+  /// short; null: it knows none. Called by several threads at once.
+  std::function<void(std::vector<TrianglePair>&)> narrow = {};
   glsl::vec4 widening{};  // px per axis: every point of a triangle is within this of the
                           // triangle of its PixelVertex corners, up to float rounding
 };
@@ -72,6 +79,7 @@ struct PairCounts {
   std::uint64_t dispatches = 0, readbacks = 0;
   // How often the work was done again, since the room that was expected to do was too little.
   std::uint64_t redone = 0;
+  bool given_up = false;         // there is more work than PairTask::most_tests; no pairs
   double prepare_ms = 0;                         // to pixel space
   double mark_ms = 0, list_ms = 0, pair_ms = 0;  // CPU: summed over threads
   // The same by the clock of a GL device; negative where it gives none, and on the CPU.
@@ -85,7 +93,8 @@ class PairBackend {
   /// Threads of the CPU that the rest of the work may use too; 0: as many as there are cores.
   virtual unsigned threads() const { return 0; }
   /// Pairs a < b (indices into task.triangles), sorted, each once: of different owners, or of one
-  /// that is `self`. Throws Error unless every command is known to have run (A7).
+  /// that is `self`; without some or all that task.narrow takes away. None where counts.given_up.
+  /// Throws Error unless every command is known to have run (A7).
   virtual std::vector<TrianglePair> raw_pairs(const PairTask& task, PairCounts& counts) = 0;
 };
 

@@ -16,8 +16,8 @@ namespace {
 // Triangles are fetched this far ahead, since their corners may lie anywhere.
 constexpr std::size_t kAhead = 16;
 
-// Pixels on a side of the window, so that their products and PairItem hold them.
-constexpr int kMostPixels = 32767;
+// PairItem holds pixels, and an int their products.
+static_assert(kMostCpuPixels < 1 << 15);
 
 // Bands of rows: several for each thread, so that one dense band does not hold up the others.
 constexpr int kBandsPerThread = 8;
@@ -78,24 +78,27 @@ class CpuPairs : public PairBackend {
   unsigned threads() const override { return threads_; }
 
   std::vector<TrianglePair> raw_pairs(const PairTask& task, PairCounts& counts) override {
-    if (task.width < 1 || task.height < 1 || std::max(task.width, task.height) > kMostPixels) {
+    if (task.width < 1 || task.height < 1 || std::max(task.width, task.height) > kMostCpuPixels) {
       throw std::logic_error("CpuPairs: a window without pixels, or with more than 32,767 a side");
     }
     const PairGrid grid(task);
     const Bands bands = bands_for(task.height, threads_);
     const std::size_t chunks = std::clamp<std::size_t>(task.active.size() / 1024, 1, threads_);
-    sort_into_bands(grid, bands, chunks);
+    WorkLimit work(task.most_tests);
+    sort_into_bands(grid, bands, chunks, work);
 
-    PairPool found(threads_, std::max(memory_ / kBufferPart / sizeof(TrianglePair), kLeastBuffer));
+    PairPool found(threads_, std::max(memory_ / kBufferPart / sizeof(TrianglePair), kLeastBuffer),
+                   task.narrow);
     std::vector<PairCounts> parts(threads_);
-    compare_large(grid, chunks, found);
+    work.add(std::uint64_t{large_.size()} * task.active.size());
+    if (!work.exceeded()) compare_large(grid, chunks, found);
     const bool masked = std::any_of(task.self.begin(), task.self.end(),
                                     [](std::uint8_t self) { return self == 0; });
     std::atomic<int> next = 0;
     for_chunks(threads_, threads_, [&](std::size_t thread, std::size_t, std::size_t) {
       std::vector<PairItem> items;
-      workers_[thread].begin(grid, masked, memory_, found, thread);
-      for (int band = next++; band < bands.count; band = next++) {
+      workers_[thread].begin(grid, masked, memory_, found, thread, &work);
+      for (int band = next++; band < bands.count && !work.exceeded(); band = next++) {
         items.clear();
         for (const auto& chunk : items_) {
           items.insert(items.end(), chunk[band].begin(), chunk[band].end());
@@ -106,8 +109,10 @@ class CpuPairs : public PairBackend {
       }
     });
 
-    std::vector<TrianglePair> pairs = found.take(threads_);
+    std::vector<TrianglePair> pairs;
+    if (!work.exceeded()) pairs = found.take(threads_);
     counts = {};
+    counts.given_up = work.exceeded();
     counts.bands = bands.count;
     for (const PairCounts& part : parts) {
       counts.listed += part.listed;
@@ -125,7 +130,8 @@ class CpuPairs : public PairBackend {
 
  private:
   // Bounds of all active triangles: the small ones as items of the bands that they meet.
-  void sort_into_bands(const PairGrid& grid, const Bands& bands, std::size_t chunks) {
+  void sort_into_bands(const PairGrid& grid, const Bands& bands, std::size_t chunks,
+                       WorkLimit& work) {
     const PairTask& task = grid.task();
     const float large = large_pixels(std::max(task.active.size(), sample_of_));
     items_.resize(chunks);
@@ -135,22 +141,28 @@ class CpuPairs : public PairBackend {
           auto& mine = items_[chunk];
           mine.resize(bands.count);
           for (auto& band : mine) band.clear();
+          std::uint64_t pixels = 0;
           for (std::size_t k = begin; k < end; ++k) {
             const std::uint32_t t = task.active[k];
             grid.prefetch(task.active[std::min(k + kAhead, end - 1)]);
             const PairBounds bounds = grid.bounds(t);
             if (bounds.empty()) continue;
             const PairItem item = grid.item(t, bounds);
-            if (!item.whole && interval::far_footprint(grid.corner(t, 0), grid.corner(t, 1),
-                                                       grid.corner(t, 2), bounds.hi.x - bounds.lo.x,
-                                                       bounds.hi.y - bounds.lo.y) > large) {
+            const float met = item.whole ? 0
+                                         : interval::far_footprint(
+                                               grid.corner(t, 0), grid.corner(t, 1),
+                                               grid.corner(t, 2), bounds.hi.x - bounds.lo.x,
+                                               bounds.hi.y - bounds.lo.y);
+            if (met > large) {
               large_of[chunk].push_back({t, task.owners[t], bounds});
               continue;
             }
+            pixels += static_cast<std::uint64_t>(met);
             const int last = item.j1 >> bands.shift;
             for (int band = item.j0 >> bands.shift; band <= last; ++band)
               mine[band].push_back(item);
           }
+          work.add(pixels);
         });
     large_.clear();
     for (const auto& part : large_of) large_.insert(large_.end(), part.begin(), part.end());

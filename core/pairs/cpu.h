@@ -8,6 +8,9 @@
 
 namespace farcull {
 
+/// Pixels on a side of a window that this back end takes.
+constexpr int kMostCpuPixels = 32767;
+
 /// threads: 0 for as many as there are cores. memory: bytes, about, that the masks and lists of one
 /// part of the window may take in each thread; more entries split the window further, down to
 /// single pixels, which take what they need. An eighth of it on top holds which pairs were settled,

@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
 #include "core/pairs/grown_box.h"
+#include "core/pairs/ordered_pairs.h"
 #include "core/pairs/plan.h"
 #include "core/scene/box_join.h"
 #include "core/scene/members.h"
@@ -40,21 +41,39 @@ std::vector<TrianglePair> pairs_of_few(const Scene& scene, const PairRegions& re
   return pairs;
 }
 
+// Pairs whose grown boxes overlap, of the whole scene, by a tree over them, which finds them in
+// order: what `keeps` leaves out is never listed.
+template <class Keeps>
+std::vector<TrianglePair> pairs_by_tree(const Scene& scene, const PairSettings& settings,
+                                        unsigned threads, const Keeps& keeps,
+                                        std::uint64_t* compared = nullptr) {
+  constexpr std::size_t kAtOnce = std::size_t{1} << 18;
+  OrderedPairs tree(scene, settings.clearance, settings.ignored, threads);
+  const std::vector<std::uint32_t> owner =
+      settings.neighbours ? std::vector<std::uint32_t>() : owners(scene);
+  std::vector<TrianglePair> pairs, some;
+  while (!tree.at_end()) {
+    tree.next(kAtOnce, some);
+    std::ranges::copy_if(some, std::back_inserter(pairs), [&](const TrianglePair& pair) {
+      return keeps(pair) &&
+             (owner.empty() || owner[pair.a] != owner[pair.b] ||
+              !share_index(scene.triangles[pair.a], scene.triangles[pair.b]));
+    });
+  }
+  if (compared) *compared = tree.compared();
+  return pairs;
+}
+
 // Pairs of the scene whose grown boxes overlap and one of whose triangles is in `some` (ascending):
 // for triangles of which a view can say nothing.
 std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const PairRegions& regions,
-                                         std::span<const std::uint32_t> some, double clearance) {
-  if (some.size() <= kComparedWithAll) return pairs_of_few(scene, regions, some, clearance);
-  std::vector<Box> boxes(scene.triangles.size(), Box::empty());
-  for (const std::uint32_t t : regions.triangles) boxes[t] = grown_box(scene, t, clearance);
-  std::vector<TrianglePair> pairs = box_join(boxes, join_owners(scene), regions.triangles);
-  if (some.size() < regions.triangles.size()) {
-    std::erase_if(pairs, [&](const TrianglePair& pair) {
-      return !std::binary_search(some.begin(), some.end(), pair.a) &&
-             !std::binary_search(some.begin(), some.end(), pair.b);
-    });
-  }
-  return pairs;
+                                         std::span<const std::uint32_t> some,
+                                         const PairSettings& settings, unsigned threads) {
+  if (some.size() <= kComparedWithAll) return pairs_of_few(scene, regions, some, settings.clearance);
+  return pairs_by_tree(scene, settings, threads, [&](const TrianglePair& pair) {
+    return std::binary_search(some.begin(), some.end(), pair.a) ||
+           std::binary_search(some.begin(), some.end(), pair.b);
+  });
 }
 
 // Pairs whose second corners are fetched ahead; the first ones are mostly those of the pair before.
@@ -115,7 +134,7 @@ class Finding {
 
   PairResult result() {
     compare_runs();
-    for (std::size_t k = 0; k < plan_.choices.size(); ++k) {
+    for (std::size_t k = 0; k < plan_.choices.size() && given_up_.empty(); ++k) {
       const PairChoice& choice = plan_.choices[k];
       if (asks_whether_to_go_on() && stops_before(choice)) break;
       if (skipped_) continue;
@@ -208,18 +227,31 @@ class Finding {
     const glsl::vec4& widening = seen_.task.widening;
     view.widening_px = std::max({widening.x, widening.y, widening.z});
     seen_.task.neighbours = plan_.settings.neighbours;
+    seen_.task.most_tests = plan_.most_tests;
+    seen_.task.narrow = [&](std::vector<TrianglePair>& pairs) {
+      keep_overlapping(scene_, {}, plan_.settings.clearance, 1, pairs);
+    };
     const double prepare_ms = start.ms();
     std::vector<TrianglePair> pairs = backend_.raw_pairs(seen_.task, view.counts);
     view.counts.undrawable = seen_.undrawable.size();
     view.counts.prepare_ms = prepare_ms;
-    narrow(std::move(pairs));
-    first_ = false;
+    const bool further = !first_;
+    if (view.counts.given_up) {
+      given_up_ = choice.view.name;
+    } else {
+      narrow(std::move(pairs));
+      first_ = false;
+    }
     ++looked_;
     stage.ran = true;
     stage.reason = Reason::chosen;
     stage.detail = choice.reason;
     stage.n = static_cast<std::uint64_t>(view.width);
     stage.m = static_cast<std::uint64_t>(view.height);
+    if (further && view.counts.given_up) {
+      stage.reason = Reason::given_up;
+      stage.n = plan_.most_tests;
+    }
     stage.ms = start.ms();
     stage.out = out_.candidates.size();
     out_.views.push_back(view);
@@ -235,8 +267,10 @@ class Finding {
       const std::span<const std::uint32_t> owners(seen_.owners);
       keep_overlapping(scene_, seen_.task.neighbours ? owners.first(0) : owners, clearance,
                        backend_.threads(), pairs);
-      if (!bad.empty())
-        pairs = merged(pairs, pairs_by_boxes(scene_, plan_.regions, bad, clearance));
+      if (!bad.empty()) {
+        pairs = merged(pairs, pairs_by_boxes(scene_, plan_.regions, bad, plan_.settings,
+                                             backend_.threads()));
+      }
       out_.candidates = std::move(pairs);
       return;
     }
@@ -252,14 +286,20 @@ class Finding {
     if (all.empty()) return;
     const Stopwatch start;
     if (progress_) progress_("joining boxes");
-    out_.candidates = pairs_by_boxes(scene_, plan_.regions, all, plan_.settings.clearance);
-    out_.stages.push_back({.kind = StageKind::join,
-                           .ran = true,
-                           .reason = Reason::join_unresolvable,
-                           .ms = start.ms(),
-                           .in = all.size(),
-                           .out = out_.candidates.size(),
-                           .unit = Unit::pairs});
+    std::uint64_t compared = 0;
+    out_.candidates = pairs_by_tree(
+        scene_, plan_.settings, backend_.threads(), [](const TrianglePair&) { return true; },
+        &compared);
+    Stage stage = !given_up_.empty()
+                      ? stage_of_join(Reason::join_many_tests, plan_.most_tests, given_up_)
+                  : plan_.join != Reason::none ? stage_of_join(plan_.join, plan_.join_n)
+                                               : stage_of_join(Reason::join_unresolvable);
+    stage.depends = !given_up_.empty();
+    stage.m = compared;
+    stage.ms = start.ms();
+    stage.in = all.size();
+    stage.out = out_.candidates.size();
+    out_.stages.push_back(stage);
   }
 
   Stage stage_of(const PairChoice& choice) const {
@@ -279,6 +319,7 @@ class Finding {
   std::vector<TrianglePair> of_runs_;
   bool first_ = true;  // no view has said anything yet
   bool skipped_ = false;
+  std::string given_up_ = {};  // the view that took too much work
   std::size_t looked_ = 0;
 };
 

@@ -9,6 +9,8 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/pairs/cpu.h"
+#include "core/pairs/grown_box.h"
+#include "core/scene/box_join.h"
 #include "core/scene/members.h"
 
 namespace farcull {
@@ -52,6 +54,15 @@ std::optional<PairWindow> window_of(const PairPlan& plan, const PairChoice& choi
   return pair_window(plan.regions, choice.view, choice.resolution, plan.settings.clearance);
 }
 
+Stage stage_of_join(Reason reason, std::uint64_t n, const std::string& detail) {
+  return {.kind = StageKind::join,
+          .ran = true,
+          .reason = reason,
+          .detail = detail,
+          .n = n,
+          .unit = Unit::pairs};
+}
+
 Stage stage_of_runs(const PairPlan& plan) {
   const std::size_t compared = plan.runs.between.size() + plan.runs.inside.size();
   return {.kind = StageKind::runs,
@@ -82,6 +93,34 @@ std::vector<PairChoice> given_choices(const Scene& scene, const PairRegions& reg
                              : "direction given; pixels by the triangles' sizes"});
   }
   return choices;
+}
+
+// About how many pairs of boxes overlap: boxes of a few triangles with those of some others.
+double estimated_pairs(const Scene& scene, const PairRegions& regions, double clearance) {
+  constexpr std::size_t kAsked = 32, kOthers = 8192;
+  const std::vector<std::uint32_t> owner = join_owners(scene);
+  const std::size_t n = regions.triangles.size();
+  const std::size_t asked = std::min(n, kAsked), others = std::min(n, kOthers);
+  std::vector<Box> boxes;
+  for (std::size_t k = 0; k < asked; ++k)
+    boxes.push_back(grown_box(scene, regions.triangles[n * k / asked], clearance));
+  std::size_t found = 0;
+  for (std::size_t k = 0; k < others; ++k) {
+    const std::uint32_t t = regions.triangles[n * k / others];
+    const Box box = grown_box(scene, t, clearance);
+    for (std::size_t a = 0; a < asked; ++a) {
+      found += owner[t] != owner[regions.triangles[n * a / asked]] && overlap(box, boxes[a]);
+    }
+  }
+  const auto part = [n](std::size_t of) { return static_cast<double>(n) / static_cast<double>(of); };
+  return 0.5 * static_cast<double>(found) * part(asked) * part(others);
+}
+
+std::uint64_t most_tests_of(const Scene& scene, const PairPlan& plan) {
+  const double pairs = estimated_pairs(scene, plan.regions, plan.settings.clearance);
+  return static_cast<std::uint64_t>(
+      kTestsPerTriangle * static_cast<double>(plan.regions.triangles.size()) +
+      kTestsPerPair * pairs);
 }
 
 // Triangles that take part in what runs decide, or views, or both.
@@ -145,18 +184,20 @@ void split_and_choose(const Scene& scene, unsigned threads, PairMemory* memory, 
   PairParts parts = split(false);
   const double split_ms = planning.ms();
   const Stopwatch choosing;
-  if (!parts.rest.triangles.empty()) {
+  if (parts.join == Reason::none && !parts.rest.triangles.empty()) {
     plan.choices = choose_pair_views(scene, parts.rest, 0);
     // Where triangles lie on each other no view parts them, and boxes are found faster.
     if (!parts.sample.empty() && kept_by(scene, parts.rest, plan.choices.front(),
                                          settings.clearance, parts.sample) > kKeptByView) {
       PairParts by_runs = split(true);
-      if (by_runs.rest.triangles.empty()) {
+      if (by_runs.rest.triangles.empty() || by_runs.join != Reason::none) {
         plan.choices.clear();
         parts = std::move(by_runs);
       }
     }
   }
+  plan.join = parts.join;
+  plan.join_n = parts.join_n;
   plan.runs = std::move(parts.runs);
   plan.regions = std::move(parts.rest);
   plan.trace.push_back({.kind = StageKind::boxes,
@@ -170,10 +211,12 @@ void split_and_choose(const Scene& scene, unsigned threads, PairMemory* memory, 
                         .out = taking_part(scene, plan),
                         .unit = Unit::triangles});
   if (plan.choices.empty()) {
+    const bool joined = plan.join != Reason::none, none = !joined && plan.runs.empty();
     plan.trace.push_back(
         {.kind = StageKind::views,
-         .reason = plan.runs.empty() ? Reason::no_boxes_overlap : Reason::only_runs,
-         .detail = plan.runs.empty() ? apart(settings) : "",
+         .reason = joined ? plan.join : none ? Reason::no_boxes_overlap : Reason::only_runs,
+         .detail = none ? apart(settings) : "",
+         .n = plan.join_n,
          .ms = choosing.ms(),
          .unit = Unit::pairs});
     return;
@@ -244,6 +287,7 @@ PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned t
     if (memory) memory->complete = false;
     leave_to_views(scene, threads, plan);
   }
+  if (!plan.choices.empty()) plan.most_tests = most_tests_of(scene, plan);
   std::size_t resolved = 0;
   for (const PairChoice& choice : plan.choices) {
     if (resolved == certain_views(plan)) break;
@@ -256,6 +300,7 @@ PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned t
 std::vector<Stage> planned_stages(const PairPlan& plan) {
   std::vector<Stage> stages;
   if (!plan.runs.empty()) stages.push_back(stage_of_runs(plan));
+  if (plan.join != Reason::none) stages.push_back(stage_of_join(plan.join, plan.join_n));
   const bool chosen = plan.settings.views.empty();
   std::size_t looked = 0;
   for (std::size_t k = 0; k < plan.choices.size(); ++k) {
@@ -279,11 +324,12 @@ std::vector<Stage> planned_stages(const PairPlan& plan) {
     stages.push_back(stage);
     if (chosen && stage.depends && !stage.ran) break;
   }
-  if (looked == 0 && !plan.choices.empty())
-    stages.push_back({.kind = StageKind::join,
-                      .ran = true,
-                      .reason = Reason::join_unresolvable,
-                      .unit = Unit::pairs});
+  if (looked == 0 && !plan.choices.empty()) {
+    stages.push_back(stage_of_join(Reason::join_unresolvable));
+  } else if (looked > 0) {
+    stages.push_back(stage_of_join(Reason::if_more_tests, plan.most_tests));
+    stages.back().depends = true;
+  }
   return stages;
 }
 

@@ -14,6 +14,10 @@
 
 namespace farcull {
 
+/// A view is given up where it takes more work than kTestsPerTriangle for each triangle that takes
+/// part, and kTestsPerPair for each pair of boxes that overlap, by an estimate. (Views that are
+/// worth while take less than a quarter of that: docs/reliability.md, "Bounded work".)
+constexpr double kTestsPerTriangle = 1024, kTestsPerPair = 64;
 /// A further view is looked at where there are more candidates than this for each triangle that
 /// takes part: fewer are mostly neighbours and contacts, which no view takes away.
 constexpr std::size_t kFurtherViewFrom = 16;
@@ -37,6 +41,11 @@ struct PairPlan {
   RunMeetings runs;                 // decided without a view
   PairRegions regions;              // of all others
   std::vector<PairChoice> choices;  // in the order in which they are looked at; empty: boxes decide
+  /// Of boxes of all triangles, where they decide from the beginning: why (PairParts::join), and
+  /// the number that it speaks of. Else none.
+  Reason join = Reason::none;
+  std::uint64_t join_n = 0;
+  std::uint64_t most_tests = UINT64_MAX;  // of a view: PairTask::most_tests
   /// Of the first choices, those that are looked at whatever the candidates; empty: unresolvable.
   std::vector<std::optional<PairWindow>> windows;
   std::vector<Stage> trace;  // of the planning itself
@@ -65,6 +74,8 @@ double kept_by(const Scene& scene, const PairRegions& regions, const PairChoice&
                double clearance, const std::vector<TrianglePair>& from);
 /// The window of a choice; empty where pixel space cannot resolve it.
 std::optional<PairWindow> window_of(const PairPlan& plan, const PairChoice& choice);
+/// The stage of the boxes of all triangles, for a reason.
+Stage stage_of_join(Reason reason, std::uint64_t n = 0, const std::string& detail = "");
 /// The stage of the boxes of runs, before it ran. Precondition: plan.runs is not empty.
 Stage stage_of_runs(const PairPlan& plan);
 /// The number of views that are looked at whatever the candidates, where they can be resolved.

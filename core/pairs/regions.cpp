@@ -55,6 +55,14 @@ Meetings meetings_of(const Scene& scene, const Runs& runs, std::span<const Objec
   return out;
 }
 
+// Whether a stretched object can meet another one or itself.
+bool is_uneven(const Runs& runs, const Meetings& meetings) {
+  if (runs.stretched.empty()) return false;
+  return meetings.crowded || std::ranges::any_of(meetings.all, [&](const Meeting& meeting) {
+           return runs.stretched[meeting.a] || runs.stretched[meeting.b];
+         });
+}
+
 void append_triangles(const Runs& runs, std::uint32_t object, const Box& box,
                       std::vector<std::uint32_t>& out) {
   if (runs.is_gathered(object)) {
@@ -283,12 +291,19 @@ Blocks blocks_of(const Scene& scene, const RunMeetings& meetings, std::span<cons
   return out;
 }
 
+// Pairs of runs of a whole scene, of which no more are listed.
+std::size_t most_pairs(const Runs& runs) { return kMostPairsPerRun * runs.runs.size(); }
+
 // Looks for the pairs of runs of each part. Of a meeting with more than most_pairs() it gives up,
-// unless `all`; returns per meeting whether it did not.
+// unless `all`; returns per meeting whether it did not; nothing where there are more pairs of the
+// whole scene. Meetings that are given up count as one pair more than they may have, so that the
+// answer does not depend on threads.
 std::vector<std::uint8_t> find_runs(const Runs& runs, const RunTrees& trees,
                                     const std::vector<Meeting>& meetings, bool all,
                                     unsigned threads, std::vector<Part>& parts) {
   std::vector<std::atomic<std::size_t>> found(meetings.size());
+  std::atomic<std::size_t> sum = 0;
+  const std::size_t most_of_all = most_pairs(runs);
   const std::size_t chunks = chunks_for(parts.size(), 1, threads);
   std::atomic<std::size_t> next = 0;
   for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
@@ -296,12 +311,16 @@ std::vector<std::uint8_t> find_runs(const Runs& runs, const RunTrees& trees,
       Part& part = parts[k];
       const Meeting& meeting = meetings[part.meeting];
       std::atomic<std::size_t>& of_meeting = found[part.meeting];
-      const std::size_t most = all ? SIZE_MAX : most_pairs(runs, meeting);
+      const std::size_t most = all ? most_of_all : std::min(most_pairs(runs, meeting), most_of_all);
+      if (sum > most_of_all) return;
       if (of_meeting > most) continue;
       pair_runs(trees, meeting.a, meeting.b, part.from, part.to, most, part.pairs);
-      if ((of_meeting += part.pairs.size()) > most) part.pairs = {};
+      const std::size_t pairs = part.pairs.size(), before = of_meeting.fetch_add(pairs);
+      sum += std::min(before + pairs, most + 1) - std::min(before, most + 1);
+      if (before + pairs > most) part.pairs = {};
     }
   });
+  if (sum > most_of_all) return {};
   std::vector<std::uint8_t> complete(meetings.size());
   for (std::size_t k = 0; k < meetings.size(); ++k) {
     complete[k] = all || found[k] <= most_pairs(runs, meetings[k]);
@@ -334,11 +353,12 @@ std::vector<std::vector<TrianglePair>> unsorted_pairs(
       compare_blocks({.first = meetings.of->blocks, .second = blocks.more}, blocks.vertices, pairs,
                      findings);
       pairs.clear();
+      for (const TrianglePair& pair : findings.perhaps) {
+        if (boxes_meet(scene, pair, half_of(clearance))) findings.certain.push_back(pair);
+      }
+      findings.perhaps.clear();
     }
     found[chunk] = std::move(findings.certain);
-    for (const TrianglePair& pair : findings.perhaps) {
-      if (boxes_meet(scene, pair, half_of(clearance))) found[chunk].push_back(pair);
-    }
   });
   return found;
 }
@@ -401,6 +421,22 @@ PairRegions pair_regions(const Scene& scene, double clearance, bool full, unsign
 
 namespace {
 
+// Nothing is left to runs and views.
+PairParts joined(const Scene& scene, const Runs& runs, const Meetings& meetings, Reason reason,
+                 std::uint64_t n) {
+  PairParts out;
+  out.join = reason;
+  out.join_n = n;
+  out.rest.objects = runs.objects;
+  for (const Box& box : runs.objects) {
+    if (!box.is_empty()) out.rest.reach.add(box);
+  }
+  out.rest.triangles.resize(scene.triangles.size());
+  std::iota(out.rest.triangles.begin(), out.rest.triangles.end(), 0u);
+  count_meetings(scene, meetings, out.rest);
+  return out;
+}
+
 // The meetings of a scene whose runs have their boxes or blocks. regions: where its objects meet.
 PairParts split(const Scene& scene, const Meetings& meetings, const std::vector<Box>& regions,
                 double clearance, unsigned threads, bool all, std::shared_ptr<const Runs> of) {
@@ -411,6 +447,9 @@ PairParts split(const Scene& scene, const Meetings& meetings, const std::vector<
   std::vector<Part> parts = parts_of(runs, meetings.all);
   const std::vector<std::uint8_t> complete =
       find_runs(runs, trees, meetings.all, all, threads, parts);
+  if (complete.size() < meetings.all.size()) {
+    return joined(scene, runs, meetings, Reason::join_many_runs, most_pairs(runs));
+  }
   std::vector<Meeting> left = sort_in(meetings.all, parts, complete, all, out.runs);
   RunSample sample;
   if (!all && !out.runs.empty() && overlaps_often(scene, out.runs, clearance, sample)) {
@@ -449,6 +488,8 @@ PairParts split_meetings(const Scene& scene, double clearance, unsigned threads,
   ScatteredBoxes scattered;
   const auto runs = std::make_shared<Runs>(make_runs(scene, clearance, threads, &scattered));
   const Meetings meetings = meetings_of(scene, *runs, ignored);
+  if (is_uneven(*runs, meetings))
+    return joined(scene, *runs, meetings, Reason::join_uneven, 0);
   if (meetings.crowded)
     return {.runs = {}, .rest = pair_regions(scene, clearance, false, threads, ignored)};
   const std::vector<Box> regions = boxes_of_meetings(*runs, meetings.all);
@@ -498,6 +539,8 @@ PairParts split_next_frame(const Scene& scene, unsigned threads, bool all, PairM
   });
   if (ordered) update_boxes(scene, clearance, moved, threads, runs);
   const Meetings meetings = meetings_of(scene, runs, memory.ignored);
+  if (is_uneven(runs, meetings))
+    return joined(scene, runs, meetings, Reason::join_uneven, 0);
   if (meetings.crowded)
     return {.runs = {}, .rest = pair_regions(scene, clearance, false, threads, memory.ignored)};
   PairParts out = split(scene, meetings, boxes_of_meetings(runs, meetings.all), clearance, threads,

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/stage.h"
 #include "core/pairs/memory.h"
 #include "core/pairs/run_pairs.h"
 #include "core/pairs/runs.h"
@@ -51,6 +52,10 @@ struct RunMeetings {
 struct PairParts {
   RunMeetings runs;
   PairRegions rest;
+  /// Set where neither runs nor views decide, but a tree of all boxes, with the number that it
+  /// speaks of: join_uneven, or join_many_runs. `rest` has all triangles then.
+  Reason join = Reason::none;
+  std::uint64_t join_n = 0;
   std::vector<TrianglePair> sample = {};  // of the others: some pairs whose boxes overlap
 };
 /// Objects of which boxes of runs overlap at most kPairsPerRun times for each run that overlaps any
@@ -68,6 +73,9 @@ PairParts split_next_frame(const Scene& scene, unsigned threads, bool all, PairM
 /// whatever `all` says.
 constexpr std::size_t kPairsPerRun = 32;
 constexpr std::size_t kOverlapsPerTriangle = 16;
+/// Where boxes of more pairs of runs overlap than this for each run, or an object is stretched
+/// (core/pairs/runs.h), neither runs nor views decide: PairParts::join.
+constexpr std::size_t kMostPairsPerRun = 1024;
 
 /// The pairs a < b of triangles of the runs whose boxes overlap, sorted, each once, with those that
 /// were kept. neighbours: false leaves out pairs of one object that share a vertex index.

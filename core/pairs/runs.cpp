@@ -4,10 +4,12 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
 #include "core/base/parallel.h"
+#include "core/pairs/box_tree.h"
 #include "core/pairs/grown_box.h"
 
 namespace farcull {
@@ -52,6 +54,38 @@ double sampled_length(const Scene& scene, const Runs& runs, std::uint32_t object
   }
   const double mean = sum / kSampledRuns;
   return are_scattered(mean, count, box) ? mean : 0;
+}
+
+// Whether most triangles of an object lie in a small part of its box, which is grown by `half`.
+bool is_stretched(const Scene& scene, const Object& object, const Box& box, double half) {
+  constexpr std::size_t kSample = 64, kEnd = kSample / 8;
+  if (object.triangle_count < kSample * 4) return false;
+  double side = 0, whole = 0;  // sums of half sides: whole ones may be infinite
+  std::array<double, kSample> at;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    for (std::size_t k = 0; k < kSample; ++k) {
+      const double place = 0.6180339887498949 * static_cast<double>(k);  // as in sampled_length()
+      const auto t = static_cast<std::uint32_t>((place - std::floor(place)) *
+                                                (object.triangle_count - 1));
+      at[k] = scene.vertices[scene.triangles[object.first_triangle + t][0]][axis];
+    }
+    std::ranges::sort(at);
+    side += 0.5 * at[kSample - 1 - kEnd] - 0.5 * at[kEnd] + half;
+    whole += 0.5 * box.hi[axis] - 0.5 * box.lo[axis];
+  }
+  return whole > kStretched * side;
+}
+
+// Which objects are; empty: none.
+std::vector<std::uint8_t> stretched_objects(const Scene& scene, std::span<const Box> boxes,
+                                            double half) {
+  std::vector<std::uint8_t> out;
+  for (std::size_t o = 0; o < boxes.size(); ++o) {
+    if (!is_stretched(scene, scene.objects[o], boxes[o], half)) continue;
+    out.resize(boxes.size(), 0);
+    out[o] = 1;
+  }
+  return out;
 }
 
 // The boxes of an object's triangles, grown, relative to the origin; returns the box of all, not
@@ -192,6 +226,7 @@ Runs make_runs(const Scene& scene, double clearance, unsigned threads, Scattered
     fill_run_boxes(scene, o, half, threads, out);
     return false;
   });
+  out.stretched = stretched_objects(scene, out.objects, half);
   return out;
 }
 
@@ -291,6 +326,17 @@ std::uint32_t order_object(std::span<const FloatBox> boxes, const FloatBox& regi
   return static_cast<std::uint32_t>(inside[0].size());
 }
 
+// The same for all triangles of a stretched object.
+std::uint32_t order_stretched(const Scene& scene, const Object& object,
+                              std::span<std::uint32_t> order) {
+  std::vector<Box> boxes(object.triangle_count);
+  for (std::uint32_t t = 0; t < object.triangle_count; ++t)
+    boxes[t] = grown_box(scene, object.first_triangle + t, 0);
+  spatial_order(boxes, order);
+  for (std::uint32_t& t : order) t += object.first_triangle;
+  return object.triangle_count;
+}
+
 // Whether floats relative to `from` are nearly as fine as those relative to the middle of a box.
 bool is_near(const Vec3& from, const Box& box) {
   return (from - middle(box)).cwiseAbs().maxCoeff() <= 4 * (box.hi - box.lo).maxCoeff();
@@ -324,9 +370,12 @@ void gather_scattered(const Scene& scene, double clearance, std::span<const Box>
   for_each_of(inside.size(), threads, [&](std::size_t k, unsigned own_threads) {
     const std::uint32_t o = scattered.objects[k];
     const Object& object = scene.objects[o];
-    inside[k] = order_object(
-        boxes_of(k), relative(regions[o], runs.origin), object.first_triangle, own_threads,
-        std::span(runs.order).subspan(object.first_triangle, object.triangle_count));
+    const auto order =
+        std::span(runs.order).subspan(object.first_triangle, object.triangle_count);
+    inside[k] = !runs.stretched.empty() && runs.stretched[o]
+                    ? order_stretched(scene, object, order)
+                    : order_object(boxes_of(k), relative(regions[o], runs.origin),
+                                   object.first_triangle, own_threads, order);
   });
   std::uint32_t blocks = 0;
   for (std::size_t k = 0; k < inside.size(); ++k) {
@@ -354,6 +403,16 @@ void gather_scattered(const Scene& scene, double clearance, std::span<const Box>
 Runs make_ordered_runs(const Scene& scene, double clearance, unsigned threads) {
   ScatteredBoxes scattered;
   Runs runs = make_runs(scene, clearance, threads, &scattered);
+  if (!runs.stretched.empty()) {
+    std::vector<std::uint32_t> stretched;
+    for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+      if (runs.stretched[o]) stretched.push_back(o);
+    }
+    std::vector<std::uint32_t> both;
+    std::ranges::set_union(scattered.objects, stretched, std::back_inserter(both));
+    scattered.objects = std::move(both);
+    fill_scattered(scene, half_of(clearance), threads, scattered, runs.objects);
+  }
   const std::vector<Box> regions = runs.objects;
   gather_scattered(scene, clearance, regions, threads, scattered, runs);
   update_boxes(scene, clearance, std::vector<std::uint8_t>(runs.runs.size(), 1), threads, runs);
@@ -405,6 +464,7 @@ void update_boxes(const Scene& scene, double clearance, std::span<const std::uin
     }
     all.add(runs.objects[o]);
   }
+  runs.stretched = stretched_objects(scene, runs.objects, half);
   if (is_near(runs.origin, all)) return;
   runs.origin = middle(all);
   if (!runs.blocks.empty()) update({});

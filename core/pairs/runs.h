@@ -35,6 +35,7 @@ struct Runs {
     bool any = false;
   };
   std::vector<Gathered> gathered;        // per object; empty: none was
+  std::vector<std::uint8_t> stretched;   // per object; empty: none is
   UninitializedVector<RunBlock> blocks;  // of the runs of gathered objects
 
   bool is_gathered(std::uint32_t object) const { return !gathered.empty() && gathered[object].any; }
@@ -67,6 +68,10 @@ struct ScatteredBoxes {
 /// runs; large ones are judged by a sample.
 Runs make_runs(const Scene& scene, double clearance, unsigned threads,
                ScatteredBoxes* scattered = nullptr);
+/// An object is stretched where its box is more than kStretched times as long as the one around most
+/// of its triangles, by a sample: grids over its box, and boxes of runs as floats, are of no use
+/// then. Objects of a few runs are not judged. make_runs() with `scattered` tells which are.
+constexpr double kStretched = 8;
 /// Chooses the origin, and puts the triangles of scattered objects that meet the object's region in
 /// Morton order, as runs with blocks.
 /// regions: per object, contains the boxes of all its triangles, grown, that can meet anything;
@@ -76,7 +81,7 @@ void gather_scattered(const Scene& scene, double clearance, std::span<const Box>
 constexpr double kScattered = 3;
 
 /// Runs in the order of the file, or, of scattered objects, of all their triangles in Morton order,
-/// with a block and a box each.
+/// with a block and a box each. Of stretched objects the order is that of spatial_order().
 Runs make_ordered_runs(const Scene& scene, double clearance, unsigned threads);
 /// The boxes and blocks of such runs anew where the corners of their triangles moved, and the boxes
 /// of the objects. moved: per run.

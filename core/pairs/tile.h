@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/base/stopwatch.h"
@@ -16,6 +17,7 @@
 #include "core/pairs/rows.h"
 #include "core/pairs/settled.h"
 #include "core/pairs/sweep.h"
+#include "core/pairs/work_limit.h"
 #include "core/scene/pair_sort.h"
 
 namespace farcull {
@@ -36,8 +38,10 @@ class TileWorker {
  public:
   /// Begins a window, whose pairs go to a list of the pool. More entries than `memory` holds
   /// (bytes) split a tile.
+  /// work: of all threads together; beyond its limit a tile is left as it is, and its pairs are not
+  /// all there. Null: without a limit.
   void begin(const PairGrid& grid, bool masked, std::size_t memory, PairPool& pool,
-             std::size_t list);
+             std::size_t list, WorkLimit* work = nullptr);
   /// Adds the pairs of a tile, which may repeat. `items`: those that may meet it, ascending by
   /// triangle. `masked`, of begin(): leaves out entries whose slices no other owner touches.
   void run(const PairTile& tile, std::span<const PairItem> items, PairCounts& counts);
@@ -75,7 +79,11 @@ class TileWorker {
   bool number_entries(std::span<const Entry> entries);
   bool sweep_unsettled(std::span<const Entry> entries);
 
+  bool go_on(std::uint64_t done);
+
   const PairGrid* grid_ = nullptr;
+  WorkLimit* work_ = nullptr;
+  std::uint64_t done_ = 0;  // work that is not in work_ yet
   bool masked_ = false;
   std::size_t memory_ = 0;
   PairPool* pool_ = nullptr;
@@ -92,6 +100,15 @@ class TileWorker {
   std::vector<std::uint32_t> numbers_, places_;
   std::vector<std::uint64_t> to_come_;
 };
+
+// Adds work; false: all threads together are beyond the limit.
+template <class Rules>
+bool TileWorker<Rules>::go_on(std::uint64_t done) {
+  constexpr std::uint64_t kAtOnce = 1 << 14;
+  if (work_ == nullptr) return true;
+  if ((done_ += done) >= kAtOnce) work_->add(std::exchange(done_, 0));
+  return !work_->exceeded();
+}
 
 // True where the bounds in the image and the intervals overlap.
 template <class Rules>
@@ -188,7 +205,12 @@ void TileWorker<Rules>::sweep(std::span<Entry> entries, const Place& place) {
   fill_columns(entries, place);
   if (found_.size() < n + kSweepPadding) found_.resize(2 * n + 64 * kSweepPadding);
   Sweep state{&columns_, sorted, !grid_->task().neighbours};
-  while (state.next < n) keep(std::span(found_).first(sweep_on(state, found_)), entries, place);
+  std::uint64_t tests = 0;
+  while (state.next < n && go_on(state.tests - tests)) {
+    tests = state.tests;
+    keep(std::span(found_).first(sweep_on(state, found_)), entries, place);
+  }
+  go_on(state.tests - tests);
   counts_->tests += state.tests;
 }
 
@@ -259,6 +281,8 @@ bool TileWorker<Rules>::sweep_unsettled(std::span<const Entry> entries) {
     }
     const std::span<const std::uint64_t> row = settled_.row(number);
     std::size_t left = end - x - 1;
+    // Settled pairs are counted too: which are settled depends on threads.
+    if (!go_on(left)) return true;
     if (left > 2 * words) {
       std::size_t unsettled = 0;
       for (std::size_t w = 0; w < words; ++w) {
@@ -351,6 +375,7 @@ bool TileWorker<Rules>::subdivide(std::span<Entry> entries, float x, float y, fl
   if (2 * left > tests(entries.size())) return false;
 
   counts_->entries += raw.size();
+  if (!go_on(raw.size())) return true;
   for (int c = 0; c < kCells; ++c) first[c + 1] += first[c];
   std::vector<Entry> sorted(raw.size());
   std::array<std::uint32_t, kCells + 1> next = first;
@@ -369,8 +394,10 @@ bool TileWorker<Rules>::subdivide(std::span<Entry> entries, float x, float y, fl
 
 template <class Rules>
 void TileWorker<Rules>::begin(const PairGrid& grid, bool masked, std::size_t memory, PairPool& pool,
-                              std::size_t list) {
+                              std::size_t list, WorkLimit* work) {
   grid_ = &grid;
+  work_ = work;
+  done_ = 0;
   lists_.begin(grid);
   masked_ = masked;
   memory_ = memory;
@@ -401,6 +428,7 @@ void TileWorker<Rules>::run(const PairTile& tile, std::span<const PairItem> item
                             PairCounts& counts) {
   tile_ = tile;
   counts_ = &counts;
+  if (!go_on(0)) return;
   const std::size_t cells = static_cast<std::size_t>(tile.width()) * tile.height();
   const std::size_t fixed = cells * (2 * sizeof(std::uint64_t) + sizeof(std::uint32_t));
   // Lists grow by doubling; a triangle has at least one entry.
@@ -415,8 +443,12 @@ void TileWorker<Rules>::run(const PairTile& tile, std::span<const PairItem> item
     const std::size_t last = masked_ ? lists_.mark(tile, items) : 0;
     counts.mark_ms += start.ms();
     const Stopwatch listing;
-    fits = lists_.list(tile, items, last, masked_, std::min<std::size_t>(limit, UINT32_MAX));
+    // Entries are work, so no more are listed than may be done.
+    const std::uint64_t most = work_ ? work_->left() : UINT64_MAX;
+    fits = lists_.list(tile, items, last, masked_,
+                       static_cast<std::size_t>(std::min<std::uint64_t>({limit, UINT32_MAX, most})));
     counts.list_ms += listing.ms();
+    if (!fits && most < limit) work_->add(most + 1);
   }
   if (!fits) {
     split(tile, items, counts);
@@ -428,12 +460,15 @@ void TileWorker<Rules>::run(const PairTile& tile, std::span<const PairItem> item
   const Stopwatch pairing;
   some_crowded_ = false;
   for (std::size_t c = 0; c < cells; ++c) some_crowded_ |= lists_.size(c) > kCrowded;
+  go_on(lists_.size());
   for (std::size_t c = 0; c < cells; ++c) {
     if (lists_.size(c) < 2) continue;
+    if (!go_on(0)) break;
     pair_pixel(lists_.entries(c), tile.i0 + static_cast<int>(c % tile.width()),
                tile.j0 + static_cast<int>(c / tile.width()));
   }
   counts.pair_ms += pairing.ms();
+  if (work_) work_->add(std::exchange(done_, 0));
 }
 
 }  // namespace farcull

@@ -11,7 +11,7 @@
 #include <array>
 #include <bit>
 
-#include "core/proximity/box_tree.h"
+#include "core/pairs/box_tree.h"
 #include "core/proximity/triangle_pairs-inl.h"
 
 HWY_BEFORE_NAMESPACE();

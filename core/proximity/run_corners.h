@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "core/proximity/box_tree.h"
+#include "core/pairs/box_tree.h"
 #include "core/proximity/scene_trees.h"
 #include "core/proximity/triangle_pairs.h"
 

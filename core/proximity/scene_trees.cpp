@@ -1,5 +1,5 @@
-// Runs come from core/pairs/runs.h; those of an object are put in Morton order, so that sixteen
-// that follow one another lie together as well.
+// Runs come from core/pairs/runs.h; those of an object are put in an order of their own, so that
+// sixteen that follow one another lie together as well.
 #include "core/proximity/scene_trees.h"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ void SceneTrees::make_trees(unsigned threads) {
   const auto make = [&](std::size_t o) {
     const std::uint32_t from = runs_.first[o], n = run_count(static_cast<std::uint32_t>(o));
     const auto place = std::span(place_).subspan(from, n);
-    morton_order(std::span(runs_.boxes).subspan(from, n), runs_.objects[o], place);
+    spatial_order(std::span(runs_.boxes).subspan(from, n), place);
     std::vector<Box> leaves(n);
     for (std::size_t k = 0; k < n; ++k) {
       const Box& box = runs_.boxes[place[k] += from];
@@ -80,15 +80,13 @@ void SceneTrees::find_least(std::uint32_t object) {
 void SceneTrees::make_object_tree() {
   std::vector<std::uint32_t> objects;
   std::vector<Box> boxes;
-  Box all = Box::empty();
   for (std::uint32_t o = 0; o < trees_.size(); ++o) {
     if (trees_[o].levels == 0) continue;
     objects.push_back(o);
     boxes.push_back(trees_[o].box);
-    all.add(trees_[o].box);
   }
   std::vector<std::uint32_t> order(objects.size());
-  morton_order(boxes, all, order);
+  spatial_order(boxes, order);
   std::vector<Box> leaves(objects.size());
   object_of_leaf_.resize(objects.size());
   for (std::size_t k = 0; k < order.size(); ++k) {

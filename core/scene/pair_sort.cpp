@@ -125,8 +125,11 @@ std::vector<TrianglePair> sorted_unique(std::vector<std::vector<TrianglePair>>&&
   return sorted_of(parts, threads, [&] { parts.clear(); });
 }
 
-PairPool::PairPool(std::size_t lists, std::size_t buffer)
-    : buffer_(buffer), limit_(std::max<std::size_t>(buffer / lists, 1)), lists_(lists) {}
+PairPool::PairPool(std::size_t lists, std::size_t buffer, Narrow narrow)
+    : buffer_(buffer),
+      narrow_(std::move(narrow)),
+      limit_(std::max<std::size_t>(buffer / lists, 1)),
+      lists_(lists) {}
 
 std::span<TrianglePair> PairPool::append(std::size_t list, std::size_t count,
                                          const TrianglePair& value) {
@@ -143,8 +146,9 @@ std::size_t PairPool::held() const {
 }
 
 void PairPool::shrink(std::size_t list) {
-  const std::vector<TrianglePair> sorted = sorted_unique(std::span(&lists_[list].pairs, 1), 1);
+  std::vector<TrianglePair> sorted = sorted_unique(std::span(&lists_[list].pairs, 1), 1);
   lists_[list].pairs.clear();
+  if (narrow_) narrow_(sorted);
   const std::lock_guard lock(mutex_);
   std::vector<TrianglePair> all;
   all.reserve(distinct_.size() + sorted.size());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <mutex>
 #include <span>
 #include <vector>
@@ -29,8 +30,11 @@ std::vector<TrianglePair> sorted_unique(std::vector<std::vector<TrianglePair>>&&
 /// added.
 class PairPool {
  public:
-  /// lists: as many as threads add at the same time; buffer: pairs in all lists together.
-  PairPool(std::size_t lists, std::size_t buffer);
+  /// Takes pairs away that are not asked for. Of sorted pairs, which stay so; in any thread.
+  using Narrow = std::function<void(std::vector<TrianglePair>&)>;
+  /// lists: as many as threads add at the same time; buffer: pairs in all lists together; narrow:
+  /// of a list that is full, before its pairs go into the one of the distinct pairs. Null: none.
+  PairPool(std::size_t lists, std::size_t buffer, Narrow narrow = {});
 
   void add(std::size_t list, const TrianglePair& pair) {
     std::vector<TrianglePair>& pairs = lists_[list].pairs;
@@ -60,6 +64,7 @@ class PairPool {
     std::vector<TrianglePair> pairs;
   };
   std::size_t buffer_;
+  Narrow narrow_;
   std::atomic<std::size_t> limit_;  // pairs of one list
   std::vector<List> lists_;
   std::mutex mutex_;  // of distinct_

@@ -51,8 +51,10 @@ std::size_t blocks_of_tree(std::size_t leaves);
 /// The tree over the boxes, with its blocks at blocks[at] and behind: blocks_of_tree() of them.
 BoxTree make_tree(std::span<const Box> leaves, std::span<WideBoxes> blocks, std::size_t at);
 
-/// The order of the boxes along a Morton curve through their middles; `all` contains them. Boxes in
-/// one cell stay in their order.
-void morton_order(std::span<const Box> boxes, const Box& all, std::span<std::uint32_t> order);
+/// An order in which boxes that follow one another lie together, for a tree over them. It follows
+/// the boxes and not their extent: space is cut where half of them lie on each side, and boxes that
+/// reach across most of the others stand before them. So a box far away, or a huge one,
+/// spoils no node but those that it is in. Any boxes, also infinite ones. O(n log n).
+void spatial_order(std::span<const Box> boxes, std::span<std::uint32_t> order);
 
 }  // namespace farcull

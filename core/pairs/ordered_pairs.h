@@ -2,12 +2,13 @@
 // grow with their number.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "core/proximity/box_tree.h"
+#include "core/pairs/box_tree.h"
 #include "core/scene/ignored.h"
 #include "core/scene/object_pair.h"
 #include "core/scene/scene.h"
@@ -29,10 +30,12 @@ class OrderedPairs {
   /// one triangle more for each thread. May leave it empty before the end. Precondition: most > 0.
   void next(std::size_t most, std::vector<TrianglePair>& out);
   bool at_end() const { return next_ == boxes_.size(); }
+  /// Blocks of sixteen boxes that the triangles asked about were compared with; the same whatever
+  /// the threads and `most`.
+  std::uint64_t compared() const { return compared_; }
 
  private:
-  std::uint64_t nodes_of(int height) const;
-  void append(std::uint32_t a, std::vector<TrianglePair>& out) const;
+  std::uint64_t append(std::uint32_t a, std::vector<TrianglePair>& out) const;
 
   const Scene& scene_;
   IgnoredObjects ignored_;
@@ -42,6 +45,8 @@ class OrderedPairs {
   std::vector<std::uint32_t> order_;  // the triangle of each leaf of the tree
   std::vector<WideBoxes> blocks_;
   BoxTree tree_;
+  std::array<std::uint64_t, BoxTree::kMostLevels + 1> nodes_{};  // of each height
+  std::uint64_t compared_ = 0;
   std::uint32_t next_ = 0;        // the first triangle whose pairs have not been given
   std::uint32_t triangles_ = 64;  // to ask about at a time
 };

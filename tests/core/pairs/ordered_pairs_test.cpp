@@ -1,5 +1,5 @@
 // Pairs in order, some at a time, against all pairs of triangles whose boxes overlap.
-#include "core/proximity/ordered_pairs.h"
+#include "core/pairs/ordered_pairs.h"
 
 #include <gtest/gtest.h>
 
