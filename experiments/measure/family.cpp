@@ -25,19 +25,19 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // The methods of the table, in its order; far once with each offset.
-struct Contestant {
+struct ListedMethod {
   Method method;
   std::string offset;
 };
 
-std::vector<Contestant> contestants(const FamilyArguments& arguments) {
+std::vector<ListedMethod> contestants(const FamilyArguments& arguments) {
   std::vector<Method> methods(all_methods().begin(), all_methods().end());
   if (arguments.methods) {
     methods.clear();
     for (const std::string& name : split_list(*arguments.methods))
       methods.push_back(parse_method(name, "--methods"));
   }
-  std::vector<Contestant> out;
+  std::vector<ListedMethod> out;
   for (const Method method : methods) {
     out.push_back({method, "obb"});
     if (fattens(method)) out.push_back({method, "exact"});
@@ -123,7 +123,7 @@ class Frames {
 };
 
 // One scene by one method; nothing where the method has no question to ask of the scene.
-std::optional<FamilyCell> run_cell(const std::string& scene, const Contestant& contestant,
+std::optional<FamilyCell> run_cell(const std::string& scene, const ListedMethod& contestant,
                                    const FamilyArguments& arguments, Frames& frames,
                                    Session& session, const Progress& progress) {
   RunOptions options = arguments.options;
@@ -216,14 +216,14 @@ std::vector<FamilyCell> run_family(const FamilyArguments& arguments, const Progr
       if (has_motion(scene.name)) scenes.push_back(scene.name);
     }
   }
-  const std::vector<Contestant> methods = contestants(arguments);
+  const std::vector<ListedMethod> methods = contestants(arguments);
   // All names before the first run, not after an hour of them.
   for (const std::string& scene : scenes) require_motion(scene);
   Session session(arguments.options.device);
   std::vector<FamilyCell> cells;
   for (const std::string& scene : scenes) {
     Frames frames(scene, arguments);
-    for (const Contestant& contestant : methods) {
+    for (const ListedMethod& contestant : methods) {
       std::optional<FamilyCell> cell =
           run_cell(scene, contestant, arguments, frames, session, progress);
       if (cell) cells.push_back(std::move(*cell));

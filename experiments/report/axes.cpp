@@ -11,7 +11,7 @@
 namespace farcull {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 // Longer tails of powers are written as powers.
 constexpr int kPlainPowers = 3;
 
@@ -118,7 +118,7 @@ void add_log_ticks(Scale& scale, double lowest, std::size_t room) {
 Scale logarithmic_scale(const Axis& axis, const std::vector<double>& values, std::size_t room) {
   Scale scale;
   scale.logarithmic = true;
-  double least = kNone, most = kNone;
+  double least = kNothing, most = kNothing;
   bool zeros = false;
   for (const double value : values) {
     if (!std::isfinite(value)) continue;
@@ -168,7 +168,7 @@ Scale logarithmic_scale(const Axis& axis, const std::vector<double>& values, std
 
 Scale linear_scale(const Axis& axis, const std::vector<double>& values, std::size_t room) {
   Scale scale;
-  double least = kNone, most = kNone;
+  double least = kNothing, most = kNothing;
   for (const double value : values) {
     if (!std::isfinite(value)) continue;
     if (std::isnan(least) || value < least) least = value;
@@ -207,9 +207,9 @@ Scale linear_scale(const Axis& axis, const std::vector<double>& values, std::siz
 }  // namespace
 
 double Scale::place(double value) const {
-  if (!std::isfinite(value)) return kNone;
+  if (!std::isfinite(value)) return kNothing;
   if (!logarithmic || (value > 0 && value >= linear_to)) return value;
-  if (linear_to == 0) return kNone;
+  if (linear_to == 0) return kNothing;
   return zero * std::pow(linear_to / zero, std::max(value, 0.0) / linear_to);
 }
 

@@ -29,15 +29,15 @@ const std::vector<MovingCase>& cases(bool quick) {
   return quick ? few : full;
 }
 
-constexpr int kResolution = 256;
+constexpr int kFrameResolution = 256;
 
 void add_methods(std::vector<Point>& out, const MovingCase& moving, const MotionFrame& frame) {
   out.push_back(plain_point(frame, i_collide));
   if (!moving.self) {
     for (const char* offset : {"obb", "exact"})
-      out.push_back(far_point(frame, offset, kBudgetRadius, kResolution));
+      out.push_back(far_point(frame, offset, kBudgetRadius, kFrameResolution));
     for (const Method method : {cullide, quick_cullide})
-      out.push_back(cullide_point(frame, method, kResolution));
+      out.push_back(cullide_point(frame, method, kFrameResolution));
   }
   out.push_back(plain_point(frame, far_pairs));
 }

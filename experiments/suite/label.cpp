@@ -131,7 +131,7 @@ class CommonPoints {
   std::vector<Q3> points_;
 };
 
-Triangle exact(const std::array<Vec3, 3>& t) {
+Triangle rational_triangle(const std::array<Vec3, 3>& t) {
   return {rational::exact(t[0]), rational::exact(t[1]), rational::exact(t[2])};
 }
 
@@ -149,8 +149,8 @@ bool is_corner(const Q3& p, const Triangle& t) {
 
 SuiteKind kind_of_meeting(const std::array<Vec3, 3>& first, const std::array<Vec3, 3>& second,
                           bool& found) {
-  const Triangle a = exact(first);
-  const Triangle b = exact(second);
+  const Triangle a = rational_triangle(first);
+  const Triangle b = rational_triangle(second);
   const CommonPoints common(a, b);
   found = !common.points().empty();
   if (!found) return SuiteKind::apart;

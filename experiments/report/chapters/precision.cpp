@@ -122,10 +122,10 @@ void add_sums(const Rows& rows, std::vector<std::string>& cells) {
   cells.push_back(rounded(px_of(rows)));
 }
 
-using Lines = std::map<std::pair<std::string, std::string>, Rows>;  // line and bits
+using RowsOfLine = std::map<std::pair<std::string, std::string>, Rows>;  // line and bits
 
 // Of all generators, sides and depths together.
-DataTable short_table(const Lines& lines) {
+DataTable short_table(const RowsOfLine& lines) {
   DataTable out{
       .name = "precision",
       .caption =
@@ -209,7 +209,7 @@ bool add_violations(const Rows& rows, Chapter& chapter) {
   return broken;
 }
 
-void add_findings(const Rows& all, const Lines& lines, Chapter& chapter) {
+void add_findings(const Rows& all, const RowsOfLine& lines, Chapter& chapter) {
   const bool broken = add_violations(all, chapter);
   for (const auto& [key, rows] : lines) {
     const auto& [line, bits] = key;
@@ -244,7 +244,7 @@ Chapter precision_chapter(const StoredStudy& stored) {
     return std::tuple(line_of(row), bits_of(row), row.point.resolution,
                       parse_lemma_scene(row.point.scene).depth);
   });
-  const Lines lines =
+  const RowsOfLine lines =
       rows_by(rows, [](const Row& row) { return std::pair(line_of(row), bits_of(row)); });
   add_promises(stored, out);
   add_findings(rows, lines, out);

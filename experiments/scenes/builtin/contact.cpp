@@ -17,8 +17,6 @@ using namespace shapes;
 
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
-
 // A rope of three strands, wound in turns around a ring. Lengths are of the radius of a strand. The
 // strands are one closed tube: after each way around the ring a strand goes on as the next one.
 constexpr std::uint32_t kStrands = 3;

@@ -2,7 +2,6 @@
 // Both are smooth surfaces that are sampled more finely for more triangles.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -15,8 +14,6 @@ namespace farcull {
 using namespace shapes;
 
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 // Control points of a uniform cubic B-spline over the unit square: point i * side + j, both from 0
 // to side - 1, is that of the parameter ((i - 1) / spans, (j - 1) / spans).

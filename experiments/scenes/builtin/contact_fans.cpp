@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "experiments/scenes/builtin/generators.h"
@@ -15,8 +14,6 @@ namespace farcull {
 using namespace shapes;
 
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 // Vertices around a face, counterclockwise seen from outside of the part.
 using Loop = std::vector<std::uint32_t>;
@@ -102,7 +99,7 @@ class Part {
 
 constexpr double kDeep = 6;           // of the socket; its face, 3 x 2, lies at z = 0
 constexpr double kLong = 5.7;         // of the pins
-constexpr double kGap = 0.02;         // between the faces of plug and socket
+constexpr double kPlay = 0.02;        // between the faces of plug and socket
 constexpr double kThick = 0.3;        // of the plate of the plug
 constexpr double kRound = 0.2;        // radius of the upright edges
 constexpr double kFillet = 0.06;      // at the root of a pin
@@ -262,11 +259,11 @@ Part socket(const std::array<Bore, kBores>& bores, std::uint32_t sides) {
 
 // A pin from its fillet in the lower face of the plate to its tip, and the hole in it.
 void pin(Part& part, const Loop& cell, const Bore& pin) {
-  Chain chain(part, pin, kGap, pin.radius + kFillet);
+  Chain chain(part, pin, kPlay, pin.radius + kFillet);
   part.holed(cell, chain.last());
   for (std::uint32_t k = 1; k <= kFillets; ++k) {
     const double angle = kTurn / 4 * k / kFillets;
-    chain.to(kGap - kFillet * (1 - std::cos(angle)), pin.radius + kFillet * (1 - std::sin(angle)));
+    chain.to(kPlay - kFillet * (1 - std::cos(angle)), pin.radius + kFillet * (1 - std::sin(angle)));
   }
   chain.to(kTip - kLong, pin.radius);
   chain.to(-kLong, pin.radius - kTip);
@@ -279,15 +276,15 @@ void pin(Part& part, const Loop& cell, const Bore& pin) {
 
 Part plug(const std::array<Bore, kBores>& pins, std::uint32_t sides) {
   Part part;
-  const Outline below = outline(part, kGap, std::max<std::uint32_t>(2, sides / 8));
-  const Outline above = outline(part, kGap + kThick, std::max<std::uint32_t>(2, sides / 8));
+  const Outline below = outline(part, kPlay, std::max<std::uint32_t>(2, sides / 8));
+  const Outline above = outline(part, kPlay + kThick, std::max<std::uint32_t>(2, sides / 8));
   part.wall(below.loop(), above.loop());
-  const Loop root = part.circle(flat(Vec3::Zero(), kGap + kThick, 0.7), sides, 0);
-  const Loop top = part.circle(flat(Vec3::Zero(), kGap + 3 * kThick, 0.65), sides, 0);
+  const Loop root = part.circle(flat(Vec3::Zero(), kPlay + kThick, 0.7), sides, 0);
+  const Loop top = part.circle(flat(Vec3::Zero(), kPlay + 3 * kThick, 0.65), sides, 0);
   part.holed(above.loop(), root);
   part.wall(root, top);
   part.fan(top);
-  const std::array<Loop, kBores> of_face = cells(part, below, kGap);
+  const std::array<Loop, kBores> of_face = cells(part, below, kPlay);
   part.inside_out = true;
   for (std::uint32_t b = 0; b < kBores; ++b) pin(part, of_face[b], pins[b]);
   return part;

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <memory>
-#include <numbers>
 
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/shapes.h"
@@ -11,7 +10,6 @@
 namespace farcull {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr std::uint64_t kDriftSeed = 8;
 
 struct Part {
@@ -66,8 +64,9 @@ Motion pulse(const Scene& scene) {
       const double phase = 0.25 * static_cast<double>(o);
       for (const std::uint32_t v : part.vertices) {
         const Vec3 from = rest->vertices[v] - middle;
-        const double breath = 0.15 * std::sin(kTurn * (now.time + phase));
-        const double wave = 0.05 * std::sin(kTurn * (2 * now.time + 1.5 * from.z() / radius));
+        const double breath = 0.15 * std::sin(shapes::kTurn * (now.time + phase));
+        const double wave =
+            0.05 * std::sin(shapes::kTurn * (2 * now.time + 1.5 * from.z() / radius));
         out.vertices[v] = middle + (1 + breath + wave) * from;
       }
     }
@@ -80,7 +79,7 @@ Motion drift(const Scene& scene) {
     for (const Part& part : rest->parts) {
       const Vec3 way = random.direction();
       if (part.box.is_empty()) continue;
-      const Vec3 by = std::sin(kTurn * now.time) * diagonal(part.box) * way;
+      const Vec3 by = std::sin(shapes::kTurn * now.time) * diagonal(part.box) * way;
       for (const std::uint32_t v : part.vertices) out.vertices[v] = rest->vertices[v] + by;
     }
   };

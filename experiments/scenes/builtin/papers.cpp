@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -18,8 +17,6 @@ namespace farcull {
 using namespace shapes;
 
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 // The path of an object through a box and back.
 struct Way {

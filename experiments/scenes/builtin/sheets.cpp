@@ -1,7 +1,6 @@
 // Sheets of which no argument about closed meshes holds: open, with edges of three triangles, and
 // stacked so closely that a depth buffer of 24 bits cannot separate them.
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -15,7 +14,6 @@ using namespace shapes;
 
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr std::uint32_t kCells = 18;  // along a side, which is 1 long
 constexpr double kGrain = 0x1p-40;    // heights are multiples of it
 

@@ -2,7 +2,6 @@
 #include "experiments/scenes/mesh/shapes.h"
 
 #include <map>
-#include <numbers>
 #include <utility>
 
 namespace farcull::shapes {
@@ -67,7 +66,6 @@ Mesh sphere(int level) {
 }
 
 Mesh torus(double ring, double tube, std::uint32_t around, std::uint32_t across) {
-  constexpr double kTurn = 2 * std::numbers::pi;
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   for (std::uint32_t i = 0; i < around; ++i) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "core/base/random.h"
@@ -11,6 +12,8 @@
 #include "experiments/scenes/mesh/scene_build.h"
 
 namespace farcull::shapes {
+
+constexpr double kTurn = 2 * std::numbers::pi;  // radians
 
 /// Draws of points, directions and places.
 class Random : public RandomNumbers {

@@ -22,10 +22,10 @@ fail() {
   ((failed += 1))
 }
 
-# FILE<tab>COMMAND, the command without what it writes.
+# FILE<tab>COMMAND, the command without what it writes. FILE may be a batch of files with one command (farcull_batches).
 sed -nE 's/^ *"command": "(.*)",?$/\1/p' "$build/compile_commands.json" |
   sed -E 's/\\"/"/g; s/\\\\/\\/g' |
-  sed -nE "s#^(.*) -o [^ ]+ -c ($source/(core|offsets|verify|experiments)/[^ ]+)\$#\2\t\1#p" \
+  sed -nE "s#^(.*) -o [^ ]+ -c (($source|$build)/(core|offsets|verify|experiments)/[^ ]+)\$#\2\t\1#p" \
     >"$work/commands"
 if [[ ! -s $work/commands ]]; then
   echo "no commands found in $build/compile_commands.json"
