@@ -1,7 +1,11 @@
-// Tests of rounded geometry add this to verify/rational.h: exact images of points, random views.
+// Tests of rounded geometry add this to verify/rational.h: exact images of points, and random
+// numbers whose seed is printed.
 #pragma once
 
 #include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <string>
 #include <vector>
 
 #include "core/view/view.h"
@@ -29,7 +33,18 @@ inline std::vector<Vec3> box_corners(const Box& box) {
   return corners;
 }
 
-using Random = Draws;
+/// The seed is printed; FARCULL_TEST_SEED gives another one.
+class Random : public Draws {
+ public:
+  explicit Random(std::uint64_t seed) : Draws(given(seed)) {}
+
+ private:
+  static std::uint64_t given(std::uint64_t seed) {
+    if (const char* text = std::getenv("FARCULL_TEST_SEED")) seed = std::stoull(text);
+    std::cout << "[ seed " << seed << "; FARCULL_TEST_SEED=... for another ]\n";
+    return seed;
+  }
+};
 
 /// An axis view, a round oblique one, or a direction with components of very different sizes.
 inline View random_view(Random& random) {

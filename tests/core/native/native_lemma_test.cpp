@@ -52,7 +52,7 @@ TEST(NativeLemma, LemmasFailWithoutTheDoubleTerm) {
   lab::expect_term_needed(worst(), "double", 20'000);
 }
 TEST(NativeLemma, ErrorsThatTurnEdgesAreTried) {
-  lab::expect_turned_edges_noticed(canvases(), 24'000);
+  lab::expect_turned_edges_noticed(worst(), 24'000);
 }
 TEST(NativeLemma, LemmasFailWithoutTheInputTermOnTheWorstCanvas) {
   lab::expect_term_needed(worst(), "input", 400'000);
