@@ -16,7 +16,8 @@ CLI::App* DoctorCommand::add_to(CLI::App& app) {
       "  farcull doctor --device software --json -\n\n"
       "What the probes find is kept for later runs, in $XDG_CACHE_HOME/farcull or\n"
       "~/.cache/farcull: far on OpenGL promises where all of A1 to A8 and A10 pass, far-pairs\n"
-      "where A4, A7, A8 and A10 do. A run without such a verdict on its device, driver and build makes\n"
+      "where A4, A7, A8 and A10 do. A run without such a verdict on its device, driver and build "
+      "makes\n"
       "one itself.\n\n"
       "Exit status 1: the native canvas or the device breaks an assumption; what relies on it\n"
       "promises nothing.");

@@ -31,10 +31,10 @@ std::vector<std::string> assumptions_about(const GlInfo& device) {
       "double",
       "A10: the driver damages no memory of the process"};
   if (device.kind == "software")
-    lines.back() += "; it drew in " +
-                    counted(static_cast<std::uint64_t>(driver_threads(device.renderer)), "thread",
-                            "threads") +
-                    " of its own";
+    lines.back() +=
+        "; it drew in " +
+        counted(static_cast<std::uint64_t>(driver_threads(device.renderer)), "thread", "threads") +
+        " of its own";
   return lines;
 }
 

@@ -71,7 +71,8 @@ TEST(DeviceVerdict, IsMadeOnceAndKept) {
   EXPECT_TRUE(again.remembered);
   EXPECT_EQ(again.probes, 2u);
   EXPECT_EQ(again.made, first.made);
-  const std::string found = "2 probes of A1 to A8 and A10 pass on this device (probed " + first.made;
+  const std::string found =
+      "2 probes of A1 to A8 and A10 pass on this device (probed " + first.made;
   EXPECT_EQ(to_string(first, Reliance::drawing), found + ")");
   EXPECT_EQ(to_string(again, Reliance::drawing), found + ", remembered)");
   EXPECT_EQ(ask.runs, 1);
@@ -158,9 +159,10 @@ TEST(DeviceVerdict, InputsNameTheSourcesAndTheProcessor) {
       EXPECT_FALSE(value.empty());
     }
   }
-  EXPECT_EQ(names,
-            "relied on,kind,vendor,renderer,version,glsl,subpixel bits,limits,sources,threads,processor,"
-            "environment,");
+  EXPECT_EQ(
+      names,
+      "relied on,kind,vendor,renderer,version,glsl,subpixel bits,limits,sources,threads,processor,"
+      "environment,");
 }
 
 // Every byte of the file flipped, one at a time, and every length: never believed, made anew.
