@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tries every rasterizer that Debian's Mesa has without a GPU: the probes of `farcull doctor`, and what FAR
 # misses in the quick grid of the study radius, at the published radius and at that of the budget. One driver
-# does nothing at all (Mesa's noop): every probe has to fail there.
+# does nothing at all (Mesa's noop): every probe of what it draws has to fail there.
 #   bash experiments/drivers.sh              all drivers, some minutes each; makes docs/drivers/results.md
 #   bash experiments/drivers.sh zink noop    these; the tables are printed
 #     --probes           the probes alone
@@ -113,7 +113,9 @@ measure() {
   touch "$folder/measured"
 }
 
-assumptions=(A1 A2 A3 A4 A5 A6 A7 A8 A9 A10)
+assumptions=(A1 A2 A3 A4 A5 A6 A7 A8 A9)
+# The probe of A10 asks whether the driver has threads, not what it draws. One that does nothing passes it.
+drawn_probes="p.value ->> 'assumption' <> 'A10'"
 probes_table() {
   local driver json
   echo "| driver | what it is | answers as | probes that pass | $(printf '%s |' "${assumptions[@]}")"
@@ -125,7 +127,8 @@ probes_table() {
       continue
     fi
     sql "WITH report AS (SELECT readfile('$json') AS j),
-      probe AS (SELECT p.value ->> 'assumption' AS a, p.value ->> 'pass' AS pass FROM report, json_each(j, '\$.probes') p)
+      probe AS (SELECT p.value ->> 'assumption' AS a, p.value ->> 'pass' AS pass FROM report, json_each(j, '\$.probes') p
+        WHERE $drawn_probes)
       SELECT '| $driver', '${about[$driver]}', j ->> '\$.gl.renderer' || ', OpenGL ' || (j ->> '\$.gl.version'),
         (SELECT sum(pass) || ' of ' || count(*) FROM probe),
         $(for a in "${assumptions[@]}"; do echo "(SELECT sum(pass) || '/' || count(*) FROM probe WHERE a = '$a'),"; done | sed '$ s/,$//')
@@ -192,7 +195,8 @@ for driver in "${chosen[@]}"; do
   json=$out/$driver/doctor.json
   store=$out/$driver/results/results.sqlite
   if [[ ! -e $json ]]; then continue; fi
-  passing=$(sql "SELECT sum(p.value ->> 'pass') || ' ' || count(*) FROM json_each(readfile('$json'), '\$.probes') p")
+  passing=$(sql "SELECT sum(p.value ->> 'pass') || ' ' || count(*) FROM json_each(readfile('$json'), '\$.probes') p
+    WHERE $drawn_probes")
   if [[ $driver == noop && ${passing% *} != 0 ]]; then
     echo "drivers: a probe passes on a driver that does nothing: see $json" >&2
     status=1

@@ -6,7 +6,7 @@
 
 namespace {
 
-[[maybe_unused]] const int kSet = ::setenv("XDG_CACHE_HOME", FARCULL_TEST_CACHE, 1) |
-                                  ::setenv("LP_NUM_THREADS", "0", 0);
+[[maybe_unused]] const int kSet =
+    ::setenv("XDG_CACHE_HOME", FARCULL_TEST_CACHE, 1) | ::setenv("LP_NUM_THREADS", "0", 0);
 
 }  // namespace

@@ -59,7 +59,8 @@ int driver_threads(const std::string& renderer) {
 std::string risk_of_threads(const std::string& renderer) {
   const int threads = driver_threads(renderer);
   if (threads == 0) return "";
-  return "the driver draws in " + counted(static_cast<std::uint64_t>(threads), "thread", "threads") +
+  return "the driver draws in " +
+         counted(static_cast<std::uint64_t>(threads), "thread", "threads") +
          " of its own, which may damage the memory of this process or wait for ever; it has none "
          "where LP_NUM_THREADS=0 is in the environment before a display is opened";
 }

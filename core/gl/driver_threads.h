@@ -11,7 +11,8 @@ namespace farcull {
 void note_asked_threads();
 
 /// How many threads of the driver draw in this process: those of llvmpipe, where the renderer is
-/// it or draws with it; else 0. Where LP_NUM_THREADS asked for more than there are now, that number.
+/// it or draws with it; else 0. Where LP_NUM_THREADS asked for more than there are now, that
+/// number.
 int driver_threads(const std::string& renderer);
 
 /// What those threads risk, and the remedy, without a full stop; empty where there are none.

@@ -195,9 +195,9 @@ std::vector<ProbeResult> driver(const GlContext& context, const ProbeOptions& op
   Worst threads;
   threads.add(driver_threads(context.info().renderer) + (options.one_thread ? 1 : 0));
   const std::string risk = risk_of_threads(context.info().renderer);
-  return {result("A10", "threads that may write to freed memory", threads, 0, "threads",
-                 risk.empty() ? "other damage that a driver may do to memory is not looked for"
-                              : risk)};
+  return {result(
+      "A10", "threads that may write to freed memory", threads, 0, "threads",
+      risk.empty() ? "other damage that a driver may do to memory is not looked for" : risk)};
 }
 
 }  // namespace farcull::probe

@@ -55,7 +55,7 @@ struct DiagramRecord {
 };
 
 /// Throws Error as voronoi_neighbours() and reliable_neighbours() do, and where a GL device does
-/// not answer, fails, or does not pass the probes (docs/reliability.md, A1 to A10). Precondition:
+/// not answer, fails, or does not pass the probes (docs/reliability.md). Precondition:
 /// the scene satisfies validate().
 DiagramRecord potential_neighbours(const Scene& scene, const DiagramOptions& options,
                                    const Progress& progress = {});

@@ -99,8 +99,8 @@ Json device_json(const Record& record) {
               {"subpixel_bits", device.subpixel_bits},
               {"depth_bits", record.found.device.depth_bits},
               {"reset_detection", device.reset_detection},
-              {"threads", device.kind == "software" ? Json(driver_threads(device.renderer))
-                                                    : Json(nullptr)}};
+              {"threads",
+               device.kind == "software" ? Json(driver_threads(device.renderer)) : Json(nullptr)}};
   out["reason"] = record.found.device.note;
   if (chooses_views(record.options.method)) out.erase("depth_bits");
   return out;

@@ -41,7 +41,8 @@ extern "C" [[gnu::visibility("default")]] int pthread_cond_broadcast(pthread_con
   // Of two versions on x86, dlsym may give the older one, which is of another type of condition.
   static const auto real = [] {
     void* const newer = ::dlvsym(RTLD_NEXT, "pthread_cond_broadcast", "GLIBC_2.3.2");
-    return reinterpret_cast<Broadcast>(newer ? newer : ::dlsym(RTLD_NEXT, "pthread_cond_broadcast"));
+    return reinterpret_cast<Broadcast>(newer ? newer
+                                             : ::dlsym(RTLD_NEXT, "pthread_cond_broadcast"));
   }();
   if (::gettid() != ::getpid()) {
     ::usleep(kDelay);

@@ -1,5 +1,5 @@
-// Threads of a software device are named, and no promise rests on them. Each test runs twice: as all
-// others, without such threads, and with LP_NUM_THREADS=2, where it is its own twin.
+// Threads of a software device are named, and no promise rests on them. Each test runs twice: as
+// all others, without such threads, and with LP_NUM_THREADS=2, where it is its own twin.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -43,7 +43,7 @@ class GlThreads : public testing::Test {
   }
 
   const GlContext& context = opened();
-  const lab::CacheFolder folder;  // for the verdicts
+  const lab::CacheFolder folder;                               // for the verdicts
   const int asked = std::atoi(std::getenv("LP_NUM_THREADS"));  // tests/environment.cpp
   const std::string words =
       asked == 1 ? "draws in 1 thread " : "draws in " + std::to_string(asked) + " threads ";
@@ -70,8 +70,8 @@ TEST_F(GlThreads, RunsNameThemAndPromiseNothing) {
     const std::string table = run_table(scene, record);
     EXPECT_EQ(table.find(words) == std::string::npos, asked == 0) << table;
     const std::string line = certificate_of(scene, record).run.assumptions.back();
-    EXPECT_TRUE(line.starts_with("A10") && line.find(" in " + std::to_string(asked) + " thread") !=
-                                               std::string::npos)
+    EXPECT_TRUE(line.starts_with("A10") &&
+                line.find(" in " + std::to_string(asked) + " thread") != std::string::npos)
         << line;
   }
 }

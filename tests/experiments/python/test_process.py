@@ -1,6 +1,7 @@
 """The module within its process: Ctrl-C, threads, fork, memory, interpreters. Each test runs a fresh
 Python, so that what it breaks stays there."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -380,7 +381,9 @@ def test_threads_of_llvmpipe_are_named(threads):
     assert os.environ["LP_NUM_THREADS"] == "0"
     report = farcull.collide([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [2, 1, 0]], [0, 1], device="gl").report
     print(report.device, report.promises, report.promises_reason, sep="|")
-    """
+    """,
+        # With the verdicts and the compiled shaders that other tests keep.
+        env={**os.environ, "XDG_CACHE_HOME": os.path.dirname(os.environ["FARCULL_PROGRAM"]) + "/test-cache"},
     )
     device, promises, reason = out.strip().split("|")
     if "llvmpipe" not in device:
