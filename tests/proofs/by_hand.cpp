@@ -65,10 +65,12 @@ std::vector<ByHand> proved_by_hand() {
        "`interval.depth_margin`, `interval.image_margin`: it pays for the rounding of `widen`"},
       {"The part of a pixel is exact below and above the pixel too",
        "[budget.md](budget.md), \"Parts of a pixel\"", "`interval.part`"},
-      {"The depth map and the slices never decrease with depth",
-       "[reliability.md](reliability.md), \"One view\"; [budget.md](budget.md), \"Parts of a "
-       "pixel\"",
-       "none: no error is bounded, an order is kept"},
+      {"Of all ways in which two programs may round the depth map, up everywhere and down "
+       "everywhere "
+       "are the worst",
+       "[budget.md](budget.md), \"Two programs\"", "`depth.behind`, which is about these two"},
+      {"The slice of a depth is exact and never decreases with depth",
+       "[budget.md](budget.md), \"Slices\"", "none: no error is bounded, an order is kept"},
       {"Passes, views and rounds keep both triangles of every colliding pair",
        "[reliability.md](reliability.md), \"Passes, views, rounds\", theorem 2",
        "none: theorem 1 alone joins it to geometry"},
