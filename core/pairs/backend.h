@@ -79,8 +79,8 @@ struct PairCounts {
   std::uint64_t dispatches = 0, readbacks = 0;
   // How often the work was done again, since the room that was expected to do was too little.
   std::uint64_t redone = 0;
-  bool given_up = false;         // there is more work than PairTask::most_tests; no pairs
-  double prepare_ms = 0;                         // to pixel space
+  bool given_up = false;  // there is more work than PairTask::most_tests; no pairs
+  double prepare_ms = 0;  // to pixel space
   double mark_ms = 0, list_ms = 0, pair_ms = 0;  // CPU: summed over threads
   // The same by the clock of a GL device; negative where it gives none, and on the CPU.
   double mark_device_ms = -1, list_device_ms = -1, pair_device_ms = -1;

@@ -127,8 +127,7 @@ void sort_in_place(std::span<Placed> items, std::size_t at) {
     std::size_t node = 1;
     while (node * kWide < items.size()) node *= kWide;
     const std::size_t split = (at + items.size() / 2 + node / 2) / node * node;
-    const std::size_t low =
-        split > at && split < at + items.size() ? split - at : items.size() / 2;
+    const std::size_t low = split > at && split < at + items.size() ? split - at : items.size() / 2;
     std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(low), items.end(),
                      [&](const Placed& a, const Placed& b) {
                        return a.middle[spread.axis] < b.middle[spread.axis];

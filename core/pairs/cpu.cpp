@@ -148,11 +148,11 @@ class CpuPairs : public PairBackend {
             const PairBounds bounds = grid.bounds(t);
             if (bounds.empty()) continue;
             const PairItem item = grid.item(t, bounds);
-            const float met = item.whole ? 0
-                                         : interval::far_footprint(
-                                               grid.corner(t, 0), grid.corner(t, 1),
-                                               grid.corner(t, 2), bounds.hi.x - bounds.lo.x,
-                                               bounds.hi.y - bounds.lo.y);
+            const float met =
+                item.whole ? 0
+                           : interval::far_footprint(grid.corner(t, 0), grid.corner(t, 1),
+                                                     grid.corner(t, 2), bounds.hi.x - bounds.lo.x,
+                                                     bounds.hi.y - bounds.lo.y);
             if (met > large) {
               large_of[chunk].push_back({t, task.owners[t], bounds});
               continue;

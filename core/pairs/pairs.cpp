@@ -55,9 +55,8 @@ std::vector<TrianglePair> pairs_by_tree(const Scene& scene, const PairSettings& 
   while (!tree.at_end()) {
     tree.next(kAtOnce, some);
     std::ranges::copy_if(some, std::back_inserter(pairs), [&](const TrianglePair& pair) {
-      return keeps(pair) &&
-             (owner.empty() || owner[pair.a] != owner[pair.b] ||
-              !share_index(scene.triangles[pair.a], scene.triangles[pair.b]));
+      return keeps(pair) && (owner.empty() || owner[pair.a] != owner[pair.b] ||
+                             !share_index(scene.triangles[pair.a], scene.triangles[pair.b]));
     });
   }
   if (compared) *compared = tree.compared();
@@ -69,7 +68,8 @@ std::vector<TrianglePair> pairs_by_tree(const Scene& scene, const PairSettings& 
 std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const PairRegions& regions,
                                          std::span<const std::uint32_t> some,
                                          const PairSettings& settings, unsigned threads) {
-  if (some.size() <= kComparedWithAll) return pairs_of_few(scene, regions, some, settings.clearance);
+  if (some.size() <= kComparedWithAll)
+    return pairs_of_few(scene, regions, some, settings.clearance);
   return pairs_by_tree(scene, settings, threads, [&](const TrianglePair& pair) {
     return std::binary_search(some.begin(), some.end(), pair.a) ||
            std::binary_search(some.begin(), some.end(), pair.b);
@@ -251,6 +251,8 @@ class Finding {
     if (further && view.counts.given_up) {
       stage.reason = Reason::given_up;
       stage.n = plan_.most_tests;
+    } else if (view.counts.given_up) {
+      stage.unit = Unit::none;  // nothing came out; a stage that follows says why
     }
     stage.ms = start.ms();
     stage.out = out_.candidates.size();
@@ -268,8 +270,8 @@ class Finding {
       keep_overlapping(scene_, seen_.task.neighbours ? owners.first(0) : owners, clearance,
                        backend_.threads(), pairs);
       if (!bad.empty()) {
-        pairs = merged(pairs, pairs_by_boxes(scene_, plan_.regions, bad, plan_.settings,
-                                             backend_.threads()));
+        pairs = merged(
+            pairs, pairs_by_boxes(scene_, plan_.regions, bad, plan_.settings, backend_.threads()));
       }
       out_.candidates = std::move(pairs);
       return;

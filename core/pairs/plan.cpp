@@ -112,15 +112,17 @@ double estimated_pairs(const Scene& scene, const PairRegions& regions, double cl
       found += owner[t] != owner[regions.triangles[n * a / asked]] && overlap(box, boxes[a]);
     }
   }
-  const auto part = [n](std::size_t of) { return static_cast<double>(n) / static_cast<double>(of); };
+  const auto part = [n](std::size_t of) {
+    return static_cast<double>(n) / static_cast<double>(of);
+  };
   return 0.5 * static_cast<double>(found) * part(asked) * part(others);
 }
 
 std::uint64_t most_tests_of(const Scene& scene, const PairPlan& plan) {
   const double pairs = estimated_pairs(scene, plan.regions, plan.settings.clearance);
-  return static_cast<std::uint64_t>(
-      kTestsPerTriangle * static_cast<double>(plan.regions.triangles.size()) +
-      kTestsPerPair * pairs);
+  return static_cast<std::uint64_t>(kTestsPerTriangle *
+                                        static_cast<double>(plan.regions.triangles.size()) +
+                                    kTestsPerPair * pairs);
 }
 
 // Triangles that take part in what runs decide, or views, or both.
@@ -212,13 +214,14 @@ void split_and_choose(const Scene& scene, unsigned threads, PairMemory* memory, 
                         .unit = Unit::triangles});
   if (plan.choices.empty()) {
     const bool joined = plan.join != Reason::none, none = !joined && plan.runs.empty();
-    plan.trace.push_back(
-        {.kind = StageKind::views,
-         .reason = joined ? plan.join : none ? Reason::no_boxes_overlap : Reason::only_runs,
-         .detail = none ? apart(settings) : "",
-         .n = plan.join_n,
-         .ms = choosing.ms(),
-         .unit = Unit::pairs});
+    plan.trace.push_back({.kind = StageKind::views,
+                          .reason = joined ? plan.join
+                                    : none ? Reason::no_boxes_overlap
+                                           : Reason::only_runs,
+                          .detail = none ? apart(settings) : "",
+                          .n = plan.join_n,
+                          .ms = choosing.ms(),
+                          .unit = Unit::pairs});
     return;
   }
   plan.trace.push_back({.kind = StageKind::choose,

@@ -65,8 +65,8 @@ bool is_stretched(const Scene& scene, const Object& object, const Box& box, doub
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < kSample; ++k) {
       const double place = 0.6180339887498949 * static_cast<double>(k);  // as in sampled_length()
-      const auto t = static_cast<std::uint32_t>((place - std::floor(place)) *
-                                                (object.triangle_count - 1));
+      const auto t =
+          static_cast<std::uint32_t>((place - std::floor(place)) * (object.triangle_count - 1));
       at[k] = scene.vertices[scene.triangles[object.first_triangle + t][0]][axis];
     }
     std::ranges::sort(at);
@@ -370,8 +370,7 @@ void gather_scattered(const Scene& scene, double clearance, std::span<const Box>
   for_each_of(inside.size(), threads, [&](std::size_t k, unsigned own_threads) {
     const std::uint32_t o = scattered.objects[k];
     const Object& object = scene.objects[o];
-    const auto order =
-        std::span(runs.order).subspan(object.first_triangle, object.triangle_count);
+    const auto order = std::span(runs.order).subspan(object.first_triangle, object.triangle_count);
     inside[k] = !runs.stretched.empty() && runs.stretched[o]
                     ? order_stretched(scene, object, order)
                     : order_object(boxes_of(k), relative(regions[o], runs.origin),

@@ -68,9 +68,9 @@ struct ScatteredBoxes {
 /// runs; large ones are judged by a sample.
 Runs make_runs(const Scene& scene, double clearance, unsigned threads,
                ScatteredBoxes* scattered = nullptr);
-/// An object is stretched where its box is more than kStretched times as long as the one around most
-/// of its triangles, by a sample: grids over its box, and boxes of runs as floats, are of no use
-/// then. Objects of a few runs are not judged. make_runs() with `scattered` tells which are.
+/// An object is stretched where its box is more than kStretched times as long as the one around
+/// most of its triangles, by a sample: grids over its box, and boxes of runs as floats, are of no
+/// use then. Objects of a few runs are not judged. make_runs() with `scattered` tells which are.
 constexpr double kStretched = 8;
 /// Chooses the origin, and puts the triangles of scattered objects that meet the object's region in
 /// Morton order, as runs with blocks.

@@ -445,8 +445,9 @@ void TileWorker<Rules>::run(const PairTile& tile, std::span<const PairItem> item
     const Stopwatch listing;
     // Entries are work, so no more are listed than may be done.
     const std::uint64_t most = work_ ? work_->left() : UINT64_MAX;
-    fits = lists_.list(tile, items, last, masked_,
-                       static_cast<std::size_t>(std::min<std::uint64_t>({limit, UINT32_MAX, most})));
+    fits =
+        lists_.list(tile, items, last, masked_,
+                    static_cast<std::size_t>(std::min<std::uint64_t>({limit, UINT32_MAX, most})));
     counts.list_ms += listing.ms();
     if (!fits && most < limit) work_->add(most + 1);
   }

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/base/uninitialized.h"
-#include "core/pairs/runs.h"
 #include "core/pairs/box_tree.h"
+#include "core/pairs/runs.h"
 #include "core/scene/scene.h"
 
 namespace farcull {

@@ -16,7 +16,9 @@
 #include "tests/core/cull/far_properties.h"
 #include "tests/core/gl/gl_lab.h"
 #include "tests/core/pairs/crowded_scenes.h"
+#include "tests/core/pairs/pairs_lab.h"
 #include "tests/core/pairs/repeated_scenes.h"
+#include "tests/core/pairs/stray_scenes.h"
 #include "tests/core/scene/scenes.h"
 #include "verify/exact.h"
 
@@ -44,7 +46,8 @@ class Both final : public PairBackend {
   std::vector<TrianglePair> raw_pairs(const PairTask& task, PairCounts& counts) override {
     PairCounts on_cpu;
     std::vector<TrianglePair> expected = cpu_->raw_pairs(task, on_cpu);
-    const std::vector<TrianglePair> found = gl_.raw_pairs(task, counts);
+    std::vector<TrianglePair> found = gl_.raw_pairs(task, counts);
+    if (task.narrow) task.narrow(expected), task.narrow(found);  // either may have done so
     ++views;
     pairs += expected.size();
     crowded += on_cpu.crowded;
@@ -445,6 +448,35 @@ TEST(GlPairsProperty, EqualTheCpusOnExtremeFamilies) {
   }
   expect_same(both);
   EXPECT_GT(both.pairs, 1000u);
+}
+
+// Views that take too much work: most of the scene lies in one pixel. And a device that finds so
+// itself, since the limit is just below what it does.
+TEST(GlPairs, GiveUpAViewThatTakesTooMuchWork) {
+  const auto gives_up = [](const PairResult& result) {
+    return std::ranges::any_of(
+        result.stages, [](const Stage& stage) { return stage.reason == Reason::join_many_tests; });
+  };
+  const Scene strays = lab::stray_scene(0, 4000, {.outliers = 3, .surface = true, .exponent = 6});
+  const PairResult on_gl = find_pairs(strays, {.runs = false}, shared());
+  EXPECT_TRUE(gives_up(on_gl));
+  EXPECT_EQ(on_gl.candidates, find_pairs(strays, {.runs = false}, *cpu_pair_backend(2)).candidates);
+
+  const Scene needles = make_builtin_scene("needles");
+  PairPlan plan = plan_pairs(needles, {.runs = false});
+  PairWorkspace workspace;
+  plan.most_tests = UINT64_MAX;
+  const std::uint64_t tests =
+      find_pairs(needles, plan, shared(), workspace).views.at(0).counts.tests;
+  int by_device = 0;
+  for (const std::uint64_t most : {tests / 4, tests / 2, tests - 1}) {
+    plan.most_tests = most;
+    const PairResult result = find_pairs(needles, plan, shared(), workspace);
+    EXPECT_TRUE(gives_up(result)) << most << " of " << tests;
+    by_device += result.views.at(0).counts.dispatches > 0;
+    EXPECT_EQ(lab::missed(lab::truth_of(needles), result.candidates), 0u);
+  }
+  EXPECT_GT(by_device, 0);
 }
 
 }  // namespace

@@ -17,12 +17,12 @@ namespace farcull::lab {
 
 /// How a scene of strays is made.
 struct Strays {
-  int outliers = 0;        // 0 to 10: triangles, or corners of triangles
-  double decades = 0;      // 0 to 300: of the sizes of the others
-  bool spread = false;     // their places spread as their sizes do
-  bool surface = false;    // instead of triangles anywhere in a cube: two sheets, in any order
-  bool self = false;       // one object with itself, instead of two
-  double exponent = -1;    // of the size of outliers, to base 10; negative: each one of 0 to 300
+  int outliers = 0;      // 0 to 10: triangles, or corners of triangles
+  double decades = 0;    // 0 to 300: of the sizes of the others
+  bool spread = false;   // their places spread as their sizes do
+  bool surface = false;  // instead of triangles anywhere in a cube: two sheets, in any order
+  bool self = false;     // one object with itself, instead of two
+  double exponent = -1;  // of the size of outliers, to base 10; negative: each one of 0 to 300
 };
 
 inline Strays random_strays(std::uint64_t seed) {
@@ -61,18 +61,21 @@ inline Scene stray_scene(std::uint64_t seed, int triangles, const Strays& strays
       const double scale = strays.spread ? 10 * size * std::pow(10, 0.5 * strays.decades) : 1;
       const double part = strays.spread ? 0.05 * scale : size;
       const Vec3 place = scale * direction();
-      object.push_back({place + part * direction(), place + part * direction(),
-                        place + part * direction()});
+      object.push_back(
+          {place + part * direction(), place + part * direction(), place + part * direction()});
     }
     if (strays.surface) {
       for (std::size_t k = object.size(); k > 1; --k)
-        std::swap(object[k - 1], object[static_cast<std::size_t>(random.below(static_cast<int>(k)))]);
+        std::swap(object[k - 1],
+                  object[static_cast<std::size_t>(random.below(static_cast<int>(k)))]);
     }
   }
   for (int k = 0; k < strays.outliers; ++k) {
-    auto& object = objects[static_cast<std::size_t>(random.below(static_cast<int>(objects.size())))];
+    auto& object =
+        objects[static_cast<std::size_t>(random.below(static_cast<int>(objects.size())))];
     auto& one = object[static_cast<std::size_t>(random.below(static_cast<int>(object.size())))];
-    const double far = std::pow(10, strays.exponent >= 0 ? strays.exponent : random.between(0, 300));
+    const double far =
+        std::pow(10, strays.exponent >= 0 ? strays.exponent : random.between(0, 300));
     switch (random.below(3)) {
       case 0:  // huge
         for (Vec3& corner : one) corner = far * direction();

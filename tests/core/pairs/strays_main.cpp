@@ -68,12 +68,14 @@ Cost measured(const std::function<Scene()>& scene, Method method) {
 bool row(const std::string& name, const std::function<Scene()>& scene) {
   const Cost exact = measured(scene, Method::exact), pairs = measured(scene, Method::far_pairs);
   const bool same = exact.ms >= 0 && pairs.ms >= 0 && exact.colliding == pairs.colliding;
-  const bool kept = same && pairs.ms <= kTimes * exact.ms + kMs &&
-                    pairs.mib <= kTimes * exact.mib + kMib;
+  const bool kept =
+      same && pairs.ms <= kTimes * exact.ms + kMs && pairs.mib <= kTimes * exact.mib + kMib;
   std::printf("| %s | %llu | %.0f | %.0f | %.2f | %.0f | %.0f |%s\n", name.c_str(),
               static_cast<unsigned long long>(exact.colliding), exact.ms, pairs.ms,
               pairs.ms / exact.ms, exact.mib, pairs.mib,
-              kept ? "" : same ? " too much" : " WRONG");
+              kept   ? ""
+              : same ? " too much"
+                     : " WRONG");
   std::fflush(stdout);
   return kept;
 }
@@ -99,8 +101,9 @@ Scene with_stray(const char* name, bool self, double times, bool corner) {
 }
 
 int main_of(int count, int first) {
-  std::printf("| scene | colliding | exact, ms | far-pairs, ms | ratio | exact, MiB | far-pairs, MiB "
-              "|\n|---|---:|---:|---:|---:|---:|---:|\n");
+  std::printf(
+      "| scene | colliding | exact, ms | far-pairs, ms | ratio | exact, MiB | far-pairs, MiB "
+      "|\n|---|---:|---:|---:|---:|---:|---:|\n");
   int too_much = 0;
   for (const char* name : {"bunny", "two-bunnies"}) {
     const bool self = std::string(name) == "bunny";
@@ -112,7 +115,8 @@ int main_of(int count, int first) {
       std::snprintf(text, sizeof text, "%s, a triangle of %g times its size", what.c_str(), times);
       too_much += !row(text, [&] { return with_stray(name, self, times, false); });
     }
-    too_much += !row(what + ", a corner at 1e30", [&] { return with_stray(name, self, 1e30, true); });
+    too_much +=
+        !row(what + ", a corner at 1e30", [&] { return with_stray(name, self, 1e30, true); });
   }
   for (int seed = first; seed < first + count; ++seed) {
     const auto number = static_cast<std::uint64_t>(seed);

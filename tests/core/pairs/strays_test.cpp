@@ -19,8 +19,8 @@ namespace farcull {
 namespace {
 
 using lab::random_strays;
-using lab::Strays;
 using lab::stray_scene;
+using lab::Strays;
 using lab::with_self;
 
 // Through a plan whose limit of tests may be another one.
@@ -164,6 +164,31 @@ TEST(Strays, InFramesAreFoundAsWithoutThem) {
   EXPECT_EQ(uneven, 3u);
 }
 
+// All pairs, and the blocks that were compared for them.
+std::pair<std::size_t, std::uint64_t> pairs_and_blocks(const Scene& scene) {
+  OrderedPairs pairs(scene, 0, {}, 2);
+  std::vector<TrianglePair> part;
+  std::size_t count = 0;
+  while (!pairs.at_end()) {
+    pairs.next(1000, part);
+    count += part.size();
+  }
+  return {count, pairs.compared()};
+}
+
+// One triangle in ten reaches through all others, and is thin; or places spread over 300 decades.
+TEST(Strays, StandApartInATree) {
+  const std::uint64_t even = pairs_and_blocks(stray_scene(1, kTriangles, {})).second;
+  Scene needles = stray_scene(1, kTriangles, {});
+  for (std::uint32_t t = 0; t < needles.triangles.size(); t += 10) {
+    for (const std::uint32_t v : needles.triangles[t])
+      needles.vertices[v] = Vec3(v % 2 ? 2 : -2, needles.vertices[v].y(), needles.vertices[v].z());
+  }
+  EXPECT_LE(pairs_and_blocks(needles).second, 3 * even);
+  const Scene spread = stray_scene(1, kTriangles, {.decades = 300, .spread = true});
+  EXPECT_LE(pairs_and_blocks(spread).second, 4 * even);
+}
+
 // The trees of streams and distances do not follow the extent either.
 TEST(Strays, SpoilNoTree) {
   for (const double far : {1e4, 1e30}) {
@@ -172,16 +197,6 @@ TEST(Strays, SpoilNoTree) {
       for (const std::uint32_t v : scene.triangles[object.first_triangle + 77])
         scene.vertices[v] *= far;
     }
-    const auto pairs_and_blocks = [](const Scene& of) {
-      OrderedPairs pairs(of, 0, {}, 2);
-      std::vector<TrianglePair> part;
-      std::size_t count = 0;
-      while (!pairs.at_end()) {
-        pairs.next(1000, part);
-        count += part.size();
-      }
-      return std::pair(count, pairs.compared());
-    };
     const auto [count, blocks] = pairs_and_blocks(other);
     const auto [more, more_blocks] = pairs_and_blocks(scene);
     // Each huge box meets all blocks, of which there are a fifteenth of the triangles at most.
