@@ -50,5 +50,10 @@ TEST(GlKernelProbe, ReversedSlicesAreRejected) {
             Names{"depth slices, float to int"});
 }
 
+TEST(GlKernelProbe, SolidsThatAreStoredBehindWhatIsAskedAreNoticed) {
+  EXPECT_EQ(failures({.brief = true, .late_stores = true}),
+            (Names{"oriented boxes", "exact offsets"}));
+}
+
 }  // namespace
 }  // namespace farcull
