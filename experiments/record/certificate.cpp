@@ -23,8 +23,10 @@ std::vector<std::string> assumptions_about(const GlInfo& device) {
       "A2: window coordinates snap by at most 2^-b px per axis, b = GL_SUBPIXEL_BITS",
       "A3: coverage is that of one common, infinitesimally shifted sample; zero snapped area "
       "covers nothing",
-      "A4: fragment and compute arithmetic as GLSL 4.50, 4.7.1 promises; the depth map is monotone",
-      "A5: the depth buffer and its test are monotone",
+      "A4: fragment and compute arithmetic as GLSL 4.50, 4.7.1 promises, each program by itself",
+      "A5: the depth test compares the depths that the buffer holds; with 24 bits a depth is one "
+      "of "
+      "the two neighbouring integers",
       "A6: a query is zero only if no sample passed",
       "A7: every command ran, or the failure is seen",
       "A8: what a dispatch or a draw wrote is seen after the barrier; atomics neither lose nor "
