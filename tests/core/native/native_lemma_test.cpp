@@ -51,9 +51,6 @@ TEST(NativeLemma, LemmasFailWithoutTheDoubleTerm) {
   lab::expect_term_needed(canvases(), "double", 20'000);
   lab::expect_term_needed(worst(), "double", 20'000);
 }
-TEST(NativeLemma, ErrorsThatTurnEdgesAreTried) {
-  lab::expect_turned_edges_noticed(worst(), 24'000);
-}
 TEST(NativeLemma, LemmasFailWithoutTheInputTermOnTheWorstCanvas) {
   lab::expect_term_needed(worst(), "input", 400'000);
 }

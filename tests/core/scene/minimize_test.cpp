@@ -12,23 +12,26 @@ bool collides(const Scene& scene) {
   return !all_colliding_pairs(scene, {.threads = 1}).pairs.empty();
 }
 
+// The first scene from this seed on in which triangles meet.
+Scene colliding_scene(std::uint64_t seed) {
+  while (!collides(lab::random_scene(seed))) ++seed;
+  return lab::random_scene(seed);
+}
+
 TEST(Minimize, LeavesTheTwoTrianglesThatMeet) {
   for (const std::uint64_t seed : seeds(3)) {
-    const Scene scene = lab::random_scene(seed);
-    if (!collides(scene)) continue;
-    const Scene least = lab::minimized(scene, collides);
+    const Scene least = lab::minimized(colliding_scene(seed), collides);
     EXPECT_EQ(least.triangles.size(), 2u) << seed;
     EXPECT_TRUE(collides(least)) << seed;
   }
-  EXPECT_TRUE(collides(lab::random_scene(3))) << "there is something to minimize";
 }
 
 TEST(Minimize, WritesAFileWithTheSameDoubles) {
-  const Scene least = lab::minimized(lab::random_scene(3), collides);
+  const Scene least = lab::minimized(colliding_scene(3), collides);
   const std::string path = lab::write_case("minimize-test", least, "views z resolution 8");
   const Scene read = parse_scene_file(
       "{\"objects\": [{\"mesh\": \"minimize-test.obj\", \"split\": \"groups\"}]}", path);
-  ASSERT_EQ(read.triangles.size(), least.triangles.size());
+  ASSERT_EQ(read.triangles.size(), 2u);
   for (std::uint32_t t = 0; t < read.triangles.size(); ++t)
     EXPECT_EQ(read.corners(t), least.corners(t));
   std::filesystem::remove(path);
