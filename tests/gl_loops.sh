@@ -71,7 +71,7 @@ for ((loop = 1; loop <= loops; ++loop)); do
     ((failed += 1))
     echo "loop $loop: ended with status $status$( ((status == 124)) && echo ', it hangs')"
     tail -n 5 "$log"
-  elif ((loop % 20 == 0)); then
+  elif ((loop % 10 == 0)); then
     echo "loop $loop of $loops"
   fi
 done
