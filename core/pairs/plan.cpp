@@ -95,34 +95,68 @@ std::vector<PairChoice> given_choices(const Scene& scene, const PairRegions& reg
   return choices;
 }
 
-// About how many pairs of boxes overlap: boxes of a few triangles with those of some others.
-double estimated_pairs(const Scene& scene, const PairRegions& regions, double clearance) {
+// About how many pairs of boxes overlap, and some of them.
+struct PairEstimate {
+  double pairs = 0;
+  std::vector<TrianglePair> sample;
+};
+
+// Boxes of a few triangles with those of some others. The eighth of the few that meets most is left
+// out, since one huge box says nothing about the others.
+PairEstimate estimated_pairs(const Scene& scene, std::span<const std::uint32_t> triangles,
+                             double clearance) {
   constexpr std::size_t kAsked = 32, kOthers = 8192;
   const std::vector<std::uint32_t> owner = join_owners(scene);
-  const std::size_t n = regions.triangles.size();
+  const std::size_t n = triangles.size();
   const std::size_t asked = std::min(n, kAsked), others = std::min(n, kOthers);
   std::vector<Box> boxes;
-  for (std::size_t k = 0; k < asked; ++k)
-    boxes.push_back(grown_box(scene, regions.triangles[n * k / asked], clearance));
-  std::size_t found = 0;
-  for (std::size_t k = 0; k < others; ++k) {
-    const std::uint32_t t = regions.triangles[n * k / others];
-    const Box box = grown_box(scene, t, clearance);
-    for (std::size_t a = 0; a < asked; ++a) {
-      found += owner[t] != owner[regions.triangles[n * a / asked]] && overlap(box, boxes[a]);
+  for (std::size_t k = 0; k < others; ++k)
+    boxes.push_back(grown_box(scene, triangles[n * k / others], clearance));
+  std::vector<std::vector<TrianglePair>> found(asked);
+  for (std::size_t a = 0; a < asked; ++a) {
+    const std::uint32_t one = triangles[n * a / asked];
+    const Box box = grown_box(scene, one, clearance);
+    for (std::size_t k = 0; k < others; ++k) {
+      const std::uint32_t other = triangles[n * k / others];
+      if (owner[one] != owner[other] && overlap(box, boxes[k]))
+        found[a].push_back({std::min(one, other), std::max(one, other)});
     }
   }
+  std::ranges::sort(found, {}, &std::vector<TrianglePair>::size);
+  found.resize(asked - asked / 8);
+  PairEstimate out;
+  for (const auto& some : found) out.sample.insert(out.sample.end(), some.begin(), some.end());
+  std::ranges::sort(out.sample);
+  const auto repeated = std::ranges::unique(out.sample);
   const auto part = [n](std::size_t of) {
     return static_cast<double>(n) / static_cast<double>(of);
   };
-  return 0.5 * static_cast<double>(found) * part(asked) * part(others);
+  out.pairs = 0.5 * static_cast<double>(out.sample.size()) * part(found.size()) * part(others);
+  out.sample.erase(repeated.begin(), repeated.end());
+  return out;
 }
 
 std::uint64_t most_tests_of(const Scene& scene, const PairPlan& plan) {
-  const double pairs = estimated_pairs(scene, plan.regions, plan.settings.clearance);
-  return static_cast<std::uint64_t>(kTestsPerTriangle *
-                                        static_cast<double>(plan.regions.triangles.size()) +
+  const std::vector<std::uint32_t>& triangles = plan.regions.triangles;
+  const double pairs = estimated_pairs(scene, triangles, plan.settings.clearance).pairs;
+  return static_cast<std::uint64_t>(kTestsPerTriangle * static_cast<double>(triangles.size()) +
                                     kTestsPerPair * pairs);
+}
+
+// An uneven scene whose boxes overlap often, as those of needles do, is left to views where one
+// takes pairs away.
+void try_views(const Scene& scene, unsigned threads, const PairSettings& settings, PairParts& parts,
+               std::vector<PairChoice>& choices) {
+  const PairEstimate estimate = estimated_pairs(scene, parts.rest.triangles, settings.clearance);
+  const auto n = static_cast<double>(parts.rest.triangles.size());
+  if (estimate.pairs <= static_cast<double>(kOverlapsPerTriangle) * n) return;
+  PairRegions regions = pair_regions(scene, settings.clearance, false, threads, settings.ignored);
+  if (regions.triangles.empty()) return;
+  std::vector<PairChoice> views = choose_pair_views(scene, regions, 0);
+  if (kept_by(scene, regions, views.front(), settings.clearance, estimate.sample) > kKeptByView)
+    return;
+  parts = {.runs = {}, .rest = std::move(regions)};
+  choices = std::move(views);
 }
 
 // Triangles that take part in what runs decide, or views, or both.
@@ -186,7 +220,9 @@ void split_and_choose(const Scene& scene, unsigned threads, PairMemory* memory, 
   PairParts parts = split(false);
   const double split_ms = planning.ms();
   const Stopwatch choosing;
-  if (parts.join == Reason::none && !parts.rest.triangles.empty()) {
+  if (parts.join == Reason::join_uneven) {
+    try_views(scene, threads, settings, parts, plan.choices);
+  } else if (parts.join == Reason::none && !parts.rest.triangles.empty()) {
     plan.choices = choose_pair_views(scene, parts.rest, 0);
     // Where triangles lie on each other no view parts them, and boxes are found faster.
     if (!parts.sample.empty() && kept_by(scene, parts.rest, plan.choices.front(),
