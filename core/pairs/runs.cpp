@@ -59,7 +59,8 @@ double sampled_length(const Scene& scene, const Runs& runs, std::uint32_t object
 // Whether most triangles of an object lie in a small part of its box, which is grown by `half`.
 bool is_stretched(const Scene& scene, const Object& object, const Box& box, double half) {
   constexpr std::size_t kSample = 64, kEnd = kSample / 8;
-  if (object.triangle_count < kSample * 4) return false;
+  if (object.triangle_count < 4 * kSampledRuns * kRun)
+    return false;              // a sample would cost too much
   double side = 0, whole = 0;  // sums of half sides: whole ones may be infinite
   std::array<double, kSample> at;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
