@@ -76,7 +76,7 @@ enum class Reason : std::uint8_t {
   chosen,              // the view is looked at, for `detail`, n x m px
   few_candidates,      // exact tests of n candidates are cheaper than a further view
   enough_views,        // as many as a run looks at
-  given_up,            // the view takes nothing away: it compared more than n pairs of intervals
+  given_up,            // the view takes nothing away: it is more work than n pairs of intervals
   keeps_sample,        // the view keeps all of a sample of the candidates
   sweep,               // boxes of n objects overlap, which have m triangles; `detail`
   join_kept,           // boxes of what is kept
@@ -85,7 +85,7 @@ enum class Reason : std::uint8_t {
   join_unresolvable,   // no view can resolve the scene
   join_uneven,         // triangles lie too unevenly for runs and views; a tree of boxes decides
   join_many_runs,      // boxes of more than n pairs of runs overlap: as above
-  join_many_tests,     // the view `detail` compared more than n pairs of intervals: as above
+  join_many_tests,     // the view `detail` is more work than n pairs of intervals: as above
   predicates,          // exact predicates on the candidates
   no_candidates,       // there are none
   every_pair,          // every pair is accounted for
@@ -98,7 +98,7 @@ enum class Reason : std::uint8_t {
   if_changed,          // if the round before changed something
   if_culled,           // if the round before culled at least one triangle in n
   if_candidates,       // if there are candidates
-  if_more_tests,       // if the first view compares more than n pairs of intervals
+  if_more_tests,       // if the first view is more work than n pairs of intervals
 };
 
 struct Stage {

@@ -14,20 +14,23 @@
 namespace farcull {
 namespace {
 
-// Whether an eighth of the triangles has more than a 64th of the work that may be done. A device
-// tells how much it did when it has done it, so this is asked before.
+// Whether a sample of the triangles says that there is more work than may be done. A device tells
+// how much it did when it has done it, so this is asked before. An eighth of the triangles has an
+// eighth of the pixels and entries, and a 64th of the pairs of intervals. Of few triangles a sample
+// says little, and all their work is small.
 bool takes_too_much(const PairTask& task) {
-  constexpr std::size_t kOneOf = 8;
-  if (task.most_tests == UINT64_MAX || std::max(task.width, task.height) > kMostCpuPixels)
+  constexpr std::size_t kOneOf = 8, kLeast = 1024;
+  if (task.most_tests == UINT64_MAX || task.active.size() < kLeast ||
+      std::max(task.width, task.height) > kMostCpuPixels)
     return false;
   std::vector<std::uint32_t> some;
   for (std::size_t k = 0; k < task.active.size(); k += kOneOf) some.push_back(task.active[k]);
   PairTask part = task;
   part.active = some;
-  part.most_tests = task.most_tests / (kOneOf * kOneOf);
+  part.most_tests = task.most_tests / kOneOf;
   PairCounts counts;
   cpu_sample_backend(task.active.size())->raw_pairs(part, counts);
-  return counts.given_up;
+  return counts.given_up || counts.tests > task.most_tests / (kOneOf * kOneOf);
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ class Finding {
 
   PairResult result() {
     compare_runs();
-    for (std::size_t k = 0; k < plan_.choices.size() && given_up_.empty(); ++k) {
+    for (std::size_t k = 0; k < plan_.choices.size() && !given_up_; ++k) {
       const PairChoice& choice = plan_.choices[k];
       if (asks_whether_to_go_on() && stops_before(choice)) break;
       if (skipped_) continue;
@@ -292,11 +292,10 @@ class Finding {
     out_.candidates = pairs_by_tree(
         scene_, plan_.settings, backend_.threads(), [](const TrianglePair&) { return true; },
         &compared);
-    Stage stage = !given_up_.empty()
-                      ? stage_of_join(Reason::join_many_tests, plan_.most_tests, given_up_)
+    Stage stage = given_up_ ? stage_of_join(Reason::join_many_tests, plan_.most_tests, *given_up_)
                   : plan_.join != Reason::none ? stage_of_join(plan_.join, plan_.join_n)
                                                : stage_of_join(Reason::join_unresolvable);
-    stage.depends = !given_up_.empty();
+    stage.depends = given_up_.has_value();
     stage.m = compared;
     stage.ms = start.ms();
     stage.in = all.size();
@@ -321,7 +320,7 @@ class Finding {
   std::vector<TrianglePair> of_runs_;
   bool first_ = true;  // no view has said anything yet
   bool skipped_ = false;
-  std::string given_up_ = {};  // the view that took too much work
+  std::optional<std::string> given_up_ = {};  // the view that took too much work
   std::size_t looked_ = 0;
 };
 

@@ -156,14 +156,14 @@ void expect_holds(Kernel kernel, int cases, std::uint64_t seed) {
   Tally all;
   for (int kind = 0; kind < kKindCount; ++kind) {
     Tally tally;
-    long hits = 0;
+    long hits = 0;  // of the fixed seed
     for (int n = 0; n < cases; ++n) {
       Random& random = n < cases / 2 ? fixed : of_the_day;
       const Case c = random_case(random, kind);
       const Solid solid = solid_of(c.triangle, c.radius);
       const Line line(solid, c.cx, c.cy);
       const Answer a = answer(kernel, c.cx, c.cy, solid);
-      hits += a.hit;
+      hits += a.hit && n < cases / 2;
       check_contacts(line, solid, c.cx, c.cy, a, tally);
       for (int k = 0; k < 2; ++k) check(line, solid, c.cx, c.cy, random_weights(random), a, tally);
       if (tally.violations != 0) {
@@ -171,8 +171,8 @@ void expect_holds(Kernel kernel, int cases, std::uint64_t seed) {
         FAIL() << kKinds[kind] << ", case " << n << " at " << c.cx << ", " << c.cy;
       }
     }
-    EXPECT_GT(hits, cases / 4) << kKinds[kind];
-    EXPECT_LT(hits, cases - cases / 100) << kKinds[kind];
+    EXPECT_GT(hits, cases / 8) << kKinds[kind];
+    EXPECT_LT(hits, cases / 2 - cases / 200) << kKinds[kind];
     all.checks += tally.checks;
     all.rationals += tally.rationals;
   }
@@ -203,7 +203,7 @@ TEST(ExactKernel, WithoutWideningEveryKindIsViolated) {
 void expect_holds_adversarial(Kernel kernel, int cases) {
   Random random(607);
   Tally tally;
-  long hits = 0;
+  long hits = 0;  // of the fixed seed
   for (int n = 0; n < cases; ++n) {
     if (n == cases / 2) random = Random(seed_of_day(607));
     Solid solid;
@@ -211,7 +211,7 @@ void expect_holds_adversarial(Kernel kernel, int cases) {
     adversarial(random, solid, cx, cy);
     const Line line(solid, cx, cy);
     const Answer a = answer(kernel, cx, cy, solid);
-    hits += a.hit;
+    hits += a.hit && n < cases / 2;
     check_contacts(line, solid, cx, cy, a, tally);
     check(line, solid, cx, cy, random_weights(random), a, tally);
     if (tally.violations != 0) {
@@ -219,8 +219,8 @@ void expect_holds_adversarial(Kernel kernel, int cases) {
       FAIL() << "case " << n << " at " << cx << ", " << cy;
     }
   }
-  EXPECT_GT(hits, cases / 10);
-  EXPECT_LT(hits, cases - cases / 10);
+  EXPECT_GT(hits, cases / 20);
+  EXPECT_LT(hits, cases / 2 - cases / 20);
   std::cout << tally.checks << " points, " << tally.rationals << " decided with rationals\n";
 }
 
