@@ -19,7 +19,7 @@ TEST(GlFarProperty, NoFamilyOfExtremeScenesLosesAPair) {
 TEST(GlFarProperty, NorWithOcclusionQueriesOn24BitDepth) {
   lab::expect_far_survives_all_families(
       canvases({.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}),
-      {.canvas = "gl24", .fixed = 12, .of_the_day = 4});
+      {.canvas = "gl24", .fixed = 8, .of_the_day = 4});
 }
 
 TEST(GlFarProperty, KeptCasesStayMended) { EXPECT_GT(lab::replay_cases(canvases()), 0); }
