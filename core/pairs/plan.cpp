@@ -139,7 +139,10 @@ PairEstimate estimated_pairs(const Scene& scene, std::span<const std::uint32_t> 
 std::uint64_t most_tests_of(const Scene& scene, const PairPlan& plan) {
   const std::vector<std::uint32_t>& triangles = plan.regions.triangles;
   const double pairs = estimated_pairs(scene, triangles, plan.settings.clearance).pairs;
-  return static_cast<std::uint64_t>(kTestsPerTriangle * static_cast<double>(triangles.size()) +
+  // Which take some 10 ms, whatever the scene: a few triangles may have many pixels.
+  constexpr std::uint64_t kLeast = std::uint64_t{1} << 24;
+  return kLeast +
+         static_cast<std::uint64_t>(kTestsPerTriangle * static_cast<double>(triangles.size()) +
                                     kTestsPerPair * pairs);
 }
 
