@@ -14,14 +14,12 @@
 namespace farcull {
 namespace {
 
-// Whether a sample of the triangles says that there is more work than may be done. A device tells
-// how much it did when it has done it, so this is asked before. An eighth of the triangles has an
-// eighth of the pixels and entries, and a 64th of the pairs of intervals. Of few triangles a sample
-// says little, and all their work is small.
+// Whether an eighth of the triangles says that all of them take several times the work that may be
+// done. A device tells how much it did when it has done it, so this is asked before. Pixels grow
+// with the triangles, and comparisons with their square.
 bool takes_too_much(const PairTask& task) {
-  constexpr std::size_t kOneOf = 8, kLeast = 1024;
-  if (task.most_tests == UINT64_MAX || task.active.size() < kLeast ||
-      std::max(task.width, task.height) > kMostCpuPixels)
+  constexpr std::size_t kOneOf = 8, kTimes = 4;
+  if (task.most_tests == UINT64_MAX || std::max(task.width, task.height) > kMostCpuPixels)
     return false;
   std::vector<std::uint32_t> some;
   for (std::size_t k = 0; k < task.active.size(); k += kOneOf) some.push_back(task.active[k]);
@@ -30,7 +28,7 @@ bool takes_too_much(const PairTask& task) {
   part.most_tests = task.most_tests / kOneOf;
   PairCounts counts;
   cpu_sample_backend(task.active.size())->raw_pairs(part, counts);
-  return counts.given_up || counts.tests > task.most_tests / (kOneOf * kOneOf);
+  return counts.given_up || counts.tests > kTimes * task.most_tests / (kOneOf * kOneOf);
 }
 
 }  // namespace

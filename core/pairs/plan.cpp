@@ -139,8 +139,10 @@ PairEstimate estimated_pairs(const Scene& scene, std::span<const std::uint32_t> 
 std::uint64_t most_tests_of(const Scene& scene, const PairPlan& plan) {
   const std::vector<std::uint32_t>& triangles = plan.regions.triangles;
   const double pairs = estimated_pairs(scene, triangles, plan.settings.clearance).pairs;
+  // The constant takes some 10 ms, whatever the scene: a few triangles may have many pixels.
   return static_cast<std::uint64_t>(std::min(
-      0x1p63, kTestsPerTriangle * static_cast<double>(triangles.size()) + kTestsPerPair * pairs));
+      0x1p63,
+      0x1p24 + kTestsPerTriangle * static_cast<double>(triangles.size()) + kTestsPerPair * pairs));
 }
 
 // An uneven scene whose boxes overlap often, as those of needles do, is left to views where one

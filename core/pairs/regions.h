@@ -3,13 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "core/base/stage.h"
 #include "core/pairs/memory.h"
-#include "core/pairs/run_pairs.h"
+#include "core/pairs/run_triangles.h"
 #include "core/pairs/runs.h"
 #include "core/scene/scene.h"
 
@@ -31,21 +30,6 @@ struct PairRegions {
 /// of a pair have no region where they meet, but each can be in the region of a third one.
 PairRegions pair_regions(const Scene& scene, double clearance, bool full = false,
                          unsigned threads = 0, std::span<const ObjectPair> ignored = {});
-
-/// Pairs of runs whose boxes overlap. Two triangles that are at most the clearance apart have grown
-/// boxes with a common point, which lies in the boxes of their runs: so their runs are a pair here,
-/// or their objects are left to views.
-struct RunMeetings {
-  std::shared_ptr<const Runs> of;
-  std::vector<RunPair> between;    // of different objects
-  std::vector<RunPair> inside;     // of one object that collides with itself; a <= b
-  std::vector<TrianglePair> kept;  // pairs of the frame before that are right in this one too
-  std::uint64_t overlaps = 0;      // pairs of runs whose boxes overlap, also those of which nothing
-                                   // moved, which stand in no list
-  std::uint64_t meetings = 0;      // of two objects, or of one with itself, that these decide
-  std::uint64_t triangles = 0;     // of all runs in a pair
-  bool empty() const { return meetings == 0; }
-};
 
 /// What boxes say about a scene: pairs of runs for the meetings that are cheapest so, and the
 /// regions of all others. Their `pairs` and `self` count all meetings of the scene.
@@ -76,10 +60,5 @@ constexpr std::size_t kOverlapsPerTriangle = 16;
 /// Where boxes of more pairs of runs overlap than this for each run, or an object is stretched
 /// (core/pairs/runs.h), neither runs nor views decide: PairParts::join.
 constexpr std::size_t kMostPairsPerRun = 1024;
-
-/// The pairs a < b of triangles of the runs whose boxes overlap, sorted, each once, with those that
-/// were kept. neighbours: false leaves out pairs of one object that share a vertex index.
-std::vector<TrianglePair> pairs_of_runs(const Scene& scene, const RunMeetings& meetings,
-                                        double clearance, bool neighbours, unsigned threads);
 
 }  // namespace farcull

@@ -460,7 +460,7 @@ TEST(GlPairs, GiveUpAViewThatTakesTooMuchWork) {
     return std::ranges::any_of(
         result.stages, [](const Stage& stage) { return stage.reason == Reason::join_many_tests; });
   };
-  const Scene strays = lab::stray_scene(0, 4000, {.outliers = 3, .surface = true, .exponent = 6});
+  const Scene strays = lab::stray_scene(0, 8000, {.outliers = 3, .surface = true, .exponent = 6});
   const PairResult on_gl = find_pairs(strays, {.runs = false}, shared());
   EXPECT_TRUE(gives_up(on_gl));
   EXPECT_EQ(on_gl.candidates, find_pairs(strays, {.runs = false}, *cpu_pair_backend(2)).candidates);
