@@ -47,7 +47,8 @@ TEST(GlProbe, EveryAssumptionIsProbedAndHolds) {
     EXPECT_FALSE(r.name.empty() || r.unit.empty() || r.note.empty()) << r.name;
     probed.insert(r.assumption);
   }
-  EXPECT_EQ(probed, (std::set<std::string>{"A1", "A2", "A3", "A4", "A5", "A6", "A7", "A8", "A9", "A10"}));
+  EXPECT_EQ(probed,
+            (std::set<std::string>{"A1", "A2", "A3", "A4", "A5", "A6", "A7", "A8", "A9", "A10"}));
 }
 
 TEST(GlProbe, OtherSeedsPassToo) {
