@@ -185,8 +185,7 @@ std::string reason_of(const Stage& stage) {
     case Reason::enough_views:
       return "enough views were looked at";
     case Reason::given_up:
-      return "given up, since it is more work than " + n +
-             " pairs of intervals: it takes nothing away";
+      return "given up after " + n + " units of work: this view removes no candidate";
     case Reason::keeps_sample:
       return "it keeps all of a sample of the candidates";
     case Reason::sweep:
@@ -208,8 +207,8 @@ std::string reason_of(const Stage& stage) {
       return "boxes of more than " + n +
              " pairs of runs overlap: pairs by a tree over the boxes of all triangles";
     case Reason::join_many_tests:
-      return "view " + stage.detail + " was given up, since it is more work than " + n +
-             " pairs of intervals: pairs by a tree over the boxes of all triangles";
+      return "view " + stage.detail + " was given up after " + n +
+             " units of work: pairs by a tree over the boxes of all triangles";
     case Reason::predicates:
       return "exact predicates on the candidates";
     case Reason::no_candidates:
@@ -234,7 +233,7 @@ std::string reason_of(const Stage& stage) {
     case Reason::if_candidates:
       return "if there are candidates";
     case Reason::if_more_tests:
-      return "if a view is more work than " + n + " pairs of intervals: a tree over all boxes";
+      return "if a view takes more than " + n + " units of work: a tree over all boxes";
   }
   return "";
 }

@@ -1,4 +1,4 @@
-// Probes of the device assumptions A1 .. A9: each tries to catch this device breaking one, and
+// Probes of the device assumptions A1 to A10: each tries to catch this device breaking one, and
 // gives the worst that it measured beside the bound that the proofs rely on (docs/budget.md). A
 // probe can refute an assumption, never prove it.
 #pragma once

@@ -51,8 +51,8 @@ std::size_t blocks_of_tree(std::size_t leaves);
 /// The tree over the boxes, with its blocks at blocks[at] and behind: blocks_of_tree() of them.
 BoxTree make_tree(std::span<const Box> leaves, std::span<WideBoxes> blocks, std::size_t at);
 
-/// An order in which boxes that follow one another lie together, for a tree over them. It follows
-/// the boxes and not their extent: space is cut where half of them lie on each side, and boxes that
+/// An order in which boxes that follow one another lie together, for a tree over them. Each cut
+/// puts half of the boxes on either side, wherever they lie, and boxes that
 /// reach across most of the others stand before them. So a box far away, or a huge one,
 /// spoils no node but those that it is in. Any boxes, also infinite ones. O(n log n).
 void spatial_order(std::span<const Box> boxes, std::span<std::uint32_t> order);

@@ -25,8 +25,7 @@ std::vector<std::string> assumptions_about(const GlInfo& device) {
       "covers nothing",
       "A4: fragment and compute arithmetic as GLSL 4.50, 4.7.1 promises, each program by itself",
       "A5: the depth test compares the depths that the buffer holds; with 24 bits a depth is one "
-      "of "
-      "the two neighbouring integers",
+      "of the two neighbouring integers",
       "A6: a query is zero only if no sample passed",
       "A7: every command ran, or the failure is seen",
       "A8: what a dispatch or a draw wrote is seen after the barrier; atomics neither lose nor "
