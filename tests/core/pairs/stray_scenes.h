@@ -118,10 +118,11 @@ inline PairWork work_of(const PairResult& result) {
 
 /// What it may take. `exact` looks at each triangle and at each pair of boxes that overlap. A
 /// triangle costs it about as much time as 1,024 comparisons of boxes cost FAR pairs, a pair as
-/// much as 64: three times that, and a constant.
+/// much as 64: three times that, and a constant, the one of PairPlan::most_tests
+/// (core/pairs/plan.cpp) with 1e5 for what threads do before they see that it is used up.
 inline PairWork most_work(std::size_t triangles, std::size_t box_pairs) {
   const auto n = static_cast<double>(triangles), k = static_cast<double>(box_pairs);
-  return {.tests = 3 * (1024 * n + 64 * k) + 1e5, .lists = 3 * (24 * n + k) + 1e4};
+  return {.tests = 3 * (1024 * n + 64 * k) + 0x1p24 + 1e5, .lists = 3 * (24 * n + k) + 1e4};
 }
 
 }  // namespace farcull::lab
