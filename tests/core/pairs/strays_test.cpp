@@ -59,7 +59,7 @@ std::string wrong(const Scene& scene, const PairResult& result) {
 // As the scene decides, and by views alone, as on a GL device.
 TEST(Strays, TakeNoMoreWorkThanExactAndMissNothing) {
   std::size_t uneven = 0, given_up = 0, others = 0;
-  for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(trials(6)); ++seed) {
+  for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(trials(6, 3)); ++seed) {
     const Strays strays = random_strays(seed);
     const Scene scene = stray_scene(seed, kTriangles, strays);
     SCOPED_TRACE(seed);
