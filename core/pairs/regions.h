@@ -22,8 +22,8 @@ struct PairRegions {
   std::uint64_t pairs = 0;   // of objects whose boxes, grown by half the clearance, overlap, and
                              // that are not ignored
   std::uint64_t self = 0;    // objects that collide with themselves
-  bool crowded = false;      // true: the boxes of more pairs of objects overlap than 8 for each run;
-                             // these pairs were not listed, and `pairs` is 0
+  bool crowded = false;      // more pairs of objects than 8 for each run have boxes that overlap;
+                             // they were not listed, and `pairs` is 0
   std::vector<std::uint32_t> triangles;  // ascending: contains those that can meet anything
 };
 /// full: every object can meet anything, anywhere. threads: 0 for as many as there are cores.

@@ -79,7 +79,7 @@ std::string threads_text(const GlInfo& gl) {
   if (gl.kind != "software") return "none on the CPU: the device is hardware";
   const int threads = driver_threads(gl.renderer);
   return threads == 0 ? "0 of the driver: it draws in the calling thread"
-                      : std::to_string(threads) + " of the driver, which break assumption A10";
+                      : std::to_string(threads) + " of the driver: assumption A10 fails";
 }
 
 std::string limits_table(const GlInfo& gl, int resolution) {
