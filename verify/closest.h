@@ -40,8 +40,8 @@ class SquaredDistance {
   std::shared_ptr<const Value> value_;
 };
 
-/// Where on a triangle a point lies. A point on several lies on the one that comes first: a corner
-/// before an edge before the face, a lower number before a higher one.
+/// The part of a triangle that a point lies on. If it lies on several, the first one counts: a
+/// corner before an edge before the face, a lower number before a higher one.
 enum class FeatureKind : std::uint8_t { vertex, edge, face };
 struct Feature {
   FeatureKind kind = FeatureKind::vertex;

@@ -241,7 +241,8 @@ std::vector<Point> common_points(const Hull& a, const Hull& b) {
   return points;
 }
 
-/// Of sorted points. The first and the last of points on one line are its ends.
+/// The dimension of the hull of sorted points. If they lie on one line, the first and the last are
+/// its ends.
 int dimension_of(const std::vector<Point>& points) {
   if (points.size() <= 2) return static_cast<int>(points.size()) - 1;
   const Integers along = direction(points.front(), points.back());

@@ -15,10 +15,10 @@
 
 namespace farcull {
 
-/// Of all pairs of triangles that were asked about: each is in one class, the first that fits,
-/// counted where it is decided. A pair is *nearer* if an answer should be nearer because of it, or
-/// if it should be an answer itself. It is *earlier* if it is as near as the answer about its
-/// objects and comes before it, so that it should be the answer.
+/// Counts of all pairs of triangles that were asked about. Each pair is in one class, the first
+/// that fits, and is counted when it is decided. A pair is *nearer* if an answer should be nearer
+/// because of it, or if it should be an answer itself. It is *earlier* if it is as near as the
+/// answer about its objects and comes before it, so that it should be the answer.
 struct DistanceAccounting {
   std::uint64_t pairs_total = 0;   // by combinatorics
   std::uint64_t answers = 0;       // pairs that the answers name

@@ -1,5 +1,5 @@
-// What account_distances() has to prove of the pairs of triangles of two objects, from what was
-// asked and answered.
+// Derives from question and answers what account_distances() has to prove about the pairs of
+// triangles of two objects.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ class DistanceClaims {
   DistanceClaims(const Scene& scene, std::span<const ClaimedDistance> answers,
                  const DistanceQuestion& question);
 
-  /// What may not be nearer, of the objects a <= b.
+  /// The distance within which the objects a <= b may have no pair that was not answered.
   Threshold threshold(std::uint32_t a, std::uint32_t b) const;
   /// The answers of the objects a <= b.
   std::span<const ClaimedDistance> of(std::uint32_t a, std::uint32_t b) const;

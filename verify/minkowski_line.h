@@ -84,9 +84,9 @@ class Line {
     return out;
   }
 
-  /// Where the solid is entered (sign -1) or left (sign 1): the best point of the three corners,
-  /// the contacts with the three edges' cylinders, and the contact with the face.
-  /// `deepest` receives the depth; false: the line misses.
+  /// Finds the place where the line enters the solid (sign -1) or leaves it (sign 1): the best of
+  /// the three corners, the contacts with the cylinders of the three edges, and the contact with
+  /// the face. `depth` receives the depth; false: the line misses.
   bool contact(int sign, Weights& best, Real& depth) const {
     bool found = false;
     const auto offer = [&](const Weights& w) {

@@ -92,7 +92,7 @@ inline bool farther_by_planes(const std::array<Vec3, 3>& a, const std::array<Vec
       if (of_s > s_most) s_most = of_s, s_at = i;
       if (of_t < t_least) t_least = of_t, t_at = i;
     }
-    // Of n . y each of the three terms has the rounding of y and of the product, then two sums: at
+    // Each of the three terms of n . y has the rounding of y and of the product, then two sums: at
     // most 4.01 u of `magnitude` and what is lost to subnormal products, for either side; their
     // difference is rounded once more, 2 u of `magnitude`. The length has 4 u, the quotient 1 u.
     const double gap = t_least - s_most - 16 * kU * magnitude - 0x1p-1000;

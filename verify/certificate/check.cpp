@@ -44,8 +44,8 @@ struct Decision {
       "points within the clearance");
 }
 
-/// Decides the pair whatever the byte says: by a direction that separates, or by a point in both or
-/// two points within the clearance; neighbours by themselves.
+/// Decides the pair, and does not believe the byte: a direction separates it, or a point lies in
+/// both triangles, or two points are within the clearance. Neighbours have a decision of their own.
 Decision decide(const Scene& scene, const TrianglePair& pair, double clearance, bool one_object,
                 std::uint8_t byte) {
   IntegerPair integers(scene.corners(pair.a), scene.corners(pair.b), clearance);

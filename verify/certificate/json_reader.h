@@ -1,4 +1,4 @@
-// What the readers of certificates share. They trust nothing: a first pass over the syntax bounds
+// Shared by the readers of certificates. They trust nothing: a first pass over the syntax bounds
 // the number of values and the depth before anything is built, so memory stays in proportion to the
 // text. For the sources of this folder alone.
 #pragma once
