@@ -219,7 +219,8 @@ std::vector<Point> cut(const std::vector<Point>& polygon, const Bound& bound, in
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const std::size_t next = (k + 1) % polygon.size();
     if (sgn(values[k]) >= 0) out.push_back(polygon[k]);
-    // The value is linear, and each is times its w: with these weights it is 0.
+    // The value is linear, and each value is scaled by its corner's w, so the point with these
+    // weights has the value 0.
     if (sgn(values[k]) * sgn(values[next]) < 0)
       out.push_back(between(polygon[k], abs(values[next]), polygon[next], abs(values[k])));
   }

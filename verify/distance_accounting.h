@@ -22,8 +22,8 @@ namespace farcull {
 struct DistanceAccounting {
   std::uint64_t pairs_total = 0;   // by combinatorics
   std::uint64_t answers = 0;       // pairs that the answers name
-  std::uint64_t objects_meet = 0;  // behind an answer that is 0, or of objects of which a neighbour
-                                   // at distance 0 is the last: nothing is nearer than 0
+  std::uint64_t objects_meet = 0;  // after an answer that is 0, or of objects whose last neighbour
+                                   // is at distance 0: nothing is nearer than 0
   std::uint64_t farther_by_boxes = 0;  // by the gaps between their boxes
   std::uint64_t farther_by_planes =
       0;                               // some two parallel planes between them are far enough apart

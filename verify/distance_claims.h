@@ -14,15 +14,17 @@
 
 namespace farcull {
 
-/// Which distances are asked about: below a bound, or the bound as well.
+/// Distances below a length, or at most the length.
 enum class Bound : std::uint8_t { below, at_most };
 
-/// Pairs of triangles that should have been answered: those whose distance the bound holds of.
+/// Pairs of triangles should have been answered if their distance is below `length`, or at most
+/// `length`, as `bound` says.
 struct Threshold {
   std::optional<Length> length;  // none: infinite, all of them
   Bound bound = Bound::below;
 };
-/// Whether the distance is the root, rounded to the nearest double, of two as near the even one.
+/// Whether the distance is the root, rounded to the nearest double; of two equally near ones, the
+/// even one.
 bool is_rounded_root(double distance, const Fraction& squared);
 
 class DistanceClaims {

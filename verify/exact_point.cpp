@@ -20,7 +20,7 @@ mpq_class coordinate(const ExactPoint& point, int axis) {
   return sum / weights;
 }
 
-// First and last index of the pixels of `size` that contain x; empty (first > last) where none
+// First and last index of the pixels of `size` that contain x; empty (first > last) if no pixel
 // does.
 std::pair<int, int> indices(const mpq_class& x, int size) {
   const mpq_class at = x + mpq_class(size) / 2;

@@ -63,8 +63,9 @@ class Line {
     deep_ += std::abs(mz_) + r_;
   }
 
-  /// p, its difference from the line and the squares are a dozen operations of 2^-64 each, relative
-  /// to the largest coordinates (flat: in the image, deep: along the depth); 2^-56 is beyond them.
+  /// The error bound 2^-56 holds since p, its difference from the line and the squares take a dozen
+  /// operations that err by 2^-64 each, relative to the largest coordinates (flat: in the image,
+  /// deep: along the depth).
   Chord chord(const Weights& w) const {
     Real3 p;
     for (int k = 0; k < 3; ++k)

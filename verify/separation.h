@@ -62,8 +62,7 @@ inline bool farther(const Bounds& a, const Bounds& b, double limit) {
 }
 
 /// True only if all points of the two triangles are farther apart than `limit` (>= 0, finite):
-/// between two planes that are perpendicular to some direction there is nothing of either, and the
-/// planes are farther apart than the limit.
+/// there are two parallel planes, farther apart than the limit, with one triangle on either side.
 ///
 /// Directions come from Gilbert's descent towards the closest points (An Iterative Procedure for
 /// Computing the Minimum of a Quadratic Form on a Convex Set, SIAM J. Control, 1966). A direction

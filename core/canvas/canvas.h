@@ -31,7 +31,7 @@ struct Proxy {
 };
 
 struct NativeJob;    // core/native/job.h
-struct NativeLines;  // the same
+struct NativeLines;  // core/native/job.h
 
 /// A solid's shader function, one text for GLSL and C++ (core/base/glsl_shim.h):
 ///   bool solid_interval(vec2 c, vec4 s0, .. vec4 s4, out float entry, out float exit)
@@ -46,7 +46,7 @@ struct SolidProgram {
   /// rounding misses, else the latest entry and the earliest exit.
   bool (*interval_worst)(float cx, float cy, const Solid& solid, float& entry,
                          float& exit) = nullptr;
-  /// On the lanes of this processor (core/native/canvas.h): proxies drawn, and single lines.
+  /// The same on the lanes of this processor (core/native/canvas.h), for proxies and single lines.
   void (*draw_native)(const NativeJob& job) = nullptr;
   void (*lines_native)(const NativeLines& lines) = nullptr;
 };

@@ -101,7 +101,7 @@ std::vector<Stage> opening_stages(const Scene& scene, const Regions& regions,
          .out = live,
          .unit = Unit::triangles});
   }
-  // Said once, and only where something is drawn.
+  // The plan says it once, and only if something is drawn.
   const std::uint32_t few = any ? too_few_objects(scene, regions, settings) : 0;
   if (few > 0) {
     stages.push_back({.kind = StageKind::objects,

@@ -48,10 +48,10 @@ struct Certificate {
   struct Claims {
     std::uint64_t box_pairs = 0;
     std::uint64_t kept = 0;        // called kept: left to the exact tests by the method
-    std::uint64_t culled = 0;      // the others
+    std::uint64_t culled = 0;      // box_pairs - kept
     std::uint64_t separated = 0;   // disjoint
-    std::uint64_t neighbours = 0;  // neighbours that share only their shared part
-    std::uint64_t meeting = 0;     // the others
+    std::uint64_t neighbours = 0;  // neighbours that meet only in what they share
+    std::uint64_t meeting = 0;     // box_pairs - separated - neighbours
     bool operator==(const Claims&) const = default;
   };
 

@@ -18,15 +18,15 @@ namespace {
 
 enum class Finding : std::uint8_t {
   as_claimed,
-  // These two leave the certificate unproved:
+  // These leave the certificate unproved:
   wrong_direction,  // the pair is disjoint, but not for the reason given
-  not_neighbours,   // neighbours that share only their shared part, called something else
+  not_neighbours,   // neighbours that meet only in what they share, called something else
   no_evidence,      // the byte means nothing
-  // and these three refute it:
+  // And these refute it:
   culled_meets,
   meets,       // kept; claimed to be disjoint
   separated,   // claimed to meet
-  neighbours,  // claimed to meet, and share only their shared part
+  neighbours,  // claimed to meet, but they meet only in what they share
 };
 
 bool refutes(Finding finding) { return finding >= Finding::culled_meets; }

@@ -294,12 +294,13 @@ class Checker {
     decide();
   }
 
-  /// These objects are in the reach of neither.
+  /// Asks about two objects that are not in each other's reach.
   void ask_unlisted(NearBoxes& boxes, const Objects& objects, const std::vector<Reach>& reach) {
     const Reach& of_a = reach[objects[0]];
     const Reach& of_b = reach[objects[1]];
     const Length* far = farther(of_a.length, of_b.length);
-    // Just as far is enough where the reaches that are so long end before the other object.
+    // If the last object of each reach of this length comes before the other object, a pair that is
+    // just as far is allowed.
     const auto as_far = [&](const Reach& x, std::uint32_t other) {
       return far != nullptr && (x.object < other || x.length->squared < far->squared);
     };

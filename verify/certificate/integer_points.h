@@ -206,7 +206,8 @@ bool any_point(PointSearch& search, const BigCorners& a, const BigCorners& b, co
   return false;
 }
 
-/// True iff one of the 42 pairs of points passes, one on a and one on b.
+/// True iff test() holds for one of the 42 pairs of points (docs/certificate.md), one on a and one
+/// on b.
 template <class Test>
 bool any_two_points(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const BigCorners& b,
                     const Test& test) {
