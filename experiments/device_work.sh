@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What far-pairs asks of a GL device per view: dispatches and readbacks on the first frame and on a later one,
-# for each built-in scene, as the table of docs/device-work.md.
+# for each built-in scene, as the table of docs/results/device-work.md.
 #   bash experiments/device_work.sh                      all built-in scenes, some minutes
 #   bash experiments/device_work.sh two-tori needles     these
 #     --seconds N   a scene that takes longer is left out by name; default 120

@@ -2,7 +2,7 @@
 # Tries every rasterizer that Debian's Mesa has without a GPU: the probes of `farcull doctor`, and what FAR
 # misses in the quick grid of the study radius, at the published radius and at that of the budget. One driver
 # does nothing at all (Mesa's noop): every probe of what it draws has to fail there.
-#   bash experiments/drivers.sh              all drivers, some minutes each; makes docs/drivers/results.md
+#   bash experiments/drivers.sh              all drivers, some minutes each; makes docs/results/drivers.md
 #   bash experiments/drivers.sh zink noop    these; the tables are printed
 #     --probes           the probes alone
 #     --program FARCULL  this program, and nothing is installed or built
@@ -211,8 +211,10 @@ for driver in "${chosen[@]}"; do
   fi
 done
 if [[ -n $whole && -z $probes_only ]] && ((status == 0)) && [[ -d $farcull_root/docs ]]; then
-  mkdir -p "$farcull_root/docs/drivers"
-  { printf '# Drivers without a GPU\n\n'; cat "$out/results.md"; } >"$farcull_root/docs/drivers/results.md"
-  echo "drivers: made docs/drivers/results.md" >&2
+  # The text above the mark stays.
+  page=$farcull_root/docs/results/drivers.md
+  { sed '/^<!-- /q' "$page"; echo; cat "$out/results.md"; } >"$out/page.md"
+  cp "$out/page.md" "$page"
+  echo "drivers: made docs/results/drivers.md" >&2
 fi
 exit "$status"

@@ -9,7 +9,7 @@
 #     --out DIR        default build/hardware-COMMIT-DEVICE
 # Call it again to go on, after Ctrl-C, a kill or a budget that was spent: a part that is done is not measured
 # again, and studies go on point by point. At the end there is one archive, DIR.tar.gz, and a page,
-# DIR/NAME.md, where NAME is that of the device. For hardware the page is also put in docs/hardware/.
+# DIR/NAME.md, where NAME is that of the device. For hardware the page is also put in docs/results/.
 # It stops when DIR has 20 GiB. Exit status: 0; 1 a pair was missed or a check failed; 2 it could not begin;
 # 3 nothing failed, but parts were left out or cut off; 130 and 143 it was interrupted.
 set -euo pipefail
@@ -246,9 +246,9 @@ section() {
   fi
 } >"$out/$name.md"
 if [[ $device == hardware && ! -e packed ]]; then
-  mkdir -p docs/hardware
-  cp "$out/$name.md" docs/hardware/
-  say "made docs/hardware/$name.md"
+  mkdir -p docs/results
+  cp "$out/$name.md" docs/results/
+  say "made docs/results/$name.md"
 fi
 # The archive appears as a whole.
 tar -czf "$out.tar.gz.part" -C "$(dirname "$out")" --exclude=lock --exclude=mesa_shader_cache \

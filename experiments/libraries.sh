@@ -5,7 +5,7 @@
 #   bash experiments/libraries.sh --quick [DIR]   the small suite, some minutes; VTK and Open3D only
 #                                                 where they are installed, since they are large
 #   bash experiments/libraries.sh [DIR]           the full suite, hours; a second run goes on. When it
-#                                                 is whole, the report is copied to docs/libraries, and
+#                                                 is whole, the report is copied to docs/results, and
 #                                                 the smallest examples to tests/cases/libraries.txt
 # DIR (default build/libraries-COMMIT, with -quick at its end for the small suite) gets the store
 # and the report. Exit status: that of the study, 1 if a method of farcull that promises missed a
@@ -43,12 +43,9 @@ status=0
 build/farcull experiment libraries "${quick[@]}" --resume --out "$out" || status=$?
 build/farcull report "$out" || status=$?
 if ((${#quick[@]} == 0 && status == 0)); then
-  mkdir -p docs/libraries/figures
-  cp "$out"/report/results.md docs/libraries/
-  cp "$out"/report/tables/libraries-families.csv docs/libraries/families.csv
-  cp "$out"/report/figures/*.svg docs/libraries/figures/
+  farcull_keep_report libraries "Results of the study libraries" "$out/report"
+  cp "$out"/report/tables/libraries-families.csv docs/results/
   cp "$out"/report/libraries-examples.txt tests/cases/libraries.txt
-  echo "libraries: made docs/libraries and tests/cases/libraries.txt"
 fi
 echo
 # The first table of the page.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Makes docs/results.md and all its figures: installs what is missing, builds, measures every study
+# Makes docs/results/studies.md and all its figures: installs what is missing, builds, measures every study
 # (or continues where an earlier call ended), makes the report, and copies page, figures and pictures
-# into docs/. About twenty minutes on two cores without a GPU; docs/results.md was measured on such a
+# into docs/results. About twenty minutes on two cores without a GPU; the page was measured on such a
 # machine.
 #   bash experiments/results.sh [OPTIONS OF farcull experiment all]
 # Exit status: 0; 1 if a method that promises missed a pair; 2 if the measurements did not complete.
@@ -22,15 +22,5 @@ status=0
 build/farcull experiment all --out "$out" --resume "$@" || status=$?
 if ((status > 1)); then exit "$status"; fi
 build/farcull report "$out"
-cp "$out"/report/results.md docs/results.md
-for kind in figures:svg pictures:png; do
-  folder=${kind%:*}
-  mkdir -p "docs/$folder" "$out/report/$folder"
-  find "$out/report/$folder" -name "*.${kind#*:}" -exec cp -t "docs/$folder" {} +
-  for old in "docs/$folder"/*."${kind#*:}"; do
-    if [[ ${old##*/} == paper-* ]]; then continue; fi # experiments/paper.sh makes these
-    if [[ -e $old && ! -e $out/report/$folder/${old##*/} ]]; then rm "$old"; fi
-  done
-done
-echo "results: made docs/results.md from $out/results.sqlite"
+farcull_keep_report studies "Results of the studies" "$out/report"
 exit "$status"

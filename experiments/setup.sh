@@ -247,6 +247,26 @@ farcull_build_beside() {
   echo "build: ${targets[*]} done in $((SECONDS - started)) s (${log%/*}/)"
 }
 
+# farcull_keep_report NAME TITLE REPORT: the page of a report becomes docs/results/NAME.md, with the
+# figures and pictures that it shows. Those that no page there shows are removed.
+farcull_keep_report() {
+  local results=$farcull_root/docs/results file
+  mkdir -p "$results/figures" "$results/pictures"
+  {
+    printf '# %s\n\nMade again by\n\n    bash experiments/%s\n\n' "$2" "${0##*/}"
+    printf 'Device, driver, commit and CPU are [at the end](#where-it-was-measured). The load of the machine'
+    printf ' was %s when this page was made.\n' "$(cut -d ' ' -f 3 /proc/loadavg)"
+    tail -n +2 "$3/results.md"
+  } >"$results/$1.md"
+  for file in "$3"/figures/*.svg "$3"/pictures/*.png; do
+    if grep -qF "(${file#"$3/"})" "$results/$1.md"; then cp "$file" "$results/${file#"$3/"}"; fi
+  done
+  for file in "$results"/figures/* "$results"/pictures/*; do
+    grep -qF "(${file#"$results/"})" "$results"/*.md || rm -f "$file"
+  done
+  echo "$1: made docs/results/$1.md"
+}
+
 if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
   farcull_packages+=("${farcull_test_packages[@]}")
   farcull_setup

@@ -9,16 +9,16 @@ namespace farcull {
 constexpr double kFitHalfUlp = 0x1.00001p-24;
 /// The smallest float above 0.
 constexpr double kFitSubnormal = 0x1p-149;
-/// Of a depth less or plus a radius, relative to the sum of their magnitudes.
+/// Error of a depth less or plus a radius, relative to the sum of their magnitudes.
 constexpr double kFitDepth = 0x1p-50;
-/// Of a projection onto a direction of the box, relative to the sum of the magnitudes of its terms;
-/// also of an upper bound of a direction's length.
+/// Error of a projection onto a direction of the box, relative to the sum of the magnitudes of its
+/// terms; also of an upper bound of a direction's length.
 constexpr double kFitBox = 0x1p-48;
-/// Of the difference of a corner and the centre, relative to its length.
+/// Error of the difference of a corner and the centre, relative to its length.
 constexpr double kFitCorner = 0x1p-50;
-/// The same, where squares underflow (px).
+/// The same if squares underflow (px).
 constexpr double kFitUnderflow = 0x1p-500;
-/// Of the radius that grows by the largest displacement of a corner.
+/// Error of the radius that grows by the largest displacement of a corner.
 constexpr double kFitRadius = 0x1p-48;
 
 }  // namespace farcull

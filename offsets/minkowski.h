@@ -1,6 +1,6 @@
-// The exact offset: a triangle and a ball's Minkowski sum itself, three edge-aligned cylinders,
-// three spheres and two shifted triangles (Govindaraju, Lin, Manocha 2004, section 4.2), evaluated
-// per pixel by its shader function (offsets/minkowski.glsl).
+// The exact offset: the Minkowski sum of a triangle and a ball. Its surface is made of three
+// cylinders along the edges, three spheres and two shifted triangles (Govindaraju, Lin, Manocha
+// 2004, section 4.2). The shader function offsets/minkowski.glsl evaluates it in each pixel.
 #pragma once
 
 #include "core/canvas/fatten.h"

@@ -74,7 +74,7 @@ check_references() {
 # Sections named in quotes after the page, as in budget.md, "double", are headings of that page.
 check_sections() {
   {
-    awk 'FNR == 1 { page = FILENAME; sub(/.*\//, "", page) } sub(/^#+ +/, "") { print page "\t" $0 }' docs/*.md
+    awk 'FNR == 1 { page = FILENAME; sub(/.*\//, "", page) } sub(/^#+ +/, "") { print page "\t" $0 }' docs/*.md docs/results/*.md
     echo "--"
     referring_lines
   } | awk -F '\t' '
@@ -167,10 +167,20 @@ check_proofs() {
   done
 }
 
+# Every page is linked from the map of pages, docs/README.md, or from that of results.
+check_map() {
+  local page
+  for page in docs/*.md docs/results/*.md; do
+    if [[ $page == docs/README.md ]]; then continue; fi
+    grep -qF "](${page#docs/})" docs/README.md || grep -qF "](${page#docs/results/})" docs/results/README.md ||
+      echo "$page: docs/README.md and docs/results/README.md do not link to it"
+  done
+}
+
 check() {
   local violations
   cd "$1"
-  violations=$(check_labels; check_references; check_sections; check_tests; check_citations; check_symbols; check_proofs)
+  violations=$(check_labels; check_references; check_sections; check_tests; check_citations; check_symbols; check_proofs; check_map)
   if [[ -n $violations ]]; then
     printf '%s\n' "$violations"
     return 1
@@ -219,6 +229,8 @@ self_test() {
   caught "a symbol with two meanings" $one 's/^\| K \| a clearance/| M | a clearance/' 'symbol M is defined twice'
   caught "a proof without an end" $two '0,/ ∎$/s/ ∎$//' 'does not end once'
   caught "a lemma without a twin" $one 's/^\*Twins:\* `CullideLemma/`CullideLemma/; s/\*Twins:\* `CullideLemma.L1IsFalse/`CullideLemma.L1IsFalse/' 'names no twins'
+  caught "a page that no map names" docs/README.md 's/\(tiles\.md\)/(proofs.md)/' 'docs/tiles.md: docs/README.md'
+  caught "a result that no map names" docs/results/README.md 's/\(motion\.md\)/(native.md)/' 'motion.md: docs/README.md'
   caught "a lemma without assumptions" $two 's/\*Assumes:\* lemmas 16 and 17\.//' 'does not say what it assumes'
   if ((failures)); then return 1; fi
   echo "docs: every rule is caught when it is broken"

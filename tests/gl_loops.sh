@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
-# The GL tests of FAR again and again, beside as many busy processes as there are cores. A process that
-# dies, hangs or fails is named. That is how the fault of llvmpipe's threads was found (docs/drivers.md).
+# Runs the GL tests of FAR many times on a busy machine, and names each run that fails, crashes or hangs.
+# Faults that depend on timing show only this way: those of llvmpipe's threads were found by this script
+# (docs/drivers.md).
 #   bash tests/gl_loops.sh [LOOPS]      default 200, some hours on two cores; needs a build in build/
-#     --filter TESTS     of these tests, as in --gtest_filter; default GlFar.*
-#     --late             every thread but the first one waits before it wakes others
-#     --address          of a build of its own with the address sanitizer, in build-address/: the fault
-#                        tests and all GL tests once, then the loops; an hour of compilation more
-#     --idle             nothing else runs beside
-# LP_NUM_THREADS in the environment stands: with 1 or 2, --late ends at once.
+#     --filter TESTS     which tests, as in --gtest_filter; default GlFar.*
+#     --late             every thread but the first one waits before it wakes others, so that faults of
+#                        timing show sooner
+#     --address          builds with the address sanitizer in build-address/ (an hour), runs the fault
+#                        tests and all GL tests once, then the loops
+#     --idle             starts no busy processes; without it there is one for each core
+# LP_NUM_THREADS is taken from the environment: with 1 or 2 threads, --late fails at once.
 # Exit status: 0 all passed; 1 not all; 2 it did not start.
 set -euo pipefail
 

@@ -393,7 +393,7 @@ type_names() {
       }'
 }
 
-# Prints a violation for each path in README.md and docs/*.md that does not exist: paths in
+# Prints a violation for each path in README.md, docs/*.md and docs/results/*.md that does not exist: paths in
 # backticks and in indented blocks that begin with one of our folders, and the targets of links.
 # NAME and * in a path stand for any text. A path without an ending, such as verify/accounting,
 # means the files of that name with any ending. A page may name a file that it tells the reader to
@@ -401,7 +401,7 @@ type_names() {
 page_paths() {
   local -a there pages
   mapfile -t there < <(present "${ours[@]}" docs)
-  mapfile -t pages < <(find README.md docs -maxdepth 1 -name '*.md' 2>/dev/null | LC_ALL=C sort)
+  mapfile -t pages < <(find README.md docs -maxdepth 2 -name '*.md' 2>/dev/null | LC_ALL=C sort)
   ((${#pages[@]})) || return 0
   # shellcheck disable=SC2016  # the dollars are those of awk
   find README.md CMakeLists.txt "${there[@]}" -printf '%p\n' 2>/dev/null |
@@ -444,7 +444,8 @@ page_paths() {
           rest = substr(rest, RSTART + RLENGTH)
           sub(/#.*/, "", target)
           if (target == "" || target ~ /^[a-z]+:/) continue
-          path = FILENAME ~ /^docs\// ? "docs/" target : target
+          path = FILENAME
+          sub(/[^\/]*$/, target, path)
           while (sub(/[^\/]+\/[.][.]\//, "", path)) {}
           sub(/\/$/, "", path)
           if (!known(path)) print FILENAME ":" FNR ": links to " target ", which does not exist"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Mutants: single changes to core/, offsets/ and verify/, each of which some test has to notice. Every
-# one is built and run against the tests that concern it. docs/mutants.md says what it is for, and
-# holds the table, which this script writes.
+# one is built and run against the tests that concern it. docs/mutants.md says what it is for;
+# docs/results/mutants.md holds the table, which this script writes.
 #
 #   bash tests/mutants.sh                    measures what has not been measured, then writes the table
 #   bash tests/mutants.sh 'budget-*' NAME    measures these alone
@@ -38,7 +38,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/../experiments/setup.sh"
 cd "$farcull_root"
 
 lists=(tests/mutants/*.txt)
-page=docs/mutants.md
+page=docs/results/mutants.md
 table_begin='<!-- The table begins: tests/mutants.sh writes it. -->'
 table_end='<!-- The table ends. -->'
 build_limit=900  # s

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Builds the library's objects and the program with link time optimization, at whose end the compiler
-# compares all types of one name (-Wodr), and fails if two differ: then which of them a function gets is
-# chance. tests/layout_test.sh finds types of one name in the sources; this finds also those that differ
-# by macros, options or includes. It is no part of CI: it builds the program a second time.
+# Fails if two different types have one name (the one definition rule, ODR): the program would use
+# either of them by chance. It builds the program with link time optimization (-Wodr), where the compiler
+# sees all types at once. tests/layout_test.sh finds types of one name in the sources; this script also
+# finds types that differ by macros, options or includes. CI leaves it out, since it builds the program a
+# second time.
 #   bash tests/odr.sh               in build-odr/: a quarter of an hour on two cores
 #   bash tests/odr.sh --self-test   two small files with such a type; a second
 # Exit status: 0; 1 two types of one name differ; 2 it could not build.

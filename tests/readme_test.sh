@@ -1,19 +1,24 @@
 #!/usr/bin/env bash
-# The commands of README.md: those that begin with build/farcull are run in their order, in an empty
-# folder; of the others the words are held against the help.
-#   tests/readme_test.sh FARCULL [README]
+# The commands of README.md and of pages that continue it: those that begin with build/farcull are run
+# in their order, in an empty folder; of the others the words are held against the help.
+#   tests/readme_test.sh FARCULL [PAGE...]
 set -euo pipefail
 
 program=$(realpath "$1")
-readme=$(realpath "${2:-$(dirname -- "${BASH_SOURCE[0]}")/../README.md}")
+root=$(realpath "$(dirname -- "${BASH_SOURCE[0]}")/..")
+if (($# > 1)); then
+  mapfile -t pages < <(realpath "${@:2}")
+else
+  pages=("$root/README.md" "$root"/docs/{scenes,methods,tiles,experiments}.md)
+fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/build"
 ln -s "$program" "$work/build/farcull"
 cd "$work"
 
-# commands_of README: the indented lines that call farcull, without their comments.
-commands_of() { sed -nE 's/^    ((build\/)?farcull .*)/\1/p' "$1" | sed -E 's/ +#.*$//'; }
+# commands_of PAGE...: the indented lines that call farcull, without their comments.
+commands_of() { sed -nE 's/^    ((build\/)?farcull .*)/\1/p' "$@" | sed -E 's/ +#.*$//'; }
 
 # unknown COMMAND-LINE: what the program does not know of it; nothing where it knows all.
 unknown() {
@@ -34,7 +39,7 @@ unknown() {
   done
 }
 
-# wrong README: a line for each command that cannot be as it stands.
+# wrong PAGE...: a line for each command that cannot be as it stands.
 wrong() {
   local line said status
   while read -r line; do
@@ -49,16 +54,16 @@ wrong() {
     if ((status)) && ! grep -q 'was built without OpenGL' said; then
       echo "status $status of: $line: $(tail -n 1 said)"
     fi
-  done < <(commands_of "$1")
+  done < <(commands_of "$@")
 }
 
 failed=0
-count=$(commands_of "$readme" | wc -l)
+count=$(commands_of "${pages[@]}" | wc -l)
 if ((count < 12)); then
-  echo "readme_test: only $count commands are found in $readme"
+  echo "readme_test: only $count commands are found in ${pages[*]}"
   failed=1
 fi
-found=$(wrong "$readme")
+found=$(wrong "${pages[@]}")
 if [[ -n $found ]]; then
   echo "readme_test: $found"
   failed=1

@@ -411,7 +411,7 @@ Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
   if (result.pairs_kept != kept.size()) {
     throw std::logic_error("account: the tree passed over a kept pair whose boxes overlap");
   }
-  // The tree counts pairs of whole nodes, ignored ones among them.
+  // The tree counts pairs of whole nodes; ignored pairs are in these counts.
   const std::uint64_t ignored_disjoint = result.ignored - ignored_overlapping;
   result.certified_by_boxes = disjoint - kept_disjoint - ignored_disjoint;
   if (!result.adds_up()) throw std::logic_error("account: the classes do not add up");

@@ -25,8 +25,8 @@ class SquaredDistance {
   struct Value;       // verify/squared_distance.h, for verify alone
   explicit SquaredDistance(std::shared_ptr<const Value> value);
 
-  /// Its root, rounded to the nearest double (to even where two are as near); infinity beyond the
-  /// largest one as IEEE 754 rounds.
+  /// The distance: the root, rounded to the nearest double (to the even one of two equally near
+  /// ones); infinity beyond the largest double, as IEEE 754 rounds.
   double root() const;
   /// "numerator/denominator" in lowest terms, decimal.
   std::string text() const;
@@ -40,8 +40,8 @@ class SquaredDistance {
   std::shared_ptr<const Value> value_;
 };
 
-/// Where on a triangle a point lies. A point on several lies on the one that comes first: a corner
-/// before an edge before the face, a lower number before a higher one.
+/// The part of a triangle that a point lies on. If it lies on several, the first one counts: a
+/// corner before an edge before the face, a lower number before a higher one.
 enum class FeatureKind : std::uint8_t { vertex, edge, face };
 struct Feature {
   FeatureKind kind = FeatureKind::vertex;

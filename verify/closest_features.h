@@ -49,8 +49,8 @@ struct Found {
   Integer num, den;           // the squared distance is num / den, den > 0
   Vector<Integer> direction;  // a positive multiple of the difference, from a's point to b's
   Integer below;              // > 0, the denominator of the multiples
-  // Of a and of b. Of an edge: the multiple of the edge. Of a face: those of the edges from corner
-  // 0 to corners 1 and 2. Of a vertex: none.
+  // Per triangle, a and b. Edge: the multiple of the edge. Face: the multiples of the edges from
+  // corner 0 to corners 1 and 2. Vertex: not used.
   std::array<std::array<Integer, 2>, 2> multiples;
   bool inside = false;  // neither point lies on an edge or a corner that is less than its feature
 };
@@ -136,7 +136,7 @@ bool edge_edge(const Vector<Integer>& p, const Vector<Integer>& p_end, const Vec
   return true;
 }
 
-/// Where the edge from p to p_end passes through the face of t, not along it: distance 0.
+/// True if the edge from p to p_end passes through the face of t, not along it: the distance is 0.
 template <class Integer>
 bool edge_face(const Vector<Integer>& p, const Vector<Integer>& p_end, const Corners<Integer>& t,
                Found<Integer>& f) {
@@ -152,7 +152,7 @@ bool edge_face(const Vector<Integer>& p, const Vector<Integer>& p_end, const Cor
   }
   if (above < 0 || above > fall) return false;
   for (int i = 0; i < 3; ++i) {
-    // fall times the point that passes, as seen from corner i.
+    // The point in which the edge crosses the plane, relative to corner i, times `fall`.
     Vector<Integer> at = minus(p, t[i]);
     for (int k = 0; k < 3; ++k) at[k] = at[k] * fall + u[k] * above;
     if (dot(n, cross(minus(t[edge_end(i)], t[i]), at)) < 0) return false;

@@ -122,8 +122,8 @@ struct Answer {
   Found<Integer> found;
 };
 
-/// The corners x of t, by bits, for which d.(x - p) is 0; p is a corner of t that belongs to the
-/// feature. 8 where the product is above 0 for some, with d turned round where `back`.
+/// Bit i is set if d.(x - p) is 0 for corner i, x, of t; p is a corner of t that belongs to the
+/// feature. Returns 8 if the product is above 0 for some corner. back: d is turned round.
 unsigned touching(const Corners& t, const Feature& feature, const Vector& d, bool back) {
   constexpr unsigned kBeyond = 8;
   const unsigned own = corners_of(feature);
@@ -161,7 +161,7 @@ bool first_as_near(const Scaled& pair, unsigned in_a, unsigned in_b, const Found
 
 using Boxes = std::array<Box, 7>;
 
-/// Of the features of a triangle, in their order.
+/// The boxes of the features of a triangle, in their order.
 Boxes boxes_of(const std::array<Vec3, 3>& t) {
   Boxes out;
   for (std::size_t i = 0; i < kFeatures.size(); ++i) {
@@ -259,7 +259,7 @@ Closest closest_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& 
   out.features = {answer.of_a, answer.of_b};
   const auto point = [&](const std::array<Vec3, 3>& given, const Corners& corners, int side) {
     const Feature& f = out.features[side];
-    // + 0.0 makes 0.0 of -0.0.
+    // + 0.0 turns -0.0 into 0.0.
     if (f.kind == FeatureKind::vertex) return Vec3(given[f.index].array() + 0.0);
     return rounded_point(point_of(corners, f, answer.found, side), answer.found.below,
                          pair.exponent);

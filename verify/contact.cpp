@@ -32,7 +32,7 @@ int orientation(const Point& p, const Point& q, const Point& r, const Point& s) 
 
 using Sides = std::array<int, 3>;
 
-/// Of the corners of t, seen from the plane of `plane`; all 0 where that has no plane.
+/// The sides of the plane of `plane` on which the corners of t lie; all 0 if `plane` is degenerate.
 Sides sides(const Points& plane, const Points& t) {
   const auto& [a, b, c] = plane;
   return {orientation(a, b, c, t[0]), orientation(a, b, c, t[1]), orientation(a, b, c, t[2])};

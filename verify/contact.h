@@ -25,9 +25,10 @@ namespace farcull {
 
 enum class Contact : std::uint8_t { touching, penetrating };
 
-/// Of two triangles that intersect. Symmetric; the order of corners does not matter. Precondition:
-/// intersects(a, b) (not checked: triangles that share no point come out as touching). Neighbours
-/// are triangles as any others: where they meet in nothing but what they share, they touch.
+/// The contact of two triangles that intersect. Symmetric; the order of corners does not matter.
+/// Precondition: intersects(a, b) (not checked: triangles that share no point come out as
+/// touching). Neighbours are treated as any other triangles: if they meet only in what they share,
+/// they touch.
 Contact contact_of(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 struct ContactCounts {
@@ -37,9 +38,9 @@ struct ContactCounts {
   bool operator==(const ContactCounts&) const = default;
 };
 
-/// Of pairs that intersect, each counted as often as it is given; 0 threads count as 1, and their
-/// number changes no answer. Throws std::logic_error if a pair names a triangle that the scene does
-/// not have or one triangle twice.
+/// Counts the contacts of pairs that intersect, each pair as often as it is given; 0 threads count
+/// as 1, and their number changes no answer. Throws std::logic_error if a pair names a triangle
+/// that the scene does not have or one triangle twice.
 ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> pairs,
                              unsigned threads = std::thread::hardware_concurrency());
 

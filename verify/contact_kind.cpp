@@ -219,7 +219,8 @@ std::vector<Point> cut(const std::vector<Point>& polygon, const Bound& bound, in
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const std::size_t next = (k + 1) % polygon.size();
     if (sgn(values[k]) >= 0) out.push_back(polygon[k]);
-    // The value is linear, and each is times its w: with these weights it is 0.
+    // The value is linear, and each value is scaled by its corner's w, so the point with these
+    // weights has the value 0.
     if (sgn(values[k]) * sgn(values[next]) < 0)
       out.push_back(between(polygon[k], abs(values[next]), polygon[next], abs(values[k])));
   }
@@ -241,7 +242,8 @@ std::vector<Point> common_points(const Hull& a, const Hull& b) {
   return points;
 }
 
-/// Of sorted points. The first and the last of points on one line are its ends.
+/// The dimension of the hull of sorted points. If they lie on one line, the first and the last are
+/// its ends.
 int dimension_of(const std::vector<Point>& points) {
   if (points.size() <= 2) return static_cast<int>(points.size()) - 1;
   const Integers along = direction(points.front(), points.back());

@@ -17,10 +17,10 @@ struct CornerOrder {
   std::array<std::uint8_t, 3> a, b;  // the corner that is alone comes first
 };
 
-/// a_above: bit i where corner i of a is on the positive side of the plane of b; b_above likewise.
-/// Of each triangle one or two are.
+/// a_above: bit i is set if corner i of a is on the positive side of the plane of b; b_above
+/// likewise. Precondition: one or two bits of each are set.
 constexpr CornerOrder corner_order(unsigned a_above, unsigned b_above) {
-  // By which corners are above: the one that is alone on its side.
+  // Indexed by the bits of the corners above: the corner that is alone on its side.
   constexpr std::array<std::uint8_t, 8> kAlone = {0, 0, 1, 2, 2, 1, 0, 0};
   const auto from = [](std::uint8_t alone) {
     return std::array<std::uint8_t, 3>{alone, static_cast<std::uint8_t>((alone + 1) % 3),

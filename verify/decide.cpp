@@ -111,10 +111,10 @@ constexpr std::size_t kFirstStep = 2 * kBlock;  // candidates that decide_first(
 
 /// Decides up to kBlock pairs at a time, in memory of its own.
 ///
-/// Of neighbours the filter of planes knows nothing. It answers only where it has proved that all
-/// corners of a triangle are off the plane of the other one, and a corner of both is in both
-/// planes. So all pairs may meet the filter, and corners are compared only where its answer is
-/// unknown. Where neighbours are many, it is faster to set them aside first.
+/// The filter of planes never answers about neighbours. It answers only if it has proved that all
+/// corners of a triangle are off the plane of the other one, and a shared corner is in both planes.
+/// So all pairs may go through the filter, and corners are compared only if its answer is unknown.
+/// If there are many neighbours, it is faster to set them aside first.
 class BlockDecider {
  public:
   BlockDecider(const Scene& scene, const ExactQuestion& question)
@@ -155,7 +155,7 @@ class BlockDecider {
     return others;
   }
 
-  /// Answers about the neighbours; all that are none become others_, and it returns how many.
+  /// Answers about the neighbours; puts all other pairs into others_ and returns their number.
   std::size_t answer_neighbours(std::span<const TrianglePair> pairs,
                                 std::span<PairAnswer> answers) {
     std::size_t others = 0;

@@ -1,7 +1,7 @@
-// Of two disjoint triangles some two closest points are a corner of one and a point of the other,
-// or lie on an edge of each: where one point lies inside a face and the other inside a face or an
-// edge, that edge or face is parallel to the first face, and both points can be moved along it,
-// keeping their difference, until one of them reaches an edge or a corner (Ericson, Real-Time
+// Two disjoint triangles have two closest points that are a corner of one and a point of the other,
+// or that lie on an edge of each. For if one point lies inside a face and the other inside a face
+// or an edge, that edge or face is parallel to the first face, and both points can be moved along
+// it, keeping their difference, until one of them reaches an edge or a corner (Ericson, Real-Time
 // Collision Detection, 2005, section 5.1.10). A degenerate triangle is the union of its edges.
 #include "verify/disjoint_distance.h"
 

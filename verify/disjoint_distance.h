@@ -10,10 +10,10 @@
 
 namespace farcull {
 
-/// True iff the distance of two disjoint triangles is at most `clearance` (world units, finite,
-/// >= 0): squared distances of rational points against the square of the clearance, nothing
-/// rounded. Precondition: the triangles share no point (of crossing ones only the boundaries are
-/// seen).
+/// True iff the distance of two disjoint triangles is at most `clearance` (world units, finite, >=
+/// 0). Compares squared distances of rational points with the square of the clearance; nothing is
+/// rounded. Precondition: the triangles share no point (only the boundaries are looked at, so
+/// crossing triangles could get a wrong answer).
 bool disjoint_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
 }  // namespace farcull

@@ -99,8 +99,8 @@ class Undecided {
   Undecided(const Scene& scene, unsigned threads, DistanceAccounting& result)
       : scene_(scene), threads_(threads), result_(result) {}
 
-  /// What follows is of two objects with this threshold, or of one. answer: the only one about
-  /// them, if any; none with `all`.
+  /// Begins the pairs of two objects, or of one, with this threshold. answer: the only answer about
+  /// them, if there is one; empty with `all`.
   void begin(const Threshold& threshold, bool self, std::optional<TrianglePair> answer) {
     now_ = {threshold, self, answer};
     stored_ = false;
@@ -223,7 +223,7 @@ class Join {
   }
 
  private:
-  /// Whether all pairs of which no triangle comes before this one are behind an answer that is 0.
+  /// True if all pairs of triangles from `least` on come after an answer that is 0.
   bool settled(std::uint32_t least) const { return first_ && least > first_->a; }
   bool farther(const Bounds& a, const Bounds& b) const {
     return threshold_.length && std::isfinite(threshold_.length->above) &&

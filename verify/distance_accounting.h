@@ -15,15 +15,15 @@
 
 namespace farcull {
 
-/// Of all pairs of triangles that were asked about: each is in one class, the first that fits,
-/// counted where it is decided. A pair is *nearer* if an answer should be nearer because of it, or
-/// if it should be an answer itself. It is *earlier* if it is as near as the answer about its
-/// objects and comes before it, so that it should be the answer.
+/// Counts of all pairs of triangles that were asked about. Each pair is in one class, the first
+/// that fits, and is counted when it is decided. A pair is *nearer* if an answer should be nearer
+/// because of it, or if it should be an answer itself. It is *earlier* if it is as near as the
+/// answer about its objects and comes before it, so that it should be the answer.
 struct DistanceAccounting {
   std::uint64_t pairs_total = 0;   // by combinatorics
   std::uint64_t answers = 0;       // pairs that the answers name
-  std::uint64_t objects_meet = 0;  // behind an answer that is 0, or of objects of which a neighbour
-                                   // at distance 0 is the last: nothing is nearer than 0
+  std::uint64_t objects_meet = 0;  // after an answer that is 0, or of objects whose last neighbour
+                                   // is at distance 0: nothing is nearer than 0
   std::uint64_t farther_by_boxes = 0;  // by the gaps between their boxes
   std::uint64_t farther_by_planes =
       0;                               // some two parallel planes between them are far enough apart

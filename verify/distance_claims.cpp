@@ -1,7 +1,8 @@
-// Of `objects` an answer says that nothing is nearer, and no answer that nothing is within the
-// distance asked for. Of `nearest` objects without an answer are no neighbours: no pair of their
-// triangles is nearer than the last neighbour of either, nor as near where the other object comes
-// before that neighbour. Of `all` every pair within the distance is an answer.
+// Meaning of answers. `objects`: an answer says that nothing is nearer; no answer says that nothing
+// is within the distance asked for. `nearest`: objects without an answer are not among each other's
+// k nearest, so no pair of their triangles is nearer than the last neighbour of either, nor as near
+// if the other object comes before that neighbour. `all`: every pair within the distance is an
+// answer.
 #include "verify/distance_claims.h"
 
 #include <algorithm>
@@ -87,7 +88,7 @@ DistanceClaims::DistanceClaims(const Scene& scene, std::span<const ClaimedDistan
 }
 
 void DistanceClaims::find_farthest() {
-  // Of each object its answers, by distance and then by the other object.
+  // Per object: its answers, by distance and then by the other object.
   std::vector<std::vector<std::pair<Fraction, std::uint32_t>>> neighbours(scene_.objects.size());
   for (std::size_t k = 0; k < answers_.size(); ++k) {
     if (!squares_[k]) continue;
@@ -153,7 +154,7 @@ bool DistanceClaims::wrong(std::size_t answer) const {
     return true;
   if (wrong_inside(x, *squared)) return true;
   if (question_.kind != DistanceQuestion::Kind::nearest) return false;
-  // Neither object has it among its k nearest.
+  // The answer is wrong if neither object has the other one among its k nearest.
   const auto beyond = [&](const Farthest& of, std::uint32_t other) {
     return of.answers == question_.k && std::tie(of.squared, of.other) < std::tie(*squared, other);
   };

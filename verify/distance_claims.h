@@ -1,5 +1,5 @@
-// What account_distances() has to prove of the pairs of triangles of two objects, from what was
-// asked and answered.
+// Derives from question and answers what account_distances() has to prove about the pairs of
+// triangles of two objects.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,17 @@
 
 namespace farcull {
 
-/// Which distances are asked about: below a bound, or the bound as well.
+/// Distances below a length, or at most the length.
 enum class Bound : std::uint8_t { below, at_most };
 
-/// Pairs of triangles that should have been answered: those whose distance the bound holds of.
+/// Pairs of triangles should have been answered if their distance is below `length`, or at most
+/// `length`, as `bound` says.
 struct Threshold {
   std::optional<Length> length;  // none: infinite, all of them
   Bound bound = Bound::below;
 };
-/// Whether the distance is the root, rounded to the nearest double, of two as near the even one.
+/// Whether the distance is the root, rounded to the nearest double; of two equally near ones, the
+/// even one.
 bool is_rounded_root(double distance, const Fraction& squared);
 
 class DistanceClaims {
@@ -31,7 +33,7 @@ class DistanceClaims {
   DistanceClaims(const Scene& scene, std::span<const ClaimedDistance> answers,
                  const DistanceQuestion& question);
 
-  /// What may not be nearer, of the objects a <= b.
+  /// The distance within which the objects a <= b may have no pair that was not answered.
   Threshold threshold(std::uint32_t a, std::uint32_t b) const;
   /// The answers of the objects a <= b.
   std::span<const ClaimedDistance> of(std::uint32_t a, std::uint32_t b) const;

@@ -1,4 +1,4 @@
-// What is asked about distances, and what is answered, as the accounting takes them
+// A question about distances and its answers, in the form that the accounting takes
 // (verify/distance_accounting.h).
 #pragma once
 
@@ -26,7 +26,7 @@ struct ClaimedDistance {
   InsideClaim inside = InsideClaim::unknown;  // unknown where the objects meet or are one
 };
 
-/// What was asked.
+/// A question about the distances of a scene.
 struct DistanceQuestion {
   /// objects: the nearest pair of every two objects, and of each object that is `self`. nearest:
   /// that of each object and its k nearest others; where several are as far, of the first ones.

@@ -70,8 +70,8 @@ Hull hull(const Vec3& p, const Vec3& q) {
   return Kernel::Segment_3(point(p), point(q));
 }
 
-/// The parts that a degenerate triangle is made of at a corner: the segments from it to the others.
-/// A triangle that is none is its own only part.
+/// The parts of a degenerate triangle at a corner: the segments from it to the other corners. A
+/// triangle that is not degenerate is its own only part.
 std::vector<Corners> parts_at(const Corners& t, int corner) {
   if (shape(t) == Shape::triangle) return {t};
   const Vec3& v = t[corner];

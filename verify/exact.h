@@ -94,9 +94,9 @@ bool keep_first(std::uint64_t limit, Collisions& collisions);
 /// those of the last frame.
 class FrameDecider {
  public:
-  /// As farcull::decide(). Answers are kept where the candidates are sorted, each once; and those
-  /// of the last call are used where that one ended, the question is the same but for threads, and
-  /// the scene has the same triangles and objects.
+  /// As farcull::decide(). Keeps the answers if the candidates are sorted, each once. Uses those of
+  /// the last call if that call ended normally, the question is the same but for threads, and the
+  /// scene has the same triangles and objects.
   Collisions decide(const Scene& scene, std::span<const TrianglePair> candidates,
                     const ExactQuestion& question = {});
   /// Pairs that the last call decided anew.
@@ -120,8 +120,8 @@ class FrameDecider {
 /// The pairs that count: triangles of different objects, and of one object where it is `self`.
 struct ExactResult {
   std::vector<TrianglePair> pairs;            // all that collide, sorted, each once
-  std::vector<TrianglePair> neighbour_pairs;  // the same of neighbours
-  std::uint64_t neighbours = 0;               // of the pairs that count
+  std::vector<TrianglePair> neighbour_pairs;  // neighbours that collide, sorted, each once
+  std::uint64_t neighbours = 0;               // pairs that count and are neighbours
   std::uint64_t box_pairs = 0;  // pairs that count whose closed boxes overlap; with a clearance,
                                 // those not farther apart along an axis, by differences in double
   std::uint64_t ignored = 0;    // such pairs that do not count, since their objects are ignored

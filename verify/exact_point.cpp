@@ -20,7 +20,7 @@ mpq_class coordinate(const ExactPoint& point, int axis) {
   return sum / weights;
 }
 
-// First and last index of the pixels of `size` that contain x; empty (first > last) where none
+// First and last index of the pixels of `size` that contain x; empty (first > last) if no pixel
 // does.
 std::pair<int, int> indices(const mpq_class& x, int size) {
   const mpq_class at = x + mpq_class(size) / 2;
@@ -32,7 +32,7 @@ std::pair<int, int> indices(const mpq_class& x, int size) {
   return {std::max(lower, 0), std::min(upper, size - 1)};
 }
 
-// Of the same sign, so never a positive number made 0.
+// The larger of the two as a double of the same sign: a positive number does not become 0.
 double larger(const mpq_class& a, const mpq_class& b) {
   const mpq_class& most = a > b ? a : b;
   const double cut = most.get_d();

@@ -32,8 +32,8 @@ Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const
 Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s);
 
 /// The same for a clearance > 0, by two points close to each other and the direction between them.
-/// Of triangles that cross it only knows the boundaries. `unknown` within about 1e-14 of the extent
-/// of the pair.
+/// It looks only at the boundaries of triangles that cross. `unknown` within about 1e-14 of the
+/// extent of the pair.
 Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
 }  // namespace farcull

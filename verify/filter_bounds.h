@@ -21,8 +21,8 @@ struct FilterBounds {
       0x1p-1000;  // underflow, per unit of what is multiplied last, plus one
 };
 
-/// Of the length of a normal that is used as an upper bound, in the sum of its magnitudes; and the
-/// rounding of that bound.
+/// Error of the length of a normal that is used as an upper bound, relative to the sum of its
+/// magnitudes; and the rounding of that bound.
 constexpr double kNormalLength = 0x1p-50;
 constexpr double kNormalRounding = 0x1p-49;
 /// The least square of a length whose root is accurate; smaller ones count as this one.

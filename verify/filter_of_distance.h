@@ -1,6 +1,6 @@
 // Two closest points are guessed in doubles (Ericson, Real-Time Collision Detection, 2005, sections
-// 5.1.5 and 5.1.9), and then either proves the answer, however wrong the guess may be: the points
-// themselves that the triangles come near, the direction between them that they do not.
+// 5.1.5 and 5.1.9). Either they prove the answer or there is none, however wrong the guess may be:
+// the points show that the triangles come near, or the direction between them that they do not.
 //
 // All corners are taken relative to o = a[0]: a difference x = fl(corner - o) is off by u |x| at
 // most, u = 2^-53. R is the largest |coordinate| of these.

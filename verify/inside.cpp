@@ -77,10 +77,10 @@ bool on_surface(const Scene& scene, const Object& object, const Vec3& x) {
   return false;
 }
 
-/// Is the number of crossings odd? Nothing where one was unclear. Of a ray along the first axis,
-/// boxes tell most triangles apart. A triangle that is a segment or a point is crossed by no ray in
-/// general position; where x is on its line, all its signs are 0 whatever the direction, so it is
-/// left out.
+/// Is the number of crossings odd? Empty if a crossing was unclear. If the ray goes along the first
+/// axis, boxes show that it misses most triangles. A triangle that is a segment or a point is left
+/// out: no ray in general position crosses it, and if x is on its line, all signs are 0 whatever
+/// the direction.
 std::optional<bool> odd(const Scene& scene, const Object& object, const Vec3& x, const Vec3& d,
                         bool first_axis) {
   bool odd = false;

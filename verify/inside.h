@@ -18,9 +18,10 @@ enum class Inside : std::uint8_t { no, yes, on, not_closed };
 /// True iff the object is closed; one without triangles is.
 bool is_closed(const Scene& scene, std::uint32_t object);
 
-/// Where the point (finite) lies; `on` also of an object that is not closed. Rays that meet an edge
-/// or run in a triangle's plane are cast again in another direction. Preconditions of
-/// verify/exact.h. Throws std::logic_error for an object that the scene does not have.
+/// Says where the point (finite) lies; `on` is also the answer for an object that is not closed.
+/// Rays that meet an edge or run in a triangle's plane are cast again in another direction.
+/// Preconditions of verify/exact.h. Throws std::logic_error for an object that the scene does not
+/// have.
 Inside inside(const Scene& scene, std::uint32_t object, const Vec3& point);
 
 /// The same for an object of which is_closed() is known, which takes most of the time.

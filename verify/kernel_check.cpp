@@ -1,5 +1,6 @@
-// Draws cases by seed and index, and counts what an answer loses: of a box the exact interval, of
-// an exact offset points of its solid, of FAR pairs the corners of the part over the pixel.
+// Draws cases by seed and index, and counts answers that lose something: the exact interval of a
+// box, points of the solid of an exact offset, or, for FAR pairs, corners of the part of a triangle
+// over the pixel.
 #include "verify/kernel_check.h"
 
 #include <algorithm>
@@ -42,7 +43,8 @@ void count_excess(double excess, KernelTally& tally) {
 
 void check_box(const SolidCase& c, const SolidAnswer& answer, bool ordinary, KernelTally& tally) {
   if (!usable(answer)) return count(false, tally);
-  // In doubles a little too large: it decides nearly always, since the kernel widens by 2^-20.
+  // An interval in doubles that is a little too large decides nearly always, since the kernel
+  // widens by 2^-20.
   const auto outer = box_line::outer_interval(c.cx, c.cy, c.solid);
   bool held = !outer || (answer.hit && answer.entry <= outer->lo && answer.exit >= outer->hi);
   if (!held) {

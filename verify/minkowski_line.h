@@ -63,8 +63,9 @@ class Line {
     deep_ += std::abs(mz_) + r_;
   }
 
-  /// p, its difference from the line and the squares are a dozen operations of 2^-64 each, relative
-  /// to the largest coordinates (flat: in the image, deep: along the depth); 2^-56 is beyond them.
+  /// The error bound 2^-56 holds since p, its difference from the line and the squares take a dozen
+  /// operations that err by 2^-64 each, relative to the largest coordinates (flat: in the image,
+  /// deep: along the depth).
   Chord chord(const Weights& w) const {
     Real3 p;
     for (int k = 0; k < 3; ++k)
@@ -84,9 +85,9 @@ class Line {
     return out;
   }
 
-  /// Where the solid is entered (sign -1) or left (sign 1): the best point of the three corners,
-  /// the contacts with the three edges' cylinders, and the contact with the face.
-  /// `deepest` receives the depth; false: the line misses.
+  /// Finds the place where the line enters the solid (sign -1) or leaves it (sign 1): the best of
+  /// the three corners, the contacts with the cylinders of the three edges, and the contact with
+  /// the face. `depth` receives the depth; false: the line misses.
   bool contact(int sign, Weights& best, Real& depth) const {
     bool found = false;
     const auto offer = [&](const Weights& w) {

@@ -45,7 +45,7 @@ class SamePoints {
              Vec3::Constant(kTieSubnormal)),
         sides_{side_of(a, closest.features[0]), side_of(b, closest.features[1])} {}
 
-  /// True: the closest points are the same. False: they may be, or others.
+  /// True: these are the closest points of a and b too. False: not known.
   bool are_those_of(const Corners& a, const Corners& b) const {
     return is_behind(sides_[0], a, 1) && is_behind(sides_[1], b, -1);
   }

@@ -62,8 +62,7 @@ inline bool farther(const Bounds& a, const Bounds& b, double limit) {
 }
 
 /// True only if all points of the two triangles are farther apart than `limit` (>= 0, finite):
-/// between two planes that are perpendicular to some direction there is nothing of either, and the
-/// planes are farther apart than the limit.
+/// there are two parallel planes, farther apart than the limit, with one triangle on either side.
 ///
 /// Directions come from Gilbert's descent towards the closest points (An Iterative Procedure for
 /// Computing the Minimum of a Quadratic Form on a Convex Set, SIAM J. Control, 1966). A direction
@@ -92,7 +91,7 @@ inline bool farther_by_planes(const std::array<Vec3, 3>& a, const std::array<Vec
       if (of_s > s_most) s_most = of_s, s_at = i;
       if (of_t < t_least) t_least = of_t, t_at = i;
     }
-    // Of n . y each of the three terms has the rounding of y and of the product, then two sums: at
+    // Each of the three terms of n . y has the rounding of y and of the product, then two sums: at
     // most 4.01 u of `magnitude` and what is lost to subnormal products, for either side; their
     // difference is rounded once more, 2 u of `magnitude`. The length has 4 u, the quotient 1 u.
     const double gap = t_least - s_most - 16 * kU * magnitude - 0x1p-1000;

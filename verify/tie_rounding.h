@@ -3,9 +3,10 @@
 
 namespace farcull {
 
-/// Of a product w . (x - p) in the magnitudes of its terms.
+/// Error of a product w . (x - p), relative to the magnitudes of its terms.
 constexpr double kTie = 8 * 0x1p-53;
-/// What the rounding of the two points of w adds, in the magnitudes of their coordinates.
+/// Error that the rounding of the two points of w adds, relative to the magnitudes of their
+/// coordinates.
 constexpr double kTiePoints = 2 * 0x1p-53;
 /// The same where a coordinate is subnormal.
 constexpr double kTieSubnormal = 0x1p-1070;

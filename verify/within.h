@@ -30,7 +30,7 @@ inline bool is_within_beyond_planes(const std::array<Vec3, 3>& a, const std::arr
   return triage == Triage::unknown ? within_unfiltered(a, b, clearance) : triage == Triage::yes;
 }
 
-/// Precondition: a clearance as of require_clearance().
+/// Precondition: the clearance passes require_clearance().
 inline bool is_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
                       double clearance) {
   const Triage triage = filter_planes(a, b, clearance);

@@ -1,5 +1,5 @@
-// A pixel counts as covered only where every rounding that the assumptions allow covers it, and its
-// depths are the worst ones.
+// A pixel counts as covered only if it is covered whatever the roundings that the assumptions
+// allow. Its depths are the worst ones.
 #include "verify/worst_canvas.h"
 
 #include <algorithm>
@@ -92,8 +92,8 @@ void WorstCanvas::begin(const Window& window, const Drawables& drawables) {
   drawables_ = &drawables;
 }
 
-// What the depth buffer holds of a depth where all programs round to nearest; of 24 bits, as the
-// multiple of 2^-24 below.
+// The value in the depth buffer for a depth, if all programs round to nearest; with 24 bits the
+// multiple of 2^-24 below it.
 float WorstCanvas::held(float z) const {
   const float mapped = std::min(std::max(0.5f + z * depth_scale(window_), 0.25f), 0.75f);
   if (options_.depth_bits == 32) return mapped;

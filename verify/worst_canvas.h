@@ -19,7 +19,7 @@ struct WorstCanvasOptions {
   /// Keeps what core/native/canvas.h promises, and no more: corners are not moved, but the floats
   /// that compare a pixel centre with an edge are rounded as badly as IEEE 754 allows.
   bool exact_samples = false;
-  /// What is asked lies this far behind D(exit), as on a GL device; less in twins.
+  /// The asked depth lies this far behind D(exit), as on a GL device; less in twins.
   float asked_behind = kAskedBehind;
   /// 0: each program rounds depths as badly as it may, what is stored up and what is asked down.
   /// Else the seed by which each program, independently, rounds each depth up or down.

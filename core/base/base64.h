@@ -11,8 +11,8 @@ namespace farcull {
 
 std::string to_base64(std::span<const std::uint8_t> bytes);
 
-/// Empty where the text is not what to_base64() gives for any bytes: bits that padding leaves over
-/// have to be 0.
+/// Empty if to_base64() gives this text for no bytes; so the bits that padding leaves over have to
+/// be 0.
 std::optional<std::vector<std::uint8_t>> from_base64(const std::string& text);
 
 }  // namespace farcull

@@ -11,8 +11,7 @@ namespace farcull {
 class Error : public std::runtime_error {
  public:
   /// where: a file ("mesh.obj"), an option ("--radius") or a GL stage ("store"); reason: what is
-  /// wrong there; remedy: what the user can do next; line: 1-based line of a text file, 0 where
-  /// there is none.
+  /// wrong there; remedy: what the user can do next; line: of a text file, from 1; 0: no line.
   Error(std::string where, std::string reason, std::string remedy, long line = 0);
 
   std::string where;

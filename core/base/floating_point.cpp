@@ -1,6 +1,6 @@
-// Arithmetic on volatile operands, so that it is done at run time, shows the environment; <cfenv>
-// sets and restores it. C libraries keep flushing in fenv_t and turn it off in FE_DFL_ENV; where
-// one does not, the arithmetic afterwards shows it.
+// Arithmetic shows how the thread computes; its operands are volatile, so that it is done at run
+// time. <cfenv> sets and restores the environment. C libraries keep flushing in fenv_t and turn it
+// off in FE_DFL_ENV; if one does not, the arithmetic that follows shows it.
 #include "core/base/floating_point.h"
 
 #include <array>
@@ -36,8 +36,9 @@ Rounding rounding() {
   return Rounding::unknown;
 }
 
-// Of the first product the operands are normal and the result is not; of the second it is the other
-// way round. The bits of the first decide, since in a comparison it would be an operand.
+// Two products show flushing. The first has normal operands and a subnormal result, the second a
+// subnormal operand and a normal result. The first result is looked at bit by bit, since a
+// comparison would take it as an operand, which may be flushed itself.
 template <class Real>
 void find_flushing(FloatingPoint& found) {
   using Limits = std::numeric_limits<Real>;

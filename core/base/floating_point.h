@@ -27,8 +27,8 @@ inline constexpr FloatingPoint kProved;
 /// As in "rounds to nearest, keeps subnormals".
 std::string to_string(const FloatingPoint& floating_point);
 
-/// That of the calling thread, found out by arithmetic: the same on every processor, and in terms
-/// of what matters. It may raise floating-point exceptions.
+/// The environment of the calling thread, found out by arithmetic, so that the same code serves
+/// every processor. May raise floating-point exceptions.
 FloatingPoint floating_point();
 
 /// Throws Error naming `where` unless the calling thread computes as kProved says: to be called
@@ -44,8 +44,8 @@ void require_proved(const std::string& where);
 /// that are not inlined, or does it on memory that the guard's constructor might have changed.
 class FloatingPointGuard {
  public:
-  /// Throws Error where arithmetic shows that it did not take effect; the environment is as before
-  /// then.
+  /// Throws Error if arithmetic shows that the setting took no effect; the environment is then as
+  /// it was before.
   FloatingPointGuard();
   ~FloatingPointGuard();
   FloatingPointGuard(const FloatingPointGuard&) = delete;

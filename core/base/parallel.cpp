@@ -108,7 +108,7 @@ class Pool {
   }
 
  private:
-  // The next part of the batch that nobody has begun; 0: there is none.
+  // The next part of the batch that nobody has begun; 0: all have been begun.
   std::size_t claim_of(Batch& batch) {
     const std::lock_guard lock(mutex_);
     return batch.next < batch.parts ? claim(batch) : 0;

@@ -97,7 +97,7 @@ std::string name_of(const Stage& stage) {
 
 std::string reason_of(const Stage& stage) {
   const std::string n = grouped(stage.n), m = grouped(stage.m);
-  // Of boxes of objects: "ignored ones", where some are.
+  // The detail of a stage about boxes of objects may be "ignored ones".
   const std::string apart = stage.detail.empty() ? "" : ", " + stage.detail + " apart";
   switch (stage.reason) {
     case Reason::none:

@@ -28,13 +28,13 @@ enum class StageKind : std::uint8_t {
   sweep,           // sweep and prune
   join,            // pairs of triangles whose boxes overlap
   exact,           // exact predicates on the candidates
-  near,            // of two objects the triangles that can be nearest
+  near,            // the triangles of two objects that can be nearest
   closest,         // distances and closest points, exactly
   inside,          // whether objects lie inside others
   verify,          // accounting for every pair
 };
 
-/// Of what a stage counts.
+/// The things that a stage counts.
 enum class Unit : std::uint8_t { none, triangles, pairs, views };
 
 /// Why a stage runs, was left out, or how it went. n and m are numbers of Stage.
@@ -76,7 +76,7 @@ enum class Reason : std::uint8_t {
   chosen,              // the view is looked at, for `detail`, n x m px
   few_candidates,      // exact tests of n candidates are cheaper than a further view
   enough_views,        // as many as a run looks at
-  given_up,            // the view takes nothing away: it is more work than n pairs of intervals
+  given_up,            // the view removes no candidate: it is more work than n pairs of intervals
   keeps_sample,        // the view keeps all of a sample of the candidates
   sweep,               // boxes of n objects overlap, which have m triangles; `detail`
   join_kept,           // boxes of what is kept
@@ -87,7 +87,7 @@ enum class Reason : std::uint8_t {
   join_many_runs,      // boxes of more than n pairs of runs overlap: as above
   join_many_tests,     // the view `detail` is more work than n pairs of intervals: as above
   predicates,          // exact predicates on the candidates
-  no_candidates,       // there are none
+  no_candidates,       // there is no candidate to decide
   every_pair,          // every pair is accounted for
   not_asked,           // --no-verify
   near_boxes,          // of n pairs of objects; m bounds of boxes were compared

@@ -9,8 +9,8 @@
 namespace farcull {
 
 /// The number at the beginning of `text`, which is removed from it. A decimal number as of
-/// std::from_chars: no leading space and no '+'. Empty, and `text` unchanged, where there is none
-/// or where T cannot hold it.
+/// std::from_chars: no leading space and no '+'. Empty, and `text` unchanged, if it begins with no
+/// number or T cannot hold the number.
 template <class T>
 std::optional<T> take_number(std::string_view& text) {
   T value{};

@@ -1,4 +1,4 @@
-// A canvas offers samples and depths only where it overrides these.
+// Defaults of Canvas: a canvas that does not override samples() or depths() throws in them.
 #include "core/canvas/canvas.h"
 
 #include <algorithm>

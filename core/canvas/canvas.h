@@ -31,7 +31,7 @@ struct Proxy {
 };
 
 struct NativeJob;    // core/native/job.h
-struct NativeLines;  // the same
+struct NativeLines;  // core/native/job.h
 
 /// A solid's shader function, one text for GLSL and C++ (core/base/glsl_shim.h):
 ///   bool solid_interval(vec2 c, vec4 s0, .. vec4 s4, out float entry, out float exit)
@@ -46,7 +46,7 @@ struct SolidProgram {
   /// rounding misses, else the latest entry and the earliest exit.
   bool (*interval_worst)(float cx, float cy, const Solid& solid, float& entry,
                          float& exit) = nullptr;
-  /// On the lanes of this processor (core/native/canvas.h): proxies drawn, and single lines.
+  /// The same on the lanes of this processor (core/native/canvas.h), for proxies and single lines.
   void (*draw_native)(const NativeJob& job) = nullptr;
   void (*lines_native)(const NativeLines& lines) = nullptr;
 };
@@ -108,15 +108,15 @@ class Canvas {
   virtual std::vector<std::uint8_t> run(const Pass& pass) = 0;
   /// The entry depth (store; nearest kept) or exit depth (ask; farthest kept) in px that `draws`
   /// give each pixel of the window, NaN where there is no fragment; height rows of width values.
-  /// Where mapped depths are equal, any of theirs. Proxies only. For the lemmas' tests and for
-  /// pictures.
+  /// Among fragments whose mapped depths are equal, any may be given. Proxies only. For the lemmas'
+  /// tests and for pictures.
   virtual std::vector<float> samples(Verb verb, const std::vector<Draw>& draws);
   /// The depths, as the depth buffer holds them, that storing (entry, nearest kept) or asking
   /// (exit, farthest kept) leaves in each pixel of the window for `draws`; height rows of width
   /// values in [0, 1], empty pixels 1 for store and 0 for ask. For the lemmas' tests and for
   /// pictures.
   virtual std::vector<float> depths(Verb verb, const std::vector<Draw>& draws);
-  /// What it has asked of its device so far; all 0 on the cores of the CPU.
+  /// Work that was asked of the device so far; all 0 on the cores of the CPU.
   virtual CanvasWork work() const { return {}; }
 };
 

@@ -11,7 +11,7 @@
 
 namespace farcull {
 
-/// Where a proxy may lie: |x| <= x, |y| <= y px, strictly inside the viewport.
+/// A proxy lies in |x| <= x, |y| <= y px, strictly inside the viewport.
 struct ProxyBounds {
   double x;
   double y;
@@ -31,8 +31,8 @@ struct FattenBatch {
   double radius;  // px
   ProxyBounds bounds;
   Proxy* out;          // per item
-  std::uint8_t* done;  // per item: 1 where `out` is the item's one proxy, 0 where the item is not
-                       // drawable or not inside the region as it is, and `out` means nothing
+  std::uint8_t* done;  // per item: 1: `out` has the item's one proxy; 0: the item is not drawable
+                       // or has to be clipped to the region, and `out` has no meaning
 };
 
 struct Fattener {

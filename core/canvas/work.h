@@ -17,11 +17,11 @@ struct CanvasWork {
   std::uint64_t waits = 0;             // for the device to finish what it was told
   std::uint64_t uploaded_bytes = 0;    // of elements and of the lists of passes
   std::uint64_t downloaded_bytes = 0;  // of reports and queries
-  std::uint64_t spans = 0;             // passes and uploads that a device's clock may time
-  std::uint64_t timed = 0;             // those of them whose time is known
-  double device_ms = 0;                // of these, by the clock of the device
+  std::uint64_t spans = 0;             // passes and uploads, which the device's clock may time
+  std::uint64_t timed = 0;             // spans whose time is known
+  double device_ms = 0;                // sum of these times, by the clock of the device
 
-  /// ms on the device in all; nothing where nothing ran, or some of it was not timed.
+  /// The time of all spans on the device, ms; empty if there was no span, or one was not timed.
   std::optional<double> known_ms() const {
     if (spans == 0 || timed < spans) return {};
     return device_ms;

@@ -8,8 +8,8 @@
 namespace farcull {
 namespace {
 
-// Measured (docs/bench.md, "Clusters"): at 10,000 triangles the level costs more than it saves, at
-// 100,000 it pays; a second level above it does not.
+// Measured (docs/results/clusters.md, "Clusters"): at 10,000 triangles the level costs more than it
+// saves, at 100,000 it pays; a second level above it does not.
 constexpr std::uint32_t kClusterSize = 32;
 constexpr std::size_t kClusterLeast = 32768;
 

@@ -44,7 +44,8 @@ std::vector<std::uint32_t> owners(const Scene& scene, const CullSettings& settin
 // A view of the run, and the state that its last visit left.
 struct Place {
   std::optional<Window> window;  // empty: nothing can be drawn in this view
-  // How many changes the sets stored in the first and second pass at triangle level had seen.
+  // For the first and second pass at triangle level: the number of changes of the stored set when
+  // the pass last ran, so that an unchanged set is recognized.
   std::uint64_t stored[2] = {0, 0};
   PassCost plain;  // of plain CULLIDE's two passes at triangle level on the live triangles
 };
@@ -100,7 +101,7 @@ std::vector<Stage> opening_stages(const Scene& scene, const Regions& regions,
          .out = live,
          .unit = Unit::triangles});
   }
-  // Said once, and only where something is drawn.
+  // The plan says it once, and only if something is drawn.
   const std::uint32_t few = any ? too_few_objects(scene, regions, settings) : 0;
   if (few > 0) {
     stages.push_back({.kind = StageKind::objects,
@@ -447,7 +448,7 @@ class Culling {
   bool first_level_ = true;           // no level has run yet
   PassCost used_, saved_;
 
-  // Of the visit that goes on.
+  // The state of the visit in progress.
   std::string view_;
   Place* place_ = nullptr;
   std::vector<std::uint32_t> items_;

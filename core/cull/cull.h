@@ -18,8 +18,8 @@
 // asked only in the second pass and stored only in the first, SFV the other way round; and it
 // leaves out a pass whose stored set is what it was when the pass last ran in that view.
 //
-// What is proved of the two (docs/reliability.md) and tested: after every step of their common
-// schedule, Quick-CULLIDE's bits contain plain CULLIDE's, and it has drawn and asked no more. So
+// Proved (docs/reliability.md) and tested: after every step of the schedule that both share,
+// Quick-CULLIDE's bits contain plain CULLIDE's, and it has drawn and asked no more. So
 // where plain CULLIDE has reached its fixed point, Quick-CULLIDE keeps no more triangles and has
 // used no more queries and draws. It may go on from there, as bits of different views join: then it
 // may cull more, and its total may exceed plain CULLIDE's (tests/core/cull/cull_quick_test.cpp has

@@ -24,7 +24,7 @@ void for_owners(const CullState& state, std::span<const std::uint32_t> items, Bi
   }
 }
 
-// What a pass asks and stores. It only reads the state.
+// Says which items a pass asks and stores. It only reads the state.
 struct PassQuestion {
   const CullState& state;
   std::span<const std::uint32_t> items;
@@ -171,7 +171,7 @@ PassCost run_pass(CullState& state, std::span<const std::uint32_t> items,
   return builder.cost();
 }
 
-// What PassBuilder does, without the lists.
+// The cost of a pass of plain CULLIDE: counts as PassBuilder does, and makes no lists.
 PassCost plain_cost(const CullState& state, std::span<const std::uint32_t> items,
                     const Drawables& drawables, Bit ask, const Level& level) {
   const PassQuestion of{state, items, drawables, ask, kPlainRule, level};

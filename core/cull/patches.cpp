@@ -12,9 +12,9 @@
 namespace farcull {
 namespace {
 
-// Measured (docs/bench.md, "Patches"). Smaller patches have more triangles at borders, which
-// drawing keeps; larger ones leave more pairs to boxes. Where boxes are bad, a sixteenth of the
-// object leaves the fewest candidates. The bounds keep the passes short: below, nearly all
+// Measured (docs/results/clusters.md, "Patches"). Smaller patches have more triangles at borders,
+// which drawing keeps; larger ones leave more pairs to boxes. Where boxes are bad, a sixteenth of
+// the object leaves the fewest candidates. The bounds keep the passes short: below, nearly all
 // triangles are at borders; above, a patch may have all its pairs to test.
 constexpr std::uint32_t kPatches = 16;
 constexpr std::uint32_t kLeastPatch = 256, kMostPatch = 4096;

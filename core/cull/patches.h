@@ -28,9 +28,9 @@ std::uint32_t usual_patch_size(const Scene& scene);
 /// `size`; the last of an object may be smaller. boxes: per triangle of the scene. size: 1 or more.
 Patches cut_patches(const Scene& scene, std::span<const Box> boxes, std::uint32_t size);
 
-/// What is left to test: all pairs a < b with overlapping boxes, in `live` both and of different
-/// owners, or inside one patch of a marked object, whether live or not. A pair of different owners
-/// is left out where its bits prove that it does not meet (theorem 2): L of the earlier owner's
+/// The pairs that are left to test: all a < b with overlapping boxes that are both in `live` and of
+/// different owners, or inside one patch of a marked object, live or not. A pair of different
+/// owners is left out if its bits prove that it does not meet (theorem 2): L of the earlier owner's
 /// triangle, or F of the later one's. Sorted, each once.
 /// boxes: per triangle of the scene. live, bits: as in CullResult, of culling by patches.owner;
 /// bits empty: no bit is set. neighbours: false leaves out pairs of one object that share a vertex

@@ -61,8 +61,8 @@ std::string risk_of_threads(const std::string& renderer) {
   if (threads == 0) return "";
   return "the driver draws in " +
          counted(static_cast<std::uint64_t>(threads), "thread", "threads") +
-         " of its own, which may damage the memory of this process or wait for ever; it has none "
-         "where LP_NUM_THREADS=0 is in the environment before a display is opened";
+         " of its own, which may damage the memory of this process or hang it; set "
+         "LP_NUM_THREADS=0 in the environment before a display is opened, so that it has none";
 }
 
 }  // namespace farcull

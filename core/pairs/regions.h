@@ -22,7 +22,8 @@ struct PairRegions {
   std::uint64_t pairs = 0;   // of objects whose boxes, grown by half the clearance, overlap, and
                              // that are not ignored
   std::uint64_t self = 0;    // objects that collide with themselves
-  bool crowded = false;  // so many boxes of objects overlap that they were not counted; pairs is 0
+  bool crowded = false;      // more pairs of objects than 8 for each run have boxes that overlap;
+                             // they were not listed, and `pairs` is 0
   std::vector<std::uint32_t> triangles;  // ascending: contains those that can meet anything
 };
 /// full: every object can meet anything, anywhere. threads: 0 for as many as there are cores.
@@ -42,20 +43,22 @@ struct PairParts {
   std::uint64_t join_n = 0;
   std::vector<TrianglePair> sample = {};  // of the others: some pairs whose boxes overlap
 };
-/// Objects of which boxes of runs overlap at most kPairsPerRun times for each run that overlaps any
-/// are decided by runs: where boxes are compact, no view is as cheap. None is where a sample shows
-/// more than kOverlapsPerTriangle pairs of boxes for each triangle, neighbours apart, since a view
-/// then takes many away. all: nothing is left to views. threads: 0 for as many as there are cores.
-/// ignored: as pair_regions(); the runs of two such objects are never a pair.
+/// Decides for each meeting (two objects whose boxes overlap, or an object that is tested against
+/// itself) whether boxes of runs find its candidates, or views. Runs do where few of their boxes
+/// overlap, since no view is as cheap then: see kPairsPerRun and kOverlapsPerTriangle below.
+/// all: nothing is left to views, unless the scene is `crowded`. threads: 0 for as many as there
+/// are cores. ignored: as pair_regions(); the runs of two such objects are never a pair.
 PairParts split_meetings(const Scene& scene, double clearance, unsigned threads = 0,
                          bool all = false, std::span<const ObjectPair> ignored = {});
 /// The same for the frame that comes after the one in `memory`. Preconditions: memory.moved says
 /// what moved since that frame; it was complete; its clearance, neighbours and ignored objects are
 /// those of now.
 PairParts split_next_frame(const Scene& scene, unsigned threads, bool all, PairMemory& memory);
-/// Where boxes of objects overlap more than eight times for each run, all is left to views,
-/// whatever `all` says.
+/// Boxes of runs decide a meeting if at most so many pairs of them overlap for each run that
+/// overlaps any.
 constexpr std::size_t kPairsPerRun = 32;
+/// But views decide the whole scene if, in a sample, the boxes of more pairs of triangles overlap
+/// than this for each triangle, neighbours apart: a view then removes many of these pairs.
 constexpr std::size_t kOverlapsPerTriangle = 16;
 /// Where boxes of more pairs of runs overlap than this for each run, or an object is stretched
 /// (core/pairs/runs.h), neither runs nor views decide: PairParts::join.

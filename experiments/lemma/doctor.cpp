@@ -76,10 +76,10 @@ std::string devices_table(const std::vector<GlDevice>& devices, int chosen) {
 }
 
 std::string threads_text(const GlInfo& gl) {
-  if (gl.kind != "software") return "those of the hardware";
+  if (gl.kind != "software") return "none on the CPU: the device is hardware";
   const int threads = driver_threads(gl.renderer);
-  return threads == 0 ? "0: the driver draws in ours"
-                      : std::to_string(threads) + " of the driver (A10)";
+  return threads == 0 ? "0 of the driver: it draws in the calling thread"
+                      : std::to_string(threads) + " of the driver: assumption A10 fails";
 }
 
 std::string limits_table(const GlInfo& gl, int resolution) {

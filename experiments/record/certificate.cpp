@@ -30,8 +30,8 @@ std::vector<std::string> assumptions_about(const GlInfo& device) {
       "A7: every command ran, or the failure is seen",
       "A8: what a dispatch or a draw wrote is seen after the barrier; atomics neither lose nor "
       "double",
-      "A9: gl_FragCoord names the pixel of the fragment; flat inputs and uniforms arrive to the "
-      "bit",
+      "A9: gl_FragCoord names the pixel of the fragment; flat inputs, uniforms and what is read "
+      "from a buffer are what was sent, to the bit",
       "A10: the driver damages no memory of the process"};
   if (device.kind == "software")
     lines.back() +=

@@ -14,6 +14,8 @@ $1 ~ /^control-/ { next }
   } else if (result == "SURVIVED" && $4 != "") {
     explained++
     result = "survives. " $4
+  } else if (result == "not measured") {
+    waiting++
   } else {
     open++
     result = "**" result "**"
@@ -26,8 +28,8 @@ END {
     if (!inside) print line
     if (line != begin) continue
     inside = 1
-    printf "\n%d mutants: %d noticed, %d explained, %d open. Building and testing them took %.0f minutes.\n\n", total, noticed,
-           explained, open, spent / 60
+    printf "\n%d mutants: %d noticed, %d explained, %d open, %d not measured. Building and testing them took %.0f minutes.\n\n",
+           total, noticed, explained, open, waiting, spent / 60
     printf "| part | change | noticed by | s |\n|---|---|---|---|\n%s\n", rows
   }
 }

@@ -22,8 +22,8 @@ BoundsTree::BoundsTree(const Scene& scene) {
   std::iota(order.begin(), order.end(), 0u);
 }
 
-// Where the tree divides decides how fast it answers, not what: every query looks below every node
-// whose box it meets.
+// The places where the tree divides change only the time of a query, not its answer: a query looks
+// below every node whose box it meets.
 void BoundsTree::add(std::uint32_t first, std::uint32_t count) {
   constexpr std::uint32_t kLeaf = 4;
   const auto from = order.begin() + first;

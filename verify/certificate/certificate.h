@@ -48,10 +48,10 @@ struct Certificate {
   struct Claims {
     std::uint64_t box_pairs = 0;
     std::uint64_t kept = 0;        // called kept: left to the exact tests by the method
-    std::uint64_t culled = 0;      // the others
+    std::uint64_t culled = 0;      // box_pairs - kept
     std::uint64_t separated = 0;   // disjoint
-    std::uint64_t neighbours = 0;  // neighbours that share only their shared part
-    std::uint64_t meeting = 0;     // the others
+    std::uint64_t neighbours = 0;  // neighbours that meet only in what they share
+    std::uint64_t meeting = 0;     // box_pairs - separated - neighbours
     bool operator==(const Claims&) const = default;
   };
 
@@ -96,14 +96,15 @@ constexpr std::uint8_t kMeets = 38;
 constexpr std::uint8_t kNeighbours = 39;
 constexpr std::uint8_t kKept = 0x40;
 
-/// kept: what culling left to the exact tests; colliding: which of these the run found to meet,
-/// neighbours among them. Both sorted, each pair once, a < b, pairs that count with overlapping
-/// boxes; colliding a part of kept; anything else is a std::logic_error. What the run got wrong is
-/// written as the run had it, so that the check refutes it: a kept pair meets iff it is in
-/// `colliding`, and a pair for which no direction is found though the run calls it disjoint carries
-/// direction 0 (neighbours: kNeighbours) where it was kept, kMeets where it was culled. The list's
-/// hash is that of `colliding`. With a clearance > 0, kept pairs whose boxes are farther apart than
-/// that are passed over: they need no evidence, and a method may bound its boxes less closely.
+/// Makes the certificate of a run. kept: the pairs that culling left to the exact tests. colliding:
+/// those of them that the run found to meet, neighbours included. Both are sorted, each pair once,
+/// a < b; the pairs count and have overlapping boxes; colliding is a part of kept. Throws
+/// std::logic_error otherwise. Errors of the run are written as the run made them, so that the
+/// check refutes them. A kept pair is said to meet iff it is in `colliding`. If the run calls a
+/// pair disjoint and no direction proves it, the pair gets direction 0 if it was kept (neighbours:
+/// kNeighbours), and kMeets if it was culled. The hash of the list is that of `colliding`. With a
+/// clearance > 0, kept pairs whose boxes are farther apart than it are left out: they need no
+/// evidence, and a method may keep more.
 Certificate make_certificate(const Scene& scene, std::span<const TrianglePair> kept,
                              std::span<const TrianglePair> colliding, Certificate::Run run,
                              double clearance = 0);

@@ -18,15 +18,15 @@ namespace {
 
 enum class Finding : std::uint8_t {
   as_claimed,
-  // These two leave the certificate unproved:
+  // These leave the certificate unproved:
   wrong_direction,  // the pair is disjoint, but not for the reason given
-  not_neighbours,   // neighbours that share only their shared part, called something else
+  not_neighbours,   // neighbours that meet only in what they share, called something else
   no_evidence,      // the byte means nothing
-  // and these three refute it:
+  // And these refute it:
   culled_meets,
   meets,       // kept; claimed to be disjoint
   separated,   // claimed to meet
-  neighbours,  // claimed to meet, and share only their shared part
+  neighbours,  // claimed to meet, but they meet only in what they share
 };
 
 bool refutes(Finding finding) { return finding >= Finding::culled_meets; }
@@ -44,8 +44,8 @@ struct Decision {
       "points within the clearance");
 }
 
-/// Decides the pair whatever the byte says: by a direction that separates, or by a point in both or
-/// two points within the clearance; neighbours by themselves.
+/// Decides the pair, and does not believe the byte: a direction separates it, or a point lies in
+/// both triangles, or two points are within the clearance. Neighbours have a decision of their own.
 Decision decide(const Scene& scene, const TrianglePair& pair, double clearance, bool one_object,
                 std::uint8_t byte) {
   IntegerPair integers(scene.corners(pair.a), scene.corners(pair.b), clearance);

@@ -172,7 +172,7 @@ std::string to_text(const DistanceCertificate& certificate) {
 
 DistanceCertificate parse_distance_certificate(std::string_view text, const std::string& name) {
   const JsonReader reader(name, kRemedy);
-  // As many values as the text has characters at most: the answers may be very many.
+  // There may be very many answers, so the limit of values is the number of characters.
   const Json root = reader.parse(text, text.size());
   if (!root.is_object()) reader.fail("the certificate is no object");
   // Before the keys, which another version may have others of.

@@ -26,15 +26,15 @@ struct DistanceEntry {
   std::array<std::uint32_t, 2> triangles{};  // counted within their objects
   std::string squared;                       // the exact square, world units: decimal "5/4", in
                                              // lowest terms
-  std::array<std::uint8_t, 2> features{};    // where the nearest points lie, one of each triangle:
-                                           // 0 to 2 corners, 3 to 5 the edge from corner 0 to 2 to
-                                           // the next, 6 the face; the first that hold two
+  std::array<std::uint8_t, 2> features{};    // of each triangle the feature with the nearest point:
+                                           // 0 to 2 a corner, 3 to 5 the edge from corner 0 to 2 to
+                                           // the next, 6 the face; the first such two features
   InsideClaim inside = InsideClaim::unknown;  // of objects that do not meet; unknown: not claimed
   bool operator==(const DistanceEntry&) const = default;
 };
 
 struct DistanceCertificate {
-  /// What was asked. An object without triangles has no distance and is never named.
+  /// The question. An object without triangles has no distance and is never named.
   /// objects: each two objects, and each object that is `self` with itself, that are at most
   ///   `within` apart: their distance, and the first of the nearest pairs of triangles.
   /// nearest: each two objects of which one is among the k nearest of the other, and at most

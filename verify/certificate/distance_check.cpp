@@ -25,7 +25,8 @@ using Pairs = DistanceCertificate::Pairs;
 constexpr std::size_t kBlock = 1 << 16;  // pairs decided at a time
 constexpr std::size_t kPerThread = 256;  // enough of them to pay for a thread
 
-/// What is wrong; the first one that refutes, else the first one.
+/// The fault that is reported: the first that refutes the certificate, else the first that leaves
+/// it unproved.
 class Report {
  public:
   void refute(std::string reason, const TrianglePair& pair, const IntegerDistance& exact) {
@@ -87,7 +88,7 @@ class Checker {
     return "distances[" + std::to_string(&listed - listed_.data()) + "]";
   }
 
-  /// Of triangles of one object.
+  /// Precondition: the triangles are of one object.
   bool are_neighbours(const TrianglePair& pair) const {
     for (const Vec3& p : corners(pair.a)) {
       for (const Vec3& q : corners(pair.b)) {
@@ -293,12 +294,13 @@ class Checker {
     decide();
   }
 
-  /// These objects are in the reach of neither.
+  /// Asks about two objects that are not in each other's reach.
   void ask_unlisted(NearBoxes& boxes, const Objects& objects, const std::vector<Reach>& reach) {
     const Reach& of_a = reach[objects[0]];
     const Reach& of_b = reach[objects[1]];
     const Length* far = farther(of_a.length, of_b.length);
-    // Just as far is enough where the reaches that are so long end before the other object.
+    // If the last object of each reach of this length comes before the other object, a pair that is
+    // just as far is allowed.
     const auto as_far = [&](const Reach& x, std::uint32_t other) {
       return far != nullptr && (x.object < other || x.length->squared < far->squared);
     };
@@ -310,8 +312,8 @@ class Checker {
     return x->squared < y->squared ? y : x;
   }
 
-  /// Every pair of triangles of the two objects that counts has to be farther apart than the
-  /// length, or as far with or_as_far and after the listed pair.
+  /// Adds the proof that every pair of the two objects that counts is farther apart than the
+  /// length; exactly as far is enough with or_as_far, and for pairs after the listed one.
   void ask(NearBoxes& boxes, const Objects& objects, const Length* length, bool or_as_far,
            const Listed* listed) {
     ++question_;
@@ -342,7 +344,8 @@ class Checker {
     if (proof_.waiting() >= kBlock || proof_.nearer()) decide();
   }
 
-  /// Of the objects, which have triangles, the first pair of triangles that are no neighbours.
+  /// The first pair of triangles of the objects that are not neighbours. Precondition: both objects
+  /// have triangles.
   std::optional<TrianglePair> first_counting(const Objects& objects) const {
     const Object& x = scene_.objects[objects[0]];
     const Object& y = scene_.objects[objects[1]];

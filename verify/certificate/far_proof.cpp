@@ -1,4 +1,5 @@
-// A direction proves a pair; where there is none, its nearest points prove the contrary.
+// A direction proves that a pair is far enough; if no direction does, its nearest points prove that
+// it is not.
 #include "verify/certificate/far_proof.h"
 
 #include <stdexcept>

@@ -28,13 +28,13 @@ class FarProof {
   void add(const Job& job) { jobs_.push_back(job); }
   /// How many have been added and not decided.
   std::size_t waiting() const { return jobs_.size(); }
-  /// Decides those that wait.
+  /// Decides the waiting jobs.
   void decide();
 
-  /// Of the pairs so far that are not far enough, the first by question, then by pair; without
-  /// those that are exactly as near as the pair of their entry.
+  /// The first decided pair, by question and then by pair, that is not far enough; not one that is
+  /// exactly as near as the pair of its entry.
   const std::optional<Job>& nearer() const { return nearer_; }
-  /// The first of those.
+  /// The first pair that is exactly as near as the pair of its entry.
   const std::optional<Job>& as_near() const { return as_near_; }
 
  private:

@@ -55,7 +55,7 @@ void make_direction(Scratch<Integer>& s, const Corners<Integer>& a, const Corner
   }
 }
 
-/// True iff the projections onto s.d have a gap. Onto zero they are equal, which is none.
+/// True iff the projections onto s.d have a gap. False if s.d is zero.
 template <class Integer>
 bool has_gap(Scratch<Integer>& s, const Corners<Integer>& a, const Corners<Integer>& b) {
   for (int i = 0; i < 3; ++i) {

@@ -25,8 +25,8 @@ constexpr int kFace = 6;
 
 bool is_corner(int feature) { return feature < 3; }
 
-/// The points of these two features that can be nearest where no earlier features have nearest
-/// ones; false where there are none.
+/// Constructs the two points of these features that can be nearest, if no earlier pair of features
+/// has nearest points. False: there are none.
 bool construct(PointSearch& on_a, PointSearch& on_b, const ScaledPair& pair, int of_a, int of_b) {
   const auto& [a, b, exponent] = pair;
   if (is_corner(of_a)) {
@@ -89,7 +89,8 @@ IntegerDistance integer_distance(const std::array<Vec3, 3>& a, const std::array<
   const ScaledPair pair = scaled(a, b);
   for (int of_a = 0; of_a < kFeatures; ++of_a) {
     for (int of_b = 0; of_b < kFeatures; ++of_b) {
-      // Whatever was constructed, only where it lies and that it is nearest counts.
+      // The construction is not trusted: the points count only if they lie in the triangles and are
+      // proved nearest.
       if (!construct(on_a, on_b, pair, of_a, of_b) || !on_a.is_nearest(on_b, pair.a, pair.b) ||
           !on_a.lies_in(pair.a) || !on_b.lies_in(pair.b)) {
         continue;

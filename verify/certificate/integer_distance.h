@@ -22,9 +22,8 @@ struct FractionPoint {
   int exponent = 0;
   Vec3 from;
 };
-/// True iff each coordinate of x is that of the point, rounded to the nearest double, of two as
-/// near to the even one; beyond the largest double infinity, as IEEE 754 rounds. -0.0 is no
-/// rounded number.
+/// True iff each coordinate of x is the point's, rounded as IEEE 754 does: to the nearest double,
+/// of two equally near ones to the even one, beyond the largest double to infinity. False for -0.0.
 bool is_rounded(const Vec3& x, const FractionPoint& point);
 
 /// The distance of two triangles, and where on them its ends lie. Features are numbered: 0 to 2 the

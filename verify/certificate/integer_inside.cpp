@@ -38,8 +38,8 @@ mpz_class determinant(const std::array<BigVector, 3>& t) {
   return out;
 }
 
-/// Where a triangle may be crossed by the ray from x: it is not, by exact comparisons, where its
-/// box is beside the ray or behind x.
+/// False if the box of the triangle is beside the ray from x or behind x, so that the ray cannot
+/// cross it. The comparisons are exact.
 bool may_cross(const std::array<Vec3, 3>& t, const Vec3& x) {
   const auto& [p, q, r] = t;
   if (std::max({p.x(), q.x(), r.x()}) < x.x()) return false;
@@ -149,7 +149,7 @@ IntegerInside::~IntegerInside() = default;
 
 IntegerInside::Answer IntegerInside::contains(std::uint32_t outer, std::uint32_t inner) const {
   OfObject &in = objects_[inner], &out = objects_[outer];
-  // What is inside a closed mesh is inside its box.
+  // A part that is inside a closed mesh is inside its box.
   const Box &x_box = in.box, &y_box = out.box;
   if ((x_box.lo.array() < y_box.lo.array()).any() || (x_box.hi.array() > y_box.hi.array()).any())
     return Answer::no;

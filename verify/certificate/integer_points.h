@@ -14,14 +14,14 @@ using BigCorners = Corners<mpz_class>;
 /// that made them anew would spend most of its time on that.
 class PointSearch {
  public:
-  /// Each constructs a point; false where there is none. It lies on the edge, but perhaps in
-  /// neither triangle.
+  /// These functions construct a point, and return false if it does not exist. The point lies on
+  /// its edge, but perhaps in neither triangle.
   bool corner(const BigCorners& t, int i) {
     point_ = t[i];
     scale_ = 1;
     return true;
   }
-  /// Where edge i of s crosses the plane of t, if it does so in one point.
+  /// The point in which edge i of s crosses the plane of t, if it is one point.
   bool edge_and_plane(const BigCorners& s, int i, const BigCorners& t) {
     make_normal(t);
     edge(u_, s, i);
@@ -206,7 +206,8 @@ bool any_point(PointSearch& search, const BigCorners& a, const BigCorners& b, co
   return false;
 }
 
-/// True iff one of the 42 pairs of points passes, one on a and one on b.
+/// True iff test() holds for one of the 42 pairs of points (docs/certificate.md), one on a and one
+/// on b.
 template <class Test>
 bool any_two_points(PointSearch& on_a, PointSearch& on_b, const BigCorners& a, const BigCorners& b,
                     const Test& test) {

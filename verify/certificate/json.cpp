@@ -13,7 +13,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "farcull-certificate";
-// The second has a clearance; all else is the same.
+// Certificates of the second version have a clearance; all else is the same.
 constexpr std::uint64_t kVersion = 3, kVersionWithClearance = 4;
 constexpr const char* kRemedy =
     "give a file that `farcull run ... --certificate` wrote; docs/certificate.md is the format";

@@ -1,4 +1,4 @@
-// What the readers of certificates share. They trust nothing: a first pass over the syntax bounds
+// Shared by the readers of certificates. They trust nothing: a first pass over the syntax bounds
 // the number of values and the depth before anything is built, so memory stays in proportion to the
 // text. For the sources of this folder alone.
 #pragma once
@@ -15,10 +15,10 @@
 
 namespace farcull {
 
-/// Printable ASCII, cut short: for a message.
+/// The text as printable ASCII of at most `most` characters, for a message.
 std::string printable(std::string_view text, std::size_t most);
 
-/// Reads the syntax alone and stops where the text is more than a certificate can be.
+/// Reads the syntax alone, and stops if the text has more values than a certificate can have.
 class JsonSyntax : public nlohmann::json_sax<nlohmann::ordered_json> {
  public:
   /// most_values: how many values a certificate may have.

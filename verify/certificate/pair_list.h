@@ -77,12 +77,12 @@ GivenList read_pair_list(std::string_view text, const std::string& name);
 /// How a list differs from that of the pairs that meet.
 struct ListDifferences {
   std::uint64_t listed = 0;      // rows
-  std::uint64_t wrong = 0;       // rows that name no pair that meets, or one again, or that say of
-                                 // `neighbours` what is not so
-  std::uint64_t missing = 0;     // pairs that meet, in no row
-  std::uint64_t wrong_line = 0;  // the first in the order of the file
+  std::uint64_t wrong = 0;       // rows whose pair does not meet, was listed before, or has a wrong
+                                 // entry in `neighbours`
+  std::uint64_t missing = 0;     // pairs that meet and are in no row
+  std::uint64_t wrong_line = 0;  // of the first wrong row
   std::string wrong_reason;      // why, as in "the pair is disjoint"
-  std::optional<TrianglePair> wrong_pair;    // none where the row is about one triangle
+  std::optional<TrianglePair> wrong_pair;    // empty: the row names one triangle twice
   std::optional<TrianglePair> missing_pair;  // the first in the order of the scene
 
   bool none() const { return wrong == 0 && missing == 0; }

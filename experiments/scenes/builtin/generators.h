@@ -15,7 +15,7 @@
 namespace farcull {
 
 std::vector<BuiltinScene> generated_scenes();
-/// For benchmarks; the counts are those of docs/bench.md.
+/// For benchmarks; the counts are those of docs/results/bench.md.
 std::vector<BuiltinScene> bench_scenes();
 /// For benchmarks too, of kinds that people have: cloth, rope and parts in contact.
 std::vector<BuiltinScene> contact_scenes();
