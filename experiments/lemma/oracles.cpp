@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "core/base/parallel.h"
-#include "experiments/lemma/pair_generators.h"
+#include "experiments/generators/pair_generators.h"
 #include "verify/certificate/integer_pair.h"
 #include "verify/exact.h"
 

@@ -13,7 +13,7 @@
 
 #include "core/cull/cull.h"
 #include "experiments/measure/harness.h"
-#include "experiments/measure/peers/peer.h"
+#include "experiments/peers/peer.h"
 
 namespace farcull {
 

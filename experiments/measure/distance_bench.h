@@ -12,7 +12,7 @@
 
 #include "core/base/progress.h"
 #include "experiments/measure/harness.h"
-#include "experiments/measure/peers/distance_peers.h"
+#include "experiments/peers/distance_peers.h"
 
 namespace farcull {
 

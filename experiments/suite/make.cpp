@@ -6,11 +6,11 @@
 #include <stdexcept>
 
 #include "core/base/parallel.h"
+#include "experiments/generators/mesh_makers.h"
+#include "experiments/generators/pair_makers.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/shapes.h"
 #include "experiments/suite/label.h"
-#include "experiments/suite/mesh_makers.h"
-#include "experiments/suite/pair_makers.h"
 #include "experiments/suite/writer.h"
 
 namespace farcull {
@@ -25,6 +25,11 @@ std::size_t members(const MeshFamily& family, SuiteSize size) {
 
 std::string mesh_name(const MeshFamily& family, std::size_t index) {
   return fmt::format("{}-{}", family.name, index + 1);
+}
+
+void shuffle(SuiteDraws& draws, std::array<Vec3, 3>& t) {
+  std::swap(t[0], t[draws.below(3)]);
+  std::swap(t[1], t[1 + draws.below(2)]);
 }
 
 }  // namespace
@@ -46,6 +51,21 @@ SuiteCounts counts_of(const SuiteMesh& mesh) {
   out.triangles = mesh.scene.triangles.size();
   out.pairs = out.colliding = mesh.pairs.size();
   for (const SuiteMeshPair& pair : mesh.pairs) out.neighbours += pair.shared > 0;
+  return out;
+}
+
+SuitePair make_suite_pair(const PairFamily& family, std::uint64_t seed, std::uint64_t id) {
+  SuiteDraws draws(seed_of_item(seed, family.name, id));
+  SuitePair out;
+  out.id = id;
+  out.parameter = family.values[id % family.values.size()];
+  MadePair made = family.make(draws, out.parameter);
+  shuffle(draws, made.a);
+  shuffle(draws, made.b);
+  if (draws.chance(2)) std::swap(made.a, made.b);
+  out.a = made.a;
+  out.b = made.b;
+  if (made.neighbours) out.shared = equal_corners(out.a, out.b);
   return out;
 }
 

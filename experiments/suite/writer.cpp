@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "core/base/error.h"
-#include "experiments/suite/pair_makers.h"
+#include "experiments/generators/pair_makers.h"
 #include "experiments/suite/words.h"
 #include "experiments/system/output_file.h"
 #include "verify/certificate/sha256.h"

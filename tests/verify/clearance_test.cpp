@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "experiments/lemma/pair_generators.h"
+#include "experiments/generators/pair_generators.h"
 #include "tests/core/base/seed.h"
 #include "tests/verify/reference.h"
 #include "verify/disjoint_distance.h"

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-#include "experiments/lemma/pair_generators.h"
+#include "experiments/generators/pair_generators.h"
 #include "tests/core/base/trials.h"
 #include "tests/experiments/method/distance_lab.h"
 #include "tests/verify/hard_pairs.h"

@@ -1,5 +1,5 @@
 // Pairs of triangles that filters in doubles find hard: near a common plane, where products
-// underflow or overflow, and those of experiments/lemma/pair_generators.h.
+// underflow or overflow, and those of experiments/generators/pair_generators.h.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/lemma/pair_generators.h"
+#include "experiments/generators/pair_generators.h"
 #include "tests/verify/reference.h"
 
 namespace farcull::hard_pairs {

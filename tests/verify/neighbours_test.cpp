@@ -9,7 +9,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "experiments/lemma/pair_generators.h"
+#include "experiments/generators/pair_generators.h"
 #include "tests/verify/reference.h"
 #include "verify/exact.h"
 

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "experiments/lemma/pair_generators.h"
+#include "experiments/generators/pair_generators.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/experiments/system/error_of.h"
 #include "tests/verify/certificate/certificate_case.h"

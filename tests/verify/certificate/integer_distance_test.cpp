@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "experiments/lemma/pair_generators.h"
+#include "experiments/generators/pair_generators.h"
 #include "tests/core/base/trials.h"
 #include "tests/verify/certificate/distance_case.h"
 #include "tests/verify/hard_pairs.h"

@@ -10,8 +10,8 @@
 #include <sstream>
 #include <string>
 
+#include "experiments/generators/pair_generators.h"
 #include "experiments/lemma/oracles.h"
-#include "experiments/lemma/pair_generators.h"
 #include "tests/verify/reference.h"
 #include "verify/certificate/box_pairs.h"
 #include "verify/exact.h"

@@ -1,0 +1,165 @@
+// Families about distance: gaps on both sides of contact, distances from the origin, and scales.
+#include <cmath>
+#include <cstdlib>
+
+#include "experiments/generators/pair_makers.h"
+
+namespace farcull {
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+
+/// 2^-k for these k, and their negatives.
+std::vector<double> signed_powers() {
+  std::vector<double> out = {0};
+  for (const int k : {1, 4, 8, 12, 16, 20, 23, 24, 25, 28, 32, 36, 40, 44, 48, 50, 52}) {
+    out.push_back(std::ldexp(1, -k));
+    out.push_back(-std::ldexp(1, -k));
+  }
+  return out;
+}
+
+/// Powers of ten from 10^first to 10^last, each the double nearest to it.
+std::vector<double> powers_of_ten(std::initializer_list<const char*> list) {
+  std::vector<double> out;
+  for (const char* text : list) out.push_back(std::strtod(text, nullptr));
+  return out;
+}
+
+Frame frame_of(SuiteDraws& draws) {
+  return draws.chance(2) ? straight_frame(draws) : leaning_frame(draws);
+}
+
+MadePair mapped(const Frame& frame, const Corners& a, const Corners& b) {
+  MadePair out;
+  for (int i = 0; i < 3; ++i) {
+    out.a[i] = frame.at(a[i]);
+    out.b[i] = frame.at(b[i]);
+  }
+  return out;
+}
+
+/// A corner of b above the inside of a, by the gap; below it where the gap is negative.
+MadePair gap_face(SuiteDraws& draws, double gap) {
+  const Corners a = {Vec3(draws.coarse(-1, 0), -1, 0), Vec3(1, draws.coarse(-0.5, 0.5), 0),
+                     Vec3(draws.coarse(-1, 0), 1, 0)};
+  const double x = draws.coarse(0, 0.25);
+  const double y = draws.coarse(-0.25, 0.25);
+  const auto above = [&] {
+    const double u = draws.coarse(-1, 1);
+    const double v = draws.coarse(-1, 1);
+    const double h = draws.coarse(0.25, 1);
+    return Vec3(u, v, h);
+  };
+  const Corners b = {Vec3(x, y, gap), above(), above()};
+  return mapped(frame_of(draws), a, b);
+}
+
+/// An edge of b across an edge of a, above it by the gap; below it where the gap is negative.
+MadePair gap_edge(SuiteDraws& draws, double gap) {
+  const double left = -draws.coarse(0.25, 1);
+  const double right = draws.coarse(0.25, 1);
+  const double depth = -draws.coarse(0.25, 1);
+  const Corners a = {Vec3(left, 0, 0), Vec3(right, 0, 0), Vec3(draws.coarse(-1, 1), 0, depth)};
+  const double back = -draws.coarse(0.25, 1);
+  const double front = draws.coarse(0.25, 1);
+  const double lean = draws.coarse(-0.25, 0.25);
+  const double height = draws.coarse(0.25, 1);
+  const double x = draws.coarse(-1, 1);
+  const double y = draws.coarse(-1, 1);
+  const Corners b = {Vec3(lean, back, gap), Vec3(-lean, front, gap), Vec3(x, y, height)};
+  return mapped(frame_of(draws), a, b);
+}
+
+/// Two triangles of about the size 1 that may meet in any way.
+MadePair near_pair(SuiteDraws& draws) {
+  const double side = draws.sign();
+  const double gap = std::ldexp(side, -draws.below(12));
+  switch (draws.below(3)) {
+    case 0:
+      return gap_face(draws, gap);
+    case 1:
+      return gap_edge(draws, gap);
+    default: {
+      MadePair out;
+      const Vec3 centre = draws.point() / 2;
+      for (Vec3& p : out.a) p = draws.point();
+      for (Vec3& p : out.b) p = centre + draws.point();
+      return out;
+    }
+  }
+}
+
+template <class Function>
+MadePair each_corner(MadePair pair, const Function& function) {
+  for (Corners* t : {&pair.a, &pair.b}) {
+    for (Vec3& p : *t) p = function(p);
+  }
+  return pair;
+}
+
+/// Moved away from the origin, so that coordinates lose their last bits.
+MadePair far_away(SuiteDraws& draws, double distance) {
+  const MadePair pair = near_pair(draws);
+  Vec3 to = draws.point();
+  to[draws.below(3)] = draws.sign();
+  return each_corner(pair, [&](const Vec3& p) { return Vec3(p + distance * to); });
+}
+
+/// Scaled, half of the time by a power of two, which keeps contact exact.
+MadePair scales(SuiteDraws& draws, double scale) {
+  const MadePair pair = draws.chance(3) ? gap_face(draws, 0) : near_pair(draws);
+  if (draws.chance(2)) {
+    int exponent = 0;
+    std::frexp(scale, &exponent);
+    scale = std::ldexp(1, exponent);
+  }
+  return each_corner(pair, [&](const Vec3& p) { return Vec3(p * scale); });
+}
+
+/// A triangle and one that is so many times smaller, at its corner, edge or face.
+MadePair mixed_scales(SuiteDraws& draws, double ratio) {
+  const Frame frame = frame_of(draws);
+  const auto drawn = [&] {
+    const double x = draws.coarse(-1, 1);
+    const double y = draws.coarse(-1, 1);
+    const double z = draws.coarse(-1, 1);
+    return Vec3(x, y, z);
+  };
+  Corners a = {drawn(), drawn(), drawn()};
+  if (draws.chance(2)) {
+    for (Vec3& p : a) p.z() = 0;  // in a plane of the frame: a point of it is no rounded one
+  }
+  const Vec3 at[] = {a[0], (a[0] + a[1]) / 2, (2 * a[0] + a[1] + a[2]) / 4};
+  const Vec3 place = at[draws.below(3)];
+  const Vec3 beside = draws.chance(3) ? Vec3(drawn() * 2) : Vec3::Zero();
+  Corners b;
+  for (Vec3& p : b) p = place + (beside + drawn()) / ratio;
+  if (draws.chance(2)) b[0] = place + beside / ratio;
+  return mapped(frame, a, b);
+}
+
+}  // namespace
+
+std::vector<PairFamily> distance_families() {
+  const std::vector<double> up_to_1e15 =
+      powers_of_ten({"1", "1e1", "1e2", "1e3", "1e4", "1e5", "1e6", "1e7", "1e8", "1e9", "1e10",
+                     "1e11", "1e12", "1e13", "1e14", "1e15"});
+  const std::vector<double> magnitudes =
+      powers_of_ten({"1e-150", "1e-120", "1e-100", "1e-80", "1e-60", "1e-40", "1e-30", "1e-20",
+                     "1e-15",  "1e-10",  "1e-5",   "1",     "1e5",   "1e10",  "1e15",  "1e20",
+                     "1e30",   "1e40",   "1e60",   "1e80",  "1e100", "1e120", "1e150"});
+  return {
+      {"gap-face", "a corner above a face, or below it",
+       "the gap, of triangles of the size 1; negative below", signed_powers(), gap_face},
+      {"gap-edge", "an edge above an edge, or below it",
+       "the gap, of triangles of the size 1; negative below", signed_powers(), gap_edge},
+      {"far-away", "moved away from the origin", "the distance, in sizes of the triangles",
+       up_to_1e15, far_away},
+      {"scales", "tiny and huge triangles", "the size", magnitudes, scales},
+      {"mixed-scales", "a triangle and a small one at it", "the ratio of their sizes", up_to_1e15,
+       mixed_scales},
+  };
+}
+
+}  // namespace farcull

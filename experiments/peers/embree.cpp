@@ -1,0 +1,186 @@
+// Embree's rtcCollide: hierarchies of user geometries, whose boxes in float are rounded outward.
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <span>
+#include <type_traits>
+
+#include "core/base/error.h"
+#include "experiments/peers/parts.h"
+
+namespace farcull {
+namespace {
+
+constexpr const char* kLibrary = "Embree " RTC_VERSION_STRING;
+// Outward by more than the rounding to float: the step is at least an ulp of f, f -+ an ulp is a
+// float, and rounding is monotone; kTiny is more than half an ulp of the subnormal ones. For
+// |x| < 2^127. (This is faster than the nearest float beyond x, and as good.)
+constexpr float kTiny = std::numeric_limits<float>::min();
+float below(double x) {
+  const auto f = static_cast<float>(x);
+  return f - std::abs(f) * 0x1p-23f - kTiny;
+}
+float above(double x) { return -below(-x); }
+
+/// The box around a triangle, for rtcCollide.
+struct FloatBox {
+  std::array<float, 3> lo, hi;
+};
+
+bool meet(const FloatBox& a, const FloatBox& b) {
+  for (int k = 0; k < 3; ++k) {
+    if (a.hi[k] < b.lo[k] || b.hi[k] < a.lo[k]) return false;
+  }
+  return true;
+}
+
+/// The boxes of all triangles. A vertex is rounded once, for all its triangles.
+std::vector<FloatBox> float_boxes(const Scene& scene, unsigned threads) {
+  std::vector<FloatBox> points(scene.vertices.size());
+  for_chunks(points.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      for (int k = 0; k < 3; ++k) {
+        points[v].lo[k] = below(scene.vertices[v][k]);
+        points[v].hi[k] = above(scene.vertices[v][k]);
+      }
+    }
+  });
+  std::vector<FloatBox> boxes(scene.triangles.size());
+  for_chunks(boxes.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto& [a, b, c] = scene.triangles[t];
+      for (int k = 0; k < 3; ++k) {
+        boxes[t].lo[k] = std::min({points[a].lo[k], points[b].lo[k], points[c].lo[k]});
+        boxes[t].hi[k] = std::max({points[a].hi[k], points[b].hi[k], points[c].hi[k]});
+      }
+    }
+  });
+  return boxes;
+}
+
+void bounds(const RTCBoundsFunctionArguments* arguments) {
+  const FloatBox& box = static_cast<const FloatBox*>(arguments->geometryUserPtr)[arguments->primID];
+  *arguments->bounds_o = {box.lo[0], box.lo[1], box.lo[2], 0, box.hi[0], box.hi[1], box.hi[2], 0};
+}
+
+/// A device with two hierarchies that are built anew in each run, in memory that they keep.
+class Embree {
+ public:
+  Embree(RTCBuildQuality quality, unsigned threads)
+      : device_(rtcNewDevice(("threads=" + std::to_string(threads)).c_str())) {
+    for (RTCScene& scene : scenes_) {
+      scene = rtcNewScene(device_);
+      rtcSetSceneBuildQuality(scene, quality);
+      RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+      rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
+      rtcSetGeometryBuildQuality(geometry, quality);
+      rtcAttachGeometryByID(scene, geometry, 0);
+      rtcReleaseGeometry(geometry);
+    }
+    check();
+  }
+  ~Embree() {
+    for (RTCScene scene : scenes_) rtcReleaseScene(scene);
+    rtcReleaseDevice(device_);
+  }
+  Embree(const Embree&) = delete;
+  Embree& operator=(const Embree&) = delete;
+
+  void build(int which, std::span<FloatBox> boxes) {
+    RTCGeometry geometry = rtcGetGeometry(scenes_[which], 0);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(boxes.size()));
+    rtcSetGeometryUserData(geometry, boxes.data());
+    rtcCommitGeometry(geometry);
+    rtcCommitScene(scenes_[which]);
+    check();
+  }
+
+  void collide(int first, int second, RTCCollideFunc collect, void* data) {
+    rtcCollide(scenes_[first], scenes_[second], collect, data);
+    check();
+  }
+
+ private:
+  void check() {
+    const RTCError error = rtcGetDeviceError(device_);
+    if (error == RTC_ERROR_NONE) return;
+    throw Error(kLibrary, "error " + std::to_string(error), "leave it out with --peers");
+  }
+
+  RTCDevice device_;
+  std::array<RTCScene, 2> scenes_{};
+};
+
+struct Found {
+  const PeerScene& scene;
+  const std::vector<FloatBox>& boxes;
+  PeerCandidates& candidates;
+  std::uint32_t second;  // added to what the second hierarchy calls its primitives
+};
+
+/// Called from any of Embree's threads, with all pairs of two leaves that meet. A hierarchy with
+/// itself gives both orders of every pair whose boxes overlap.
+void collect(void* data, RTCCollision* collisions, unsigned count) {
+  const Found& found = *static_cast<const Found*>(data);
+  PeerCandidates::Part& part = found.candidates.part();
+  const bool two_sides = found.scene.two_sides;
+  for (unsigned i = 0; i < count; ++i) {
+    const std::uint32_t a = collisions[i].primID0;
+    const std::uint32_t b = found.second + collisions[i].primID1;
+    if (!two_sides && (a >= b || !found.scene.counts(a, b))) continue;
+    if (meet(found.boxes[a], found.boxes[b])) part.add(a, b);
+  }
+}
+
+BenchAnswer collide(Embree& embree, const Scene& raw, unsigned threads) {
+  const Stopwatch building;
+  const PeerScene scene(raw, false);
+  std::vector<FloatBox> boxes = float_boxes(raw, threads);
+  const std::span all(boxes);
+  const bool any = scene.has_pairs();
+  if (any && scene.two_sides) {
+    embree.build(0, all.first(scene.second));
+    embree.build(1, all.subspan(scene.second));
+  } else if (any) {
+    embree.build(0, all);
+  }
+  const double build_ms = building.ms();
+
+  PeerCandidates candidates(raw, threads, threads > 1);
+  Found found{scene, boxes, candidates, scene.second};
+  if (any) embree.collide(0, scene.two_sides ? 1 : 0, collect, &found);
+  BenchAnswer answer = candidates.finish();
+  answer.build_ms = build_ms;
+  return answer;
+}
+
+/// Embree leaves out, without a word, what has a coordinate of 1.844e18 or more.
+std::string refuses_large(const Scene& scene) {
+  for (const Vec3& p : scene.vertices) {
+    if (p.cwiseAbs().maxCoeff() > 1e18) return "Embree leaves out coordinates beyond 1e18";
+  }
+  return "";
+}
+
+Peer peer(const std::string& name, RTCBuildQuality quality) {
+  return {name, kLibrary, "",
+          [quality](unsigned threads) -> BenchRun {
+            const auto embree = std::make_shared<Embree>(quality, threads);
+            return [=](const Scene& scene) { return collide(*embree, scene, threads); };
+          },
+          refuses_large};
+}
+
+}  // namespace
+
+std::vector<Peer> embree_peers() {
+  return {peer("embree-low", RTC_BUILD_QUALITY_LOW),
+          peer("embree-medium", RTC_BUILD_QUALITY_MEDIUM)};
+}
+
+}  // namespace farcull
