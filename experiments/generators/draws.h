@@ -1,25 +1,28 @@
-// Random draws of whole coordinates for the makers of a suite. Whole numbers times a power of two
-// are exact, so contact that is made with them is contact of the doubles that are written. Nothing
-// here uses sines or logarithms, whose last bits differ between platforms.
+// Random draws of whole coordinates, points and pairs of triangles. Whole numbers times a power of
+// two are exact, so contact that is made with them is contact of the doubles that are written.
+// Nothing here uses sines or logarithms, whose last bits differ between platforms.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <type_traits>
 
 #include "core/base/random.h"
 #include "core/scene/scene.h"
 
 namespace farcull {
 
-class SuiteDraws : public RandomNumbers {
+class Draws : public RandomNumbers {
  public:
   using RandomNumbers::RandomNumbers;
 
   bool chance(int of) { return below(of) == 0; }
-  /// lo .. hi, both included, a whole number; |lo|, |hi| <= 2^52.
-  double whole(double lo, double hi) {
+  /// lo .. hi, both included, a whole number of their type; |lo|, |hi| <= 2^52.
+  template <class Low, class High>
+  auto whole(Low lo, High hi) {
+    using Number = std::common_type_t<Low, High>;
     const auto count = static_cast<std::uint64_t>(hi - lo) + 1;
-    return lo + static_cast<double>(below(count));
+    return static_cast<Number>(lo) + static_cast<Number>(below(count));
   }
   /// A multiple of 2^-8 in lo .. hi, which are such too: few bits, so that a small gap fits beside
   /// it in a double.
@@ -40,6 +43,14 @@ class SuiteDraws : public RandomNumbers {
   }
 };
 
+/// Two triangles with finite coordinates; either may be degenerate. Nothing is decided about them.
+struct DrawnPair {
+  std::array<Vec3, 3> a, b;
+  bool neighbours = false;  // corners at equal positions are one vertex of a mesh
+};
+/// The same pair with corners in any order, and in any order itself: predicates branch on both.
+DrawnPair shuffled(Draws& draws, DrawnPair pair);
+
 /// Three axes at right angles and of equal length.
 struct Frame {
   std::array<Vec3, 3> axis;
@@ -49,11 +60,11 @@ struct Frame {
 };
 
 /// The axes of the coordinates, in any order and direction.
-Frame straight_frame(SuiteDraws& draws);
+Frame straight_frame(Draws& draws);
 /// A rotation times a whole number, with whole entries of at most 4: of a quaternion with parts
 /// from -1 to 1. Not straight.
-Frame leaning_frame(SuiteDraws& draws);
+Frame leaning_frame(Draws& draws);
 /// A rotation whose entries are rounded: of a quaternion with parts from -9 to 9.
-Frame turned_frame(SuiteDraws& draws);
+Frame turned_frame(Draws& draws);
 
 }  // namespace farcull

@@ -11,39 +11,13 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-Vec3 whole_point(PairRandom& random, int extent) {
-  const int x = random.whole(-extent, extent);
-  const int y = random.whole(-extent, extent);
-  const int z = random.whole(-extent, extent);
-  return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
-}
-
-Vec3 point(PairRandom& random) {
-  const double x = random.between(-1, 1);
-  const double y = random.between(-1, 1);
-  const double z = random.between(-1, 1);
-  return {x, y, z};
-}
-
-Corners whole_triangle(PairRandom& random, int extent) {
-  return {whole_point(random, extent), whole_point(random, extent), whole_point(random, extent)};
-}
-
-void shuffle(PairRandom& random, Corners& t) {
-  std::swap(t[0], t[random.below(3)]);
-  std::swap(t[1], t[1 + random.below(2)]);
-}
-
-PairOfTriangles shuffled(PairRandom& random, PairOfTriangles pair) {
-  shuffle(random, pair.a);
-  shuffle(random, pair.b);
-  if (random.chance(2)) std::swap(pair.a, pair.b);
-  return pair;
+Corners whole_triangle(Draws& random, double extent) {
+  return {random.whole_point(extent), random.whole_point(extent), random.whole_point(extent)};
 }
 
 /// Every coordinate through a function.
 template <class Function>
-PairOfTriangles mapped(PairOfTriangles pair, const Function& function) {
+DrawnPair mapped(DrawnPair pair, const Function& function) {
   for (Corners* t : {&pair.a, &pair.b}) {
     for (Vec3& p : *t) {
       for (int k = 0; k < 3; ++k) p[k] = function(p[k]);
@@ -52,30 +26,30 @@ PairOfTriangles mapped(PairOfTriangles pair, const Function& function) {
   return pair;
 }
 
-double nudged(PairRandom& random, double x) {
+double nudged(Draws& random, double x) {
   constexpr double kMost = std::numeric_limits<double>::max();
   return std::nextafter(x, random.chance(2) ? kMost : -kMost);
 }
 
-PairOfTriangles small_grid(PairRandom& random) {
+DrawnPair small_grid(Draws& random) {
   const int extent = random.whole(1, 3);
   return {whole_triangle(random, extent), whole_triangle(random, extent)};
 }
 
-PairOfTriangles random_pair(PairRandom& random) {
-  PairOfTriangles pair;
-  for (Vec3& p : pair.a) p = point(random);
-  for (Vec3& p : pair.b) p = point(random);
+DrawnPair random_pair(Draws& random) {
+  DrawnPair pair;
+  for (Vec3& p : pair.a) p = random.point();
+  for (Vec3& p : pair.b) p = random.point();
   return pair;
 }
 
 /// Contact in one point, exactly: a corner, a point of an edge or of the face of a (multiples of 4,
 /// so that quarters are whole), with a corner, an edge or the face of b. b leaves it to any side,
 /// so that it may also cross, and every third time steps back from it by one.
-PairOfTriangles contact(PairRandom& random) {
+DrawnPair contact(Draws& random) {
   constexpr int kExtent = 64;
-  PairOfTriangles pair;
-  for (Vec3& p : pair.a) p = 4 * whole_point(random, kExtent);
+  DrawnPair pair;
+  for (Vec3& p : pair.a) p = 4 * random.whole_point(kExtent);
   Vec3 at = pair.a[0];
   switch (random.below(3)) {
     case 0:
@@ -88,8 +62,8 @@ PairOfTriangles contact(PairRandom& random) {
     default:
       at = (2 * pair.a[0] + pair.a[1] + pair.a[2]) / 4;
   }
-  const Vec3 u = whole_point(random, kExtent);
-  const Vec3 v = whole_point(random, kExtent);
+  const Vec3 u = random.whole_point(kExtent);
+  const Vec3 v = random.whole_point(kExtent);
   switch (random.below(4)) {
     case 0:
       pair.b = {at, at + u, at + v};
@@ -105,22 +79,22 @@ PairOfTriangles contact(PairRandom& random) {
       if (random.chance(2)) pair.b[1] = at - (pair.a[1] - pair.a[0]) / 4;
   }
   if (random.chance(3)) {
-    const Vec3 step = whole_point(random, 1);
+    const Vec3 step = random.whole_point(1);
     for (Vec3& p : pair.b) p += step;
   }
   return pair;
 }
 
-PairOfTriangles coplanar(PairRandom& random) {
-  const Vec3 u = whole_point(random, 20);
-  const Vec3 v = whole_point(random, 20);
-  const Vec3 origin = whole_point(random, 1000);
+DrawnPair coplanar(Draws& random) {
+  const Vec3 u = random.whole_point(20);
+  const Vec3 v = random.whole_point(20);
+  const Vec3 origin = random.whole_point(1000);
   const auto corner = [&] {
     const int i = random.whole(-5, 5);
     const int j = random.whole(-5, 5);
     return Vec3(origin + i * u + j * v);
   };
-  PairOfTriangles pair;
+  DrawnPair pair;
   for (Vec3& p : pair.a) p = corner();
   for (Vec3& p : pair.b) p = corner();
   if (random.chance(4)) {  // b is a copy of a, moved in the plane
@@ -132,14 +106,14 @@ PairOfTriangles coplanar(PairRandom& random) {
 
 /// A contact of coordinates with all 53 bits, rounded, so that it is missed or overdone by about an
 /// ulp; then one more coordinate in three moved by an ulp.
-PairOfTriangles one_ulp(PairRandom& random) {
-  PairOfTriangles pair;
-  for (Vec3& p : pair.a) p = point(random);
+DrawnPair one_ulp(Draws& random) {
+  DrawnPair pair;
+  for (Vec3& p : pair.a) p = random.point();
   const double s = random.chance(3) ? 0 : random.unit();
   const double t = random.chance(3) ? 0 : random.unit() * (1 - s);
   const Vec3 at = pair.a[0] + s * (pair.a[1] - pair.a[0]) + t * (pair.a[2] - pair.a[0]);
-  const Vec3 u = point(random);
-  const Vec3 v = point(random);
+  const Vec3 u = random.point();
+  const Vec3 v = random.point();
   switch (random.below(4)) {
     case 0:
       pair.b = {at, at + u, at + v};
@@ -154,7 +128,7 @@ PairOfTriangles one_ulp(PairRandom& random) {
     default:  // a plate on a plate, one coordinate the same
       for (int i = 0; i < 3; ++i) {
         pair.a[i].z() = at.z();
-        pair.b[i] = {point(random).x(), point(random).y(), at.z()};
+        pair.b[i] = {random.point().x(), random.point().y(), at.z()};
       }
       pair.b[0].z() = at.z() + random.unit();
   }
@@ -166,40 +140,40 @@ PairOfTriangles one_ulp(PairRandom& random) {
   return pair;
 }
 
-PairOfTriangles needles(PairRandom& random) {
+DrawnPair needles(Draws& random) {
   const double width = std::pow(10, -random.between(3, 12));
   const auto needle = [&](const Vec3& through) {
-    const Vec3 along = point(random);
+    const Vec3 along = random.point();
     const double before = random.between(-0.2, 1.2);
     return Corners{through - before * along, through + (1 - before) * along,
-                   through + (random.between(-1, 2) - before) * along + width * point(random)};
+                   through + (random.between(-1, 2) - before) * along + width * random.point()};
   };
-  const Vec3 centre = point(random);
-  return {needle(centre), needle(centre + random.below(3) * width * point(random))};
+  const Vec3 centre = random.point();
+  return {needle(centre), needle(centre + random.below(3) * width * random.point())};
 }
 
 /// Points and segments against each other and against triangles, in contact every other time.
-PairOfTriangles degenerate(PairRandom& random) {
+DrawnPair degenerate(Draws& random) {
   const auto shape = [&](int dimension, const Vec3& through) -> Corners {
-    const Vec3 u = whole_point(random, 6);
+    const Vec3 u = random.whole_point(6);
     if (dimension == 0) return {through, through, through};
     if (dimension == 1) {
       const int from = random.whole(-3, 1);
       return {through + from * u, through + random.whole(from, 3) * u,
               through + random.whole(from, 3) * u};
     }
-    const Vec3 v = whole_point(random, 6);
+    const Vec3 v = random.whole_point(6);
     return {through - u - v, through + random.whole(0, 2) * u, through + random.whole(0, 2) * v};
   };
-  const Vec3 at = whole_point(random, 10);
-  const Vec3 near = random.chance(2) ? at : Vec3(at + whole_point(random, 2));
+  const Vec3 at = random.whole_point(10);
+  const Vec3 near = random.chance(2) ? at : Vec3(at + random.whole_point(2));
   return {shape(random.below(2), at), shape(random.below(3), near)};
 }
 
 /// One scale for the pair or one per axis, 1e-30 .. 1e30; exact contacts are rounded away by some
 /// scales and kept by others.
-PairOfTriangles magnitudes(PairRandom& random) {
-  PairOfTriangles pair = random.chance(2) ? contact(random) : one_ulp(random);
+DrawnPair magnitudes(Draws& random) {
+  DrawnPair pair = random.chance(2) ? contact(random) : one_ulp(random);
   const auto scale = [&] {
     const double exponent = random.between(-30, 30);
     return random.chance(2) ? std::pow(10, exponent) : std::exp2(std::round(exponent * 3.3));
@@ -213,8 +187,8 @@ PairOfTriangles magnitudes(PairRandom& random) {
 }
 
 /// Whole multiples of the least double, and some axes of the pair in normal size beside them.
-PairOfTriangles denormals(PairRandom& random) {
-  PairOfTriangles pair = random.chance(2) ? contact(random) : small_grid(random);
+DrawnPair denormals(Draws& random) {
+  DrawnPair pair = random.chance(2) ? contact(random) : small_grid(random);
   const int exponent = random.whole(-1074, -1030);
   if (random.chance(2)) return mapped(pair, [&](double x) { return std::ldexp(x, exponent); });
   const int axis = random.below(3);
@@ -225,13 +199,13 @@ PairOfTriangles denormals(PairRandom& random) {
 }
 
 /// 1e9 of its own diagonals from the origin: rounding leaves some 23 bits of the shape.
-PairOfTriangles far_away(PairRandom& random) {
-  PairOfTriangles pair = random.chance(2) ? one_ulp(random) : contact(random);
+DrawnPair far_away(Draws& random) {
+  DrawnPair pair = random.chance(2) ? one_ulp(random) : contact(random);
   double size = 0;
   for (const Corners* t : {&pair.a, &pair.b}) {
     for (const Vec3& p : *t) size = std::max(size, p.norm());
   }
-  const Vec3 move = 2e9 * size * point(random);
+  const Vec3 move = 2e9 * size * random.point();
   for (Corners* t : {&pair.a, &pair.b}) {
     for (Vec3& p : *t) p += move;
   }
@@ -239,12 +213,12 @@ PairOfTriangles far_away(PairRandom& random) {
 }
 
 /// A triangle of 1e3 .. 1e30 and one of about 1 in, on or near its corner, edge or face.
-PairOfTriangles huge_beside_tiny(PairRandom& random) {
+DrawnPair huge_beside_tiny(Draws& random) {
   const double size = std::pow(10, random.between(3, 30));
-  PairOfTriangles pair;
-  const Vec3 at = whole_point(random, 8);
-  const Vec3 u = std::round(size) * (random.chance(3) ? Vec3(Vec3::UnitX()) : point(random));
-  const Vec3 v = std::round(size) * (random.chance(3) ? Vec3(Vec3::UnitY()) : point(random));
+  DrawnPair pair;
+  const Vec3 at = random.whole_point(8);
+  const Vec3 u = std::round(size) * (random.chance(3) ? Vec3(Vec3::UnitX()) : random.point());
+  const Vec3 v = std::round(size) * (random.chance(3) ? Vec3(Vec3::UnitY()) : random.point());
   switch (random.below(3)) {
     case 0:
       pair.a = {at, at + u, at + v};
@@ -255,14 +229,14 @@ PairOfTriangles huge_beside_tiny(PairRandom& random) {
     default:
       pair.a = {at - u - v, at + u, at + v};
   }
-  for (Vec3& p : pair.b) p = at + whole_point(random, 2);
+  for (Vec3& p : pair.b) p = at + random.whole_point(2);
   if (random.chance(2)) pair.b[0] = at;
   if (random.chance(3)) pair.b[1] = pair.b[0];
   return pair;
 }
 
-template <PairOfTriangles (*Make)(PairRandom&)>
-PairOfTriangles any_order(PairRandom& random) {
+template <DrawnPair (*Make)(Draws&)>
+DrawnPair any_order(Draws& random) {
   return shuffled(random, Make(random));
 }
 

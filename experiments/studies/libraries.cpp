@@ -9,9 +9,8 @@
 #include <variant>
 
 #include "core/base/error.h"
-#include "experiments/generators/pair_makers.h"
+#include "experiments/generators/families.h"
 #include "experiments/measure/lab.h"
-#include "experiments/peers/known.h"
 #include "experiments/peers/minimize.h"
 #include "experiments/peers/score.h"
 #include "experiments/studies/study.h"

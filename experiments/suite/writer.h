@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "experiments/generators/pair_makers.h"
+#include "experiments/generators/families.h"
 #include "experiments/suite/reader.h"
 
 namespace farcull {
@@ -30,7 +30,7 @@ struct SuiteCounts {
   std::array<std::uint64_t, 10> kinds{};  // by SuiteKind; of a mesh all 0
 };
 
-/// What was written or checked.
+/// Everything that was written or checked.
 struct SuiteSummary {
   SuiteIndex index;
   std::vector<SuiteCounts> families;

@@ -285,9 +285,9 @@ Scene three_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b
 // Slivers, points, huge and tiny ones: a triangle, one that is all but as near, and one that ties.
 TEST(DistanceAccounting, HardPairsAreDecidedAsByRationalNumbers) {
   std::uint64_t nearer = 0, farther = 0, ties = 0;
-  PairRandom random(21);
+  Draws random(21);
   rational::Draws draws(22);
-  const auto expect_decided = [&](const PairOfTriangles& pair) {
+  const auto expect_decided = [&](const DrawnPair& pair) {
     std::array<Vec3, 3> other = {pair.b[1], pair.b[2], pair.b[0]};
     if (draws.coin()) {
       double& x = other[draws.below(3u)][draws.below(3u)];
@@ -305,7 +305,7 @@ TEST(DistanceAccounting, HardPairsAreDecidedAsByRationalNumbers) {
   for (const auto& [name, make] : hard_pairs::generators()) {
     SCOPED_TRACE(name);
     for (int k = 0; k < trials(60); ++k) {
-      const PairOfTriangles pair = make(random);
+      const DrawnPair pair = make(random);
       if (hard_pairs::finite(pair)) expect_decided(pair);
     }
   }

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "experiments/generators/pair_makers.h"
+#include "experiments/generators/families.h"
 #include "experiments/suite/label.h"
 #include "experiments/suite/writer.h"
 

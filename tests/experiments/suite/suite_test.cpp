@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <set>
 
-#include "experiments/generators/mesh_makers.h"
-#include "experiments/generators/pair_makers.h"
+#include "experiments/generators/families.h"
+#include "experiments/generators/families.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
 #include "experiments/suite/label.h"

@@ -1,13 +1,30 @@
-// The meshes of a suite: kinds that people have (scans, cloth, ropes, plates) and kinds that are
-// hard (shells, folds, fans, duplicates), each with a number that goes to an extreme.
+// The families of a suite: of pairs, and of meshes. Each makes what meets and what does not, and
+// most have a number that goes to an extreme.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiments/generators/draws.h"
 
 namespace farcull {
+
+struct PairFamily {
+  std::string name;
+  std::string description;     // one line
+  std::string parameter;       // the meaning of its number; "" for none
+  std::vector<double> values;  // of the number; pair i has the i-th, and they come again and again
+  DrawnPair (*make)(Draws& draws, double parameter);
+};
+
+/// In the order of the files.
+const std::vector<PairFamily>& pair_families();
+
+/// A seed for one item of a suite, from the seed of the suite, a name and a number.
+std::uint64_t seed_of_item(std::uint64_t seed, std::string_view name, std::uint64_t number);
 
 /// An object of a mesh.
 struct SuiteObject {
@@ -17,13 +34,15 @@ struct SuiteObject {
   void add(std::uint32_t i, std::uint32_t j, std::uint32_t k) { triangles.push_back({i, j, k}); }
 };
 
+/// Kinds of meshes that people have (scans, cloth, ropes, plates), or that are hard (shells, folds,
+/// fans, duplicates).
 struct MeshFamily {
   std::string name;
   std::string description;  // one line
   std::string parameter;    // the meaning of its number
   bool self = false;        // its objects are tested against themselves too
   /// The objects; `detail` says how fine, each family counts it in its own way.
-  std::vector<SuiteObject> (*make)(SuiteDraws& draws, double parameter, int detail);
+  std::vector<SuiteObject> (*make)(Draws& draws, double parameter, int detail);
   struct Member {
     double parameter = 0;
     int detail = 0;
@@ -40,8 +59,9 @@ const std::vector<MeshFamily>& mesh_families();
 std::vector<SuiteObject> make_suite_mesh(const MeshFamily& family, std::uint64_t seed,
                                          std::size_t index);
 
-// The families by their files.
-std::vector<MeshFamily> surface_families();  // of two or three objects
-std::vector<MeshFamily> self_families();     // of one that is tested against itself
+// Parts of pair_families(): distance_families() has gaps, distances from the origin and scales,
+// shape_families() random triangles, slivers, degenerate triangles and folds.
+std::vector<PairFamily> distance_families();
+std::vector<PairFamily> shape_families();
 
 }  // namespace farcull

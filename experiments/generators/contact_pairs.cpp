@@ -1,8 +1,11 @@
-// Families whose triangles have one common point, or lie in one plane: made of whole numbers, so
-// that the contact is exact, with ever more bits. One pair in three is then moved by one unit.
+// Pairs whose triangles have one common point, or lie in one plane: made of whole numbers, so that
+// the contact is exact, with ever more bits. One pair in three is then moved by one unit. And the
+// list of all families of pairs.
 #include <cmath>
+#include <iterator>
+#include <utility>
 
-#include "experiments/generators/pair_makers.h"
+#include "experiments/generators/families.h"
 
 namespace farcull {
 namespace {
@@ -18,24 +21,24 @@ Vec3 normal(const Corners& t) { return (t[1] - t[0]).cross(t[2] - t[0]); }
 
 /// A triangle in multiples of 4, so that quarters of it are whole; the extents below keep all sums
 /// of a contact under 2^bits.
-Corners first_triangle(SuiteDraws& draws, double bits) {
+Corners first_triangle(Draws& draws, double bits) {
   const double extent = std::ldexp(1, static_cast<int>(bits) - 4);
   return {4 * draws.whole_point(extent), 4 * draws.whole_point(extent),
           4 * draws.whole_point(extent)};
 }
 
-Vec3 arm(SuiteDraws& draws, double bits) {
+Vec3 arm(Draws& draws, double bits) {
   return draws.whole_point(std::ldexp(1, static_cast<int>(bits) - 3));
 }
 
 /// Moves b by a unit one time in three, and brings coordinates below 1 in size.
-MadePair finished(SuiteDraws& draws, double bits, const Corners& a, Corners b) {
+DrawnPair finished(Draws& draws, double bits, const Corners& a, Corners b) {
   if (draws.chance(3)) {
     const Vec3 step = draws.whole_point(1);
     for (Vec3& p : b) p += step;
   }
   const double unit = std::ldexp(1, -static_cast<int>(bits));
-  MadePair out{a, b};
+  DrawnPair out{a, b};
   for (Corners* t : {&out.a, &out.b}) {
     for (Vec3& p : *t) p *= unit;
   }
@@ -43,9 +46,9 @@ MadePair finished(SuiteDraws& draws, double bits, const Corners& a, Corners b) {
 }
 
 /// Three times in four b keeps to one side of a; else it leaves the point to any side.
-bool keeps_aside(SuiteDraws& draws) { return !draws.chance(4); }
+bool keeps_aside(Draws& draws) { return !draws.chance(4); }
 
-MadePair vertex_vertex(SuiteDraws& draws, double bits) {
+DrawnPair vertex_vertex(Draws& draws, double bits) {
   const Corners a = first_triangle(draws, bits);
   Vec3 u = arm(draws, bits);
   Vec3 v = arm(draws, bits);
@@ -58,7 +61,7 @@ MadePair vertex_vertex(SuiteDraws& draws, double bits) {
 }
 
 /// A corner of b at `at`, a point of a.
-MadePair corner_at(SuiteDraws& draws, double bits, const Corners& a, const Vec3& at) {
+DrawnPair corner_at(Draws& draws, double bits, const Corners& a, const Vec3& at) {
   Vec3 u = arm(draws, bits);
   Vec3 v = arm(draws, bits);
   if (keeps_aside(draws)) {
@@ -69,19 +72,19 @@ MadePair corner_at(SuiteDraws& draws, double bits, const Corners& a, const Vec3&
   return finished(draws, bits, a, {at, at + u, at + v});
 }
 
-MadePair vertex_edge(SuiteDraws& draws, double bits) {
+DrawnPair vertex_edge(Draws& draws, double bits) {
   const Corners a = first_triangle(draws, bits);
   const double weight = draws.whole(1, 3);
   return corner_at(draws, bits, a, (weight * a[0] + (4 - weight) * a[1]) / 4);
 }
 
-MadePair vertex_face(SuiteDraws& draws, double bits) {
+DrawnPair vertex_face(Draws& draws, double bits) {
   const Corners a = first_triangle(draws, bits);
   return corner_at(draws, bits, a, (2 * a[0] + a[1] + a[2]) / 4);
 }
 
 /// An edge of b along a line in the plane of a: inside it, or the edge of a itself.
-MadePair edge_face(SuiteDraws& draws, double bits) {
+DrawnPair edge_face(Draws& draws, double bits) {
   const Corners a = first_triangle(draws, bits);
   const Vec3 quarter = (a[1] - a[0]) / 4;
   const bool hinge = draws.chance(4);
@@ -92,7 +95,7 @@ MadePair edge_face(SuiteDraws& draws, double bits) {
   return finished(draws, bits, a, {at, to, at + v});
 }
 
-MadePair edge_edge(SuiteDraws& draws, double bits) {
+DrawnPair edge_edge(Draws& draws, double bits) {
   const Corners a = first_triangle(draws, bits);
   const double weight = draws.whole(1, 3);
   const Vec3 at = (weight * a[0] + (4 - weight) * a[1]) / 4;
@@ -107,7 +110,7 @@ MadePair edge_edge(SuiteDraws& draws, double bits) {
 }
 
 /// Corners on a grid of two whole vectors.
-MadePair coplanar(SuiteDraws& draws, double bits) {
+DrawnPair coplanar(Draws& draws, double bits) {
   const double extent = std::ldexp(1, static_cast<int>(bits) - 5);
   const Vec3 u = draws.whole_point(extent);
   const Vec3 v = draws.whole_point(extent);
@@ -140,7 +143,7 @@ MadePair coplanar(SuiteDraws& draws, double bits) {
 
 /// Two triangles of one plane, then b moved by so many of the shortest steps: out of the plane, or
 /// in it over the edge at which both touch.
-MadePair coplanar_step(SuiteDraws& draws, double steps) {
+DrawnPair coplanar_step(Draws& draws, double steps) {
   const bool leaning = draws.chance(2);
   const Frame frame = leaning ? leaning_frame(draws) : straight_frame(draws);
   constexpr double kExtent = 0x1p44;
@@ -155,7 +158,7 @@ MadePair coplanar_step(SuiteDraws& draws, double steps) {
   const double out = in_plane ? 0 : steps * draws.sign();
   const auto at = [&](double x, double y, double z) { return Vec3(origin + frame.at(x, y, z)); };
   const double shift = drawn() / 2;
-  MadePair pair;
+  DrawnPair pair;
   pair.a = {at(0, 0, 0), at(length, 0, 0), at(drawn(), -depth, 0)};
   // Out of the plane b lies above a, so that the triangles would overlap.
   const double top = in_plane ? height : -height;
@@ -169,9 +172,9 @@ MadePair coplanar_step(SuiteDraws& draws, double steps) {
 }
 
 /// A copy of a triangle, moved along one axis of the coordinates.
-MadePair duplicates(SuiteDraws& draws, double units) {
+DrawnPair duplicates(Draws& draws, double units) {
   constexpr double kExtent = 0x1p50;
-  MadePair out;
+  DrawnPair out;
   for (Vec3& p : out.a) p = draws.whole_point(kExtent);
   const bool level = draws.chance(3);  // parallel to a plane of the coordinates
   const int axis = draws.below(3);
@@ -191,7 +194,13 @@ MadePair duplicates(SuiteDraws& draws, double units) {
   return out;
 }
 
-}  // namespace
+/// The finalizer of splitmix64 (Steele, Lea, Flood: Fast splittable pseudorandom number generators,
+/// 2014): every bit of the result depends on every bit of x.
+std::uint64_t mixed(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+  return x ^ (x >> 31);
+}
 
 std::vector<PairFamily> contact_families() {
   const std::string bits = "bits of the coordinates";
@@ -214,6 +223,27 @@ std::vector<PairFamily> contact_families() {
        {0, 1, 2, 4, 16, 1024, 1048576},
        duplicates},
   };
+}
+
+}  // namespace
+
+std::uint64_t seed_of_item(std::uint64_t seed, std::string_view name, std::uint64_t number) {
+  std::uint64_t out = mixed(seed + 0x9e3779b97f4a7c15);
+  for (const char c : name) out = mixed(out + static_cast<unsigned char>(c));
+  return mixed(out + number);
+}
+
+const std::vector<PairFamily>& pair_families() {
+  static const std::vector<PairFamily> families = [] {
+    std::vector<PairFamily> out;
+    for (auto* part : {&shape_families, &contact_families, &distance_families}) {
+      std::vector<PairFamily> more = part();
+      out.insert(out.end(), std::make_move_iterator(more.begin()),
+                 std::make_move_iterator(more.end()));
+    }
+    return out;
+  }();
+  return families;
 }
 
 }  // namespace farcull
