@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "experiments/measure/distance_bench.h"
+#include "experiments/measure/bench.h"
 #include "experiments/measure/neighbour_sets.h"
 #include "experiments/studies/json_object.h"
 
@@ -165,7 +165,7 @@ struct SetCounts {
 };
 
 /// Counts of a DistancePoint: distances that are wrong in some way, of those asked for
-/// (measure/distance_bench.h).
+/// (measure/bench.h).
 struct DistanceCounts {
   DistanceErrors errors;
   std::uint64_t asked = 0;  // distances that the question has

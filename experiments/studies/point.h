@@ -11,7 +11,7 @@
 
 #include "experiments/measure/neighbour_sets.h"
 #include "experiments/method/options.h"
-#include "experiments/peers/distance_peers.h"
+#include "experiments/peers/peer.h"
 
 namespace farcull {
 
@@ -105,7 +105,7 @@ struct PlacementPoint {
   std::uint64_t seed = 1;
 };
 
-/// A contestant (peers/known.h) asked about a family of pairs of a suite, or about a mesh.
+/// A contestant (peers/runner.h) asked about a family of pairs of a suite, or about a mesh.
 struct LibraryPoint {
   std::string contestant;
   std::string family;  // or the name of the mesh
@@ -125,7 +125,7 @@ struct NeighbourPoint {
   int repeat = 1;       // runs
 };
 
-/// The distances of a scene, by farcull or by a library (peers/distance_peers.h).
+/// The distances of a scene, by farcull or by a library (peers/peer.h).
 struct DistancePoint {
   PointScene scene;
   std::string contestant;  // "farcull", or the name of a peer
