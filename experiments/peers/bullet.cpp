@@ -3,8 +3,8 @@
 //
 // Bullet's find_collision() is not called. It compares centres and extents that it rounds, with a
 // tolerance relative to the extents, so that it can lose small boxes that touch far from the
-// origin. It also stores all pairs, and has one thread. trees.h searches the nodes instead, with
-// btAABB::has_collision(), which compares without rounding. The quantized tree is not used: it
+// origin. It also stores all pairs, and has one thread. search_trees() visits the nodes instead,
+// with btAABB::has_collision(), which compares without rounding. The quantized tree is not used: it
 // rounds boxes to the nearest of 65,535 steps, inward as well as outward.
 #include <BulletCollision/Gimpact/btGImpactBvh.h>
 
@@ -14,7 +14,6 @@
 #include <type_traits>
 
 #include "experiments/peers/parts.h"
-#include "experiments/peers/trees.h"
 
 namespace farcull {
 namespace {
@@ -93,16 +92,12 @@ BenchAnswer collide(const Scene& raw, unsigned threads) {
   const Stopwatch building;
   const std::vector<Box> boxes = triangle_boxes(raw);
   const std::vector<Box> of_all = object_boxes(raw, boxes);
-  std::vector<const Object*> objects;
+  const std::vector<std::uint32_t> objects = objects_with_triangles(raw);
   std::vector<Box> of_objects;
-  for (std::size_t o = 0; o < raw.objects.size(); ++o) {
-    if (raw.objects[o].triangle_count == 0) continue;
-    objects.push_back(&raw.objects[o]);
-    of_objects.push_back(of_all[o]);
-  }
+  for (const std::uint32_t o : objects) of_objects.push_back(of_all[o]);
   std::vector<std::unique_ptr<BulletTree>> trees(objects.size());
   for_each_taken(objects.size(), 1, threads, [&](std::size_t i) {
-    const Object& object = *objects[i];
+    const Object& object = raw.objects[objects[i]];
     const auto mine = std::span(boxes).subspan(object.first_triangle, object.triangle_count);
     trees[i] = std::make_unique<BulletTree>(mine, object.first_triangle);
   });
@@ -111,7 +106,7 @@ BenchAnswer collide(const Scene& raw, unsigned threads) {
   PeerCandidates candidates(raw, threads, threads > 1);
   std::vector<TreeTask<BulletTree>> tasks;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (objects[i]->self) tasks.push_back({trees[i].get(), trees[i].get(), 0, 0, true});
+    if (raw.objects[objects[i]].self) tasks.push_back({trees[i].get(), trees[i].get(), 0, 0, true});
   }
   for (const TrianglePair& pair : overlapping(of_objects)) {
     tasks.push_back({trees[pair.a].get(), trees[pair.b].get()});
@@ -124,10 +119,10 @@ BenchAnswer collide(const Scene& raw, unsigned threads) {
 
 }  // namespace
 
-std::vector<Peer> bullet_peers() {
-  return {{"bullet-gimpact", library(), "", [](unsigned threads) -> BenchRun {
-             return [=](const Scene& scene) { return collide(scene, threads); };
-           }}};
+LibraryPeers bullet_library() {
+  return {.broad = {{"bullet-gimpact", library(), "", [](unsigned threads) -> BenchRun {
+                       return [=](const Scene& scene) { return collide(scene, threads); };
+                     }}}};
 }
 
 }  // namespace farcull

@@ -11,7 +11,9 @@
 
 #include <memory>
 
+#include "core/scene/members.h"
 #include "experiments/peers/contestant.h"
+#include "experiments/peers/parts.h"
 
 namespace farcull {
 namespace {
@@ -24,19 +26,21 @@ constexpr const char* kType = "float";
 
 enum class Margin { none, by_default };
 
-/// A mesh as Bullet holds it, which keeps the vertices and triangles of its maker.
+/// An object as Bullet holds it, which keeps the vertices and triangles of its maker.
 class Body {
  public:
-  Body(const ContestMesh& mesh, Margin margin) {
-    for (const ContestPoint& p : mesh.vertices) {
-      for (const double x : p) vertices_.push_back(static_cast<btScalar>(x));
+  Body(const Scene& scene, const Object& object, Margin margin) {
+    const auto [first, last] = vertices_of(scene, object);
+    for (std::uint32_t v = first; v <= last; ++v) {
+      for (const double x : scene.vertices[v]) vertices_.push_back(static_cast<btScalar>(x));
     }
-    for (const auto& triangle : mesh.triangles) {
-      for (const std::uint32_t v : triangle) indices_.push_back(static_cast<int>(v));
+    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+      for (const std::uint32_t v : scene.triangles[object.first_triangle + t])
+        indices_.push_back(static_cast<int>(v - first));
     }
     arrays_ = std::make_unique<btTriangleIndexVertexArray>(
-        static_cast<int>(mesh.triangles.size()), indices_.data(), 3 * sizeof(int),
-        static_cast<int>(mesh.vertices.size()), vertices_.data(), 3 * sizeof(btScalar));
+        static_cast<int>(object.triangle_count), indices_.data(), 3 * sizeof(int),
+        static_cast<int>(last - first + 1), vertices_.data(), 3 * sizeof(btScalar));
     shape_ = std::make_unique<btGImpactMeshShape>(arrays_.get());
     if (margin == Margin::none) shape_->setMargin(0);
     shape_->updateBound();
@@ -98,28 +102,28 @@ World& world() {
   return one;
 }
 
-ContestMesh mesh_of(const ContestTriangle& triangle) {
-  return {.vertices = {triangle.begin(), triangle.end()}, .triangles = {{0, 1, 2}}};
-}
-
 template <Margin margin>
-bool pair(const ContestPair& asked) {
-  Body a(mesh_of(asked.triangles[0]), margin), b(mesh_of(asked.triangles[1]), margin);
-  return !world().contacts(a, b).empty();
-}
-
-template <Margin margin>
-std::vector<ContestFound> meshes(const ContestScene& scene) {
-  if (scene.self) throw Refusal("GImpact tests no mesh against itself");
+std::vector<TrianglePair> meshes(const Scene& scene) {
+  if (has_self(scene)) throw Refusal("GImpact tests no mesh against itself");
   std::vector<std::unique_ptr<Body>> bodies;
-  for (const ContestMesh& mesh : scene.objects)
-    bodies.push_back(std::make_unique<Body>(mesh, margin));
-  std::vector<ContestFound> out;
-  for_each_object_pair(scene, [&](std::uint32_t a, std::uint32_t b) {
-    for (const auto& [t, u] : world().contacts(*bodies[a], *bodies[b]))
-      out.push_back({a, static_cast<std::uint32_t>(t), b, static_cast<std::uint32_t>(u)});
+  for (const Object& object : scene.objects)
+    bodies.push_back(std::make_unique<Body>(scene, object, margin));
+  std::vector<TrianglePair> out;
+  for_each_object_pair(scene, [&](const Object& a, const Object& b) {
+    const auto body = [&](const Object& of) -> Body& {
+      return *bodies[&of - scene.objects.data()];
+    };
+    for (const auto& [t, u] : world().contacts(body(a), body(b))) {
+      out.push_back({a.first_triangle + static_cast<std::uint32_t>(t),
+                     b.first_triangle + static_cast<std::uint32_t>(u)});
+    }
   });
   return out;
+}
+
+template <Margin margin>
+bool pair(const SuitePair& asked) {
+  return !meshes<margin>(two_objects(asked)).empty();
 }
 
 ContestantCard card(const std::string& name, const std::string& margin) {

@@ -14,8 +14,10 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/version.h>
 
-#include <algorithm>
+#include <array>
 #include <iterator>
+#include <utility>
+#include <vector>
 
 #include "experiments/peers/contestant.h"
 
@@ -30,113 +32,75 @@ using Mesh = CGAL::Surface_mesh<Exact::Point_3>;
 constexpr const char* kLibrary = "CGAL " CGAL_VERSION_STR;
 
 template <class Kernel>
-typename Kernel::Point_3 point(const ContestPoint& p) {
+typename Kernel::Point_3 point(const Vec3& p) {
   return {p[0], p[1], p[2]};
 }
 template <class Kernel>
-typename Kernel::Triangle_3 triangle(const ContestTriangle& t) {
+typename Kernel::Triangle_3 triangle(const std::array<Vec3, 3>& t) {
   return {point<Kernel>(t[0]), point<Kernel>(t[1]), point<Kernel>(t[2])};
 }
 
 template <class Kernel>
-bool do_intersect(const ContestPair& pair) {
-  return CGAL::do_intersect(triangle<Kernel>(pair.triangles[0]),
-                            triangle<Kernel>(pair.triangles[1]));
+bool do_intersect(const SuitePair& pair) {
+  return CGAL::do_intersect(triangle<Kernel>(pair.a), triangle<Kernel>(pair.b));
 }
 
-/// A mesh of all objects, and the object and the triangle of each of its faces.
-struct Joined {
+/// Adds a face. A triangle that is turned the other way than its neighbours is turned. Throws
+/// Refusal where more than two triangles would have an edge in common.
+void add_face(Mesh& mesh, const std::array<Mesh::Vertex_index, 3>& corners) {
+  const auto& [a, b, c] = corners;
+  if (a == b || b == c || c == a)
+    throw Refusal("Surface_mesh takes no triangle with a vertex twice");
+  if (!mesh.add_face(a, b, c).is_valid() && !mesh.add_face(a, c, b).is_valid())
+    throw Refusal("Surface_mesh holds no mesh that is not manifold");
+}
+
+/// The self-intersections of one mesh of all objects, whose face i is triangle i.
+std::vector<TrianglePair> self_scene(const Scene& scene) {
   Mesh mesh;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> owner;
-
-  /// A triangle that is turned the other way than its neighbours is turned. Throws Refusal where
-  /// more than two triangles would have an edge in common.
-  void add_face(Mesh::Vertex_index a, Mesh::Vertex_index b, Mesh::Vertex_index c,
-                std::pair<std::uint32_t, std::uint32_t> of) {
-    if (a == b || b == c || c == a)
-      throw Refusal("Surface_mesh takes no triangle with a vertex twice");
-    if (!mesh.add_face(a, b, c).is_valid() && !mesh.add_face(a, c, b).is_valid())
-      throw Refusal("Surface_mesh holds no mesh that is not manifold");
-    owner.push_back(of);
-  }
-  std::vector<ContestFound> self_intersections() const {
-    std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
-    PMP::self_intersections(mesh, std::back_inserter(pairs));
-    std::vector<ContestFound> out;
-    for (const auto& [a, b] : pairs)
-      out.push_back({owner[a].first, owner[a].second, owner[b].first, owner[b].second});
-    return out;
-  }
-};
-
-bool self_pair(const ContestPair& pair) {
-  Joined joined;
-  std::array<std::array<Mesh::Vertex_index, 3>, 2> at;
-  for (int side = 0; side < 2; ++side) {
-    for (int i = 0; i < 3; ++i) {
-      const auto shared = std::find_if(pair.shared.begin(), pair.shared.end(),
-                                       [&](const auto& of) { return of.second == i; });
-      at[side][i] = side == 1 && shared != pair.shared.end()
-                        ? at[0][shared->first]
-                        : joined.mesh.add_vertex(point<Exact>(pair.triangles[side][i]));
-    }
-    joined.add_face(at[side][0], at[side][1], at[side][2], {0, side});
-  }
-  const std::vector<ContestFound> found = joined.self_intersections();
-  return std::any_of(found.begin(), found.end(), [](const ContestFound& of) {
-    return of.triangle_a != of.triangle_b;  // else it only says that one is degenerate
-  });
+  std::vector<Mesh::Vertex_index> at;
+  for (const Vec3& p : scene.vertices) at.push_back(mesh.add_vertex(point<Exact>(p)));
+  for (const auto& [a, b, c] : scene.triangles) add_face(mesh, {at[a], at[b], at[c]});
+  std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
+  PMP::self_intersections(mesh, std::back_inserter(pairs));
+  std::vector<TrianglePair> out;
+  for (const auto& [a, b] : pairs) out.push_back({a.idx(), b.idx()});
+  leave_out_untested(scene, out);  // a face with itself only says that it is degenerate
+  return out;
 }
 
-/// Pairs inside objects are left out where the scene does not want them.
-std::vector<ContestFound> self_scene(const ContestScene& scene) {
-  Joined joined;
-  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
-    const ContestMesh& mesh = scene.objects[o];
-    std::vector<Mesh::Vertex_index> at;
-    for (const ContestPoint& p : mesh.vertices)
-      at.push_back(joined.mesh.add_vertex(point<Exact>(p)));
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      const auto& [a, b, c] = mesh.triangles[t];
-      joined.add_face(at[a], at[b], at[c], {o, t});
-    }
-  }
-  std::vector<ContestFound> found = joined.self_intersections();
-  if (!scene.self)
-    std::erase_if(found, [](const ContestFound& of) { return of.object_a == of.object_b; });
-  return found;
-}
+bool self_pair(const SuitePair& pair) { return !self_scene(scene_of(pair)).empty(); }
 
-bool mesh_pair(const ContestPair& pair) {
+bool mesh_pair(const SuitePair& pair) {
   std::array<Mesh, 2> meshes;
   for (int i = 0; i < 2; ++i) {
-    const ContestTriangle& t = pair.triangles[i];
+    const auto& t = i == 0 ? pair.a : pair.b;
     const auto add = [&](int corner) { return meshes[i].add_vertex(point<Exact>(t[corner])); };
-    meshes[i].add_face(add(0), add(1), add(2));
+    const auto a = add(0), b = add(1), c = add(2);
+    meshes[i].add_face(a, b, c);
   }
   return PMP::do_intersect(meshes[0], meshes[1]);
 }
 
 /// A tree of the second object of each pair, asked with the triangles of the first.
-std::vector<ContestFound> tree_scene(const ContestScene& scene) {
+std::vector<TrianglePair> tree_scene(const Scene& scene) {
   using Triangles = std::vector<Exact::Triangle_3>;
   using Primitive = CGAL::AABB_triangle_primitive<Exact, Triangles::const_iterator>;
   using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Exact, Primitive>>;
-  std::vector<Triangles> triangles;
-  for (const ContestMesh& mesh : scene.objects) {
-    Triangles& of = triangles.emplace_back();
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-      of.push_back(triangle<Exact>(mesh.corners(t)));
-  }
-  std::vector<ContestFound> out;
-  for_each_object_pair(scene, [&](std::uint32_t a, std::uint32_t b) {
-    const Tree tree(triangles[b].cbegin(), triangles[b].cend());
-    for (std::uint32_t t = 0; t < triangles[a].size(); ++t) {
+  Triangles triangles;
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
+    triangles.push_back(triangle<Exact>(scene.corners(t)));
+  std::vector<TrianglePair> out;
+  for_each_object_pair(scene, [&](const Object& a, const Object& b) {
+    const auto first = triangles.cbegin() + b.first_triangle;
+    const Tree tree(first, first + b.triangle_count);
+    for (std::uint32_t i = 0; i < a.triangle_count; ++i) {
+      const std::uint32_t t = a.first_triangle + i;
       std::vector<Triangles::const_iterator> found;
-      tree.all_intersected_primitives(triangles[a][t], std::back_inserter(found));
+      tree.all_intersected_primitives(triangles[t], std::back_inserter(found));
       for (const auto at : found) {
-        const auto u = static_cast<std::uint32_t>(at - triangles[b].cbegin());
-        if (a != b || t < u) out.push_back({a, t, b, u});
+        const auto u = static_cast<std::uint32_t>(at - triangles.cbegin());
+        if (&a != &b || t < u) out.push_back({t, u});
       }
     }
   });

@@ -3,6 +3,7 @@
 // it has for its users is this one.
 #include <gts.h>
 
+#include <array>
 #include <unordered_map>
 
 #include "experiments/peers/contestant.h"
@@ -10,34 +11,40 @@
 namespace farcull {
 namespace {
 
-/// One surface of all objects, and where its faces are from.
+/// One surface of all objects.
 class Surface {
  public:
-  Surface()
+  explicit Surface(std::size_t vertices)
       : surface_(gts_surface_new(gts_surface_class(), gts_face_class(), gts_edge_class(),
-                                 gts_vertex_class())) {}
+                                 gts_vertex_class())),
+        vertices_(vertices) {}
   ~Surface() { gts_object_destroy(GTS_OBJECT(surface_)); }
   Surface(const Surface&) = delete;
   Surface& operator=(const Surface&) = delete;
 
-  GtsVertex* vertex(const ContestPoint& p) {
-    return gts_vertex_new(surface_->vertex_class, p[0], p[1], p[2]);
-  }
-  void add(GtsVertex* a, GtsVertex* b, GtsVertex* c, std::uint32_t object, std::uint32_t triangle) {
+  void add(const Scene& scene, std::uint32_t triangle) {
+    std::array<GtsVertex*, 3> of;
+    for (int i = 0; i < 3; ++i) of[i] = vertex(scene, scene.triangles[triangle][i]);
+    const auto& [a, b, c] = of;
     if (a == b || b == c || c == a) throw Refusal("GTS has no face that names a vertex twice");
     GtsFace* const face = gts_face_new(surface_->face_class, edge(a, b), edge(b, c), edge(c, a));
     gts_surface_add_face(surface_, face);
-    from_[GTS_BOUNDED(GTS_TRIANGLE(face))] = {object, triangle};
+    number_[GTS_TRIANGLE(face)] = triangle;
   }
-  std::vector<ContestFound> intersecting() {
+  std::vector<TrianglePair> intersecting() {
     found_.clear();
     gts_surface_foreach_intersecting_face(surface_, note, this);
     return found_;
   }
 
  private:
-  static constexpr auto GTS_BOUNDED = [](GtsTriangle* t) { return static_cast<void*>(t); };
-
+  /// Made with the first face that has it: the surface destroys what belongs to a face.
+  GtsVertex* vertex(const Scene& scene, std::uint32_t v) {
+    const Vec3& p = scene.vertices[v];
+    if (vertices_[v] == nullptr)
+      vertices_[v] = gts_vertex_new(surface_->vertex_class, p[0], p[1], p[2]);
+    return vertices_[v];
+  }
   GtsEdge* edge(GtsVertex* a, GtsVertex* b) {
     GtsSegment* const there = gts_vertices_are_connected(a, b);
     if (there != nullptr) return GTS_EDGE(there);
@@ -45,47 +52,24 @@ class Surface {
   }
   static void note(GtsBBox* a, GtsBBox* b, gpointer data) {
     auto& self = *static_cast<Surface*>(data);
-    const auto &x = self.from_.at(a->bounded), &y = self.from_.at(b->bounded);
-    self.found_.push_back({x.first, x.second, y.first, y.second});
+    self.found_.push_back({self.number_.at(a->bounded), self.number_.at(b->bounded)});
   }
 
   GtsSurface* surface_;
-  std::unordered_map<void*, std::pair<std::uint32_t, std::uint32_t>> from_;
-  std::vector<ContestFound> found_;
+  std::vector<GtsVertex*> vertices_;
+  std::unordered_map<void*, std::uint32_t> number_;  // of triangles
+  std::vector<TrianglePair> found_;
 };
 
-bool pair(const ContestPair& asked) {
-  Surface surface;
-  std::array<GtsVertex*, 3> first, second;
-  for (int i = 0; i < 3; ++i) first[i] = surface.vertex(asked.triangles[0][i]);
-  for (int i = 0; i < 3; ++i) {
-    second[i] = nullptr;
-    for (const auto& [a, b] : asked.shared) {
-      if (b == i) second[i] = first[a];
-    }
-    if (second[i] == nullptr) second[i] = surface.vertex(asked.triangles[1][i]);
-  }
-  surface.add(first[0], first[1], first[2], 0, 0);
-  surface.add(second[0], second[1], second[2], 0, 1);
-  return !surface.intersecting().empty();
-}
-
-std::vector<ContestFound> meshes(const ContestScene& scene) {
-  Surface surface;
-  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
-    const ContestMesh& mesh = scene.objects[o];
-    std::vector<GtsVertex*> at;
-    for (const ContestPoint& p : mesh.vertices) at.push_back(surface.vertex(p));
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      const auto& [a, b, c] = mesh.triangles[t];
-      surface.add(at[a], at[b], at[c], o, t);
-    }
-  }
-  std::vector<ContestFound> found = surface.intersecting();
-  if (!scene.self)
-    std::erase_if(found, [](const ContestFound& of) { return of.object_a == of.object_b; });
+std::vector<TrianglePair> meshes(const Scene& scene) {
+  Surface surface(scene.vertices.size());
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) surface.add(scene, t);
+  std::vector<TrianglePair> found = surface.intersecting();
+  leave_out_untested(scene, found);
   return found;
 }
+
+bool pair(const SuitePair& asked) { return !meshes(scene_of(asked)).empty(); }
 
 }  // namespace
 }  // namespace farcull

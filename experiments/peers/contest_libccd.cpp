@@ -7,15 +7,15 @@
 namespace farcull {
 namespace {
 
-const ContestTriangle& triangle(const void* object) {
-  return *static_cast<const ContestTriangle*>(object);
-}
+using Corners = std::array<Vec3, 3>;
+
+const Corners& triangle(const void* object) { return *static_cast<const Corners*>(object); }
 
 void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
-  const ContestTriangle& corners = triangle(object);
-  const ContestPoint* best = nullptr;
+  const Corners& corners = triangle(object);
+  const Vec3* best = nullptr;
   double most = 0;
-  for (const ContestPoint& p : corners) {
+  for (const Vec3& p : corners) {
     const double along = p[0] * direction->v[0] + p[1] * direction->v[1] + p[2] * direction->v[2];
     if (best == nullptr || along > most) {
       best = &p;
@@ -26,7 +26,7 @@ void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
 }
 
 void centre(const void* object, ccd_vec3_t* out) {
-  const ContestTriangle& t = triangle(object);
+  const Corners& t = triangle(object);
   ccdVec3Set(out, (t[0][0] + t[1][0] + t[2][0]) / 3, (t[0][1] + t[1][1] + t[2][1]) / 3,
              (t[0][2] + t[1][2] + t[2][2]) / 3);
 }
@@ -43,9 +43,9 @@ ccd_t settings() {
 }
 
 template <int (*intersect)(const void*, const void*, const ccd_t*)>
-bool pair(const ContestPair& asked) {
+bool pair(const SuitePair& asked) {
   const ccd_t ccd = settings();
-  return intersect(&asked.triangles[0], &asked.triangles[1], &ccd) != 0;
+  return intersect(&asked.a, &asked.b, &ccd) != 0;
 }
 
 ContestantCard card(const std::string& name, const std::string& call) {

@@ -8,33 +8,21 @@
 namespace farcull {
 namespace {
 
-Eigen::Vector3d point(const ContestPoint& p) { return {p[0], p[1], p[2]}; }
-
-bool pair(const ContestPair& asked) {
-  const auto& [a, b] = asked.triangles;
-  return open3d::geometry::IntersectionTest::TriangleTriangle3d(
-      point(a[0]), point(a[1]), point(a[2]), point(b[0]), point(b[1]), point(b[2]));
+bool pair(const SuitePair& asked) {
+  const auto &a = asked.a, &b = asked.b;
+  return open3d::geometry::IntersectionTest::TriangleTriangle3d(a[0], a[1], a[2], b[0], b[1], b[2]);
 }
 
-std::vector<ContestFound> meshes(const ContestScene& scene) {
+std::vector<TrianglePair> meshes(const Scene& scene) {
   open3d::geometry::TriangleMesh mesh;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> from;
-  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
-    const auto first = static_cast<int>(mesh.vertices_.size());
-    for (const ContestPoint& p : scene.objects[o].vertices) mesh.vertices_.push_back(point(p));
-    for (std::uint32_t t = 0; t < scene.objects[o].triangles.size(); ++t) {
-      const auto& [a, b, c] = scene.objects[o].triangles[t];
-      mesh.triangles_.emplace_back(first + static_cast<int>(a), first + static_cast<int>(b),
-                                   first + static_cast<int>(c));
-      from.emplace_back(o, t);
-    }
-  }
-  std::vector<ContestFound> out;
+  mesh.vertices_ = scene.vertices;
+  for (const auto& [a, b, c] : scene.triangles)
+    mesh.triangles_.emplace_back(static_cast<int>(a), static_cast<int>(b), static_cast<int>(c));
+  std::vector<TrianglePair> out;
   for (const Eigen::Vector2i& found : mesh.GetSelfIntersectingTriangles()) {
-    const auto &x = from[static_cast<std::size_t>(found[0])],
-               &y = from[static_cast<std::size_t>(found[1])];
-    if (scene.self || x.first != y.first) out.push_back({x.first, x.second, y.first, y.second});
+    out.push_back({static_cast<std::uint32_t>(found[0]), static_cast<std::uint32_t>(found[1])});
   }
+  leave_out_untested(scene, out);
   return out;
 }
 

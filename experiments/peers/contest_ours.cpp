@@ -8,7 +8,6 @@
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
 #include "experiments/peers/contestant.h"
-#include "experiments/peers/scenes.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -104,16 +103,15 @@ Contestant contestant(ContestantCard card, const Finder& find, bool one_object =
   card.source = "docs/methods.md and docs/reliability.md";
   return {.card = std::move(card),
           .pair =
-              [=](const ContestPair& pair) {
+              [=](const SuitePair& pair) {
                 const Scene scene = scene_of(pair);
                 return !find(one_object ? as_one_object(scene) : scene).empty();
               },
           .mesh =
-              [=](const ContestScene& asked) {
-                if (one_object && (asked.objects.size() != 1 || !asked.self))
+              [=](const Scene& scene) {
+                if (one_object && (scene.objects.size() != 1 || !scene.objects.front().self))
                   throw Refusal("S-CULLIDE tests one object against itself");
-                const Scene scene = scene_of(asked);
-                return found_in(scene, find(scene));
+                return find(scene);
               }};
 }
 

@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "experiments/peers/contestant.h"
-#include "experiments/peers/scenes.h"
 
 namespace farcull {
 namespace {
@@ -27,19 +26,18 @@ Contestant contestant(const Peer& peer, ContestantCard card) {
     return answer(peer, *run, scene).pairs;
   };
   return {.card = std::move(card),
-          .pair = [found](const ContestPair& pair) { return !found(scene_of(pair)).empty(); },
-          .mesh =
-              [found](const ContestScene& asked) {
-                const Scene scene = scene_of(asked);
-                return found_in(scene, found(scene));
-              }};
+          .pair = [found](const SuitePair& pair) { return !found(scene_of(pair)).empty(); },
+          .mesh = found};
 }
 
 /// Each triangle twice: ODE 0.16.2 crashes where both meshes are of one triangle.
-ContestScene doubled(const ContestPair& pair) {
-  ContestScene out;
-  for (const ContestTriangle& t : pair.triangles)
-    out.objects.push_back({.vertices = {t.begin(), t.end()}, .triangles = {{0, 1, 2}, {0, 1, 2}}});
+Scene doubled(const SuitePair& pair) {
+  Scene out = two_objects(pair);
+  const auto a = out.triangles[0], b = out.triangles[1];
+  out.triangles = {a, a, b, b};
+  out.source_face = {0, 1, 0, 1};
+  out.objects[1].first_triangle = 2;
+  for (Object& object : out.objects) object.triangle_count = 2;
   return out;
 }
 
@@ -73,7 +71,7 @@ Contestant narrow(const Peer& peer) {
   }
   Contestant out = contestant(peer, std::move(card));
   if (!fcl) {
-    out.pair = [mesh = out.mesh](const ContestPair& pair) { return !mesh(doubled(pair)).empty(); };
+    out.pair = [mesh = out.mesh](const SuitePair& pair) { return !mesh(doubled(pair)).empty(); };
   }
   return out;
 }

@@ -36,7 +36,7 @@ T dot(const Point<T>& a, const Point<T>& b) {
 }
 
 template <class T>
-Corners<T> rounded_to(const ContestTriangle& triangle) {
+Corners<T> rounded_to(const std::array<Vec3, 3>& triangle) {
   Corners<T> out;
   for (int i = 0; i < 3; ++i) {
     for (int axis = 0; axis < 3; ++axis) out[i][axis] = static_cast<T>(triangle[i][axis]);
@@ -91,7 +91,7 @@ std::array<T, 3> distances(const Point<T>& n, const Corners<T>& of, const Corner
   return {dot(n, points[0]) + d, dot(n, points[1]) + d, dot(n, points[2]) + d};
 }
 
-/// Where a triangle meets the line of both planes: p are its corners along the line, d their
+/// The part of the line of both planes in a triangle: p are its corners along the line, d their
 /// distances from the other plane, which are not all of one strict sign nor all 0.
 template <class T>
 std::array<T, 2> interval(const std::array<T, 3>& p, const std::array<T, 3>& d) {
@@ -124,8 +124,8 @@ bool all_zero(const std::array<T, 3>& d) {
 /// Moeller 1997. Distances below epsilon count as 0, so that nearly coplanar triangles are treated
 /// as coplanar.
 template <class T>
-bool moeller(const ContestPair& pair, T epsilon) {
-  const Corners<T> a = rounded_to<T>(pair.triangles[0]), b = rounded_to<T>(pair.triangles[1]);
+bool moeller(const SuitePair& pair, T epsilon) {
+  const Corners<T> a = rounded_to<T>(pair.a), b = rounded_to<T>(pair.b);
   const auto snapped = [epsilon](std::array<T, 3> d) {
     for (T& x : d) {
       if (std::abs(x) < epsilon) x = 0;
@@ -179,8 +179,8 @@ Corners<T> begun_at(const Corners<T>& t, int corner) {
 
 /// Guigue and Devillers 2003.
 template <class T>
-bool guigue_devillers(const ContestPair& pair) {
-  Corners<T> a = rounded_to<T>(pair.triangles[0]), b = rounded_to<T>(pair.triangles[1]);
+bool guigue_devillers(const SuitePair& pair) {
+  Corners<T> a = rounded_to<T>(pair.a), b = rounded_to<T>(pair.b);
   std::array<T, 3> of_a, of_b;
   for (int i = 0; i < 3; ++i) {
     of_a[i] = side(b[0], b[1], b[2], a[i]);
@@ -215,8 +215,8 @@ bool edge_meets_face(const Point<T>& from, const Point<T>& to, const Corners<T>&
 }
 
 template <class T>
-bool edges_against_faces(const ContestPair& pair) {
-  const Corners<T> a = rounded_to<T>(pair.triangles[0]), b = rounded_to<T>(pair.triangles[1]);
+bool edges_against_faces(const SuitePair& pair) {
+  const Corners<T> a = rounded_to<T>(pair.a), b = rounded_to<T>(pair.b);
   for (int i = 0; i < 3; ++i) {
     if (edge_meets_face(a[i], a[(i + 1) % 3], b) || edge_meets_face(b[i], b[(i + 1) % 3], a))
       return true;
@@ -226,7 +226,7 @@ bool edges_against_faces(const ContestPair& pair) {
 
 Contestant contestant(const std::string& name, const std::string& paper, const std::string& call,
                       Means means, const std::string& says, const std::string& source,
-                      std::function<bool(const ContestPair&)> pair) {
+                      std::function<bool(const SuitePair&)> pair) {
   return {.card = {.name = name,
                    .library = paper,
                    .means = means,
@@ -250,7 +250,7 @@ void add_textbook(std::vector<Contestant>& all, const std::string& type) {
   all.push_back(contestant("moeller-" + type, "Moeller 1997",
                            "the test of the paper with the tolerance 1e-6" + rounds,
                            Means::crossing, kMoellerSays, kMoellerSource,
-                           [](const ContestPair& pair) { return moeller<T>(pair, T(1e-6)); }));
+                           [](const SuitePair& pair) { return moeller<T>(pair, T(1e-6)); }));
   all.push_back(contestant(
       "guigue-devillers-" + type, "Guigue, Devillers 2003", "the test of the paper" + rounds,
       Means::closed,
@@ -271,7 +271,7 @@ int main(int argc, char** argv) {
   all.push_back(contestant("moeller-double-0", "Moeller 1997",
                            "the test of the paper without a tolerance, in double", Means::crossing,
                            kMoellerSays, kMoellerSource,
-                           [](const ContestPair& pair) { return moeller<double>(pair, 0); }));
+                           [](const SuitePair& pair) { return moeller<double>(pair, 0); }));
   all.push_back(contestant("edge-face-double", "each edge against the other face",
                            "the six tests of a segment and a "
                            "triangle (Moeller, Trumbore 1997), in double",

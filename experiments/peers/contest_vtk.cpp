@@ -11,18 +11,19 @@
 #include <vtkVersion.h>
 
 #include "experiments/peers/contestant.h"
+#include "experiments/peers/parts.h"
 
 namespace farcull {
 namespace {
 
-bool triangles_intersect(const ContestPair& pair) {
-  const auto& [a, b] = pair.triangles;
+bool triangles_intersect(const SuitePair& pair) {
+  const auto &a = pair.a, &b = pair.b;
   return vtkTriangle::TrianglesIntersect(a[0].data(), a[1].data(), a[2].data(), b[0].data(),
                                          b[1].data(), b[2].data()) != 0;
 }
 
-bool intersection_filter(const ContestPair& pair) {
-  auto [a, b] = pair.triangles;
+bool intersection_filter(const SuitePair& pair) {
+  auto a = pair.a, b = pair.b;
   int coplanar = 0;
   double from[3], to[3], surfaces[2];
   constexpr double kTolerance = 1e-6;  // the filter's own default
@@ -31,13 +32,15 @@ bool intersection_filter(const ContestPair& pair) {
              from, to, surfaces, kTolerance) != 0;
 }
 
-void fill(vtkPolyData& data, const ContestMesh& mesh) {
+void fill(vtkPolyData& data, const Scene& scene, const Object& object) {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
-  for (const ContestPoint& p : mesh.vertices) points->InsertNextPoint(p.data());
+  const auto [first, last] = vertices_of(scene, object);
+  for (std::uint32_t v = first; v <= last; ++v) points->InsertNextPoint(scene.vertices[v].data());
   vtkNew<vtkCellArray> cells;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const vtkIdType corners[3] = {a, b, c};
+  for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+    const auto& [a, b, c] = scene.triangles[object.first_triangle + t];
+    const vtkIdType corners[3] = {a - first, b - first, c - first};
     cells->InsertNextCell(3, corners);
   }
   data.SetPoints(points);
@@ -61,27 +64,22 @@ std::vector<std::pair<vtkIdType, vtkIdType>> contacts(vtkPolyData* a, vtkPolyDat
   return out;
 }
 
-bool collision_pair(const ContestPair& pair) {
-  vtkNew<vtkPolyData> a, b;
-  fill(*a, {.vertices = {pair.triangles[0].begin(), pair.triangles[0].end()},
-            .triangles = {{0, 1, 2}}});
-  fill(*b, {.vertices = {pair.triangles[1].begin(), pair.triangles[1].end()},
-            .triangles = {{0, 1, 2}}});
-  return !contacts(a, b).empty();
-}
-
-std::vector<ContestFound> collision_scene(const ContestScene& scene) {
-  std::vector<ContestFound> out;
-  for_each_object_pair(scene, [&](std::uint32_t o, std::uint32_t p) {
-    if (o == p) throw Refusal("vtkCollisionDetectionFilter takes two models");
+std::vector<TrianglePair> collision_scene(const Scene& scene) {
+  std::vector<TrianglePair> out;
+  for_each_object_pair(scene, [&](const Object& o, const Object& p) {
+    if (&o == &p) throw Refusal("vtkCollisionDetectionFilter takes two models");
     vtkNew<vtkPolyData> a, b;
-    fill(*a, scene.objects[o]);
-    fill(*b, scene.objects[p]);
-    for (const auto& [t, u] : contacts(a, b))
-      out.push_back({o, static_cast<std::uint32_t>(t), p, static_cast<std::uint32_t>(u)});
+    fill(*a, scene, o);
+    fill(*b, scene, p);
+    for (const auto& [t, u] : contacts(a, b)) {
+      out.push_back({o.first_triangle + static_cast<std::uint32_t>(t),
+                     p.first_triangle + static_cast<std::uint32_t>(u)});
+    }
   });
   return out;
 }
+
+bool collision_pair(const SuitePair& pair) { return !collision_scene(two_objects(pair)).empty(); }
 
 ContestantCard card(const std::string& name, const std::string& call, const std::string& says,
                     const std::string& source, const std::string& use) {

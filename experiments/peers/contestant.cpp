@@ -1,21 +1,82 @@
 // The loop of a contestant's program: reads questions, times the library, writes answers. Standard
-// output is kept for the answers: what a library prints there goes to standard error.
+// output is kept for the answers: what a library prints there goes to standard error. And cards, a
+// line for each field.
 #include "experiments/peers/contestant.h"
 
 #include <unistd.h>
 
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <new>
 #include <optional>
 #include <string_view>
 
+#include "core/base/error.h"
+#include "core/base/text.h"
+
 namespace farcull {
 namespace {
+
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  }
+  return text;
+}
+
+/// The shortest decimal number that is read back as this one.
+std::string shortest(double number) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+
+std::optional<bool> yes_or_no(const std::string& text) {
+  if (text == "yes") return true;
+  if (text == "no") return false;
+  return {};
+}
+
+/// Sets a field of a card; false: the key is unknown, or has no such value.
+bool set(ContestantCard& card, const std::string& key, const std::string& value) {
+  const std::map<std::string, std::string*> texts = {
+      {"name", &card.name}, {"library", &card.library}, {"call", &card.call},
+      {"says", &card.says}, {"source", &card.source},   {"use", &card.use}};
+  const std::map<std::string, bool*> flags = {{"degenerate", &card.degenerate},
+                                              {"neighbours", &card.neighbours},
+                                              {"promises", &card.promises},
+                                              {"pairs", &card.pairs},
+                                              {"meshes", &card.meshes}};
+  if (const auto text = texts.find(key); text != texts.end()) {
+    *text->second = value;
+    return !value.empty();
+  }
+  if (const auto flag = flags.find(key); flag != flags.end()) {
+    const std::optional<bool> read = yes_or_no(value);
+    if (read) *flag->second = *read;
+    return read.has_value();
+  }
+  if (key == "means") {
+    card.means = value == "crossing" ? Means::crossing : Means::closed;
+    return value == "crossing" || value == "closed";
+  }
+  if (key == "margin") {
+    const auto margin = parse_number<double>(value);
+    if (margin) card.margin = *margin;
+    return margin.has_value() && *margin >= 0 && std::isfinite(*margin);
+  }
+  if (key == "memory") {
+    const auto mib = parse_number<std::uint64_t>(value);
+    if (mib) card.memory_mib = *mib;
+    return mib.has_value() && *mib > 0;
+  }
+  return false;
+}
 
 constexpr int kWrongCall = 2, kNoMemory = 3;
 
@@ -43,27 +104,33 @@ Number number(std::string_view text) {
   return out;
 }
 
-ContestPair read_pair(const std::vector<std::string_view>& fields) {
+SuitePair read_pair(const std::vector<std::string_view>& fields) {
   if (fields.size() != 20) throw NoQuestion("a pair has 20 fields");
-  ContestPair out;
+  SuitePair out;
   for (std::size_t i = 0; i < 18; ++i)
-    out.triangles[i / 9][i / 3 % 3][i % 3] = number<double>(fields[i + 2]);
+    (i < 9 ? out.a : out.b)[i / 3 % 3][i % 3] = number<double>(fields[i + 2]);
   std::string_view shared = fields[1];
   if (shared == "-") return out;
-  for (; shared.size() >= 3; shared.remove_prefix(std::min<std::size_t>(shared.size(), 4)))
-    out.shared.emplace_back(shared[0] - '0', shared[2] - '0');
+  for (; shared.size() >= 3; shared.remove_prefix(std::min<std::size_t>(shared.size(), 4))) {
+    out.shared.push_back(
+        {static_cast<std::uint8_t>(shared[0] - '0'), static_cast<std::uint8_t>(shared[2] - '0')});
+  }
   return out;
 }
 
-ContestMesh read_obj(const std::string& path) {
+void add_obj(const std::string& path, bool self, Scene& out) {
   std::ifstream file(path);
   if (!file) throw NoQuestion(path + " cannot be read");
-  ContestMesh out;
+  const auto first = static_cast<std::uint32_t>(out.vertices.size());
+  out.objects.push_back({.name = std::to_string(out.objects.size()),
+                         .first_triangle = static_cast<std::uint32_t>(out.triangles.size()),
+                         .self = self});
+  std::uint32_t& count = out.objects.back().triangle_count;
   for (std::string line; std::getline(file, line);) {
     const char* at = line.c_str() + 1;
     char* end = nullptr;
     if (line.starts_with("v ")) {
-      ContestPoint& point = out.vertices.emplace_back();
+      Vec3& point = out.vertices.emplace_back();
       for (double& x : point) {
         x = std::strtod(at, &end);
         at = end;
@@ -71,28 +138,23 @@ ContestMesh read_obj(const std::string& path) {
     } else if (line.starts_with("f ")) {
       auto& triangle = out.triangles.emplace_back();
       for (std::uint32_t& v : triangle) {
-        v = static_cast<std::uint32_t>(std::strtoul(at, &end, 10)) - 1;
+        v = first + static_cast<std::uint32_t>(std::strtoul(at, &end, 10)) - 1;
         at = end;
-        if (v >= out.vertices.size()) throw NoQuestion(path + ": a face names no vertex");
+        if (v < first || v >= out.vertices.size())
+          throw NoQuestion(path + ": a face names no vertex");
       }
+      out.source_face.push_back(count++);
     }
   }
-  return out;
 }
 
-ContestScene read_scene(const std::vector<std::string_view>& fields) {
+Scene read_scene(const std::vector<std::string_view>& fields) {
   if (fields.size() < 3) throw NoQuestion("a scene has at least 3 fields");
-  ContestScene out{.objects = {}, .self = fields[1] == "1"};
+  Scene out;
+  out.name = "scene";
   for (std::size_t i = 2; i < fields.size(); ++i)
-    out.objects.push_back(read_obj(std::string(fields[i])));
+    add_obj(std::string(fields[i]), fields[1] == "1", out);
   return out;
-}
-
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  }
-  return text.substr(0, 300);
 }
 
 /// Writes all of it at once, so that it is there if the next question ends the program.
@@ -115,7 +177,7 @@ std::string asked(std::string_view number, const Ask& ask) {
   } catch (const NoQuestion&) {
     throw;
   } catch (const std::exception& error) {
-    return begin + "refused\t" + one_line(error.what()) + "\n";
+    return begin + "refused\t" + one_line(error.what()).substr(0, 300) + "\n";
   }
 }
 
@@ -133,7 +195,7 @@ class Timer {
 
 std::string ask_pair(const Contestant& contestant, const std::vector<std::string_view>& fields,
                      const std::string& begin) {
-  const ContestPair pair = read_pair(fields);
+  const SuitePair pair = read_pair(fields);
   const Timer timer;
   const bool meets = contestant.pair(pair);
   const std::string ns = timer.nanoseconds();
@@ -142,15 +204,18 @@ std::string ask_pair(const Contestant& contestant, const std::vector<std::string
 
 std::string ask_mesh(const Contestant& contestant, const std::vector<std::string_view>& fields,
                      const std::string& begin) {
-  const ContestScene scene = read_scene(fields);
+  const Scene scene = read_scene(fields);
   const Timer timer;
-  const std::vector<ContestFound> found = contestant.mesh(scene);
+  const std::vector<TrianglePair> found = contestant.mesh(scene);
   const std::string ns = timer.nanoseconds();
+  const std::vector<std::uint32_t> owner = owners(scene);
   std::string out;
-  for (const ContestFound& pair : found) {
+  for (const auto& [a, b] : found) {
     out += begin + "pair";
-    for (const std::uint32_t n : {pair.object_a, pair.triangle_a, pair.object_b, pair.triangle_b})
-      out += "\t" + std::to_string(n);
+    for (const std::uint32_t t : {a, b}) {
+      out += "\t" + std::to_string(owner[t]) + "\t" +
+             std::to_string(t - scene.objects[owner[t]].first_triangle);
+    }
     out += "\n";
   }
   return out + begin + "done\t" + ns + "\n";
@@ -201,11 +266,91 @@ int contest(int argc, char** argv, std::vector<Contestant> contestants) {
   return kWrongCall;
 }
 
-void for_each_object_pair(const ContestScene& scene,
-                          const std::function<void(std::uint32_t, std::uint32_t)>& ask) {
-  for (std::uint32_t a = 0; a < scene.objects.size(); ++a) {
-    for (std::uint32_t b = scene.self ? a : a + 1; b < scene.objects.size(); ++b) ask(a, b);
+void for_each_object_pair(const Scene& scene,
+                          const std::function<void(const Object&, const Object&)>& ask) {
+  for (std::size_t a = 0; a < scene.objects.size(); ++a) {
+    for (std::size_t b = scene.objects[a].self ? a : a + 1; b < scene.objects.size(); ++b)
+      ask(scene.objects[a], scene.objects[b]);
   }
+}
+
+void leave_out_untested(const Scene& scene, std::vector<TrianglePair>& pairs) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  std::erase_if(pairs, [&](const TrianglePair& pair) {
+    const std::uint32_t o = owner[pair.a];
+    return pair.a == pair.b || (o == owner[pair.b] && !scene.objects[o].self);
+  });
+}
+
+Scene two_objects(const SuitePair& pair) {
+  Scene out;
+  out.name = "pair";
+  out.vertices.assign(pair.a.begin(), pair.a.end());
+  out.vertices.insert(out.vertices.end(), pair.b.begin(), pair.b.end());
+  out.triangles = {{0, 1, 2}, {3, 4, 5}};
+  out.source_face = {0, 0};
+  out.objects = {{.name = "0", .first_triangle = 0, .triangle_count = 1},
+                 {.name = "1", .first_triangle = 1, .triangle_count = 1}};
+  return out;
+}
+
+Scene scene_of(const SuitePair& pair) {
+  Scene out = two_objects(pair);
+  if (pair.shared.empty()) return out;
+  out.source_face = {0, 1};
+  out.objects = {{.name = "0", .first_triangle = 0, .triangle_count = 2, .self = true}};
+  for (const auto& [first, second] : pair.shared) out.triangles[1][second] = first;
+  return out;
+}
+
+std::string card_text(const ContestantCard& card) {
+  std::string out;
+  const auto add = [&out](const char* key, const std::string& value) {
+    out += std::string(key) + " " + one_line(value) + "\n";
+  };
+  const auto flag = [&add](const char* key, bool value) { add(key, value ? "yes" : "no"); };
+  add("name", card.name);
+  add("library", card.library);
+  add("means", card.means == Means::closed ? "closed" : "crossing");
+  flag("degenerate", card.degenerate);
+  flag("neighbours", card.neighbours);
+  flag("promises", card.promises);
+  flag("pairs", card.pairs);
+  flag("meshes", card.meshes);
+  if (card.margin > 0) add("margin", shortest(card.margin));
+  add("memory", std::to_string(card.memory_mib));
+  add("call", card.call);
+  add("says", card.says);
+  if (!card.source.empty()) add("source", card.source);
+  add("use", card.use);
+  return out + "\n";
+}
+
+std::vector<ContestantCard> read_cards(std::string_view text, const std::string& where) {
+  std::vector<ContestantCard> out;
+  bool open = false;
+  long line = 0;
+  while (!text.empty()) {
+    ++line;
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string row(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (row.empty()) {
+      open = false;
+      continue;
+    }
+    if (!open) out.emplace_back();
+    open = true;
+    const std::size_t blank = std::min(row.find(' '), row.size() - 1);
+    if (!set(out.back(), row.substr(0, blank), row.substr(blank + 1)))
+      throw Error(where, "the card says '" + row + "'", "see experiments/peers/contestant.h", line);
+  }
+  for (const ContestantCard& card : out) {
+    if (card.name.empty() || card.library.empty() || (!card.pairs && !card.meshes))
+      throw Error(where, "a card lacks its name, its library, or what it can be asked",
+                  "see experiments/peers/contestant.h");
+  }
+  return out;
 }
 
 }  // namespace farcull

@@ -7,7 +7,7 @@
 //
 // The program is called in one of three ways. Fields of a line stand between tabulators. NUMBER is
 // that of the question, which the answer repeats.
-//   PROGRAM list          prints a card for each of its contestants (card.h)
+//   PROGRAM list          prints a card for each of its contestants (ContestantCard)
 //   PROGRAM NAME pairs    reads a pair of triangles a line:
 //                           NUMBER SHARED, then 18 coordinates as decimal numbers that a reader of
 //                           doubles gives back exactly; SHARED as in a suite, `-` for none
@@ -22,49 +22,47 @@
 // Nothing else may be on standard output. The program ends at the end of its input.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <stdexcept>
 #include <string>
-#include <utility>
+#include <string_view>
 #include <vector>
 
-#include "experiments/peers/card.h"
+#include "core/scene/scene.h"
+#include "experiments/suite/reader.h"
 
 namespace farcull {
 
-using ContestPoint = std::array<double, 3>;
-using ContestTriangle = std::array<ContestPoint, 3>;
-
-/// Two triangles, and the corners that are one vertex of a mesh: corner `first` of the first is
-/// corner `second` of the second.
-struct ContestPair {
-  std::array<ContestTriangle, 2> triangles;
-  std::vector<std::pair<int, int>> shared;
+/// Which pairs of triangles a library calls colliding, by its documentation.
+enum class Means : std::uint8_t {
+  closed,    // closed triangles: touching counts
+  crossing,  // those that cross; what it says of touching and coplanar ones is left open
 };
 
-struct ContestMesh {
-  std::vector<ContestPoint> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;  // indices of vertices
-
-  ContestTriangle corners(std::uint32_t triangle) const {
-    const auto& [a, b, c] = triangles[triangle];
-    return {vertices[a], vertices[b], vertices[c]};
-  }
+struct ContestantCard {
+  std::string name = {};     // [a-z0-9-]
+  std::string library = {};  // with its version, such as "CGAL 5.5.1"
+  Means means = Means::closed;
+  bool degenerate = true;   // it takes triangles that are segments or points
+  bool neighbours = false;  // it is told which corners two triangles share, and leaves that out
+  double margin = 0;  // units: triangles that are no farther apart than this may count as colliding
+  bool promises = false;               // ours alone: a miss breaks a promise
+  bool pairs = false, meshes = false;  // what it can be asked
+  std::uint64_t memory_mib = 4096;     // of addresses, that its process may have
+  std::string call = {};               // the function that is called, and with what
+  std::string says = {};               // what its documentation says of exactness and of touching
+  std::string source = {};             // where it says that; others' contestants may leave it out
+  std::string use = {};                // where it is right to be used
 };
 
-struct ContestScene {
-  std::vector<ContestMesh> objects;
-  bool self = false;  // each object is tested against itself too
-};
+/// Lines `KEY VALUE`, and an empty one at the end. The keys are the names above, but `memory`
+/// (MiB); `means` is closed or crossing, and what is true or false is yes or no.
+std::string card_text(const ContestantCard& card);
+/// Reads what `PROGRAM list` printed. Throws Error naming `where` and the line.
+std::vector<ContestantCard> read_cards(std::string_view text, const std::string& where);
 
-/// A pair of triangles of a scene.
-struct ContestFound {
-  std::uint32_t object_a = 0, triangle_a = 0, object_b = 0, triangle_b = 0;
-};
-
-/// What a contestant throws where its library gives an error instead of an answer, or where its
+/// Thrown by a contestant if its library gives an error instead of an answer, or if its
 /// documentation says that it is not made for the question.
 struct Refusal : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -72,8 +70,10 @@ struct Refusal : std::runtime_error {
 
 struct Contestant {
   ContestantCard card;  // `pairs` and `meshes` are set by what is not null below
-  std::function<bool(const ContestPair&)> pair = {};
-  std::function<std::vector<ContestFound>(const ContestScene&)> mesh = {};
+  std::function<bool(const SuitePair&)> pair = {};
+  /// The pairs of triangles of the scene that it calls colliding, in any order; all objects are
+  /// tested against themselves too, or none is. A triangle with itself is no pair.
+  std::function<std::vector<TrianglePair>(const Scene&)> mesh = {};
 };
 
 /// main() of a program of contestants: the protocol above. Any exception of a library is a refusal,
@@ -81,9 +81,19 @@ struct Contestant {
 /// that is no question; 3 without memory.
 int contest(int argc, char** argv, std::vector<Contestant> contestants);
 
-/// Asks about every pair of objects, and about each object with itself where the scene wants that;
+/// Asks about every pair of objects, and about each object with itself where it is tested so;
 /// objects that are equal (a == b) mean itself. A library of two meshes needs no more.
-void for_each_object_pair(const ContestScene& scene,
-                          const std::function<void(std::uint32_t a, std::uint32_t b)>& ask);
+void for_each_object_pair(const Scene& scene,
+                          const std::function<void(const Object& a, const Object& b)>& ask);
+
+/// For libraries that search all objects as one: removes pairs of a triangle with itself, and pairs
+/// of an object that is not tested against itself.
+void leave_out_untested(const Scene& scene, std::vector<TrianglePair>& pairs);
+
+/// Two triangles as two objects.
+Scene two_objects(const SuitePair& pair);
+/// The same, but as one object that is tested against itself where they share corners, so that they
+/// are neighbours.
+Scene scene_of(const SuitePair& pair);
 
 }  // namespace farcull

@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "experiments/peers/score.h"
 #include "experiments/suite/label.h"
-#include "experiments/suite/words.h"
+#include "experiments/suite/reader.h"
 #include "verify/exact.h"
 
 namespace farcull {

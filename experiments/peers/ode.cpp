@@ -63,11 +63,7 @@ class Model {
   Model(const Scene& scene, const Object& object, Merged& merged)
       : first_(object.first_triangle), merged_(merged) {
     const auto triangles = std::span(scene.triangles).subspan(first_, object.triangle_count);
-    std::uint32_t least = triangles[0][0], most = least;
-    for (const auto& triangle : triangles) {
-      least = std::min(least, *std::ranges::min_element(triangle));
-      most = std::max(most, *std::ranges::max_element(triangle));
-    }
+    const auto [least, most] = vertices_of(scene, object);
     faces_.reserve(triangles.size());
     for (const auto& [a, b, c] : triangles) faces_.push_back({a - least, b - least, c - least});
     data_ = dGeomTriMeshDataCreate();
@@ -155,10 +151,8 @@ BenchAnswer collide(const Scene& scene) {
   Merged merged;
   const Stopwatch building;
   std::vector<std::unique_ptr<Model>> models;
-  for (const Object& object : scene.objects) {
-    if (object.triangle_count == 0) continue;
-    models.push_back(std::make_unique<Model>(scene, object, merged));
-  }
+  for (const std::uint32_t o : objects_with_triangles(scene))
+    models.push_back(std::make_unique<Model>(scene, scene.objects[o], merged));
   answer.build_ms = building.ms();
   const Stopwatch finding;
   Contacts contacts(merged);
@@ -177,10 +171,10 @@ std::string refuses_self(const Scene& scene) {
 
 }  // namespace
 
-std::vector<Peer> ode_narrow_peers() {
+LibraryPeers ode_library() {
   // Its collider keeps its state in one place for all threads, so it runs on one.
-  return {
-      {"ode-trimesh", kLibrary, "", [](unsigned) -> BenchRun { return collide; }, refuses_self}};
+  return {.narrow = {{"ode-trimesh", kLibrary, "", [](unsigned) -> BenchRun { return collide; },
+                      refuses_self}}};
 }
 
 }  // namespace farcull

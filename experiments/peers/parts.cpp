@@ -16,6 +16,18 @@ std::uint64_t next_id() {
 
 }  // namespace
 
+std::vector<std::uint32_t> objects_with_triangles(const Scene& scene) {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    if (scene.objects[o].triangle_count > 0) out.push_back(o);
+  }
+  return out;
+}
+
+std::string refuse_degenerate(const Scene& scene, const char* reason) {
+  return degenerate_triangles(scene) == 0 ? "" : reason;
+}
+
 PeerScene::PeerScene(const Scene& scene, bool with_boxes)
     : scene(scene),
       boxes(with_boxes ? triangle_boxes(scene) : std::vector<Box>{}),

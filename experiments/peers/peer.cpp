@@ -1,85 +1,94 @@
-// The list of peers, with entries for libraries that this build is without.
+// The lists of peers, in the order of tables. An entry that no adapter of this build gives says why
+// it is missing.
 #include "experiments/peers/peer.h"
 
-#include <iterator>
+#include <algorithm>
+#include <span>
 #include <utility>
-
-#include "experiments/peers/distance_peers.h"
 
 namespace farcull {
 namespace {
 
-#if !FARCULL_WITH_FCL || !FARCULL_WITH_EMBREE || !FARCULL_WITH_BULLET || !FARCULL_WITH_ODE
-Peer missing(const std::string& name, const std::string& library, const std::string& debian) {
-  return {.name = name,
-          .library = library,
-          .missing = "built without " + library + " (Debian: " + debian + ")"};
-}
+struct Known {
+  const char* name;
+  const char* library;
+  const char* package;  // of Debian
+};
+
+constexpr Known kBroad[] = {{"cgal-boxes", "CGAL", "libcgal-dev"},
+                            {"cgal-boxes-2000", "CGAL", "libcgal-dev"},
+                            {"cgal-boxes-parallel", "CGAL", "libcgal-dev"},
+                            {"cgal-boxes-2000-parallel", "CGAL", "libcgal-dev"},
+                            {"cgal-object-pairs", "CGAL", "libcgal-dev"},
+                            {"cgal-aabb", "CGAL", "libcgal-dev"},
+                            {"cgal-aabb-triangles", "CGAL", "libcgal-dev"},
+                            {"cgal-self-intersections", "CGAL", "libcgal-dev"},
+                            {"cgal-self-intersections-parallel", "CGAL", "libcgal-dev"},
+                            {"fcl-obbrss", "FCL", "libfcl-dev"},
+                            {"fcl-obb", "FCL", "libfcl-dev"},
+                            {"fcl-aabb", "FCL", "libfcl-dev"},
+                            {"embree-low", "Embree 3", "libembree-dev"},
+                            {"embree-medium", "Embree 3", "libembree-dev"},
+                            {"bullet-gimpact", "Bullet in double", "libbullet-dev"}};
+constexpr Known kNarrow[] = {{"fcl-float", "FCL", "libfcl-dev"},
+                             {"fcl-double", "FCL", "libfcl-dev"},
+                             {"ode-trimesh", "ODE", "libode-dev"}};
+constexpr Known kDistances[] = {{"fcl-double", "FCL", "libfcl-dev"},
+                                {"fcl-float", "FCL", "libfcl-dev"},
+                                {"cgal-aabb", "CGAL", "libcgal-dev"},
+                                {"embree-points", "Embree 3", "libembree-dev"}};
+
+std::vector<LibraryPeers> libraries_of_build([[maybe_unused]] unsigned threads) {
+  std::vector<LibraryPeers> all;
+#if FARCULL_WITH_CGAL
+  all.push_back(cgal_library(threads));
 #endif
+#if FARCULL_WITH_FCL
+  all.push_back(fcl_library());
+#endif
+#if FARCULL_WITH_EMBREE
+  all.push_back(embree_library());
+#endif
+#if FARCULL_WITH_BULLET
+  all.push_back(bullet_library());
+#endif
+#if FARCULL_WITH_ODE
+  all.push_back(ode_library());
+#endif
+  return all;
+}
+
+std::string why_missing(const Known& known) {
+  if (!FARCULL_WITH_PEERS) return "built without peers (-DFARCULL_PEERS=OFF)";
+  return std::string("built without ") + known.library + " (Debian: " + known.package + ")";
+}
+
+/// The peers of a list, from one part of what the adapters give.
+template <class PeerKind>
+std::vector<PeerKind> listed(std::span<const Known> list, std::vector<PeerKind> LibraryPeers::*part,
+                             unsigned threads) {
+  std::vector<LibraryPeers> libraries = libraries_of_build(threads);
+  std::vector<PeerKind> out;
+  for (const Known& known : list) {
+    PeerKind peer{.name = known.name, .library = known.library, .missing = why_missing(known)};
+    for (LibraryPeers& library : libraries) {
+      for (PeerKind& given : library.*part) {
+        if (given.name == known.name) peer = std::move(given);
+      }
+    }
+    out.push_back(std::move(peer));
+  }
+  return out;
+}
 
 }  // namespace
 
-#if !FARCULL_WITH_FCL
-std::vector<Peer> fcl_peers() {
-  return {missing("fcl-obbrss", "FCL", "libfcl-dev"), missing("fcl-obb", "FCL", "libfcl-dev"),
-          missing("fcl-aabb", "FCL", "libfcl-dev")};
-}
-
-std::vector<Peer> fcl_narrow_peers() {
-  return {missing("fcl-float", "FCL", "libfcl-dev"), missing("fcl-double", "FCL", "libfcl-dev")};
-}
-
-std::vector<DistancePeer> fcl_distance_peers() {
-  const std::string missing = "built without FCL (Debian: libfcl-dev)";
-  return {{.name = "fcl-double", .library = "FCL", .missing = missing},
-          {.name = "fcl-float", .library = "FCL", .missing = missing, .comparable = false}};
-}
-#endif
-
-#if !FARCULL_WITH_EMBREE
-std::vector<Peer> embree_peers() {
-  return {missing("embree-low", "Embree 3", "libembree-dev"),
-          missing("embree-medium", "Embree 3", "libembree-dev")};
-}
-
-std::vector<DistancePeer> embree_distance_peers() {
-  return {{.name = "embree-points",
-           .library = "Embree 3",
-           .missing = "built without Embree 3 (Debian: libembree-dev)",
-           .comparable = false}};
-}
-#endif
-
-#if !FARCULL_WITH_BULLET
-std::vector<Peer> bullet_peers() {
-  return {missing("bullet-gimpact", "Bullet in double", "libbullet-dev")};
-}
-#endif
-
-#if !FARCULL_WITH_ODE
-std::vector<Peer> ode_narrow_peers() { return {missing("ode-trimesh", "ODE", "libode-dev")}; }
-#endif
-
-std::vector<Peer> narrow_peers() {
-  std::vector<Peer> all = fcl_narrow_peers();
-  for (Peer& peer : ode_narrow_peers()) all.push_back(std::move(peer));
-  return all;
-}
-
-std::vector<DistancePeer> distance_peers() {
-  std::vector<DistancePeer> all = fcl_distance_peers();
-  for (std::vector<DistancePeer> some : {cgal_distance_peers(), embree_distance_peers()})
-    all.insert(all.end(), std::move_iterator(some.begin()), std::move_iterator(some.end()));
-  return all;
-}
-
 std::vector<Peer> all_peers(unsigned threads) {
-  std::vector<Peer> all = cgal_peers(threads);
-  for (std::vector<Peer> some :
-       {cgal_self_peers(threads), fcl_peers(), embree_peers(), bullet_peers()}) {
-    all.insert(all.end(), std::move_iterator(some.begin()), std::move_iterator(some.end()));
-  }
-  return all;
+  return listed(kBroad, &LibraryPeers::broad, threads);
+}
+std::vector<Peer> narrow_peers() { return listed(kNarrow, &LibraryPeers::narrow, 1); }
+std::vector<DistancePeer> distance_peers() {
+  return listed(kDistances, &LibraryPeers::distances, 1);
 }
 
 }  // namespace farcull

@@ -3,11 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "experiments/peers/card.h"
+#include "experiments/peers/contestant.h"
 #include "experiments/suite/reader.h"
 
 namespace farcull {
@@ -85,5 +86,28 @@ MeshAnswer ask_mesh(const Invited& invited, const SuiteMesh& mesh, const std::st
 /// The contestants of a program. Throws Error where it does not start, does not end within the
 /// limit, or prints no cards.
 std::vector<Invited> invite(const ContestProgram& program, const ContestLimits& limits = {});
+
+/// A contestant that the study knows, whether this build has it or not.
+struct KnownContestant {
+  std::string name = {};               // as its card says
+  std::string program = {};            // farcull_contestant_PROGRAM
+  std::string package = {};            // that it needs; empty: none
+  bool pairs = false, meshes = false;  // what it is asked
+  bool ours = false;                   // a method of farcull
+};
+
+/// In the order of tables: the same in every build.
+const std::vector<KnownContestant>& known_contestants();
+/// Throws Error if no contestant has that name.
+const KnownContestant& known_contestant(const std::string& name);
+
+/// A contestant, or why it cannot be asked.
+struct Invitation {
+  std::optional<Invited> invited;
+  std::string missing = {};
+};
+/// Looks for its program in the folder `contestants` beside this program, or where the variable
+/// FARCULL_CONTESTANTS says, and asks it for its card, once in a process.
+Invitation invite_known(const KnownContestant& contestant);
 
 }  // namespace farcull

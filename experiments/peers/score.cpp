@@ -26,29 +26,10 @@ constexpr std::array kCounts = {&Score::asked,     &Score::answered,  &Score::mi
 bool degenerate(const std::array<Vec3, 3>& corners) { return shape(corners) != Shape::triangle; }
 
 void count_outcome(ContestOutcome outcome, Score& score) {
-  switch (outcome) {
-    case ContestOutcome::refused:
-      ++score.refused;
-      break;
-    case ContestOutcome::unanswered:
-      ++score.unanswered;
-      break;
-    case ContestOutcome::crashed:
-      ++score.crashed;
-      break;
-    case ContestOutcome::hung:
-      ++score.hung;
-      break;
-    case ContestOutcome::no_memory:
-      ++score.no_memory;
-      break;
-    case ContestOutcome::not_asked:
-      ++score.not_asked;
-      break;
-    case ContestOutcome::apart:
-    case ContestOutcome::meets:
-      break;
-  }
+  const std::array<std::uint64_t*, 8> counts = {nullptr,           nullptr,         &score.refused,
+                                                &score.unanswered, &score.crashed,  &score.hung,
+                                                &score.no_memory,  &score.not_asked};
+  if (std::uint64_t* count = counts.at(static_cast<std::size_t>(outcome))) ++*count;
 }
 
 void note_reason(const std::string& reason, Score& score) {

@@ -35,7 +35,7 @@ void add(const Score& more, Score& to);
 /// A pair of a suite that a contestant is asked about: neighbours only where its card says so.
 bool takes(const ContestantCard& card, const SuitePair& pair);
 
-/// What the documentation of a contestant promises about a pair: true or false; empty: nothing. It
+/// The answer about a pair that the documentation of a contestant promises; empty: no promise. It
 /// promises the label to the pairs that cross and to those that are apart. About those that touch
 /// or overlap in a plane it promises the label where it speaks of closed triangles. About
 /// degenerate triangles it promises nothing where it does not take them, and nothing about
@@ -52,7 +52,7 @@ Score score_mesh(const ContestantCard& card, const SuiteMesh& mesh, const MeshAn
 
 /// One line without `;` between scores: for a row of a store.
 std::string scores_text(const std::vector<Score>& scores);
-/// The inverse. Throws Error for what is none.
+/// The inverse of scores_text(). Throws Error for any other text.
 std::vector<Score> parse_scores(const std::string& text);
 
 }  // namespace farcull

@@ -14,18 +14,12 @@
 namespace farcull {
 namespace {
 
-std::array<Vec3, 3> corners(const ContestTriangle& t) {
-  return {Vec3(t[0].data()), Vec3(t[1].data()), Vec3(t[2].data())};
-}
-
-bool truth(const ContestPair& pair) {
-  return intersects(corners(pair.triangles[0]), corners(pair.triangles[1]));
-}
+bool truth(const SuitePair& pair) { return intersects(pair.a, pair.b); }
 
 /// The first coordinate numbers the pairs of the tests.
-int number_of(const ContestPair& pair) { return static_cast<int>(pair.triangles[0][0][0]); }
+int number_of(const SuitePair& pair) { return static_cast<int>(pair.a[0][0]); }
 
-Contestant liar(const std::string& name, std::function<bool(const ContestPair&)> pair) {
+Contestant liar(const std::string& name, std::function<bool(const SuitePair&)> pair) {
   return {.card = {.name = name,
                    .library = "liar 1",
                    .call = "nothing",
@@ -34,14 +28,13 @@ Contestant liar(const std::string& name, std::function<bool(const ContestPair&)>
           .pair = std::move(pair)};
 }
 
-std::vector<ContestFound> all_pairs(const ContestScene& scene) {
-  std::vector<ContestFound> out;
-  for_each_object_pair(scene, [&](std::uint32_t a, std::uint32_t b) {
-    for (std::uint32_t t = 0; t < scene.objects[a].triangles.size(); ++t) {
-      for (std::uint32_t u = 0; u < scene.objects[b].triangles.size(); ++u) {
-        if ((a != b || t < u) &&
-            truth({{scene.objects[a].corners(t), scene.objects[b].corners(u)}, {}}))
-          out.push_back({a, t, b, u});
+std::vector<TrianglePair> all_pairs(const Scene& scene) {
+  std::vector<TrianglePair> out;
+  for_each_object_pair(scene, [&](const Object& a, const Object& b) {
+    for (std::uint32_t i = 0; i < a.triangle_count; ++i) {
+      for (std::uint32_t k = 0; k < b.triangle_count; ++k) {
+        const std::uint32_t t = a.first_triangle + i, u = b.first_triangle + k;
+        if (t < u && intersects(scene.corners(t), scene.corners(u))) out.push_back({t, u});
       }
     }
   });
@@ -66,9 +59,9 @@ int main(int argc, char** argv) {
   Contestant honest = liar("honest", truth);
   honest.mesh = all_pairs;
   Contestant drops = liar(
-      "drops", [](const ContestPair& pair) { return truth(pair) && number_of(pair) % 100 != 99; });
-  drops.mesh = [](const ContestScene& scene) {
-    std::vector<ContestFound> found = all_pairs(scene), out;
+      "drops", [](const SuitePair& pair) { return truth(pair) && number_of(pair) % 100 != 99; });
+  drops.mesh = [](const Scene& scene) {
+    std::vector<TrianglePair> found = all_pairs(scene), out;
     for (std::size_t i = 0; i < found.size(); ++i) {
       if (i % 100 != 99) out.push_back(found[i]);
     }
@@ -77,12 +70,12 @@ int main(int argc, char** argv) {
   return contest(argc, argv,
                  {honest, drops,
                   liar("crashes",
-                       [](const ContestPair& pair) {
+                       [](const SuitePair& pair) {
                          if (number_of(pair) % 100 == 99) std::raise(SIGSEGV);
                          return truth(pair);
                        }),
                   liar("asserts",
-                       [](const ContestPair& pair) {
+                       [](const SuitePair& pair) {
                          if (number_of(pair) == 7) {
                            std::fputs("liar.cpp: Assertion `honest' failed.\n", stderr);
                            std::abort();
@@ -90,39 +83,39 @@ int main(int argc, char** argv) {
                          return truth(pair);
                        }),
                   liar("hangs",
-                       [](const ContestPair& pair) {
+                       [](const SuitePair& pair) {
                          if (number_of(pair) == 150) hang();
                          return truth(pair);
                        }),
                   liar("takes-all-memory",
-                       [](const ContestPair& pair) {
+                       [](const SuitePair& pair) {
                          if (number_of(pair) == 33) take_all_memory();
                          return truth(pair);
                        }),
                   // Keeps what it takes: no pair of its own takes much.
                   liar("leaks",
-                       [kept = std::vector<std::vector<char>>()](const ContestPair& pair) mutable {
+                       [kept = std::vector<std::vector<char>>()](const SuitePair& pair) mutable {
                          kept.emplace_back(std::size_t{4} << 20, 'x');
                          return truth(pair);
                        }),
                   liar("differs",
-                       [asked = 0](const ContestPair& pair) mutable {
+                       [asked = 0](const SuitePair& pair) mutable {
                          // Right on every question of the first process, wrong on the first of a
                          // later one.
                          return ++asked == 1 && number_of(pair) != 0 ? !truth(pair) : truth(pair);
                        }),
                   liar("leaves",
-                       [](const ContestPair& pair) {
+                       [](const SuitePair& pair) {
                          if (number_of(pair) == 120) std::_Exit(0);
                          return truth(pair);
                        }),
                   liar("refuses",
-                       [](const ContestPair& pair) {
+                       [](const SuitePair& pair) {
                          if (number_of(pair) % 10 == 3) throw Refusal("not this one");
                          return truth(pair);
                        }),
-                  liar("blind", [](const ContestPair&) { return false; }),
-                  liar("talks", [](const ContestPair& pair) {
+                  liar("blind", [](const SuitePair&) { return false; }),
+                  liar("talks", [](const SuitePair& pair) {
                     std::printf("talk\n");  // goes to standard error, and does no harm
                     std::fflush(stdout);
                     return truth(pair);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/peers/known.h"
+#include "experiments/peers/runner.h"
 #include "experiments/suite/reader.h"
 
 namespace farcull {

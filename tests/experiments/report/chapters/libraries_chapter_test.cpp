@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "core/base/error.h"
-#include "experiments/peers/known.h"
+#include "experiments/peers/runner.h"
 #include "experiments/peers/score.h"
 #include "experiments/report/chapters/chapters.h"
 #include "experiments/report/chapters/numbers.h"
