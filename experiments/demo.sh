@@ -1,11 +1,10 @@
 #!/usr/bin/env bash
 # The main job in one command, on a machine with nothing but Debian and a checkout.
-# 1. Installs the packages that are missing, builds the program without the libraries that only
-#    bench and studies compare with (no tests), fetches real meshes meanwhile.
+# 1. Installs the packages that are missing, builds the command compare, fetches real meshes meanwhile.
 # 2. Compares FAR, CULLIDE, FAR pairs and the method exact on two bunnies that interpenetrate, and
 #    prints a table. Exact predicates check every pair that a method culled.
-# 3. Draws a picture of what CULLIDE misses and FAR finds while the rest is built, measures the small
-#    grids of all studies, and makes the report.
+# 3. Builds the whole program (no tests), draws a picture of what CULLIDE misses and FAR finds,
+#    measures the small grids of all studies, and makes the report.
 # Exit status: that of the comparison, else that of the first step after it that failed; 2 if the
 # comparison did not start.
 set -euo pipefail
@@ -17,9 +16,9 @@ cd "$farcull_root"
 farcull_setup
 bash experiments/meshes.sh &
 fetching=$!
-# The program that prints the first table; of a whole build it is the one that is there.
+# Where the whole program is not there yet, the first table does not wait for it.
 program=build/farcull
-if ! farcull_is_built && [[ ! -e $program ]]; then program=build/farcull_without_peers; fi
+if ! farcull_is_built && [[ ! -e $program ]]; then program=build/farcull_compare; fi
 farcull_build "${program##*/}"
 
 scene=two-bunnies
@@ -55,16 +54,14 @@ step() {
   if ((status == 0)); then status=$failed; fi
 }
 
-farcull_build farcull &
-building=$!
+farcull_build farcull
 picture=build/demo/compare.png
-rm -f "$picture"
-step "a picture of the same scene; missed triangles are red" "$program" picture "$scene" \
-  --compare cullide:128,cullide:1024,far:128 -o "$picture"
-wait "$building" || exit 2
 # Each commit has a store of its own, since a store refuses rows of another commit.
 commit=$(build/farcull --version)
 studies=build/demo/results-${commit##* }
+rm -f "$picture"
+step "a picture of the same scene; missed triangles are red" build/farcull picture "$scene" \
+  --compare cullide:128,cullide:1024,far:128 -o "$picture"
 step "the small grids of all studies, some minutes; points that an earlier demo measured are kept" \
   build/farcull experiment all --quick --resume --out "$studies"
 step "the report about the studies" build/farcull report "$studies"

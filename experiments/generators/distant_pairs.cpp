@@ -28,7 +28,7 @@ std::vector<double> powers_of_ten(std::initializer_list<const char*> list) {
   return out;
 }
 
-Frame frame_of(Draws& draws) {
+Frame frame_of(RandomDraws& draws) {
   return draws.chance(2) ? straight_frame(draws) : leaning_frame(draws);
 }
 
@@ -42,7 +42,7 @@ DrawnPair mapped(const Frame& frame, const Corners& a, const Corners& b) {
 }
 
 /// A corner of b above the inside of a, by the gap; below it where the gap is negative.
-DrawnPair gap_face(Draws& draws, double gap) {
+DrawnPair gap_face(RandomDraws& draws, double gap) {
   const Corners a = {Vec3(draws.coarse(-1, 0), -1, 0), Vec3(1, draws.coarse(-0.5, 0.5), 0),
                      Vec3(draws.coarse(-1, 0), 1, 0)};
   const double x = draws.coarse(0, 0.25);
@@ -58,7 +58,7 @@ DrawnPair gap_face(Draws& draws, double gap) {
 }
 
 /// An edge of b across an edge of a, above it by the gap; below it where the gap is negative.
-DrawnPair gap_edge(Draws& draws, double gap) {
+DrawnPair gap_edge(RandomDraws& draws, double gap) {
   const double left = -draws.coarse(0.25, 1);
   const double right = draws.coarse(0.25, 1);
   const double depth = -draws.coarse(0.25, 1);
@@ -74,7 +74,7 @@ DrawnPair gap_edge(Draws& draws, double gap) {
 }
 
 /// Two triangles of about the size 1 that may meet in any way.
-DrawnPair near_pair(Draws& draws) {
+DrawnPair near_pair(RandomDraws& draws) {
   const double side = draws.sign();
   const double gap = std::ldexp(side, -draws.below(12));
   switch (draws.below(3)) {
@@ -101,7 +101,7 @@ DrawnPair each_corner(DrawnPair pair, const Function& function) {
 }
 
 /// Moved away from the origin, so that coordinates lose their last bits.
-DrawnPair far_away(Draws& draws, double distance) {
+DrawnPair far_away(RandomDraws& draws, double distance) {
   const DrawnPair pair = near_pair(draws);
   Vec3 to = draws.point();
   to[draws.below(3)] = draws.sign();
@@ -109,7 +109,7 @@ DrawnPair far_away(Draws& draws, double distance) {
 }
 
 /// Scaled, half of the time by a power of two, which keeps contact exact.
-DrawnPair scales(Draws& draws, double scale) {
+DrawnPair scales(RandomDraws& draws, double scale) {
   const DrawnPair pair = draws.chance(3) ? gap_face(draws, 0) : near_pair(draws);
   if (draws.chance(2)) {
     int exponent = 0;
@@ -120,7 +120,7 @@ DrawnPair scales(Draws& draws, double scale) {
 }
 
 /// A triangle and one that is so many times smaller, at its corner, edge or face.
-DrawnPair mixed_scales(Draws& draws, double ratio) {
+DrawnPair mixed_scales(RandomDraws& draws, double ratio) {
   const Frame frame = frame_of(draws);
   const auto drawn = [&] {
     const double x = draws.coarse(-1, 1);
@@ -141,7 +141,7 @@ DrawnPair mixed_scales(Draws& draws, double ratio) {
   return mapped(frame, a, b);
 }
 
-DrawnPair random_pair(Draws& draws, double) {
+DrawnPair random_pair(RandomDraws& draws, double) {
   DrawnPair out;
   for (Vec3& p : out.a) p = draws.point();
   for (Vec3& p : out.b) p = draws.point();
@@ -149,7 +149,7 @@ DrawnPair random_pair(Draws& draws, double) {
 }
 
 /// A long edge through `centre`, and the third corner beside the edge by 1 / aspect.
-Corners sliver(Draws& draws, const Vec3& centre, double aspect) {
+Corners sliver(RandomDraws& draws, const Vec3& centre, double aspect) {
   const Vec3 half = draws.point();
   const Vec3 beside = draws.point() / aspect;
   const double along = draws.between(-1, 1);
@@ -157,7 +157,7 @@ Corners sliver(Draws& draws, const Vec3& centre, double aspect) {
 }
 
 /// Two slivers whose long edges pass each other at about their width.
-DrawnPair slivers(Draws& draws, double aspect) {
+DrawnPair slivers(RandomDraws& draws, double aspect) {
   const Vec3 centre = draws.point();
   const Corners a = sliver(draws, centre, aspect);
   const bool contact = draws.chance(4);
@@ -176,7 +176,7 @@ DrawnPair in_units(DrawnPair pair, double bits) {
 
 /// A point, a segment or a triangle that has the point `at`: in its inside, on an edge or as a
 /// corner.
-Corners shape_with(Draws& draws, int dimension, const Vec3& at, double extent) {
+Corners shape_with(RandomDraws& draws, int dimension, const Vec3& at, double extent) {
   if (dimension == 0) return {at, at, at};
   const Vec3 u = draws.whole_point(extent);
   if (dimension == 1) {
@@ -203,12 +203,12 @@ Corners shape_with(Draws& draws, int dimension, const Vec3& at, double extent) {
 }
 
 /// b moved by a unit, or far, every third time.
-Vec3 step_aside(Draws& draws) {
+Vec3 step_aside(RandomDraws& draws) {
   if (!draws.chance(3)) return Vec3::Zero();
   return draws.whole_point(1);
 }
 
-DrawnPair points(Draws& draws, double bits) {
+DrawnPair points(RandomDraws& draws, double bits) {
   const double extent = std::ldexp(1, static_cast<int>(bits) - 3);
   const Vec3 at = draws.whole_point(extent);
   const Corners a = {at, at, at};
@@ -216,7 +216,7 @@ DrawnPair points(Draws& draws, double bits) {
   return in_units({a, shape_with(draws, draws.below(3), at + step, extent)}, bits);
 }
 
-DrawnPair segments(Draws& draws, double bits) {
+DrawnPair segments(RandomDraws& draws, double bits) {
   const double extent = std::ldexp(1, static_cast<int>(bits) - 3);
   const Vec3 at = draws.whole_point(extent);
   const Corners a = shape_with(draws, 1, at, extent);
@@ -232,7 +232,7 @@ DrawnPair segments(Draws& draws, double bits) {
 }
 
 /// Neighbours by their coordinates along the axes of a frame.
-DrawnPair fold(Draws& draws, const Corners& a, const Corners& b) {
+DrawnPair fold(RandomDraws& draws, const Corners& a, const Corners& b) {
   DrawnPair out = mapped(frame_of(draws), a, b);
   out.neighbours = true;
   return out;
@@ -240,7 +240,7 @@ DrawnPair fold(Draws& draws, const Corners& a, const Corners& b) {
 
 /// Both have the edge from 0 to 1 on the x axis; a lies in the plane z = 0, and b's third corner is
 /// above it by the height, on the side of a or on the other.
-DrawnPair fold_edge(Draws& draws, double height) {
+DrawnPair fold_edge(RandomDraws& draws, double height) {
   const double x = draws.coarse(0.25, 1);
   const double y = draws.coarse(0.25, 1);
   const double u = draws.coarse(-0.5, 1.5);
@@ -253,7 +253,7 @@ DrawnPair fold_edge(Draws& draws, double height) {
 
 /// Both have the corner 0; a lies in the plane z = 0. b has a corner above the inside of a by the
 /// height, or below it where that is negative, and one far above.
-DrawnPair fold_vertex(Draws& draws, double height) {
+DrawnPair fold_vertex(RandomDraws& draws, double height) {
   const double x = draws.coarse(0.5, 1);
   const double y = draws.coarse(0.5, 1);
   const bool outside = draws.chance(4);

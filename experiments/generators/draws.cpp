@@ -7,7 +7,7 @@
 namespace farcull {
 namespace {
 
-void shuffle(Draws& draws, std::array<Vec3, 3>& t) {
+void shuffle(RandomDraws& draws, std::array<Vec3, 3>& t) {
   std::swap(t[0], t[draws.below(3)]);
   std::swap(t[1], t[1 + draws.below(2)]);
 }
@@ -22,14 +22,14 @@ Frame scaled_rotation(double w, double x, double y, double z) {
 
 }  // namespace
 
-DrawnPair shuffled(Draws& draws, DrawnPair pair) {
+DrawnPair shuffled(RandomDraws& draws, DrawnPair pair) {
   shuffle(draws, pair.a);
   shuffle(draws, pair.b);
   if (draws.chance(2)) std::swap(pair.a, pair.b);
   return pair;
 }
 
-Frame straight_frame(Draws& draws) {
+Frame straight_frame(RandomDraws& draws) {
   Frame out{{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}};
   std::swap(out.axis[0], out.axis[draws.below(3)]);
   std::swap(out.axis[1], out.axis[1 + draws.below(2)]);
@@ -37,7 +37,7 @@ Frame straight_frame(Draws& draws) {
   return out;
 }
 
-Frame leaning_frame(Draws& draws) {
+Frame leaning_frame(RandomDraws& draws) {
   const double w = draws.sign();
   const double x = draws.sign();
   const double y = draws.sign();
@@ -45,7 +45,7 @@ Frame leaning_frame(Draws& draws) {
   return scaled_rotation(w, x, y, 0);
 }
 
-Frame turned_frame(Draws& draws) {
+Frame turned_frame(RandomDraws& draws) {
   const double w = draws.whole(1, 9);
   const double x = draws.whole(-9, 9);
   const double y = draws.whole(-9, 9);

@@ -12,7 +12,7 @@
 
 namespace farcull {
 
-class Draws : public RandomNumbers {
+class RandomDraws : public RandomNumbers {
  public:
   using RandomNumbers::RandomNumbers;
 
@@ -49,7 +49,7 @@ struct DrawnPair {
   bool neighbours = false;  // corners at equal positions are one vertex of a mesh
 };
 /// The same pair with corners in any order, and in any order itself: predicates branch on both.
-DrawnPair shuffled(Draws& draws, DrawnPair pair);
+DrawnPair shuffled(RandomDraws& draws, DrawnPair pair);
 
 /// Three axes at right angles and of equal length.
 struct Frame {
@@ -60,11 +60,11 @@ struct Frame {
 };
 
 /// The axes of the coordinates, in any order and direction.
-Frame straight_frame(Draws& draws);
+Frame straight_frame(RandomDraws& draws);
 /// A rotation times a whole number, with whole entries of at most 4: of a quaternion with parts
 /// from -1 to 1. Not straight.
-Frame leaning_frame(Draws& draws);
+Frame leaning_frame(RandomDraws& draws);
 /// A rotation whose entries are rounded: of a quaternion with parts from -9 to 9.
-Frame turned_frame(Draws& draws);
+Frame turned_frame(RandomDraws& draws);
 
 }  // namespace farcull

@@ -17,7 +17,7 @@ struct PairFamily {
   std::string description;     // one line
   std::string parameter;       // the meaning of its number; "" for none
   std::vector<double> values;  // of the number; pair i has the i-th, and they come again and again
-  DrawnPair (*make)(Draws& draws, double parameter);
+  DrawnPair (*make)(RandomDraws& draws, double parameter);
 };
 
 /// In the order of the files.
@@ -42,7 +42,7 @@ struct MeshFamily {
   std::string parameter;    // the meaning of its number
   bool self = false;        // its objects are tested against themselves too
   /// The objects; `detail` says how fine, each family counts it in its own way.
-  std::vector<SuiteObject> (*make)(Draws& draws, double parameter, int detail);
+  std::vector<SuiteObject> (*make)(RandomDraws& draws, double parameter, int detail);
   struct Member {
     double parameter = 0;
     int detail = 0;

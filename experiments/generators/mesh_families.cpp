@@ -44,7 +44,7 @@ double folded(int i, int width) {
 }
 
 /// A cloth in four layers with the gap between them, and noise of half a gap.
-Objects cloth(Draws& draws, double gap, int cells) {
+Objects cloth(RandomDraws& draws, double gap, int cells) {
   const int width = cells / 2;
   return {sheet(4 * width, cells, [&](int i, int j) {
     const double x = folded(i, width) + 0.2 * draws.between(-1, 1);
@@ -55,14 +55,14 @@ Objects cloth(Draws& draws, double gap, int cells) {
 }
 
 /// A sheet folded flat: every layer is in the plane z = 0 exactly, a little aside of the others.
-Objects accordion(Draws&, double layers, int width) {
+Objects accordion(RandomDraws&, double layers, int width) {
   const int columns = static_cast<int>(layers) * width;
   return {sheet(columns, 2 * width,
                 [&](int i, int j) { return Vec3(folded(i, width), j + i * 0x1p-10, 0); })};
 }
 
 /// A sheet whose vertices are moved by up to `amount` cells.
-Objects crumpled(Draws& draws, double amount, int cells) {
+Objects crumpled(RandomDraws& draws, double amount, int cells) {
   return {sheet(cells, cells,
                 [&](int i, int j) { return Vec3(Vec3(i, j, 0) + amount * draws.point()); })};
 }
@@ -85,7 +85,7 @@ Vec3 on_circle(int i, int per_quarter) {
 }
 
 /// A tube that winds three times around; windings are one pitch (in diameters) above each other.
-Objects rope(Draws& draws, double pitch, int per_quarter) {
+Objects rope(RandomDraws& draws, double pitch, int per_quarter) {
   const int around = 12;
   const int turn = 4 * per_quarter;
   SuiteObject out = sheet(3 * turn, around, [&](int i, int j) {
@@ -104,7 +104,7 @@ Objects rope(Draws& draws, double pitch, int per_quarter) {
 }
 
 /// Triangles that share no vertices.
-Objects soup(Draws& draws, double size, int count) {
+Objects soup(RandomDraws& draws, double size, int count) {
   SuiteObject out;
   for (int i = 0; i < count; ++i) {
     const Vec3 at = draws.point();
@@ -115,7 +115,7 @@ Objects soup(Draws& draws, double size, int count) {
 }
 
 /// Triangles with one corner in common, all near one plane.
-Objects fan(Draws& draws, double spread, int count) {
+Objects fan(RandomDraws& draws, double spread, int count) {
   SuiteObject out;
   out.vertices = {Vec3::Zero()};
   for (int i = 0; i < count; ++i) {
@@ -133,7 +133,7 @@ Objects fan(Draws& draws, double spread, int count) {
 
 /// Pages with one edge in common; some of them lie in one plane, on one side of the edge or on
 /// both.
-Objects book(Draws& draws, double pages, int directions) {
+Objects book(RandomDraws& draws, double pages, int directions) {
   SuiteObject out;
   out.vertices = {Vec3(0, 0, -1), Vec3(0, 0, 1)};
   for (int i = 0; i < static_cast<int>(pages); ++i) {
@@ -148,7 +148,7 @@ Objects book(Draws& draws, double pages, int directions) {
 }
 
 /// A crumpled sheet, of whose triangles one in so many is a segment or a point.
-Objects degenerate(Draws& draws, double one_in, int cells) {
+Objects degenerate(RandomDraws& draws, double one_in, int cells) {
   SuiteObject out = sheet(cells, cells, [&](int i, int j) {
     const double x = i + draws.coarse(-0.75, 0.75);
     const double y = j + draws.coarse(-0.75, 0.75);
@@ -185,7 +185,7 @@ void each_vertex(SuiteObject& object, const Function& function) {
 }
 
 /// A closed surface with bumps, and with noise of about a twentieth of an edge.
-SuiteObject scan(Draws& draws, int level) {
+SuiteObject scan(RandomDraws& draws, int level) {
   SuiteObject out = sphere(level);
   std::array<Vec3, 8> bumps;
   for (Vec3& bump : bumps) bump = draws.point();
@@ -203,7 +203,7 @@ SuiteObject scan(Draws& draws, int level) {
 }
 
 /// Two scans; the outermost vertex of the second along x is inside the first by the depth.
-Objects scans(Draws& draws, double depth, int level) {
+Objects scans(RandomDraws& draws, double depth, int level) {
   SuiteObject a = scan(draws, level);
   SuiteObject b = scan(draws, level);
   const auto by_x = [](const Vec3& p, const Vec3& q) { return p.x() < q.x(); };
@@ -214,7 +214,7 @@ Objects scans(Draws& draws, double depth, int level) {
   return {std::move(a), std::move(b)};
 }
 
-Objects far_scans(Draws& draws, double distance, int level) {
+Objects far_scans(RandomDraws& draws, double distance, int level) {
   Objects out = scans(draws, 0.25, level);
   const Vec3 to(1, draws.between(-1, 1), -0.75);
   for (SuiteObject& object : out)
@@ -222,7 +222,7 @@ Objects far_scans(Draws& draws, double distance, int level) {
   return out;
 }
 
-Objects scaled_scans(Draws& draws, double scale, int level) {
+Objects scaled_scans(RandomDraws& draws, double scale, int level) {
   Objects out = scans(draws, 0.25, level);
   for (SuiteObject& object : out)
     each_vertex(object, [&](const Vec3& p) { return Vec3(p * scale); });
@@ -256,7 +256,7 @@ SuiteObject plate(const Vec3& lo, const Vec3& hi, int steps) {
 
 /// Two plates that lie on each other, and a bar through both, made narrower by 2^halvings. Every
 /// coordinate is short, so the faces are in one plane exactly.
-Objects plates(Draws&, double slivers, int halvings) {
+Objects plates(RandomDraws&, double slivers, int halvings) {
   const double width = std::ldexp(1, -halvings);
   const int steps = static_cast<int>(slivers * width);
   Objects out = {plate(Vec3(0, 0, 0), Vec3(1, 1, 0.125), steps),
@@ -269,7 +269,7 @@ Objects plates(Draws&, double slivers, int halvings) {
 
 /// Three shells, each outside the one before by the gap; the outermost is moved by 1.5 gaps, so
 /// that it crosses the one below it.
-Objects shells(Draws& draws, double gap, int level) {
+Objects shells(RandomDraws& draws, double gap, int level) {
   Objects out;
   const Vec3 move = draws.point() * gap;
   for (int i = 0; i < 3; ++i) {
@@ -281,7 +281,7 @@ Objects shells(Draws& draws, double gap, int level) {
 }
 
 /// A surface and its copy with the triangles in the opposite order, moved by some units.
-Objects copies(Draws& draws, double units, int level) {
+Objects copies(RandomDraws& draws, double units, int level) {
   SuiteObject a = scan(draws, level);
   SuiteObject b = a;
   std::reverse(b.triangles.begin(), b.triangles.end());
@@ -290,7 +290,7 @@ Objects copies(Draws& draws, double units, int level) {
 }
 
 /// Two large triangles, and many small ones that stand on them, above and below.
-Objects ground(Draws& draws, double ratio, int count) {
+Objects ground(RandomDraws& draws, double ratio, int count) {
   SuiteObject large;
   large.vertices = {Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(1, 1, 0), Vec3(-1, 1, 0)};
   large.add(0, 1, 2);
@@ -308,7 +308,7 @@ Objects ground(Draws& draws, double ratio, int count) {
 }
 
 /// A sheet above another one by the gap; some of its vertices touch the lower one or are below it.
-Objects sheets(Draws& draws, double gap, int cells) {
+Objects sheets(RandomDraws& draws, double gap, int cells) {
   const auto above = [&](int i, int j) {
     const double height = draws.chance(20) ? gap * draws.whole(-1, 0) : gap;
     return Vec3(i + 0.25, j + 0.125, height);
@@ -458,7 +458,7 @@ const std::vector<MeshFamily>& mesh_families() {
 
 std::vector<SuiteObject> make_suite_mesh(const MeshFamily& family, std::uint64_t seed,
                                          std::size_t index) {
-  Draws draws(seed_of_item(seed, "mesh " + family.name, index));
+  RandomDraws draws(seed_of_item(seed, "mesh " + family.name, index));
   const MeshFamily::Member& member = family.members.at(index);
   std::vector<SuiteObject> out = family.make(draws, member.parameter, member.detail);
   if (family.self) {

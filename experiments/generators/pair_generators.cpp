@@ -11,7 +11,7 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-Corners whole_triangle(Draws& random, double extent) {
+Corners whole_triangle(RandomDraws& random, double extent) {
   return {random.whole_point(extent), random.whole_point(extent), random.whole_point(extent)};
 }
 
@@ -26,17 +26,17 @@ DrawnPair mapped(DrawnPair pair, const Function& function) {
   return pair;
 }
 
-double nudged(Draws& random, double x) {
+double nudged(RandomDraws& random, double x) {
   constexpr double kMost = std::numeric_limits<double>::max();
   return std::nextafter(x, random.chance(2) ? kMost : -kMost);
 }
 
-DrawnPair small_grid(Draws& random) {
+DrawnPair small_grid(RandomDraws& random) {
   const int extent = random.whole(1, 3);
   return {whole_triangle(random, extent), whole_triangle(random, extent)};
 }
 
-DrawnPair random_pair(Draws& random) {
+DrawnPair random_pair(RandomDraws& random) {
   DrawnPair pair;
   for (Vec3& p : pair.a) p = random.point();
   for (Vec3& p : pair.b) p = random.point();
@@ -46,7 +46,7 @@ DrawnPair random_pair(Draws& random) {
 /// Contact in one point, exactly: a corner, a point of an edge or of the face of a (multiples of 4,
 /// so that quarters are whole), with a corner, an edge or the face of b. b leaves it to any side,
 /// so that it may also cross, and every third time steps back from it by one.
-DrawnPair contact(Draws& random) {
+DrawnPair contact(RandomDraws& random) {
   constexpr int kExtent = 64;
   DrawnPair pair;
   for (Vec3& p : pair.a) p = 4 * random.whole_point(kExtent);
@@ -85,7 +85,7 @@ DrawnPair contact(Draws& random) {
   return pair;
 }
 
-DrawnPair coplanar(Draws& random) {
+DrawnPair coplanar(RandomDraws& random) {
   const Vec3 u = random.whole_point(20);
   const Vec3 v = random.whole_point(20);
   const Vec3 origin = random.whole_point(1000);
@@ -106,7 +106,7 @@ DrawnPair coplanar(Draws& random) {
 
 /// A contact of coordinates with all 53 bits, rounded, so that it is missed or overdone by about an
 /// ulp; then one more coordinate in three moved by an ulp.
-DrawnPair one_ulp(Draws& random) {
+DrawnPair one_ulp(RandomDraws& random) {
   DrawnPair pair;
   for (Vec3& p : pair.a) p = random.point();
   const double s = random.chance(3) ? 0 : random.unit();
@@ -140,7 +140,7 @@ DrawnPair one_ulp(Draws& random) {
   return pair;
 }
 
-DrawnPair needles(Draws& random) {
+DrawnPair needles(RandomDraws& random) {
   const double width = std::pow(10, -random.between(3, 12));
   const auto needle = [&](const Vec3& through) {
     const Vec3 along = random.point();
@@ -153,7 +153,7 @@ DrawnPair needles(Draws& random) {
 }
 
 /// Points and segments against each other and against triangles, in contact every other time.
-DrawnPair degenerate(Draws& random) {
+DrawnPair degenerate(RandomDraws& random) {
   const auto shape = [&](int dimension, const Vec3& through) -> Corners {
     const Vec3 u = random.whole_point(6);
     if (dimension == 0) return {through, through, through};
@@ -172,7 +172,7 @@ DrawnPair degenerate(Draws& random) {
 
 /// One scale for the pair or one per axis, 1e-30 .. 1e30; exact contacts are rounded away by some
 /// scales and kept by others.
-DrawnPair magnitudes(Draws& random) {
+DrawnPair magnitudes(RandomDraws& random) {
   DrawnPair pair = random.chance(2) ? contact(random) : one_ulp(random);
   const auto scale = [&] {
     const double exponent = random.between(-30, 30);
@@ -187,7 +187,7 @@ DrawnPair magnitudes(Draws& random) {
 }
 
 /// Whole multiples of the least double, and some axes of the pair in normal size beside them.
-DrawnPair denormals(Draws& random) {
+DrawnPair denormals(RandomDraws& random) {
   DrawnPair pair = random.chance(2) ? contact(random) : small_grid(random);
   const int exponent = random.whole(-1074, -1030);
   if (random.chance(2)) return mapped(pair, [&](double x) { return std::ldexp(x, exponent); });
@@ -199,7 +199,7 @@ DrawnPair denormals(Draws& random) {
 }
 
 /// 1e9 of its own diagonals from the origin: rounding leaves some 23 bits of the shape.
-DrawnPair far_away(Draws& random) {
+DrawnPair far_away(RandomDraws& random) {
   DrawnPair pair = random.chance(2) ? one_ulp(random) : contact(random);
   double size = 0;
   for (const Corners* t : {&pair.a, &pair.b}) {
@@ -213,7 +213,7 @@ DrawnPair far_away(Draws& random) {
 }
 
 /// A triangle of 1e3 .. 1e30 and one of about 1 in, on or near its corner, edge or face.
-DrawnPair huge_beside_tiny(Draws& random) {
+DrawnPair huge_beside_tiny(RandomDraws& random) {
   const double size = std::pow(10, random.between(3, 30));
   DrawnPair pair;
   const Vec3 at = random.whole_point(8);
@@ -235,8 +235,8 @@ DrawnPair huge_beside_tiny(Draws& random) {
   return pair;
 }
 
-template <DrawnPair (*Make)(Draws&)>
-DrawnPair any_order(Draws& random) {
+template <DrawnPair (*Make)(RandomDraws&)>
+DrawnPair any_order(RandomDraws& random) {
   return shuffled(random, Make(random));
 }
 

@@ -12,7 +12,7 @@ namespace farcull {
 struct PairGenerator {
   std::string name;
   std::string description;  // one line
-  DrawnPair (*make)(Draws&);
+  DrawnPair (*make)(RandomDraws&);
 };
 
 /// Each makes pairs that meet and pairs that do not; in every one, either is at least one in fifty.

@@ -37,7 +37,7 @@ struct Case {
 
 /// Puts one corner of b on one of a, half of the time two; the clearance about the distance of two
 /// corners, which often is that of the triangles, or a part of it.
-Case make_case(const PairGenerator& generator, OracleQuestion question, Draws& random) {
+Case make_case(const PairGenerator& generator, OracleQuestion question, RandomDraws& random) {
   Case out{generator.make(random)};
   auto& [a, b] = out.pair;
   if (question == OracleQuestion::neighbours) {
@@ -79,7 +79,7 @@ bool ask_integers(const Case& x, OracleQuestion question) {
 OracleRow compare_block(const PairGenerator& generator, OracleQuestion question,
                         std::uint64_t pairs, std::uint64_t seed) {
   using Clock = std::chrono::steady_clock;
-  Draws random(seed);
+  RandomDraws random(seed);
   std::vector<Case> list;
   for (std::uint64_t i = 0; i < pairs; ++i) list.push_back(make_case(generator, question, random));
   std::vector<char> by_cgal(pairs);

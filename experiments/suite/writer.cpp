@@ -176,7 +176,7 @@ SuiteCounts counts_of(const SuiteMesh& mesh) {
 }
 
 SuitePair make_suite_pair(const PairFamily& family, std::uint64_t seed, std::uint64_t id) {
-  Draws draws(seed_of_item(seed, family.name, id));
+  RandomDraws draws(seed_of_item(seed, family.name, id));
   SuitePair out;
   out.id = id;
   out.parameter = family.values[id % family.values.size()];

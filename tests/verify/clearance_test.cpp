@@ -80,7 +80,7 @@ double least_clearance(const Triangle& a, const Triangle& b) {
 TEST(Clearance, AsTheReferenceAtTheThreshold) {
   int disjoint = 0;
   for (const PairGenerator& generator : pair_generators()) {
-    Draws random(3);
+    RandomDraws random(3);
     for (int n = 0; n < 8; ++n) {
       const auto [a, b] = generator.make(random);
       if (reference::intersects(a, b) || !reference::within(a, b, 0x1p1000)) continue;
@@ -102,7 +102,7 @@ struct Count {
 };
 
 /// Corners of a and b much closer than they are to the other corners, the clearance their distance.
-void put_corners_close(Draws& random, DrawnPair& pair, double& clearance) {
+void put_corners_close(RandomDraws& random, DrawnPair& pair, double& clearance) {
   const auto point = [&] {
     const double x = random.between(-1, 1), y = random.between(-1, 1);
     return Vec3(x, y, random.between(-1, 1));
@@ -123,7 +123,7 @@ void put_corners_close(Draws& random, DrawnPair& pair, double& clearance) {
 /// around the distance itself.
 template <class Bounds>
 Count count(int pairs, std::uint64_t seed) {
-  Draws random(seed);
+  RandomDraws random(seed);
   Count out;
   for (int n = 0; n < pairs; ++n) {
     DrawnPair pair =
@@ -182,7 +182,7 @@ TEST(ClearanceFilter, DecidesWhatIsNotClose) {
 
 TEST(Clearance, ZeroIsAPlainRun) {
   std::vector<std::vector<Triangle>> objects(3);
-  Draws random(9);
+  RandomDraws random(9);
   for (auto& triangles : objects) {
     for (int n = 0; n < 150; ++n) {
       const Vec3 at(random.whole(0, 9), random.whole(0, 9), random.whole(0, 9));

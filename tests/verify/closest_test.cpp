@@ -24,7 +24,7 @@ using reference::Rational;
 using reference::RationalPoint;
 using reference::Triangle;
 
-Triangle whole(Draws& random, int most) {
+Triangle whole(RandomDraws& random, int most) {
   Triangle t;
   for (Vec3& p : t) {
     for (double& x : p) x = random.whole(0, most);
@@ -33,13 +33,13 @@ Triangle whole(Draws& random, int most) {
 }
 
 /// Whole numbers: touching, parallel, degenerate and equal features by the thousand.
-DrawnPair on_a_grid(Draws& random) {
+DrawnPair on_a_grid(RandomDraws& random) {
   const int most = random.whole(1, 5);
   return {whole(random, most), whole(random, most)};
 }
 
 /// Two planes of a grid: parallel faces over each other.
-DrawnPair in_parallel_planes(Draws& random) {
+DrawnPair in_parallel_planes(RandomDraws& random) {
   DrawnPair pair = {whole(random, 6), whole(random, 6)};
   const int axis = random.below(3);
   const double height = random.whole(0, 3);
@@ -49,7 +49,7 @@ DrawnPair in_parallel_planes(Draws& random) {
 }
 
 /// Any two triangles, apart by about their size, each perhaps far smaller, and far from the origin.
-DrawnPair apart(Draws& random) {
+DrawnPair apart(RandomDraws& random) {
   DrawnPair pair;
   const Vec3 at = random.chance(3) ? Vec3(1000 * hard_pairs::point(random)) : Vec3(0, 0, 0);
   const Vec3 by = 3 * hard_pairs::point(random);
@@ -62,7 +62,7 @@ DrawnPair apart(Draws& random) {
 }
 
 /// A triangle moved to touch the other one, nearly: at a corner, an edge or a face.
-DrawnPair near_contact(Draws& random) {
+DrawnPair near_contact(RandomDraws& random) {
   DrawnPair pair = apart(random);
   const auto mean = [&](const Triangle& t) -> Vec3 {
     const double s = random.chance(3) ? 0 : random.unit();
@@ -77,7 +77,7 @@ DrawnPair near_contact(Draws& random) {
 }
 
 /// Coordinates of all sizes that doubles have.
-DrawnPair of_all_sizes(Draws& random) {
+DrawnPair of_all_sizes(RandomDraws& random) {
   DrawnPair pair;
   const bool alike = random.chance(2);
   const int common = random.whole(-1070, 1020);
@@ -94,7 +94,7 @@ DrawnPair of_all_sizes(Draws& random) {
 }
 
 /// Each triangle of a size of its own.
-DrawnPair of_two_sizes(Draws& random) {
+DrawnPair of_two_sizes(RandomDraws& random) {
   DrawnPair pair = random.chance(2) ? on_a_grid(random) : apart(random);
   for (Triangle* t : {&pair.a, &pair.b}) {
     const double size = std::ldexp(1, random.whole(-1000, 900));
@@ -112,7 +112,7 @@ std::vector<std::pair<std::string, hard_pairs::Make>> generators() {
   out.emplace_back("near contact", near_contact);
   out.emplace_back("all sizes", of_all_sizes);
   out.emplace_back("two sizes", of_two_sizes);
-  out.emplace_back("shared", [](Draws& random) {
+  out.emplace_back("shared", [](RandomDraws& random) {
     DrawnPair pair = random.chance(2) ? on_a_grid(random) : apart(random);
     hard_pairs::share(random.chance(2) ? hard_pairs::Sharing::vertex : hard_pairs::Sharing::edge,
                       pair.a, pair.b);
@@ -165,11 +165,11 @@ void expect_sound(const Triangle& a, const Triangle& b) {
 
 TEST(ClosestPoints, AsTheReferenceOnPairsOfEveryKind) {
   const auto all = generators();
-  Draws random(19);
+  RandomDraws random(19);
   const int count = trials(100000, 2000);
   int touching = 0;
   for (int n = 0; n < count && !::testing::Test::HasFailure(); ++n) {
-    if (n == count / 2) random = Draws(seed_of_day(19));
+    if (n == count / 2) random = RandomDraws(seed_of_day(19));
     const auto& [name, make] = all[n % all.size()];
     const DrawnPair pair = make(random);
     SCOPED_TRACE(name + " " + std::to_string(n));
@@ -183,7 +183,7 @@ TEST(ClosestPoints, AsTheReferenceOnPairsOfEveryKind) {
 
 // The twin: a reference that leaves out edges against edges differs.
 TEST(ClosestPointsTwin, WithoutEdgesAgainstEdgesItIsNoticed) {
-  Draws random(20);
+  RandomDraws random(20);
   int noticed = 0;
   for (int n = 0; n < trials(200); ++n) {
     const DrawnPair pair = apart(random);
@@ -195,7 +195,7 @@ TEST(ClosestPointsTwin, WithoutEdgesAgainstEdgesItIsNoticed) {
 
 // The twin: a root that is cut off instead of rounded.
 TEST(ClosestPointsTwin, ARootCutOffIsNoticed) {
-  Draws random(21);
+  RandomDraws random(21);
   int noticed = 0;
   for (int n = 0; n < trials(200); ++n) {
     const DrawnPair pair = apart(random);
@@ -209,7 +209,7 @@ TEST(ClosestPointsTwin, ARootCutOffIsNoticed) {
 }
 
 TEST(ClosestPoints, MovedAndScaledPairsHaveTheSameFeatures) {
-  Draws random(22);
+  RandomDraws random(22);
   for (int n = 0; n < trials(2000); ++n) {
     const DrawnPair pair = on_a_grid(random);
     const Vec3 by(random.whole(-999, 999), random.whole(-999, 999), 0x1p40);

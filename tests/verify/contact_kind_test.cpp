@@ -229,7 +229,7 @@ TEST(ContactKind, FitsTheOtherPredicatesAmongPairsThatAreHard) {
   };
   int wrong = 0;
   int caught = 0;
-  Draws random(602);
+  RandomDraws random(602);
   for (const auto& [name, make] : hard_pairs::generators()) {
     for (int n = 0; n < 60; ++n) {
       DrawnPair pair = make(random);

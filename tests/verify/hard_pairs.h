@@ -31,20 +31,20 @@ inline bool finite(const DrawnPair& pair) {
   return all(pair.a) && all(pair.b);
 }
 
-inline double nudged(Draws& random, double x) {
+inline double nudged(RandomDraws& random, double x) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
   for (int n = random.below(3); n > 0; --n) x = std::nextafter(x, random.chance(2) ? kInf : -kInf);
   return x;
 }
 
-inline Vec3 point(Draws& random) {
+inline Vec3 point(RandomDraws& random) {
   const double x = random.between(-1, 1), y = random.between(-1, 1), z = random.between(-1, 1);
   return {x, y, z};
 }
 
 /// A corner of b within a few ulps of the plane of a, perhaps of an edge or a corner of it; half of
 /// the time all corners of b.
-inline DrawnPair nearly_coplanar(Draws& random) {
+inline DrawnPair nearly_coplanar(RandomDraws& random) {
   DrawnPair pair;
   const double far = std::ldexp(1, random.whole(-3, 12));  // from the origin
   const Vec3 at = far * point(random);
@@ -64,7 +64,7 @@ inline DrawnPair nearly_coplanar(Draws& random) {
 
 /// Small whole numbers times a power of two at which products of two or three underflow or
 /// overflow, or one coordinate alone that is large.
-inline DrawnPair extreme(Draws& random) {
+inline DrawnPair extreme(RandomDraws& random) {
   DrawnPair pair;
   for (Triangle* t : {&pair.a, &pair.b}) {
     for (Vec3& p : *t) {
@@ -85,7 +85,7 @@ inline DrawnPair extreme(Draws& random) {
 
 /// In one plane with v; a corner of each on the line, to within rounding, that divides the angle
 /// between the others.
-inline DrawnPair along_the_divide(Draws& random) {
+inline DrawnPair along_the_divide(RandomDraws& random) {
   constexpr double kGrid = 0x1p48;  // so that small multiples are exact
   const double x = std::round(random.between(-1, 1) * kGrid) / kGrid;
   const double y = std::round(random.between(-1, 1) * kGrid) / kGrid;
@@ -101,7 +101,7 @@ inline DrawnPair along_the_divide(Draws& random) {
 }
 
 /// (p, q, r) and (p, q, s) in one plane, r and s within a few ulps of the edge's line.
-inline DrawnPair slivers_on_an_edge(Draws& random) {
+inline DrawnPair slivers_on_an_edge(RandomDraws& random) {
   const auto in_plane = [](double s, double t) { return Vec3(s, s, t); };
   const double far = random.whole(0, 3);
   const auto corner = [&] { return Vec3(in_plane(far + random.unit(), random.unit())); };
@@ -116,7 +116,7 @@ inline DrawnPair slivers_on_an_edge(Draws& random) {
 }
 
 /// All corners in the plane x + y + z = 0 exactly, products of coordinates longer than a double.
-inline DrawnPair coplanar_and_long(Draws& random) {
+inline DrawnPair coplanar_and_long(RandomDraws& random) {
   DrawnPair pair;
   for (Triangle* t : {&pair.a, &pair.b}) {
     for (Vec3& p : *t) {
@@ -129,7 +129,7 @@ inline DrawnPair coplanar_and_long(Draws& random) {
   return pair;
 }
 
-using Make = std::function<DrawnPair(Draws&)>;
+using Make = std::function<DrawnPair(RandomDraws&)>;
 
 inline std::vector<std::pair<std::string, Make>> generators() {
   std::vector<std::pair<std::string, Make>> out;

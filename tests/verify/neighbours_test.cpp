@@ -152,7 +152,7 @@ TEST(Neighbours, AsTheReferenceOnGrids) {
 
 TEST(Neighbours, AsTheReferenceOnHardPairs) {
   for (const PairGenerator& generator : pair_generators()) {
-    Draws random(5);
+    RandomDraws random(5);
     for (int n = 0; n < 200; ++n) {
       auto [a, b] = generator.make(random);
       b[random.below(3)] = a[random.below(3)];

@@ -45,7 +45,7 @@ double above(double x) { return std::nextafter(x, HUGE_VAL); }
 // never both, never neither. verify/exact has the distance by rationals.
 TEST(IntegerClearance, ADirectionOrTwoPointsForEveryPair) {
   for (const PairGenerator& generator : pair_generators()) {
-    Draws random(7);
+    RandomDraws random(7);
     int inside = 0, apart = 0;
     for (int n = 0; n < 600; ++n) {
       const auto [a, b] = generator.make(random);

@@ -57,7 +57,7 @@ void expect_the_same_of_closest_points(const Triangle& a, const Triangle& b) {
 TEST(IntegerDistance, IsThatOfClosestPoints) {
   for (const PairGenerator& generator : pair_generators()) {
     SCOPED_TRACE(generator.name);
-    Draws random(8);
+    RandomDraws random(8);
     for (int n = 0; n < trials(1000); ++n) {
       const DrawnPair pair = generator.make(random);
       expect_the_same_of_closest_points(pair.a, pair.b);
@@ -66,7 +66,7 @@ TEST(IntegerDistance, IsThatOfClosestPoints) {
   }
   for (const auto& [name, make] : hard_pairs::generators()) {
     SCOPED_TRACE(name);
-    Draws random(12);
+    RandomDraws random(12);
     for (int n = 0; n < trials(1000); ++n) {
       const DrawnPair pair = make(random);
       if (hard_pairs::finite(pair)) expect_the_same_of_closest_points(pair.a, pair.b);
@@ -78,7 +78,7 @@ TEST(IntegerDistance, IsThatOfClosestPoints) {
 TEST(IntegerDistance, IsThatOfBruteForceOnEveryGenerator) {
   for (const PairGenerator& generator : pair_generators()) {
     SCOPED_TRACE(generator.name);
-    Draws random(7);
+    RandomDraws random(7);
     for (int n = 0; n < trials(40); ++n) {
       const DrawnPair pair = generator.make(random);
       expect_distance(pair.a, pair.b);
@@ -89,7 +89,7 @@ TEST(IntegerDistance, IsThatOfBruteForceOnEveryGenerator) {
 TEST(IntegerDistance, IsThatOfBruteForceOnHardPairs) {
   for (const auto& [name, make] : hard_pairs::generators()) {
     SCOPED_TRACE(name);
-    Draws random(11);
+    RandomDraws random(11);
     for (int n = 0; n < trials(40); ++n) {
       const DrawnPair pair = make(random);
       if (hard_pairs::finite(pair)) expect_distance(pair.a, pair.b);
