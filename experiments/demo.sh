@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # The main job in one command, on a machine with nothing but Debian and a checkout.
-# 1. Installs the packages that are missing, builds the program (no tests), fetches real meshes.
+# 1. Installs the packages that are missing, builds the command compare, fetches real meshes meanwhile.
 # 2. Compares FAR, CULLIDE, FAR pairs and the method exact on two bunnies that interpenetrate, and
 #    prints a table. Exact predicates check every pair that a method culled.
-# 3. Draws a picture of what CULLIDE misses and FAR finds, measures the small grids of all studies,
-#    and makes the report.
+# 3. Builds the whole program (no tests), draws a picture of what CULLIDE misses and FAR finds,
+#    measures the small grids of all studies, and makes the report.
 # Exit status: that of the comparison, else that of the first step after it that failed; 2 if the
 # comparison did not start.
 set -euo pipefail
@@ -14,11 +14,16 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
 cd "$farcull_root"
 
 farcull_setup
-farcull_build farcull
+bash experiments/meshes.sh &
+fetching=$!
+# Where the whole program is not there yet, the first table does not wait for it.
+program=build/farcull
+if ! farcull_is_built && [[ ! -e $program ]]; then program=build/farcull_compare; fi
+farcull_build "${program##*/}"
 
 scene=two-bunnies
 status=0
-bash experiments/meshes.sh || status=$?
+wait "$fetching" || status=$?
 case $status in
   0) echo "demo: scene two-bunnies, two copies of the Stanford bunny of 75408 triangles each" ;;
   3)
@@ -33,7 +38,7 @@ results=build/demo/compare.json
 rm -f "$results" # so that an old record is not taken for this one
 echo "demo: each row is a run of a method; the column missed counts the colliding pairs that it lost"
 status=0
-build/farcull compare "$scene" --json "$results" || status=$?
+"$program" compare "$scene" --json "$results" || status=$?
 
 if [[ -e $results ]]; then echo "demo: all numbers are in $results"; fi
 if ((status)); then echo "demo: the comparison ended with status $status" >&2; fi
@@ -49,6 +54,7 @@ step() {
   if ((status == 0)); then status=$failed; fi
 }
 
+farcull_build farcull
 picture=build/demo/compare.png
 # Each commit has a store of its own, since a store refuses rows of another commit.
 commit=$(build/farcull --version)

@@ -39,12 +39,12 @@ experiments/method         core/gl core/proximity offsets verify
 experiments/library        experiments/method
 experiments/record         experiments/method experiments/system
 experiments/tiles          experiments/scenes experiments/record
-experiments/measure/peers  experiments/scenes verify
-experiments/measure        experiments/scenes experiments/record experiments/measure/peers
-experiments/lemma          experiments/scenes experiments/record
-experiments/suite          experiments/scenes verify
-experiments/contestants    experiments/suite experiments/library experiments/measure/peers
-experiments/studies        experiments/measure experiments/lemma experiments/contestants
+experiments/generators     experiments/scenes
+experiments/suite          experiments/generators verify
+experiments/peers          experiments/suite experiments/library
+experiments/measure        experiments/record experiments/peers
+experiments/lemma          experiments/generators experiments/record
+experiments/studies        experiments/measure experiments/lemma
 experiments/picture        experiments/measure
 experiments/report/chapters experiments/studies experiments/picture
 experiments/report         experiments/report/chapters
@@ -65,7 +65,7 @@ verify/certificate core/scene/box_join core/view/budget core/view/plan core/view
 # with a * all files whose path begins so.
 export libraries='
 EGL/OpenGL ^(epoxy|EGL|GL|GLES[0-9]*|KHR)/ core/gl tests/faults/*
-CGAL       ^CGAL/                          verify experiments/measure/peers/cgal* experiments/contestants/cgal* tests
+CGAL       ^CGAL/                          verify experiments/peers/cgal* experiments/peers/contest_cgal* tests
 GMP/MPFR   ^(gmp|gmpxx|mpfr)\.h$           verify verify/certificate tests
 zlib       ^zlib\.h$                       experiments/scenes/mesh tests
 '
@@ -593,10 +593,11 @@ break_includes() {
   forbids experiments/method experiments/scenes
   forbids experiments/library experiments/record
   forbids experiments/record experiments/scenes
-  forbids experiments/measure/peers experiments/measure
+  forbids experiments/peers experiments/measure
   forbids experiments/lemma experiments/measure
+  forbids experiments/generators experiments/suite
   forbids experiments/suite experiments/lemma
-  forbids experiments/contestants experiments/studies
+  forbids experiments/peers experiments/studies
   forbids experiments/studies experiments/report
   forbids experiments/picture experiments/studies
   forbids experiments/report/chapters experiments/report
@@ -630,8 +631,8 @@ break_includes() {
   keeps verify/file.cpp '"verify/certificate/json.h"'
   keeps experiments/method/file.cpp '"core/gl/canvas.h"'
   keeps experiments/suite/file.cpp '"verify/certificate/integer_pair.h"'
-  keeps experiments/contestants/file.cpp '"experiments/suite/reader.h"'
-  keeps experiments/contestants/cgal.cpp '<CGAL/Kernel.h>'
+  keeps experiments/peers/file.cpp '"experiments/suite/reader.h"'
+  keeps experiments/peers/contest_cgal.cpp '<CGAL/Kernel.h>'
   keeps experiments/picture/file.cpp '"experiments/measure/compare.h"'
   keeps experiments/report/file.cpp '"experiments/report/chapters/rows.h"'
   keeps experiments/report/chapters/file.cpp '"experiments/system/file.h"'
@@ -646,10 +647,10 @@ break_libraries() {
     breaks "$name/file.cpp" '<EGL/egl.h>' 'may use EGL/OpenGL'
   done
   for name in core/scene core/pairs core/gl offsets verify/certificate experiments/command \
-    experiments/measure/peers; do
+    experiments/peers; do
     breaks "$name/file.cpp" '<CGAL/box_intersection_d.h>' 'may use CGAL'
   done
-  for name in core/scene core/gl offsets experiments/command experiments/measure/peers; do
+  for name in core/scene core/gl offsets experiments/command experiments/peers; do
     breaks "$name/file.cpp" '<gmpxx.h>' 'may use GMP/MPFR'
     breaks "$name/file.cpp" '<mpfr.h>' 'may use GMP/MPFR'
   done
@@ -658,7 +659,7 @@ break_libraries() {
   keeps verify/file.cpp '<gmpxx.h>'
   keeps verify/certificate/file.cpp '<gmpxx.h>'
   keeps tests/verify/file_test.cpp '<CGAL/Kernel.h>'
-  keeps experiments/measure/peers/cgal.cpp '<CGAL/Kernel.h>'
+  keeps experiments/peers/cgal.cpp '<CGAL/Kernel.h>'
 }
 
 break_cycles() {

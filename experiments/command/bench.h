@@ -3,7 +3,6 @@
 
 #include "experiments/command/options.h"
 #include "experiments/measure/bench.h"
-#include "experiments/measure/distance_bench.h"
 
 namespace farcull {
 

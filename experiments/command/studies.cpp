@@ -13,7 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/view/view.h"
-#include "experiments/contestants/known.h"
+#include "experiments/peers/runner.h"
 #include "experiments/studies/merge.h"
 #include "experiments/studies/provenance.h"
 #include "experiments/studies/run_studies.h"

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "core/base/random.h"
-#include "experiments/lemma/pair_generators.h"
+#include "experiments/generators/pair_generators.h"
 #include "verify/exact_point.h"
 
 namespace farcull {

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "core/base/parallel.h"
-#include "experiments/lemma/pair_generators.h"
+#include "experiments/generators/pair_generators.h"
 #include "verify/certificate/integer_pair.h"
 #include "verify/exact.h"
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint64_t kBlock = 1024;  // pairs with a seed of their own, timed together
 
-std::string text(const PairOfTriangles& pair) {
+std::string text(const DrawnPair& pair) {
   std::string out;
   for (const auto* t : {&pair.a, &pair.b}) {
     for (const Vec3& p : *t)
@@ -31,13 +31,13 @@ std::string text(const PairOfTriangles& pair) {
 
 /// A pair, and a clearance where that is asked.
 struct Case {
-  PairOfTriangles pair;
+  DrawnPair pair;
   double clearance = 0;
 };
 
 /// Puts one corner of b on one of a, half of the time two; the clearance about the distance of two
 /// corners, which often is that of the triangles, or a part of it.
-Case make_case(const PairGenerator& generator, OracleQuestion question, PairRandom& random) {
+Case make_case(const PairGenerator& generator, OracleQuestion question, RandomDraws& random) {
   Case out{generator.make(random)};
   auto& [a, b] = out.pair;
   if (question == OracleQuestion::neighbours) {
@@ -79,7 +79,7 @@ bool ask_integers(const Case& x, OracleQuestion question) {
 OracleRow compare_block(const PairGenerator& generator, OracleQuestion question,
                         std::uint64_t pairs, std::uint64_t seed) {
   using Clock = std::chrono::steady_clock;
-  PairRandom random(seed);
+  RandomDraws random(seed);
   std::vector<Case> list;
   for (std::uint64_t i = 0; i < pairs; ++i) list.push_back(make_case(generator, question, random));
   std::vector<char> by_cgal(pairs);

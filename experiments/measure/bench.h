@@ -1,9 +1,10 @@
-// `farcull bench`: peers and our methods from the same triangles to the same pairs, in one process
-// and one run.
+// `farcull bench`: peers and our methods from the same triangles to the same pairs; with
+// --distances, to distances between objects, and how far each is from the exact ones. All in one
+// process and one run.
 //
 // Every contestant runs once cold, when its memory is measured, and then `repeat` times, in turn
 // with the others, so that a slow moment of the machine falls on all. Its setup (contexts, shaders,
-// thread pools) comes before and is timed apart. All answers have to be equal.
+// thread pools) comes before and is timed apart. All pairs have to be equal.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -13,7 +14,7 @@
 
 #include "core/cull/cull.h"
 #include "experiments/measure/harness.h"
-#include "experiments/measure/peers/peer.h"
+#include "experiments/peers/peer.h"
 
 namespace farcull {
 
@@ -39,16 +40,20 @@ struct BenchOptions {
   std::optional<std::uint64_t> seed;  // of the scene
 };
 
-struct BenchRow {
-  std::string name, device;
+/// Times and memory of a contestant.
+struct TimedRow {
+  std::string name, library;
   bool peer = false;
-  std::string library;
-  Spread total_ms = {};  // of the repeats; of the cold run where there are none
-  double cold_ms = 0;
-  double setup_ms = 0, build_ms = 0, candidates_ms = 0, exact_ms = 0;  // the last three: medians
-  std::uint64_t candidate_pairs = 0, pairs = 0;
+  Spread total_ms = {};                 // of the repeats; of the cold run where there are none
+  double cold_ms = 0, build_ms = 0;     // the last one: a median
   std::optional<double> peak_mib = {};  // of the cold run, beyond what was there before it
   int repeats = 0;                      // 0: over the limit, the cold run is all there is
+};
+
+struct BenchRow : TimedRow {
+  std::string device;
+  double setup_ms = 0, candidates_ms = 0, exact_ms = 0;  // the last two: medians
+  std::uint64_t candidate_pairs = 0, pairs = 0;
 };
 
 /// A pair that one contestant has and another lacks.
@@ -77,8 +82,12 @@ std::vector<BenchContestant> contestants(const Scene& scene, const BenchOptions&
 BenchResult bench(const Scene& scene, const std::vector<BenchContestant>& contestants,
                   const BenchOptions& options, const Progress& progress = {});
 
-/// The median of a row over that of the fastest peer; empty without a peer.
-std::optional<double> ratio_to_fastest(const BenchResult& result, const BenchRow& row);
+/// The median of a row of the result over that of the fastest peer; empty without a peer.
+template <class Result>
+std::optional<double> ratio_to_fastest(const Result& result, const TimedRow& row) {
+  if (!result.fastest_peer) return std::nullopt;
+  return row.total_ms.median / result.rows[*result.fastest_peer].total_ms.median;
+}
 
 /// In words, with the answer of the exact predicates for the pair.
 std::string describe(const Scene& scene, const Disagreement& disagreement);
@@ -86,5 +95,83 @@ std::string describe(const Scene& scene, const Disagreement& disagreement);
 nlohmann::ordered_json to_json(const Scene& scene, const BenchOptions& options,
                                const BenchResult& result);
 std::string bench_table(const Scene& scene, const BenchOptions& options, const BenchResult& result);
+
+// Distances.
+
+struct DistanceRecord;
+
+struct DistanceBenchOptions {
+  PeerQuestion question = {};
+  std::string peers = "all";  // all, none, or names with commas
+  unsigned threads = 1;
+  int repeat = 5;
+  double limit_s = 60;  // a contestant whose cold run takes longer is not repeated
+};
+
+/// The answers of a contestant beside ours, which are exact.
+struct DistanceErrors {
+  std::uint64_t answers = 0;
+  std::uint64_t lacking = 0;       // distances that ours has
+  std::uint64_t beyond_it = 0;     // distances that ours has not: beyond `within`
+  std::uint64_t exact = 0;         // the same double
+  std::uint64_t other_zero = 0;    // 0 where the objects are apart, or not 0 where they meet
+  std::uint64_t other_object = 0;  // with `nearest`: another object, which is not as near
+  double largest_relative = 0;     // of distances that neither calls 0
+};
+
+struct DistanceBenchRow : TimedRow {
+  double query_ms = 0;  // a median
+  DistanceErrors errors = {};
+};
+
+struct DistanceBenchResult {
+  std::vector<DistanceBenchRow> rows;                         // ours is the first
+  std::vector<std::pair<std::string, std::string>> left_out;  // name, reason
+  std::optional<std::size_t> fastest_peer;                    // of the comparable ones; into rows
+};
+
+/// Measures distances between different objects, also if the scene tests one against itself. Throws
+/// Error naming the option for peers that there are not, and for a repeat below 1.
+DistanceBenchResult bench_distances(const Scene& scene, const DistanceBenchOptions& options,
+                                    const Progress& progress = {});
+
+/// `farcull distance` in the form of the peers: the first one of every bench.
+DistancePeer farcull_distances();
+/// The answers of a record of `objects`, or of `nearest` with k = 1, as a peer gives them.
+std::vector<PeerDistance> as_peer(const DistanceRecord& record);
+
+/// `answer` beside exact ones of the same question; both sorted.
+DistanceErrors errors_of(DistanceTask task, const std::vector<PeerDistance>& answer,
+                         const std::vector<PeerDistance>& exact);
+
+nlohmann::ordered_json to_json(const Scene& scene, const DistanceBenchOptions& options,
+                               const DistanceBenchResult& result);
+std::string distance_bench_table(const Scene& scene, const DistanceBenchOptions& options,
+                                 const DistanceBenchResult& result);
+
+// For both.
+
+/// "NAME, cold" or "NAME, 2 of 5"; nothing without a callback.
+void show_round(const Progress& progress, const std::string& name, int round, int repeats);
+/// Writes the times of row i, and makes it the fastest peer if it is one (`counts`: it may be).
+template <class Result>
+void set_times(const Timed& timed, const Rounds& rounds, std::size_t i, bool counts,
+               Result& result) {
+  TimedRow& row = result.rows[i];
+  row.total_ms = spread_of(timed.over_limit(rounds) ? std::vector{timed.warm_up_ms} : timed.ms);
+  row.cold_ms = timed.warm_up_ms;
+  row.peak_mib = timed.peak_mib;
+  row.repeats = static_cast<int>(timed.ms.size());
+  if (!row.peer || !counts) return;
+  const std::optional<std::size_t> fastest = result.fastest_peer;
+  if (!fastest || row.total_ms.median < result.rows[*fastest].total_ms.median)
+    result.fastest_peer = i;
+}
+/// Cells of a table: milliseconds, memory, and a row from the median to the cold run.
+std::string ms_text(double ms);
+std::string mib_text(const TimedRow& row);
+std::vector<std::string> time_cells(const TimedRow& row);
+/// The first line of a table.
+std::string bench_title(const Scene& scene, unsigned threads);
 
 }  // namespace farcull

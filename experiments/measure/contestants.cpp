@@ -8,8 +8,8 @@
 #include "core/base/error.h"
 #include "core/scene/members.h"
 #include "experiments/measure/bench.h"
-#include "experiments/measure/peers/parts.h"
 #include "experiments/method/run.h"
+#include "experiments/peers/parts.h"
 #include "offsets/obb.h"
 
 namespace farcull {

@@ -1,5 +1,5 @@
 // Ours and the peers in turn; the first answer of each is compared with ours.
-#include "experiments/measure/distance_bench.h"
+#include "experiments/measure/bench.h"
 
 #include <fmt/format.h>
 
@@ -52,15 +52,6 @@ std::vector<DistancePeer> chosen_peers(const std::string& text) {
     return std::find(asked.begin(), asked.end(), peer.name) == asked.end();
   });
   return known;
-}
-
-std::string ms(double value) {
-  return value < 100 ? fmt::format("{:.2f}", value) : fmt::format("{:.0f}", value);
-}
-
-std::optional<double> ratio(const DistanceBenchResult& result, const DistanceBenchRow& row) {
-  if (!result.fastest_peer) return std::nullopt;
-  return row.total_ms.median / result.rows[*result.fastest_peer].total_ms.median;
 }
 
 std::string task_name(const PeerQuestion& question) {
@@ -154,20 +145,15 @@ DistanceBenchResult bench_distances(const Scene& given, const DistanceBenchOptio
   const std::vector<Timed> timed =
       measure_in_turns(running.size(), rounds, [&](std::size_t i, int round) {
         const DistancePeer& one = running[i];
-        if (progress) {
-          progress(round < 0 ? one.name + ", cold"
-                             : fmt::format("{}, {} of {}", one.name, round + 1, options.repeat));
-        }
+        show_round(progress, one.name, round, options.repeat);
         const Stopwatch watch;
         PeerDistances answer = one.run(scene, options.question, options.threads);
         const double took = watch.ms();
         if (round < 0) {
           if (i == 0) exact = answer.distances;
-          result.rows.push_back(
-              {.name = one.name,
-               .library = one.library,
-               .peer = i > 0,
-               .errors = errors_of(options.question.task, answer.distances, exact)});
+          result.rows.push_back({{.name = one.name, .library = one.library, .peer = i > 0},
+                                 0,
+                                 errors_of(options.question.task, answer.distances, exact)});
         }
         if (round >= 0 || took > rounds.limit_ms) {
           build[i].push_back(answer.build_ms);
@@ -177,19 +163,9 @@ DistanceBenchResult bench_distances(const Scene& given, const DistanceBenchOptio
       });
 
   for (std::size_t i = 0; i < running.size(); ++i) {
-    DistanceBenchRow& row = result.rows[i];
-    const bool once = timed[i].over_limit(rounds);
-    row.total_ms = spread_of(once ? std::vector{timed[i].warm_up_ms} : timed[i].ms);
-    row.cold_ms = timed[i].warm_up_ms;
-    row.peak_mib = timed[i].peak_mib;
-    row.repeats = static_cast<int>(timed[i].ms.size());
-    row.build_ms = middle(build[i]);
-    row.query_ms = middle(query[i]);
-    if (!row.peer || !running[i].comparable) continue;
-    if (!result.fastest_peer ||
-        row.total_ms.median < result.rows[*result.fastest_peer].total_ms.median) {
-      result.fastest_peer = i;
-    }
+    set_times(timed[i], rounds, i, running[i].comparable, result);
+    result.rows[i].build_ms = middle(build[i]);
+    result.rows[i].query_ms = middle(query[i]);
   }
   return result;
 }
@@ -199,7 +175,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const DistanceBenchOptions& o
   using Json = nlohmann::ordered_json;
   Json rows = Json::array();
   for (const DistanceBenchRow& row : result.rows) {
-    const auto times = ratio(result, row);
+    const auto times = ratio_to_fastest(result, row);
     rows.push_back({{"name", row.name},
                     {"library", row.library},
                     {"peer", row.peer},
@@ -241,10 +217,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const DistanceBenchOptions& o
 
 std::string distance_bench_table(const Scene& scene, const DistanceBenchOptions& options,
                                  const DistanceBenchResult& result) {
-  std::string out = fmt::format("{}: {}, {}; {}, {}\n\n", scene.name,
-                                counted(scene.objects.size(), "object", "objects"),
-                                counted(scene.triangles.size(), "triangle", "triangles"),
-                                counted(options.threads, "thread", "threads"), cpu_model());
+  std::string out = bench_title(scene, options.threads);
   const auto asked = [&result](const char* name) {
     return std::any_of(result.rows.begin(), result.rows.end(),
                        [name](const DistanceBenchRow& row) { return row.name == name; });
@@ -253,14 +226,14 @@ std::string distance_bench_table(const Scene& scene, const DistanceBenchOptions&
   table.add({"", "ms", "low", "high", "n", "cold", "build", "query", "MiB", "distances", "exact",
              "lacking", "other 0", "rel. error", result.fastest_peer ? "x fastest" : ""});
   for (const DistanceBenchRow& row : result.rows) {
-    const auto times = ratio(result, row);
-    table.add({row.name + (row.repeats == 0 ? " (once)" : ""), ms(row.total_ms.median),
-               ms(row.total_ms.low), ms(row.total_ms.high), std::to_string(row.total_ms.n),
-               ms(row.cold_ms), ms(row.build_ms), ms(row.query_ms),
-               row.peak_mib ? fmt::format("{:.1f}", *row.peak_mib) : "-",
-               grouped(row.errors.answers), grouped(row.errors.exact), grouped(row.errors.lacking),
-               grouped(row.errors.other_zero), fmt::format("{:.1e}", row.errors.largest_relative),
-               times ? fmt::format("{:.3f}", *times) : ""});
+    const auto times = ratio_to_fastest(result, row);
+    std::vector<std::string> cells = time_cells(row);
+    cells.insert(cells.end(), {ms_text(row.build_ms), ms_text(row.query_ms), mib_text(row),
+                               grouped(row.errors.answers), grouped(row.errors.exact),
+                               grouped(row.errors.lacking), grouped(row.errors.other_zero),
+                               fmt::format("{:.1e}", row.errors.largest_relative),
+                               times ? fmt::format("{:.3f}", *times) : ""});
+    table.add(cells);
   }
   out += table.text();
   for (const auto& [name, reason] : result.left_out)

@@ -8,7 +8,7 @@
 #include "core/pairs/cpu.h"
 #include "core/pairs/interval.h"
 #include "core/pairs/pairs.h"
-#include "experiments/measure/peers/peer.h"
+#include "experiments/peers/peer.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/shapes.h"
 #include "offsets/fit.h"

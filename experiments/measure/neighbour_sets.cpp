@@ -1,15 +1,19 @@
-// Sets of four methods in one form, their sizes for each object, and what they lack of the truth.
+// Sets of four methods in one form, their sizes for each object, and what they lack of the nearest
+// neighbours by exact distances.
 #include "experiments/measure/neighbour_sets.h"
 
 #include <algorithm>
 #include <limits>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/floating_point.h"
 #include "core/proximity/near_pairs.h"
 #include "core/proximity/voronoi_device.h"
+#include "verify/closest.h"
 
 namespace farcull {
 namespace {
@@ -30,7 +34,7 @@ SquaredRange range_of(const Box& a, const Box& b) {
   return out;
 }
 
-// What is farther than this, as computed, is farther than the largest distance that was computed as
+// Computed distances above this limit are farther than the largest distance that was computed as
 // `largest`. Let u = 2^-53. A difference, a square and two sums round, and a square below 2^-1022
 // is off by 2^-1075: both squares are within the factors (1 - u)^5 and (1 + u)^5 of the exact ones,
 // and 2^-1072. 16 u cover both, and the rounding of this product. What overflows is infinite on
@@ -91,7 +95,7 @@ NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& option
   try {
     return diagram_sets(scene, options, nullptr, progress);
   } catch (const Error& error) {
-    // Of options that are out of range the caller hears.
+    // The caller hears of options that are out of range.
     if (error.reason.find("too many pairs") == std::string::npos) throw;
     return {.objects = {}, .left_out = error.reason};
   } catch (const std::bad_alloc&) {
@@ -131,17 +135,8 @@ Sizes sizes_over(std::vector<std::uint64_t> values) {
 }  // namespace
 
 std::string to_string(NeighbourMethod method) {
-  switch (method) {
-    case NeighbourMethod::boxes:
-      return "boxes";
-    case NeighbourMethod::trees:
-      return "trees";
-    case NeighbourMethod::voronoi:
-      return "voronoi";
-    case NeighbourMethod::voronoi_reliable:
-      return "voronoi-reliable";
-  }
-  throw std::logic_error("to_string: no method");
+  constexpr std::array kNames = {"boxes", "trees", "voronoi", "voronoi-reliable"};
+  return kNames.at(static_cast<std::size_t>(method));
 }
 
 bool has_cells(NeighbourMethod method) {
@@ -211,6 +206,32 @@ bool has_triangles(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b,
                    const TrianglePair& triangles) {
   return sets.has_pairs ? std::binary_search(sets.pairs.begin(), sets.pairs.end(), triangles)
                         : has_objects(sets, a, b);
+}
+
+std::vector<NearestObjects> nearest_objects(const Scene& scene, const Progress& progress) {
+  const FloatingPointGuard guard;
+  const ProximityTrees trees(scene);
+  std::vector<NearestObjects> out(scene.objects.size());
+  std::vector<std::optional<SquaredDistance>> least(out.size());
+  for (const NearPairs& near :
+       trees.nearest_objects(1, std::numeric_limits<double>::infinity(), progress)) {
+    const std::optional<NearestPair> nearest = nearest_pair(scene, near.pairs);
+    if (!nearest) continue;
+    const SquaredDistance& squared = nearest->closest.squared;
+    const auto add = [&](std::uint32_t object, std::uint32_t other) {
+      if (least[object] && *least[object] < squared) return;
+      if (!least[object] || squared < *least[object]) {
+        least[object] = squared;
+        out[object] = {};
+      }
+      out[object].objects.push_back(other);
+      out[object].triangles.push_back(nearest->pair);
+    };
+    // Pairs of objects come sorted, so the others of one object come ascending.
+    add(near.objects.a, near.objects.b);
+    add(near.objects.b, near.objects.a);
+  }
+  return out;
 }
 
 NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,

@@ -11,7 +11,6 @@
 #include "core/base/progress.h"
 #include "core/proximity/voronoi.h"
 #include "core/scene/scene.h"
-#include "experiments/measure/neighbours.h"
 
 namespace farcull {
 
@@ -36,7 +35,7 @@ struct NeighbourOptions {
   std::uint64_t most_pairs = kMostNeighbourPairs;  // VoronoiOptions::most_pairs
 };
 
-/// What a method leaves. Of the two forms below, one holds the triangles.
+/// The sets that a method leaves. One of the two forms below holds the triangles.
 struct NeighbourSets {
   std::vector<ObjectPair> objects;  // sorted, each once: either may hold the other's nearest
   /// trees, voronoi_reliable: the pairs of triangles that may be nearest, sorted, each once.
@@ -64,7 +63,7 @@ NeighbourSets diagram_sets(const Scene& scene, const NeighbourOptions& options,
 struct SetSize {
   std::uint64_t objects = 0, triangles = 0;
 };
-/// Of each object of the scene.
+/// One value per object of the scene.
 std::vector<SetSize> set_sizes(const Scene& scene, const NeighbourSets& sets);
 /// The pairs of triangles that are left.
 std::uint64_t triangle_pairs_of(const NeighbourSets& sets);
@@ -75,6 +74,17 @@ bool has_objects(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b);
 /// where they lose its objects.
 bool has_triangles(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b,
                    const TrianglePair& triangles);
+
+/// The other objects at the least distance of an object, by exact arithmetic.
+struct NearestObjects {
+  std::vector<std::uint32_t> objects;   // ascending; none where there is no other one
+  std::vector<TrianglePair> triangles;  // of each of these, the first pair at that distance
+};
+
+/// For each object: ProximityTrees (core/proximity/near_pairs.h) leave the pairs that can be
+/// nearest, and exact arithmetic decides (verify/closest.h). Precondition: the scene satisfies
+/// validate().
+std::vector<NearestObjects> nearest_objects(const Scene& scene, const Progress& progress = {});
 
 /// Sizes of the sets, and what they lack.
 struct NeighbourSizes {

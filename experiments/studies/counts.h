@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "experiments/measure/distance_bench.h"
+#include "experiments/measure/bench.h"
 #include "experiments/measure/neighbour_sets.h"
 #include "experiments/studies/json_object.h"
 
@@ -130,7 +130,7 @@ struct SceneCounts {
   std::optional<PixelCounts> pixels = {};  // empty: no two boxes of objects overlap
 };
 
-/// Counts of a LibraryPoint (contestants/score.h): pairs of triangles, of which `missed` and
+/// Counts of a LibraryPoint (peers/score.h): pairs of triangles, of which `missed` and
 /// `wrong` are measured by closed triangles, and `own_` by what the library's documentation
 /// promises.
 struct LibraryCounts {
@@ -148,7 +148,7 @@ struct LibraryCounts {
   std::string scores = {};                          // by kind and parameter: scores_text()
   /// IDs of the first pairs of their kind in the family.
   std::optional<std::uint64_t> first_missed = {}, first_wrong = {}, first_death = {};
-  /// Minimized (contestants/minimize.h) from the first of their kind about which the documentation
+  /// Minimized (peers/minimize.h) from the first of their kind about which the documentation
   /// promises the answer: the line of a pair with ID 0 (suite/writer.h); empty where there is none.
   std::string example_missed = {}, example_wrong = {}, example_death = {};
 };
@@ -165,7 +165,7 @@ struct SetCounts {
 };
 
 /// Counts of a DistancePoint: distances that are wrong in some way, of those asked for
-/// (measure/distance_bench.h).
+/// (measure/bench.h).
 struct DistanceCounts {
   DistanceErrors errors;
   std::uint64_t asked = 0;  // distances that the question has

@@ -1,5 +1,5 @@
 // The study "libraries": what other libraries, textbook tests and our own methods miss or report
-// wrongly on a labelled suite. Each is asked in processes of its own (contestants/runner.h).
+// wrongly on a labelled suite. Each is asked in processes of its own (peers/runner.h).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,12 +9,11 @@
 #include <variant>
 
 #include "core/base/error.h"
-#include "experiments/contestants/known.h"
-#include "experiments/contestants/minimize.h"
-#include "experiments/contestants/score.h"
+#include "experiments/generators/families.h"
 #include "experiments/measure/lab.h"
+#include "experiments/peers/minimize.h"
+#include "experiments/peers/score.h"
 #include "experiments/studies/study.h"
-#include "experiments/suite/pair_makers.h"
 #include "experiments/suite/writer.h"
 
 namespace farcull {

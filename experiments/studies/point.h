@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "experiments/measure/neighbour_sets.h"
-#include "experiments/measure/peers/distance_peers.h"
 #include "experiments/method/options.h"
+#include "experiments/peers/peer.h"
 
 namespace farcull {
 
@@ -69,7 +69,7 @@ struct RunPoint {
   int repeat = 1;  // runs, the one with the median time counts; 1 for a MotionFrame
 };
 
-/// A library in place of a method (measure/peers/peer.h).
+/// A library in place of a method (peers/peer.h).
 struct PeerPoint {
   PointScene scene;
   std::string peer;
@@ -105,7 +105,7 @@ struct PlacementPoint {
   std::uint64_t seed = 1;
 };
 
-/// A contestant (contestants/known.h) asked about a family of pairs of a suite, or about a mesh.
+/// A contestant (peers/runner.h) asked about a family of pairs of a suite, or about a mesh.
 struct LibraryPoint {
   std::string contestant;
   std::string family;  // or the name of the mesh
@@ -125,7 +125,7 @@ struct NeighbourPoint {
   int repeat = 1;       // runs
 };
 
-/// The distances of a scene, by farcull or by a library (measure/peers/distance_peers.h).
+/// The distances of a scene, by farcull or by a library (peers/peer.h).
 struct DistancePoint {
   PointScene scene;
   std::string contestant;  // "farcull", or the name of a peer

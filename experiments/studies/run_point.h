@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "experiments/measure/lab.h"
-#include "experiments/measure/peers/peer.h"
+#include "experiments/peers/peer.h"
 #include "experiments/studies/counts.h"
 #include "experiments/studies/point.h"
 

@@ -1,3 +1,5 @@
+// Labels of pairs and of meshes.
+//
 // The kind follows from the common points of two triangles. Their intersection is convex, and each
 // corner of it is a corner of a triangle, a point where an edge crosses the other plane, or a point
 // where two edges cross. All of these are found as rational numbers, so nothing is rounded.
@@ -8,6 +10,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "verify/certificate/certificate.h"
 #include "verify/certificate/integer_pair.h"
 #include "verify/contact.h"
 #include "verify/exact.h"
@@ -105,7 +108,7 @@ class CommonPoints {
   bool has(const Q3& p) const {
     return std::find(points_.begin(), points_.end(), p) != points_.end();
   }
-  /// Where edges of s go from one side of the plane of t to the other.
+  /// Adds the points at which edges of s go from one side of the plane of t to the other.
   void add_through_plane(const Triangle& s, const Triangle& t, const Q3& n) {
     if (is_zero(n)) return;
     for (int i = 0; i < 3; ++i) {
@@ -114,7 +117,7 @@ class CommonPoints {
       if (sgn(from) * sgn(to) < 0) add(between(s[i], s[(i + 1) % 3], from / (from - to)));
     }
   }
-  /// Where two edges that are not parallel meet.
+  /// Adds the point in which two edges meet that are not parallel.
   void add_of_edges(int i, int j) {
     const Q3 u = edge(a_, i);
     const Q3 v = edge(b_, j);
@@ -160,7 +163,7 @@ SuiteKind kind_of_meeting(const std::array<Vec3, 3>& first, const std::array<Vec
   if (one_point && (is_corner(p, a) || is_corner(p, b))) return SuiteKind::touch_vertex;
   if (one_point && on_edge(p, a) && on_edge(p, b)) return SuiteKind::touch_edge;
   if (!one_point && common.coplanar()) return SuiteKind::coplanar;
-  // Of a triangle the relative interior is what its edges leave. A segment is all edge, and comes
+  // The relative interior of a triangle is what its edges leave. A segment is all edge, and comes
   // here only where it goes through the inside of a triangle.
   const bool inside = one_point || (!on_edge(p, a) && !on_edge(p, b));
   return inside ? SuiteKind::crossing : SuiteKind::touch_face;
@@ -168,6 +171,32 @@ SuiteKind kind_of_meeting(const std::array<Vec3, 3>& first, const std::array<Vec
 
 void require_equal(bool one, bool other, const char* oracles, const std::string& where, long line) {
   if (one != other) throw Error(where, fmt::format("{} disagree", oracles), kReport, line);
+}
+
+/// Throws Error where two vertices that triangles of the object use are at one position.
+void require_distinct(const Scene& scene, const Object& object, const std::string& where) {
+  std::vector<std::uint32_t> used;
+  for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+    const auto& corners = scene.triangles[object.first_triangle + t];
+    used.insert(used.end(), corners.begin(), corners.end());
+  }
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  const auto position = [&](std::uint32_t v) {
+    const Vec3& p = scene.vertices[v];
+    return std::array<double, 3>{p.x(), p.y(), p.z()};
+  };
+  std::sort(used.begin(), used.end(),
+            [&](std::uint32_t v, std::uint32_t w) { return position(v) < position(w); });
+  const auto same = std::adjacent_find(
+      used.begin(), used.end(),
+      [&](std::uint32_t v, std::uint32_t w) { return position(v) == position(w); });
+  if (same == used.end()) return;
+  const Vec3& p = scene.vertices[*same];
+  throw Error(
+      where,
+      fmt::format("object {} has two vertices at ({}, {}, {})", object.name, p.x(), p.y(), p.z()),
+      "join them, so that neighbours share an index wherever they share a position");
 }
 
 }  // namespace
@@ -210,6 +239,33 @@ std::vector<SharedCorner> equal_corners(const std::array<Vec3, 3>& a,
     for (std::uint8_t j = 0; j < 3; ++j) {
       if (a[i] == b[j]) out.push_back({i, j});
     }
+  }
+  return out;
+}
+
+/// The method `exact` finds the pairs, and the checker of certificates proves the list.
+std::vector<SuiteMeshPair> decide_mesh(const Scene& scene, const std::string& where) {
+  for (const Object& object : scene.objects) {
+    if (object.self) require_distinct(scene, object, where);
+  }
+  const ExactResult found = all_colliding_pairs(scene);
+  std::vector<TrianglePair> all = found.pairs;
+  all.insert(all.end(), found.neighbour_pairs.begin(), found.neighbour_pairs.end());
+  std::sort(all.begin(), all.end());
+  const CheckResult checked = check_certificate(certificate_of_list(scene, all), scene);
+  if (checked.verdict != Verdict::proved || checked.meeting != all) {
+    throw Error(where,
+                fmt::format("CGAL's predicates find {} colliding pairs, and the certificate "
+                            "checker says: {} {}",
+                            all.size(), to_string(checked.verdict), checked.reason),
+                "one of the oracles is wrong; report the mesh");
+  }
+  const std::vector<std::uint32_t> owner = owners(scene);
+  std::vector<SuiteMeshPair> out;
+  out.reserve(all.size());
+  for (const TrianglePair& pair : all) {
+    const bool one_object = owner[pair.a] == owner[pair.b];
+    out.push_back({pair, one_object ? shared_vertices(scene, pair) : 0});
   }
   return out;
 }

@@ -1,25 +1,89 @@
-// The readers go through a text line by line, so that every error has its line.
+// The readers go through a text line by line, so that every error has its line: lists of pairs, the
+// folder of a mesh (mesh.txt, an OBJ for each object, pairs.csv), and suite.txt, the list of all
+// files with their sums. Numbers are converted by <charconv>, which no locale changes.
 #include "experiments/suite/reader.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
+#include "core/base/error.h"
 #include "core/base/text.h"
+#include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
-#include "experiments/suite/words.h"
+#include "verify/certificate/sha256.h"
 
 namespace farcull {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 10> kKinds = {
     "apart",    "touch-vertex", "touch-edge",      "touch-face",       "crossing",
     "coplanar", "equal",        "neighbours-meet", "neighbours-apart", "?"};
 
 constexpr const char* kFormat = "docs/suite.md has the format; write the suite again";
+constexpr const char* kAgain = "write the suite again, as in farcull suite DIR";
+constexpr std::uint64_t kAnyBytes = std::numeric_limits<std::uint64_t>::max();
+
+/// The next word of `line`, which is removed from it with the blanks before it. Empty at the end.
+std::string_view take_word(std::string_view& line) {
+  constexpr std::string_view kBlanks = " \t\r";
+  line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
+  const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+/// The lines of a text one by one, with their numbers.
+class Lines {
+ public:
+  /// `name` stands for the file in errors. Throws Error where the text does not end with a newline.
+  Lines(std::string_view text, std::string name) : rest_(text), name_(std::move(name)) {
+    if (text.empty() || text.back() != '\n') {
+      throw Error(name_, "the file does not end with a newline, so its end may be missing",
+                  "write or download it again");
+    }
+  }
+
+  /// The next line without its newline; false at the end.
+  bool next(std::string_view& line) {
+    if (rest_.empty()) return false;
+    const std::size_t end = rest_.find('\n');
+    line = rest_.substr(0, end);
+    rest_.remove_prefix(end + 1);
+    ++number_;
+    return true;
+  }
+  /// The word after `key`; the next line has to be these two.
+  std::string word_after(std::string_view key, const char* remedy) {
+    std::string_view line;
+    if (!next(line) || take_word(line) != key)
+      fail(fmt::format("the line does not begin with '{}'", key), remedy);
+    const std::string out(take_word(line));
+    if (out.empty() || !take_word(line).empty())
+      fail(fmt::format("there is not one word after '{}'", key), remedy);
+    return out;
+  }
+  long number() const { return number_; }  // of the line read last, from 1
+  /// Throws Error naming the file and the line read last.
+  [[noreturn]] void fail(const std::string& reason, const std::string& remedy) const {
+    throw Error(name_, reason, remedy, number_);
+  }
+
+ private:
+  std::string_view rest_;
+  std::string name_;
+  long number_ = 0;
+};
 
 template <class T>
 T number(const Lines& lines, std::string_view word, const char* called) {
@@ -100,6 +164,110 @@ SuitePair parse_pair(const Lines& lines, std::string_view line) {
   return out;
 }
 
+// The folder of a mesh.
+
+void read_properties(const std::string& path, SuiteMesh& mesh) {
+  const std::string text = read_file(path, kAnyBytes);
+  Lines lines(text, path);
+  const std::string self = lines.word_after("self", kFormat);
+  if (self != "yes" && self != "no")
+    lines.fail(quote_token(self) + " is neither yes nor no", kFormat);
+  mesh.self = self == "yes";
+  const std::string parameter = lines.word_after("parameter", kFormat);
+  const std::optional<double> number = parse_number<double>(parameter);
+  if (!number) lines.fail(quote_token(parameter) + " is no number", kFormat);
+  mesh.parameter = *number;
+  mesh.family = lines.word_after("family", kFormat);
+  std::string_view line;
+  if (lines.next(line)) lines.fail("there are more lines than three", kFormat);
+}
+
+/// 0.obj, 1.obj and so on.
+Scene read_objects(const std::string& folder, const SuiteMesh& mesh) {
+  SceneBuilder builder(mesh.name, folder);
+  for (int i = 0;; ++i) {
+    const std::string path = fmt::format("{}/{}.obj", folder, i);
+    if (i > 0 && !fs::exists(path)) return builder.finish();
+    const Mesh object = load_mesh(path);
+    for (std::size_t t = 0; t < object.triangles.size(); ++t) {
+      if (object.source_face[t] != t)
+        throw Error(path, fmt::format("face {} is no triangle", object.source_face[t]), kFormat);
+    }
+    builder.add(object, std::to_string(i), Split::kNone, {}, mesh.self);
+  }
+}
+
+/// A row of pairs.csv.
+SuiteMeshPair parse_row(const Lines& lines, std::string_view line, const SuiteMesh& mesh) {
+  std::array<std::uint32_t, 5> cells;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::string_view cell = line.substr(0, line.find(','));
+    const std::optional<std::uint32_t> value = parse_number<std::uint32_t>(cell);
+    if (!value || (i < 4) != (cell.size() < line.size()))
+      lines.fail("the line is not five whole numbers with commas between them", kFormat);
+    cells[i] = *value;
+    line.remove_prefix(std::min(line.size(), cell.size() + 1));
+  }
+  const auto triangle = [&](std::uint32_t object, std::uint32_t row) {
+    if (object >= mesh.scene.objects.size() || row >= mesh.scene.objects[object].triangle_count)
+      lines.fail(fmt::format("object {} has no triangle {}", object, row), kFormat);
+    return mesh.scene.objects[object].first_triangle + row;
+  };
+  const SuiteMeshPair out{{triangle(cells[0], cells[1]), triangle(cells[2], cells[3])}, cells[4]};
+  if (out.pair.a >= out.pair.b) lines.fail("the first triangle is not before the second", kFormat);
+  const bool one_object = cells[0] == cells[2];
+  if (one_object && !mesh.self)
+    lines.fail("the triangles are of one object, which is not tested against itself", kFormat);
+  const std::uint32_t shared = one_object ? shared_vertices(mesh.scene, out.pair) : 0;
+  if (out.shared != shared) {
+    lines.fail(fmt::format("the triangles share {} vertices, not {}", shared, out.shared), kFormat);
+  }
+  return out;
+}
+
+void read_colliding(const std::string& path, SuiteMesh& mesh) {
+  const std::string text = read_file(path, kAnyBytes);
+  Lines lines(text, path);
+  std::string_view line;
+  lines.next(line);
+  if (line != "object_a,triangle_a,object_b,triangle_b,shared")
+    lines.fail("the first line is not object_a,triangle_a,object_b,triangle_b,shared", kFormat);
+  while (lines.next(line)) {
+    const SuiteMeshPair row = parse_row(lines, line, mesh);
+    if (!mesh.pairs.empty() && !(mesh.pairs.back().pair < row.pair))
+      lines.fail("the pairs do not ascend", kFormat);
+    mesh.pairs.push_back(row);
+  }
+}
+
+// suite.txt.
+
+std::uint64_t whole(const Lines& lines, std::string_view word) {
+  const std::optional<std::uint64_t> value = parse_number<std::uint64_t>(word);
+  if (!value) lines.fail(quote_token(word) + " is no whole number", kAgain);
+  return *value;
+}
+
+bool is_sum(std::string_view word) {
+  return word.size() == 64 && word.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+/// A path below the folder, with nothing that leads out of it.
+bool is_inner_path(std::string_view path) {
+  return !path.empty() && path[0] != '/' && path.find("..") == std::string_view::npos;
+}
+
+SuiteIndex::File parse_file(const Lines& lines, std::string_view line) {
+  SuiteIndex::File out;
+  out.path = take_word(line);
+  out.bytes = whole(lines, take_word(line));
+  out.sha256 = take_word(line);
+  out.items = whole(lines, take_word(line));
+  if (!is_inner_path(out.path) || !is_sum(out.sha256) || !take_word(line).empty())
+    lines.fail("the line is not 'file PATH BYTES SHA256 ITEMS'", kAgain);
+  return out;
+}
+
 }  // namespace
 
 std::string to_string(SuiteKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
@@ -137,7 +305,145 @@ SuitePairs parse_pairs(std::string_view text, const std::string& name) {
 }
 
 SuitePairs read_pairs(const std::string& path) {
-  return parse_pairs(read_file(path, std::numeric_limits<std::uint64_t>::max()), path);
+  return parse_pairs(read_file(path, kAnyBytes), path);
+}
+
+std::uint32_t shared_vertices(const Scene& scene, const TrianglePair& pair) {
+  const std::array<std::uint32_t, 3>& a = scene.triangles[pair.a];
+  const std::array<std::uint32_t, 3>& b = scene.triangles[pair.b];
+  std::uint32_t out = 0;
+  for (int i = 0; i < 3; ++i) {
+    const bool repeated = std::find(a.begin(), a.begin() + i, a[i]) != a.begin() + i;
+    out += !repeated && std::find(b.begin(), b.end(), a[i]) != b.end();
+  }
+  return out;
+}
+
+SuiteMesh read_mesh(const std::string& folder) {
+  SuiteMesh out;
+  const fs::path path(folder);
+  out.name = (path.has_filename() ? path : path.parent_path()).filename().string();
+  read_properties(folder + "/mesh.txt", out);
+  out.scene = read_objects(folder, out);
+  out.labelled = fs::exists(folder + "/pairs.csv");
+  if (out.labelled) read_colliding(folder + "/pairs.csv", out);
+  return out;
+}
+
+SuiteIndex parse_suite(std::string_view text, const std::string& name) {
+  Lines lines(text, name);
+  SuiteIndex out;
+  std::string_view line;
+  lines.next(line);
+  if (line != "farcull-suite 1")
+    lines.fail("the first line is not 'farcull-suite 1'", "give the folder of a suite, version 1");
+  out.seed = whole(lines, lines.word_after("seed", kAgain));
+  out.size = lines.word_after("size", kAgain);
+  out.licence = lines.word_after("licence", kAgain);
+  while (lines.next(line)) {
+    const std::size_t before = static_cast<std::size_t>(line.data() - text.data());
+    const std::string_view key = take_word(line);
+    if (key == "file") {
+      SuiteIndex::File file = parse_file(lines, line);
+      if (!out.files.empty() && !(out.files.back().path < file.path))
+        lines.fail("the paths do not ascend", kAgain);
+      out.files.push_back(std::move(file));
+      continue;
+    }
+    if (key != "sum") lines.fail(quote_token(key) + " is no word of a suite", kAgain);
+    out.sum = take_word(line);
+    if (out.sum != sum_of(text.substr(0, before)))
+      lines.fail("the sum is not that of the lines before it", kAgain);
+    if (lines.next(line)) lines.fail("there are lines after the sum", kAgain);
+    return out;
+  }
+  lines.fail("the last line is not 'sum SHA256', so the end of the file is missing", kAgain);
+}
+
+SuiteIndex read_suite(const std::string& folder) {
+  const std::string path = folder + "/suite.txt";
+  return parse_suite(read_file(path, kAnyBytes), path);
+}
+
+std::vector<std::string> SuiteIndex::pair_files() const {
+  std::vector<std::string> out;
+  for (const File& file : files) {
+    if (file.path.starts_with("pairs/")) out.push_back(file.path);
+  }
+  return out;
+}
+
+std::vector<std::string> SuiteIndex::mesh_folders() const {
+  constexpr std::string_view kFile = "/mesh.txt";
+  std::vector<std::string> out;
+  for (const File& file : files) {
+    if (file.path.starts_with("meshes/") && file.path.ends_with(kFile))
+      out.push_back(file.path.substr(0, file.path.size() - kFile.size()));
+  }
+  return out;
+}
+
+void check_files(const std::string& folder, const SuiteIndex& index) {
+  for (const SuiteIndex::File& file : index.files) {
+    const std::string path = folder + "/" + file.path;
+    const std::string text = read_file(path, kAnyBytes);
+    if (text.size() != file.bytes) {
+      throw Error(path, fmt::format("has {} bytes; suite.txt says {}", text.size(), file.bytes),
+                  kAgain);
+    }
+    if (sum_of(text) != file.sha256)
+      throw Error(path, "its SHA-256 is not the one of suite.txt, so it was changed", kAgain);
+  }
+  std::vector<std::string> there;
+  for (const char* part : {"pairs", "meshes"}) {
+    std::error_code error;
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(folder + "/" + part, error)) {
+      if (!entry.is_directory())
+        there.push_back(std::filesystem::relative(entry.path(), folder).generic_string());
+    }
+  }
+  std::sort(there.begin(), there.end());
+  for (const std::string& path : there) {
+    const auto named = [&](const SuiteIndex::File& file) { return file.path == path; };
+    if (!std::any_of(index.files.begin(), index.files.end(), named))
+      throw Error(folder + "/" + path, "is no file of the suite", "move it elsewhere");
+  }
+}
+
+std::optional<double> parse_hexadecimal(std::string_view word) {
+  const bool negative = word.starts_with('-');
+  if (negative) word.remove_prefix(1);
+  if (!word.starts_with("0x")) return std::nullopt;
+  word.remove_prefix(2);
+  // from_chars would take a second sign, and the names of what is not finite.
+  if (word.empty() || word[0] == '-' || word[0] == 'i' || word[0] == 'n') return std::nullopt;
+  double value = 0;
+  const char* const end = word.data() + word.size();
+  const auto [rest, code] = std::from_chars(word.data(), end, value, std::chars_format::hex);
+  if (code != std::errc() || rest != end || !std::isfinite(value)) return std::nullopt;
+  return negative ? -value : value;
+}
+
+void append_hexadecimal(std::string& text, double value) {
+  std::array<char, 40> buffer;
+  if (std::signbit(value)) text += '-';
+  const auto [end, code] = std::to_chars(buffer.data(), buffer.data() + buffer.size(),
+                                         std::abs(value), std::chars_format::hex);
+  text += "0x";
+  text.append(buffer.data(), end);
+}
+
+std::string decimal(double value) {
+  std::array<char, 40> buffer;
+  const auto [end, code] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), end};
+}
+
+std::string sum_of(std::string_view text) {
+  Sha256 sum;
+  sum.add(text);
+  return sum.digest();
 }
 
 }  // namespace farcull

@@ -125,4 +125,14 @@ SuiteIndex parse_suite(std::string_view text, const std::string& name);
 /// sum, and the first one below pairs/ and meshes/ that the suite does not name.
 void check_files(const std::string& folder, const SuiteIndex& index);
 
+/// A finite double as C's %a prints it, such as 0x1.8p+1; empty for anything else.
+std::optional<double> parse_hexadecimal(std::string_view word);
+/// Appends a finite double as C's %a prints it, whatever the locale.
+void append_hexadecimal(std::string& text, double value);
+
+/// The shortest decimal text that is read back as the same finite double, whatever the locale.
+std::string decimal(double value);
+/// The SHA-256 of a text.
+std::string sum_of(std::string_view text);
+
 }  // namespace farcull

@@ -1,4 +1,5 @@
-// The texts of a suite, and the folder that they go to.
+// Makes a suite, writes it, and checks one that is read back by deciding every label anew. Pairs
+// are decided on all cores; each stands in its own place, so the order is that of their IDs.
 #include "experiments/suite/writer.h"
 
 #include <fmt/format.h>
@@ -6,22 +7,31 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <stdexcept>
+#include <utility>
 
 #include "core/base/error.h"
-#include "experiments/suite/pair_makers.h"
-#include "experiments/suite/words.h"
+#include "core/base/parallel.h"
+#include "experiments/generators/families.h"
+#include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/mesh/shapes.h"
+#include "experiments/suite/label.h"
 #include "experiments/system/output_file.h"
-#include "verify/certificate/sha256.h"
 
 namespace farcull {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string sum_of(const std::string& text) {
-  Sha256 sum;
-  sum.add(text);
-  return sum.digest();
+/// The 19 families have 10070 pairs together, or 1007000.
+std::uint64_t pairs_per_family(SuiteSize size) { return size == SuiteSize::small ? 530 : 53000; }
+
+std::size_t members(const MeshFamily& family, SuiteSize size) {
+  return size == SuiteSize::full ? family.members.size() : family.small ? 1 : 0;
+}
+
+std::string mesh_name(const MeshFamily& family, std::size_t index) {
+  return fmt::format("{}-{}", family.name, index + 1);
 }
 
 std::string obj_text(const Scene& scene, const Object& object) {
@@ -93,7 +103,140 @@ class Folder {
   SuiteIndex& index_;
 };
 
+constexpr const char* kCorrect = "correct the label, or write the suite again";
+
+void check_pair(const SuitePair& pair, const std::string& path) {
+  if (!pair.shared.empty() && pair.shared != equal_corners(pair.a, pair.b)) {
+    throw Error(path, fmt::format("pair {} has equal corners that are not called shared", pair.id),
+                "call all of them shared, or none", pair.line);
+  }
+  const SuiteKind kind = decide(pair, path);
+  if (pair.kind == SuiteKind::unlabelled || pair.kind == kind) return;
+  throw Error(path,
+              fmt::format("pair {} is called {}, and it is {}", pair.id, to_string(pair.kind),
+                          to_string(kind)),
+              kCorrect, pair.line);
+}
+
+void check_pairs(const SuitePairs& pairs, const std::string& path) {
+  const std::size_t count = pairs.pairs.size();
+  for_chunks(count, chunks_for(count, 64), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) check_pair(pairs.pairs[i], path);
+  });
+}
+
+std::string named(const Scene& scene, const TrianglePair& pair) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  std::string out;
+  for (const std::uint32_t t : {pair.a, pair.b}) {
+    const Object& object = scene.objects[owner[t]];
+    out += fmt::format("{}{},{}", out.empty() ? "" : ",", object.name, t - object.first_triangle);
+  }
+  return out;
+}
+
+void check_mesh(const SuiteMesh& mesh, const std::string& path) {
+  const std::vector<SuiteMeshPair> right = decide_mesh(mesh.scene, path);
+  if (!mesh.labelled) return;
+  const auto [in_list, in_right] =
+      std::mismatch(mesh.pairs.begin(), mesh.pairs.end(), right.begin(), right.end());
+  if (in_list == mesh.pairs.end() && in_right == right.end()) return;
+  const bool missing =
+      in_right != right.end() && (in_list == mesh.pairs.end() || in_right->pair < in_list->pair);
+  // The header is line 1.
+  const long line = 2 + static_cast<long>(in_list - mesh.pairs.begin());
+  throw Error(
+      path + "/pairs.csv",
+      missing
+          ? fmt::format("the pair {} collides and is missing", named(mesh.scene, in_right->pair))
+          : fmt::format("the pair {} does not collide", named(mesh.scene, in_list->pair)),
+      kCorrect, line);
+}
+
 }  // namespace
+
+SuiteCounts counts_of(const SuitePairs& pairs) {
+  SuiteCounts out;
+  out.name = pairs.family;
+  out.pairs = pairs.pairs.size();
+  for (const SuitePair& pair : pairs.pairs) {
+    ++out.kinds[static_cast<std::size_t>(pair.kind)];
+    out.colliding += pair.kind != SuiteKind::unlabelled && collides(pair.kind);
+  }
+  return out;
+}
+
+SuiteCounts counts_of(const SuiteMesh& mesh) {
+  SuiteCounts out;
+  out.name = mesh.name;
+  out.triangles = mesh.scene.triangles.size();
+  out.pairs = out.colliding = mesh.pairs.size();
+  for (const SuiteMeshPair& pair : mesh.pairs) out.neighbours += pair.shared > 0;
+  return out;
+}
+
+SuitePair make_suite_pair(const PairFamily& family, std::uint64_t seed, std::uint64_t id) {
+  RandomDraws draws(seed_of_item(seed, family.name, id));
+  SuitePair out;
+  out.id = id;
+  out.parameter = family.values[id % family.values.size()];
+  const DrawnPair made = shuffled(draws, family.make(draws, out.parameter));
+  out.a = made.a;
+  out.b = made.b;
+  if (made.neighbours) out.shared = equal_corners(out.a, out.b);
+  return out;
+}
+
+SuitePairs make_pairs(const std::string& family, const SuiteSettings& settings) {
+  const std::vector<PairFamily>& all = pair_families();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const PairFamily& x) { return x.name == family; });
+  if (found == all.end()) throw std::logic_error("make_pairs: no family " + family);
+  SuitePairs out;
+  out.family = family;
+  out.pairs.resize(pairs_per_family(settings.size));
+  const std::size_t count = out.pairs.size();
+  for_chunks(count, chunks_for(count, 64), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      SuitePair pair = make_suite_pair(*found, settings.seed, i);
+      pair.kind = decide(pair, fmt::format("pair {} of {}", i, family));
+      out.pairs[i] = std::move(pair);
+    }
+  });
+  return out;
+}
+
+std::vector<std::string> mesh_names(SuiteSize size) {
+  std::vector<std::string> out;
+  for (const MeshFamily& family : mesh_families()) {
+    for (std::size_t i = 0; i < members(family, size); ++i) out.push_back(mesh_name(family, i));
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+SuiteMesh make_mesh(const std::string& name, const SuiteSettings& settings) {
+  for (const MeshFamily& family : mesh_families()) {
+    for (std::size_t i = 0; i < members(family, settings.size); ++i) {
+      if (mesh_name(family, i) != name) continue;
+      SuiteMesh out;
+      out.name = name;
+      out.family = family.name;
+      out.parameter = family.members[i].parameter;
+      out.self = family.self;
+      SceneBuilder builder(name, name);
+      int number = 0;
+      for (SuiteObject& object : make_suite_mesh(family, settings.seed, i)) {
+        builder.add(shapes::finished(std::move(object.vertices), std::move(object.triangles)),
+                    std::to_string(number++), Split::kNone, {}, family.self);
+      }
+      out.scene = builder.finish();
+      out.pairs = decide_mesh(out.scene, name);
+      return out;
+    }
+  }
+  throw std::logic_error("make_mesh: no mesh " + name);
+}
 
 std::string pair_line(const SuitePair& pair) {
   std::string shared;
@@ -167,6 +310,36 @@ SuiteSummary write_suite(const std::string& folder, const SuiteSettings& setting
     out.meshes.push_back(counts_of(mesh));
   }
   files.finish();
+  return out;
+}
+
+SuiteSummary check_suite(const std::string& folder, const Progress& progress) {
+  SuiteSummary out;
+  out.index = read_suite(folder);
+  check_files(folder, out.index);
+  const auto require_items = [&](const std::string& path, std::uint64_t items) {
+    for (const SuiteIndex::File& file : out.index.files) {
+      if (file.path != path || file.items == items) continue;
+      throw Error(folder + "/" + path,
+                  fmt::format("has {} items; suite.txt says {}", items, file.items), kCorrect);
+    }
+  };
+  for (const std::string& file : out.index.pair_files()) {
+    if (progress) progress(file);
+    const SuitePairs pairs = read_pairs(folder + "/" + file);
+    require_items(file, pairs.pairs.size());
+    check_pairs(pairs, folder + "/" + file);
+    out.families.push_back(counts_of(pairs));
+  }
+  for (const std::string& name : out.index.mesh_folders()) {
+    if (progress) progress(name);
+    const SuiteMesh mesh = read_mesh(folder + "/" + name);
+    for (const Object& object : mesh.scene.objects)
+      require_items(name + "/" + object.name + ".obj", object.triangle_count);
+    require_items(name + "/pairs.csv", mesh.pairs.size());
+    check_mesh(mesh, folder + "/" + name);
+    out.meshes.push_back(counts_of(mesh));
+  }
   return out;
 }
 

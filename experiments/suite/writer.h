@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/progress.h"
+#include "experiments/generators/families.h"
 #include "experiments/suite/reader.h"
 
 namespace farcull {
@@ -29,7 +30,7 @@ struct SuiteCounts {
   std::array<std::uint64_t, 10> kinds{};  // by SuiteKind; of a mesh all 0
 };
 
-/// What was written or checked.
+/// Everything that was written or checked.
 struct SuiteSummary {
   SuiteIndex index;
   std::vector<SuiteCounts> families;
@@ -40,6 +41,10 @@ struct SuiteSummary {
 SuiteCounts counts_of(const SuitePairs& pairs);
 SuiteCounts counts_of(const SuiteMesh& mesh);
 
+/// Pair `id` of a family, not decided yet (SuiteKind::unlabelled). It depends on the seed, the name
+/// of the family and the ID alone: any part of a suite can be made alone, and threads change
+/// nothing.
+SuitePair make_suite_pair(const PairFamily& family, std::uint64_t seed, std::uint64_t id);
 /// The pairs of a family of this suite, decided, in the order of their IDs. Throws Error naming the
 /// family and the pair where two oracles disagree, std::logic_error where there is no such family.
 SuitePairs make_pairs(const std::string& family, const SuiteSettings& settings);

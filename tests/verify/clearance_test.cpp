@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "experiments/lemma/pair_generators.h"
+#include "experiments/generators/pair_generators.h"
 #include "tests/core/base/seed.h"
 #include "tests/verify/reference.h"
 #include "verify/disjoint_distance.h"
@@ -80,7 +80,7 @@ double least_clearance(const Triangle& a, const Triangle& b) {
 TEST(Clearance, AsTheReferenceAtTheThreshold) {
   int disjoint = 0;
   for (const PairGenerator& generator : pair_generators()) {
-    PairRandom random(3);
+    RandomDraws random(3);
     for (int n = 0; n < 8; ++n) {
       const auto [a, b] = generator.make(random);
       if (reference::intersects(a, b) || !reference::within(a, b, 0x1p1000)) continue;
@@ -102,7 +102,7 @@ struct Count {
 };
 
 /// Corners of a and b much closer than they are to the other corners, the clearance their distance.
-void put_corners_close(PairRandom& random, PairOfTriangles& pair, double& clearance) {
+void put_corners_close(RandomDraws& random, DrawnPair& pair, double& clearance) {
   const auto point = [&] {
     const double x = random.between(-1, 1), y = random.between(-1, 1);
     return Vec3(x, y, random.between(-1, 1));
@@ -123,10 +123,10 @@ void put_corners_close(PairRandom& random, PairOfTriangles& pair, double& cleara
 /// around the distance itself.
 template <class Bounds>
 Count count(int pairs, std::uint64_t seed) {
-  PairRandom random(seed);
+  RandomDraws random(seed);
   Count out;
   for (int n = 0; n < pairs; ++n) {
-    PairOfTriangles pair =
+    DrawnPair pair =
         pair_generators()[random.below(static_cast<int>(pair_generators().size()))].make(random);
     double clearance = (pair.a[random.below(3)] - pair.b[random.below(3)]).norm();
     if (random.chance(2)) clearance *= random.between(0, 1.5);
@@ -182,7 +182,7 @@ TEST(ClearanceFilter, DecidesWhatIsNotClose) {
 
 TEST(Clearance, ZeroIsAPlainRun) {
   std::vector<std::vector<Triangle>> objects(3);
-  PairRandom random(9);
+  RandomDraws random(9);
   for (auto& triangles : objects) {
     for (int n = 0; n < 150; ++n) {
       const Vec3 at(random.whole(0, 9), random.whole(0, 9), random.whole(0, 9));

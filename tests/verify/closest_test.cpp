@@ -24,7 +24,7 @@ using reference::Rational;
 using reference::RationalPoint;
 using reference::Triangle;
 
-Triangle whole(PairRandom& random, int most) {
+Triangle whole(RandomDraws& random, int most) {
   Triangle t;
   for (Vec3& p : t) {
     for (double& x : p) x = random.whole(0, most);
@@ -33,14 +33,14 @@ Triangle whole(PairRandom& random, int most) {
 }
 
 /// Whole numbers: touching, parallel, degenerate and equal features by the thousand.
-PairOfTriangles on_a_grid(PairRandom& random) {
+DrawnPair on_a_grid(RandomDraws& random) {
   const int most = random.whole(1, 5);
   return {whole(random, most), whole(random, most)};
 }
 
 /// Two planes of a grid: parallel faces over each other.
-PairOfTriangles in_parallel_planes(PairRandom& random) {
-  PairOfTriangles pair = {whole(random, 6), whole(random, 6)};
+DrawnPair in_parallel_planes(RandomDraws& random) {
+  DrawnPair pair = {whole(random, 6), whole(random, 6)};
   const int axis = random.below(3);
   const double height = random.whole(0, 3);
   for (Vec3& p : pair.a) p[axis] = 0;
@@ -49,8 +49,8 @@ PairOfTriangles in_parallel_planes(PairRandom& random) {
 }
 
 /// Any two triangles, apart by about their size, each perhaps far smaller, and far from the origin.
-PairOfTriangles apart(PairRandom& random) {
-  PairOfTriangles pair;
+DrawnPair apart(RandomDraws& random) {
+  DrawnPair pair;
   const Vec3 at = random.chance(3) ? Vec3(1000 * hard_pairs::point(random)) : Vec3(0, 0, 0);
   const Vec3 by = 3 * hard_pairs::point(random);
   const double small = random.chance(4) ? std::ldexp(1, -random.whole(0, 60)) : 1;
@@ -62,8 +62,8 @@ PairOfTriangles apart(PairRandom& random) {
 }
 
 /// A triangle moved to touch the other one, nearly: at a corner, an edge or a face.
-PairOfTriangles near_contact(PairRandom& random) {
-  PairOfTriangles pair = apart(random);
+DrawnPair near_contact(RandomDraws& random) {
+  DrawnPair pair = apart(random);
   const auto mean = [&](const Triangle& t) -> Vec3 {
     const double s = random.chance(3) ? 0 : random.unit();
     const double r = random.chance(3) ? 0 : random.unit() * (1 - s);
@@ -77,8 +77,8 @@ PairOfTriangles near_contact(PairRandom& random) {
 }
 
 /// Coordinates of all sizes that doubles have.
-PairOfTriangles of_all_sizes(PairRandom& random) {
-  PairOfTriangles pair;
+DrawnPair of_all_sizes(RandomDraws& random) {
+  DrawnPair pair;
   const bool alike = random.chance(2);
   const int common = random.whole(-1070, 1020);
   for (Triangle* t : {&pair.a, &pair.b}) {
@@ -94,8 +94,8 @@ PairOfTriangles of_all_sizes(PairRandom& random) {
 }
 
 /// Each triangle of a size of its own.
-PairOfTriangles of_two_sizes(PairRandom& random) {
-  PairOfTriangles pair = random.chance(2) ? on_a_grid(random) : apart(random);
+DrawnPair of_two_sizes(RandomDraws& random) {
+  DrawnPair pair = random.chance(2) ? on_a_grid(random) : apart(random);
   for (Triangle* t : {&pair.a, &pair.b}) {
     const double size = std::ldexp(1, random.whole(-1000, 900));
     for (Vec3& p : *t) p *= size;
@@ -112,8 +112,8 @@ std::vector<std::pair<std::string, hard_pairs::Make>> generators() {
   out.emplace_back("near contact", near_contact);
   out.emplace_back("all sizes", of_all_sizes);
   out.emplace_back("two sizes", of_two_sizes);
-  out.emplace_back("shared", [](PairRandom& random) {
-    PairOfTriangles pair = random.chance(2) ? on_a_grid(random) : apart(random);
+  out.emplace_back("shared", [](RandomDraws& random) {
+    DrawnPair pair = random.chance(2) ? on_a_grid(random) : apart(random);
     hard_pairs::share(random.chance(2) ? hard_pairs::Sharing::vertex : hard_pairs::Sharing::edge,
                       pair.a, pair.b);
     return pair;
@@ -165,13 +165,13 @@ void expect_sound(const Triangle& a, const Triangle& b) {
 
 TEST(ClosestPoints, AsTheReferenceOnPairsOfEveryKind) {
   const auto all = generators();
-  PairRandom random(19);
+  RandomDraws random(19);
   const int count = trials(100000, 2000);
   int touching = 0;
   for (int n = 0; n < count && !::testing::Test::HasFailure(); ++n) {
-    if (n == count / 2) random = PairRandom(seed_of_day(19));
+    if (n == count / 2) random = RandomDraws(seed_of_day(19));
     const auto& [name, make] = all[n % all.size()];
-    const PairOfTriangles pair = make(random);
+    const DrawnPair pair = make(random);
     SCOPED_TRACE(name + " " + std::to_string(n));
     if (!hard_pairs::finite(pair)) continue;
     expect_as_reference(pair.a, pair.b);
@@ -183,10 +183,10 @@ TEST(ClosestPoints, AsTheReferenceOnPairsOfEveryKind) {
 
 // The twin: a reference that leaves out edges against edges differs.
 TEST(ClosestPointsTwin, WithoutEdgesAgainstEdgesItIsNoticed) {
-  PairRandom random(20);
+  RandomDraws random(20);
   int noticed = 0;
   for (int n = 0; n < trials(200); ++n) {
-    const PairOfTriangles pair = apart(random);
+    const DrawnPair pair = apart(random);
     noticed += closest_reference::closest_points(pair.a, pair.b, false).squared !=
                rational(squared_distance(pair.a, pair.b));
   }
@@ -195,10 +195,10 @@ TEST(ClosestPointsTwin, WithoutEdgesAgainstEdgesItIsNoticed) {
 
 // The twin: a root that is cut off instead of rounded.
 TEST(ClosestPointsTwin, ARootCutOffIsNoticed) {
-  PairRandom random(21);
+  RandomDraws random(21);
   int noticed = 0;
   for (int n = 0; n < trials(200); ++n) {
-    const PairOfTriangles pair = apart(random);
+    const DrawnPair pair = apart(random);
     const Rational square = rational(squared_distance(pair.a, pair.b));
     mpf_class root(0, 400);
     mpf_sqrt(root.get_mpf_t(), mpf_class(square, 400).get_mpf_t());
@@ -209,12 +209,12 @@ TEST(ClosestPointsTwin, ARootCutOffIsNoticed) {
 }
 
 TEST(ClosestPoints, MovedAndScaledPairsHaveTheSameFeatures) {
-  PairRandom random(22);
+  RandomDraws random(22);
   for (int n = 0; n < trials(2000); ++n) {
-    const PairOfTriangles pair = on_a_grid(random);
+    const DrawnPair pair = on_a_grid(random);
     const Vec3 by(random.whole(-999, 999), random.whole(-999, 999), 0x1p40);
     const int exponent = random.whole(-900, 900);
-    PairOfTriangles moved = pair, scaled = pair;
+    DrawnPair moved = pair, scaled = pair;
     for (int i = 0; i < 3; ++i) {
       moved.a[i] += by;
       moved.b[i] += by;

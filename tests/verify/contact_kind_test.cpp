@@ -229,10 +229,10 @@ TEST(ContactKind, FitsTheOtherPredicatesAmongPairsThatAreHard) {
   };
   int wrong = 0;
   int caught = 0;
-  PairRandom random(602);
+  RandomDraws random(602);
   for (const auto& [name, make] : hard_pairs::generators()) {
     for (int n = 0; n < 60; ++n) {
-      PairOfTriangles pair = make(random);
+      DrawnPair pair = make(random);
       if (!hard_pairs::finite(pair)) continue;
       hard_pairs::share(static_cast<hard_pairs::Sharing>(n % 3), pair.a, pair.b);
       wrong += misfits(pair.a, pair.b, by_shape);

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-#include "experiments/lemma/pair_generators.h"
+#include "experiments/generators/pair_generators.h"
 #include "tests/core/base/trials.h"
 #include "tests/experiments/method/distance_lab.h"
 #include "tests/verify/hard_pairs.h"
@@ -24,7 +24,7 @@ Fraction fraction(const Q& x) { return {x.get_num(), x.get_den()}; }
 double root_above(const Q& squared) { return root_above(fraction(squared)); }
 
 /// Two triangles some way from each other, of a size and at a place of any magnitude.
-std::array<std::array<Vec3, 3>, 2> random_pair(rational::Draws& random) {
+std::array<std::array<Vec3, 3>, 2> random_pair(rational::RandomDraws& random) {
   const double unit = std::exp2(random.below(3) == 0 ? random.uniform(-1060, 1000) : 0);
   const Vec3 apart = random.cube(std::exp2(random.uniform(-10, 10)) * unit);
   std::array<std::array<Vec3, 3>, 2> out;
@@ -41,7 +41,7 @@ double moved_by_ulps(double x, int ulps) {
 }
 
 TEST(Separation, IsProvedOnlyWhereTrianglesAreFartherApart) {
-  rational::Draws random(1);
+  rational::RandomDraws random(1);
   int wrong = 0, by_planes = 0, by_boxes = 0, farther = 0, twin_wrong = 0;
   for (int k = 0; k < trials(4'000); ++k) {
     const auto [a, b] = random_pair(random);
@@ -80,7 +80,7 @@ TEST(Separation, OfBoxesKeepsWhatMayBeAsNear) {
 }
 
 TEST(DistanceClaims, RootsAreRoundedOnce) {
-  rational::Draws random(2);
+  rational::RandomDraws random(2);
   for (int k = 0; k < trials(20'000); ++k) {
     const double x = std::abs(random.scaled(-1070, 1020));
     const Q square = Q(x) * Q(x);
@@ -146,7 +146,7 @@ std::vector<ClaimedDistance> right_answers(const Scene& scene, const DistanceOpt
 }
 
 std::vector<Case> cases(Kind kind, int count) {
-  rational::Draws random(3 + static_cast<int>(kind));
+  rational::RandomDraws random(3 + static_cast<int>(kind));
   std::vector<Case> out;
   while (static_cast<int>(out.size()) < count) {
     Case one{distance_lab::random_scene(random, 3 + random.below(3), 10), {}, {}};
@@ -234,7 +234,7 @@ Counted counted(const Scene& scene, const ClaimedDistance& claim) {
 
 // Scenes on a grid of any scale: pairs that tie, that touch and that are degenerate.
 TEST(DistanceAccounting, MissedPairsAreThoseOfRationalNumbers) {
-  rational::Draws random(17);
+  rational::RandomDraws random(17);
   std::uint64_t nearer = 0, before = 0, behind = 0;
   // Few scenes have ties, so that all of them are needed under sanitizers too.
   for (const Case& one : cases(Kind::objects, 16)) {
@@ -285,9 +285,9 @@ Scene three_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b
 // Slivers, points, huge and tiny ones: a triangle, one that is all but as near, and one that ties.
 TEST(DistanceAccounting, HardPairsAreDecidedAsByRationalNumbers) {
   std::uint64_t nearer = 0, farther = 0, ties = 0;
-  PairRandom random(21);
-  rational::Draws draws(22);
-  const auto expect_decided = [&](const PairOfTriangles& pair) {
+  RandomDraws random(21);
+  rational::RandomDraws draws(22);
+  const auto expect_decided = [&](const DrawnPair& pair) {
     std::array<Vec3, 3> other = {pair.b[1], pair.b[2], pair.b[0]};
     if (draws.coin()) {
       double& x = other[draws.below(3u)][draws.below(3u)];
@@ -305,7 +305,7 @@ TEST(DistanceAccounting, HardPairsAreDecidedAsByRationalNumbers) {
   for (const auto& [name, make] : hard_pairs::generators()) {
     SCOPED_TRACE(name);
     for (int k = 0; k < trials(60); ++k) {
-      const PairOfTriangles pair = make(random);
+      const DrawnPair pair = make(random);
       if (hard_pairs::finite(pair)) expect_decided(pair);
     }
   }
@@ -350,7 +350,7 @@ TEST(DistanceAccounting, FindsADistanceThatIsOneBitOff) {
 }
 
 TEST(DistanceAccounting, FindsPointsAndFeaturesThatAreNotTheFirstNearest) {
-  rational::Draws random(23);
+  rational::RandomDraws random(23);
   for (const Kind kind : {Kind::objects, Kind::nearest, Kind::all}) {
     for (const Case& one : cases(kind, trials(8))) {
       const auto wrong = [&](const std::function<void(ClaimedDistance&)>& change) {

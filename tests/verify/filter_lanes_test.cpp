@@ -47,7 +47,7 @@ struct PairsOfScene {
 /// which products underflow and overflow.
 PairsOfScene made(const hard_pairs::Make& make, Sharing sharing, int count) {
   PairsOfScene out;
-  PairRandom random(7);
+  RandomDraws random(7);
   for (int n = 0; n < count; ++n) {
     auto [a, b] = make(random);
     hard_pairs::share(sharing, a, b);
@@ -178,7 +178,7 @@ TEST(FilterLanesTwin, WithoutTheBoundOfSidesSharedCornersAreDecided) {
 /// through it, and neighbours in one plane.
 Scene crossing_sheets() {
   constexpr int kSide = 12;
-  PairRandom random(3);
+  RandomDraws random(3);
   Scene scene;
   for (int object = 0; object < 2; ++object) {
     const auto base = static_cast<std::uint32_t>(scene.vertices.size());

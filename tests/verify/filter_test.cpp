@@ -42,7 +42,7 @@ struct Tally {
 
 template <class Bounds>
 Tally tally(const Make& make, Sharing sharing, int pairs, std::uint64_t seed = 1) {
-  PairRandom random(seed);
+  RandomDraws random(seed);
   Tally out;
   for (int n = 0; n < pairs; ++n) {
     auto [a, b] = make(random);
@@ -83,8 +83,8 @@ TEST(Filter, NeverContradictsExactArithmetic) {
 
 // Otherwise every pair would go the slow way in silence.
 TEST(Filter, DecidesWhatIsNotClose) {
-  const auto random_pair = [](PairRandom& random) {
-    PairOfTriangles pair;
+  const auto random_pair = [](RandomDraws& random) {
+    DrawnPair pair;
     for (Triangle* t : {&pair.a, &pair.b}) {
       for (Vec3& p : *t) p = point(random);
     }

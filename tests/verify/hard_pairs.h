@@ -1,5 +1,5 @@
 // Pairs of triangles that filters in doubles find hard: near a common plane, where products
-// underflow or overflow, and those of experiments/lemma/pair_generators.h.
+// underflow or overflow, and those of experiments/generators/pair_generators.h.
 #pragma once
 
 #include <array>
@@ -10,42 +10,42 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/lemma/pair_generators.h"
+#include "experiments/generators/pair_generators.h"
 #include "tests/verify/reference.h"
 
 namespace farcull::hard_pairs {
 
 using reference::Triangle;
 
-inline PairOfTriangles mapped(PairOfTriangles pair, const std::function<double(double)>& map) {
+inline DrawnPair mapped(DrawnPair pair, const std::function<double(double)>& map) {
   for (Triangle* t : {&pair.a, &pair.b}) {
     for (Vec3& p : *t) p = Vec3(map(p.x()), map(p.y()), map(p.z()));
   }
   return pair;
 }
 
-inline bool finite(const PairOfTriangles& pair) {
+inline bool finite(const DrawnPair& pair) {
   const auto all = [](const Triangle& t) {
     return t[0].allFinite() && t[1].allFinite() && t[2].allFinite();
   };
   return all(pair.a) && all(pair.b);
 }
 
-inline double nudged(PairRandom& random, double x) {
+inline double nudged(RandomDraws& random, double x) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
   for (int n = random.below(3); n > 0; --n) x = std::nextafter(x, random.chance(2) ? kInf : -kInf);
   return x;
 }
 
-inline Vec3 point(PairRandom& random) {
+inline Vec3 point(RandomDraws& random) {
   const double x = random.between(-1, 1), y = random.between(-1, 1), z = random.between(-1, 1);
   return {x, y, z};
 }
 
 /// A corner of b within a few ulps of the plane of a, perhaps of an edge or a corner of it; half of
 /// the time all corners of b.
-inline PairOfTriangles nearly_coplanar(PairRandom& random) {
-  PairOfTriangles pair;
+inline DrawnPair nearly_coplanar(RandomDraws& random) {
+  DrawnPair pair;
   const double far = std::ldexp(1, random.whole(-3, 12));  // from the origin
   const Vec3 at = far * point(random);
   for (Vec3& p : pair.a) p = at + point(random);
@@ -64,8 +64,8 @@ inline PairOfTriangles nearly_coplanar(PairRandom& random) {
 
 /// Small whole numbers times a power of two at which products of two or three underflow or
 /// overflow, or one coordinate alone that is large.
-inline PairOfTriangles extreme(PairRandom& random) {
-  PairOfTriangles pair;
+inline DrawnPair extreme(RandomDraws& random) {
+  DrawnPair pair;
   for (Triangle* t : {&pair.a, &pair.b}) {
     for (Vec3& p : *t) {
       for (double& x : p) x = random.whole(-9, 9);
@@ -85,7 +85,7 @@ inline PairOfTriangles extreme(PairRandom& random) {
 
 /// In one plane with v; a corner of each on the line, to within rounding, that divides the angle
 /// between the others.
-inline PairOfTriangles along_the_divide(PairRandom& random) {
+inline DrawnPair along_the_divide(RandomDraws& random) {
   constexpr double kGrid = 0x1p48;  // so that small multiples are exact
   const double x = std::round(random.between(-1, 1) * kGrid) / kGrid;
   const double y = std::round(random.between(-1, 1) * kGrid) / kGrid;
@@ -101,7 +101,7 @@ inline PairOfTriangles along_the_divide(PairRandom& random) {
 }
 
 /// (p, q, r) and (p, q, s) in one plane, r and s within a few ulps of the edge's line.
-inline PairOfTriangles slivers_on_an_edge(PairRandom& random) {
+inline DrawnPair slivers_on_an_edge(RandomDraws& random) {
   const auto in_plane = [](double s, double t) { return Vec3(s, s, t); };
   const double far = random.whole(0, 3);
   const auto corner = [&] { return Vec3(in_plane(far + random.unit(), random.unit())); };
@@ -116,8 +116,8 @@ inline PairOfTriangles slivers_on_an_edge(PairRandom& random) {
 }
 
 /// All corners in the plane x + y + z = 0 exactly, products of coordinates longer than a double.
-inline PairOfTriangles coplanar_and_long(PairRandom& random) {
-  PairOfTriangles pair;
+inline DrawnPair coplanar_and_long(RandomDraws& random) {
+  DrawnPair pair;
   for (Triangle* t : {&pair.a, &pair.b}) {
     for (Vec3& p : *t) {
       constexpr double kGrid = 0x1p40;
@@ -129,7 +129,7 @@ inline PairOfTriangles coplanar_and_long(PairRandom& random) {
   return pair;
 }
 
-using Make = std::function<PairOfTriangles(PairRandom&)>;
+using Make = std::function<DrawnPair(RandomDraws&)>;
 
 inline std::vector<std::pair<std::string, Make>> generators() {
   std::vector<std::pair<std::string, Make>> out;

@@ -73,7 +73,7 @@ Inside by_tetrahedra(const std::vector<Tetrahedron>& all, const std::vector<Tria
   return odd ? Inside::yes : Inside::no;
 }
 
-Vec3 whole_point(PairRandom& random, int most) {
+Vec3 whole_point(RandomDraws& random, int most) {
   Vec3 p;
   for (double& x : p) x = random.whole(0, most);
   return p;
@@ -94,7 +94,7 @@ bool by_one_ray(const std::vector<Triangle>& triangles, const Vec3& x) {
 }
 
 TEST(Inside, AsTetrahedraSayOnAGrid) {
-  PairRandom random(1);
+  RandomDraws random(1);
   int wrong_by_one_ray = 0;
   std::array<int, 4> seen{};
   for (int n = 0; n < trials(400, 100); ++n) {
@@ -189,7 +189,7 @@ TEST(Inside, ATorusAsItsEquationSays) {
   }
   const Scene scene = scene_of(triangles);
   ASSERT_TRUE(is_closed(scene, 0));
-  PairRandom random(2);
+  RandomDraws random(2);
   int asked = 0;
   for (int n = 0; n < trials(300); ++n) {
     const Vec3 x = 5 * hard_pairs::point(random);

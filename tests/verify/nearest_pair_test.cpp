@@ -66,7 +66,7 @@ void expect_nearest(const Scene& scene, std::vector<TrianglePair> pairs) {
 }
 
 TEST(NearestPair, TheFirstOfThoseThatAreAsNear) {
-  PairRandom random(1);
+  RandomDraws random(1);
   for (int n = 0; n < trials(200); ++n) {
     const int most = random.whole(1, 6);
     const double size = std::ldexp(1, random.chance(3) ? random.whole(-1000, 1000) : 0);
@@ -81,7 +81,7 @@ TEST(NearestPair, TheFirstOfThoseThatAreAsNear) {
 }
 
 TEST(NearestPair, OfTrianglesInGeneralPosition) {
-  PairRandom random(2);
+  RandomDraws random(2);
   for (int n = 0; n < trials(200); ++n) {
     const Vec3 by = random.whole(0, 4) * hard_pairs::point(random);
     const Scene scene =
@@ -92,7 +92,7 @@ TEST(NearestPair, OfTrianglesInGeneralPosition) {
 
 // Distances that differ by less than doubles show: 1 + 2^-100 k, k random.
 TEST(NearestPair, OfDistancesThatDoublesCannotTellApart) {
-  PairRandom random(3);
+  RandomDraws random(3);
   const auto point = [](const Vec3& p) { return Triangle{p, p, p}; };
   std::vector<Triangle> others;
   for (int n = 0; n < 500; ++n) others.push_back(point({0x1p-100 * random.whole(1, 300), 1, 0}));
@@ -148,10 +148,10 @@ struct BoundsTally {
 template <class Bounds>
 BoundsTally tally(int pairs) {
   const auto all = hard_pairs::generators();
-  PairRandom random(4);
+  RandomDraws random(4);
   BoundsTally out;
   for (int n = 0; n < pairs; ++n) {
-    PairOfTriangles pair = all[n % all.size()].second(random);
+    DrawnPair pair = all[n % all.size()].second(random);
     if (!hard_pairs::finite(pair)) continue;
     if (random.chance(2)) {  // apart by their size, more or less
       const Vec3 by = 4 * (pair.a[0] - pair.b[1]);

@@ -9,7 +9,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "experiments/lemma/pair_generators.h"
+#include "experiments/generators/pair_generators.h"
 #include "tests/verify/reference.h"
 #include "verify/exact.h"
 
@@ -152,7 +152,7 @@ TEST(Neighbours, AsTheReferenceOnGrids) {
 
 TEST(Neighbours, AsTheReferenceOnHardPairs) {
   for (const PairGenerator& generator : pair_generators()) {
-    PairRandom random(5);
+    RandomDraws random(5);
     for (int n = 0; n < 200; ++n) {
       auto [a, b] = generator.make(random);
       b[random.below(3)] = a[random.below(3)];

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "experiments/contestants/score.h"
+#include "experiments/peers/score.h"
 #include "experiments/report/chapters/library_examples.h"
 #include "experiments/report/chapters/library_findings.h"
 #include "experiments/report/chapters/library_rows.h"

@@ -6,7 +6,6 @@
 #include <tuple>
 
 #include "experiments/suite/reader.h"
-#include "experiments/suite/words.h"
 #include "experiments/suite/writer.h"
 
 namespace farcull {

@@ -79,7 +79,7 @@ if [[ ! $gcc ]]; then
   echo "this compiler is not GCC: $kept is not needed"
 else
   # Elsewhere floats are only drawn.
-  without=$(grep -E "^$source/((core|offsets|verify)/|experiments/measure/peers/embree)" "$work/commands" |
+  without=$(grep -E "^$source/((core|offsets|verify)/|experiments/peers/embree)" "$work/commands" |
     grep -v -- " $kept" | cut -f 1)
   [[ -z $without ]] || fail "compiled without $kept: $without"
 fi

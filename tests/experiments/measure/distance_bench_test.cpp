@@ -1,4 +1,4 @@
-#include "experiments/measure/distance_bench.h"
+#include "experiments/measure/bench.h"
 
 #include <gtest/gtest.h>
 

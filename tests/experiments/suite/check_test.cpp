@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "experiments/suite/words.h"
+#include "experiments/suite/reader.h"
 #include "tests/experiments/suite/suite_lab.h"
 #include "tests/experiments/system/error_of.h"
 

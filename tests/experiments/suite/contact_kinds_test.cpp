@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/suite/label.h"
-#include "experiments/suite/pair_makers.h"
+#include "experiments/suite/writer.h"
 #include "verify/contact_kind.h"
 #include "verify/exact.h"
 

@@ -5,11 +5,11 @@
 #include <cstdlib>
 #include <set>
 
+#include "experiments/generators/families.h"
+#include "experiments/generators/families.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
 #include "experiments/suite/label.h"
-#include "experiments/suite/mesh_makers.h"
-#include "experiments/suite/pair_makers.h"
 #include "tests/experiments/suite/suite_lab.h"
 
 namespace farcull {

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "experiments/lemma/pair_generators.h"
+#include "experiments/generators/pair_generators.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/experiments/system/error_of.h"
 #include "tests/verify/certificate/certificate_case.h"
@@ -45,7 +45,7 @@ double above(double x) { return std::nextafter(x, HUGE_VAL); }
 // never both, never neither. verify/exact has the distance by rationals.
 TEST(IntegerClearance, ADirectionOrTwoPointsForEveryPair) {
   for (const PairGenerator& generator : pair_generators()) {
-    PairRandom random(7);
+    RandomDraws random(7);
     int inside = 0, apart = 0;
     for (int n = 0; n < 600; ++n) {
       const auto [a, b] = generator.make(random);

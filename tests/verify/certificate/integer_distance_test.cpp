@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "experiments/lemma/pair_generators.h"
+#include "experiments/generators/pair_generators.h"
 #include "tests/core/base/trials.h"
 #include "tests/verify/certificate/distance_case.h"
 #include "tests/verify/hard_pairs.h"
@@ -57,18 +57,18 @@ void expect_the_same_of_closest_points(const Triangle& a, const Triangle& b) {
 TEST(IntegerDistance, IsThatOfClosestPoints) {
   for (const PairGenerator& generator : pair_generators()) {
     SCOPED_TRACE(generator.name);
-    PairRandom random(8);
+    RandomDraws random(8);
     for (int n = 0; n < trials(1000); ++n) {
-      const PairOfTriangles pair = generator.make(random);
+      const DrawnPair pair = generator.make(random);
       expect_the_same_of_closest_points(pair.a, pair.b);
       if (HasFatalFailure()) return;
     }
   }
   for (const auto& [name, make] : hard_pairs::generators()) {
     SCOPED_TRACE(name);
-    PairRandom random(12);
+    RandomDraws random(12);
     for (int n = 0; n < trials(1000); ++n) {
-      const PairOfTriangles pair = make(random);
+      const DrawnPair pair = make(random);
       if (hard_pairs::finite(pair)) expect_the_same_of_closest_points(pair.a, pair.b);
       if (HasFatalFailure()) return;
     }
@@ -78,9 +78,9 @@ TEST(IntegerDistance, IsThatOfClosestPoints) {
 TEST(IntegerDistance, IsThatOfBruteForceOnEveryGenerator) {
   for (const PairGenerator& generator : pair_generators()) {
     SCOPED_TRACE(generator.name);
-    PairRandom random(7);
+    RandomDraws random(7);
     for (int n = 0; n < trials(40); ++n) {
-      const PairOfTriangles pair = generator.make(random);
+      const DrawnPair pair = generator.make(random);
       expect_distance(pair.a, pair.b);
     }
   }
@@ -89,9 +89,9 @@ TEST(IntegerDistance, IsThatOfBruteForceOnEveryGenerator) {
 TEST(IntegerDistance, IsThatOfBruteForceOnHardPairs) {
   for (const auto& [name, make] : hard_pairs::generators()) {
     SCOPED_TRACE(name);
-    PairRandom random(11);
+    RandomDraws random(11);
     for (int n = 0; n < trials(40); ++n) {
-      const PairOfTriangles pair = make(random);
+      const DrawnPair pair = make(random);
       if (hard_pairs::finite(pair)) expect_distance(pair.a, pair.b);
     }
   }

@@ -10,8 +10,8 @@
 #include <sstream>
 #include <string>
 
+#include "experiments/generators/pair_generators.h"
 #include "experiments/lemma/oracles.h"
-#include "experiments/lemma/pair_generators.h"
 #include "tests/verify/reference.h"
 #include "verify/certificate/box_pairs.h"
 #include "verify/exact.h"
@@ -77,9 +77,9 @@ void expect_every_direction_as_on_the_page(const Triangle& a, const Triangle& b)
 TEST(IntegerPair, EveryDirectionIsTheOneOfThePage) {
   for (const PairGenerator& generator : pair_generators()) {
     SCOPED_TRACE(generator.name);
-    PairRandom random(5);
+    RandomDraws random(5);
     for (int n = 0; n < 100; ++n) {
-      const PairOfTriangles pair = generator.make(random);
+      const DrawnPair pair = generator.make(random);
       expect_every_direction_as_on_the_page(pair.a, pair.b);
     }
   }
@@ -144,7 +144,7 @@ TEST(IntegerPair, TheOraclesAnswerTheSameForTheSameSeed) {
 // neither.
 TEST(IntegerPair, ADirectionOrAPointForEveryPair) {
   for (const PairGenerator& generator : pair_generators()) {
-    PairRandom random(99);
+    RandomDraws random(99);
     for (int n = 0; n < 4'000; ++n) {
       const auto [a, b] = generator.make(random);
       IntegerPair pair(a, b);
@@ -178,7 +178,7 @@ TEST(IntegerPair, NoFamilyOfDirectionsCanBeSpared) {
   constexpr std::array<int, 7> kStarts = {0, 1, 2, 11, 20, 29, kDirections};
   std::array<int, 6> alone = {};
   for (const PairGenerator& generator : pair_generators()) {
-    PairRandom random(1);
+    RandomDraws random(1);
     for (int n = 0; n < 4'000; ++n) {
       const auto [a, b] = generator.make(random);
       IntegerPair pair(a, b);
@@ -229,7 +229,7 @@ std::vector<TrianglePair> enumerated(const Scene& scene, std::size_t enough) {
 TEST(IntegerPair, DecidesNeighboursAsTheReference) {
   std::array<int, 2> answers = {0, 0};
   for (const PairGenerator& generator : pair_generators()) {
-    PairRandom random(8);
+    RandomDraws random(8);
     for (int n = 0; n < 150; ++n) {
       auto [a, b] = generator.make(random);
       b[random.below(3)] = a[random.below(3)];

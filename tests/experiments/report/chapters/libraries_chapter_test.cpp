@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "core/base/error.h"
-#include "experiments/contestants/known.h"
-#include "experiments/contestants/score.h"
+#include "experiments/peers/runner.h"
+#include "experiments/peers/score.h"
 #include "experiments/report/chapters/chapters.h"
 #include "experiments/report/chapters/numbers.h"
 #include "experiments/report/gnuplot.h"

@@ -1,0 +1,28 @@
+// `farcull compare` alone, with the same words: farcull_compare of experiments/CMakeLists.txt.
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <exception>
+
+#include "core/base/floating_point.h"
+#include "experiments/command/compare.h"
+#include "experiments/system/output_file.h"
+
+int main(int argc, char** argv) {
+  using namespace farcull;
+  prepare_output();
+  // As for the whole program (cli.cpp says why).
+  ::setenv("EGL_LOG_LEVEL", "fatal", 0);
+  ::setenv("LP_NUM_THREADS", "0", 0);
+  try {
+    const FloatingPointGuard guard;
+    CLI::App app("farcull: collision culling that never misses.", "farcull");
+    CompareCommand compare;
+    compare.add_to(app);
+    app.require_subcommand(1);
+    CLI11_PARSE(app, argc, argv);
+    return compare.run();
+  } catch (const std::exception& error) {
+    complain(error.what());
+  }
+  return kExitBad;
+}

@@ -1,0 +1,310 @@
+// Pairs about distance (gaps on both sides of contact, distances from the origin, scales) and about
+// shape (random triangles, slivers, degenerate ones, neighbours that fold).
+#include <cmath>
+#include <cstdlib>
+
+#include "experiments/generators/families.h"
+
+namespace farcull {
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+
+/// 0, 2^-k and -2^-k for these k; 0 once, or before each.
+std::vector<double> signed_powers(bool zero_each) {
+  std::vector<double> out;
+  for (const int k : {1, 4, 8, 12, 16, 20, 23, 24, 25, 28, 32, 36, 40, 44, 48, 50, 52}) {
+    if (zero_each || out.empty()) out.push_back(0);
+    out.push_back(std::ldexp(1, -k));
+    out.push_back(-std::ldexp(1, -k));
+  }
+  return out;
+}
+
+/// Powers of ten from 10^first to 10^last, each the double nearest to it.
+std::vector<double> powers_of_ten(std::initializer_list<const char*> list) {
+  std::vector<double> out;
+  for (const char* text : list) out.push_back(std::strtod(text, nullptr));
+  return out;
+}
+
+Frame frame_of(RandomDraws& draws) {
+  return draws.chance(2) ? straight_frame(draws) : leaning_frame(draws);
+}
+
+DrawnPair mapped(const Frame& frame, const Corners& a, const Corners& b) {
+  DrawnPair out;
+  for (int i = 0; i < 3; ++i) {
+    out.a[i] = frame.at(a[i]);
+    out.b[i] = frame.at(b[i]);
+  }
+  return out;
+}
+
+/// A corner of b above the inside of a, by the gap; below it where the gap is negative.
+DrawnPair gap_face(RandomDraws& draws, double gap) {
+  const Corners a = {Vec3(draws.coarse(-1, 0), -1, 0), Vec3(1, draws.coarse(-0.5, 0.5), 0),
+                     Vec3(draws.coarse(-1, 0), 1, 0)};
+  const double x = draws.coarse(0, 0.25);
+  const double y = draws.coarse(-0.25, 0.25);
+  const auto above = [&] {
+    const double u = draws.coarse(-1, 1);
+    const double v = draws.coarse(-1, 1);
+    const double h = draws.coarse(0.25, 1);
+    return Vec3(u, v, h);
+  };
+  const Corners b = {Vec3(x, y, gap), above(), above()};
+  return mapped(frame_of(draws), a, b);
+}
+
+/// An edge of b across an edge of a, above it by the gap; below it where the gap is negative.
+DrawnPair gap_edge(RandomDraws& draws, double gap) {
+  const double left = -draws.coarse(0.25, 1);
+  const double right = draws.coarse(0.25, 1);
+  const double depth = -draws.coarse(0.25, 1);
+  const Corners a = {Vec3(left, 0, 0), Vec3(right, 0, 0), Vec3(draws.coarse(-1, 1), 0, depth)};
+  const double back = -draws.coarse(0.25, 1);
+  const double front = draws.coarse(0.25, 1);
+  const double lean = draws.coarse(-0.25, 0.25);
+  const double height = draws.coarse(0.25, 1);
+  const double x = draws.coarse(-1, 1);
+  const double y = draws.coarse(-1, 1);
+  const Corners b = {Vec3(lean, back, gap), Vec3(-lean, front, gap), Vec3(x, y, height)};
+  return mapped(frame_of(draws), a, b);
+}
+
+/// Two triangles of about the size 1 that may meet in any way.
+DrawnPair near_pair(RandomDraws& draws) {
+  const double side = draws.sign();
+  const double gap = std::ldexp(side, -draws.below(12));
+  switch (draws.below(3)) {
+    case 0:
+      return gap_face(draws, gap);
+    case 1:
+      return gap_edge(draws, gap);
+    default: {
+      DrawnPair out;
+      const Vec3 centre = draws.point() / 2;
+      for (Vec3& p : out.a) p = draws.point();
+      for (Vec3& p : out.b) p = centre + draws.point();
+      return out;
+    }
+  }
+}
+
+template <class Function>
+DrawnPair each_corner(DrawnPair pair, const Function& function) {
+  for (Corners* t : {&pair.a, &pair.b}) {
+    for (Vec3& p : *t) p = function(p);
+  }
+  return pair;
+}
+
+/// Moved away from the origin, so that coordinates lose their last bits.
+DrawnPair far_away(RandomDraws& draws, double distance) {
+  const DrawnPair pair = near_pair(draws);
+  Vec3 to = draws.point();
+  to[draws.below(3)] = draws.sign();
+  return each_corner(pair, [&](const Vec3& p) { return Vec3(p + distance * to); });
+}
+
+/// Scaled, half of the time by a power of two, which keeps contact exact.
+DrawnPair scales(RandomDraws& draws, double scale) {
+  const DrawnPair pair = draws.chance(3) ? gap_face(draws, 0) : near_pair(draws);
+  if (draws.chance(2)) {
+    int exponent = 0;
+    std::frexp(scale, &exponent);
+    scale = std::ldexp(1, exponent);
+  }
+  return each_corner(pair, [&](const Vec3& p) { return Vec3(p * scale); });
+}
+
+/// A triangle and one that is so many times smaller, at its corner, edge or face.
+DrawnPair mixed_scales(RandomDraws& draws, double ratio) {
+  const Frame frame = frame_of(draws);
+  const auto drawn = [&] {
+    const double x = draws.coarse(-1, 1);
+    const double y = draws.coarse(-1, 1);
+    const double z = draws.coarse(-1, 1);
+    return Vec3(x, y, z);
+  };
+  Corners a = {drawn(), drawn(), drawn()};
+  if (draws.chance(2)) {
+    for (Vec3& p : a) p.z() = 0;  // in a plane of the frame: a point of it is no rounded one
+  }
+  const Vec3 at[] = {a[0], (a[0] + a[1]) / 2, (2 * a[0] + a[1] + a[2]) / 4};
+  const Vec3 place = at[draws.below(3)];
+  const Vec3 beside = draws.chance(3) ? Vec3(drawn() * 2) : Vec3::Zero();
+  Corners b;
+  for (Vec3& p : b) p = place + (beside + drawn()) / ratio;
+  if (draws.chance(2)) b[0] = place + beside / ratio;
+  return mapped(frame, a, b);
+}
+
+DrawnPair random_pair(RandomDraws& draws, double) {
+  DrawnPair out;
+  for (Vec3& p : out.a) p = draws.point();
+  for (Vec3& p : out.b) p = draws.point();
+  return out;
+}
+
+/// A long edge through `centre`, and the third corner beside the edge by 1 / aspect.
+Corners sliver(RandomDraws& draws, const Vec3& centre, double aspect) {
+  const Vec3 half = draws.point();
+  const Vec3 beside = draws.point() / aspect;
+  const double along = draws.between(-1, 1);
+  return {centre - half, centre + half, centre + along * half + beside};
+}
+
+/// Two slivers whose long edges pass each other at about their width.
+DrawnPair slivers(RandomDraws& draws, double aspect) {
+  const Vec3 centre = draws.point();
+  const Corners a = sliver(draws, centre, aspect);
+  const bool contact = draws.chance(4);
+  const Vec3 beside = contact ? Vec3::Zero() : Vec3(draws.point() / (2 * aspect));
+  return {a, sliver(draws, centre + beside, aspect)};
+}
+
+const std::vector<double> kBits = {8, 16, 24, 32, 40, 50};
+
+DrawnPair in_units(DrawnPair pair, double bits) {
+  for (Corners* t : {&pair.a, &pair.b}) {
+    for (Vec3& p : *t) p *= std::ldexp(1, -static_cast<int>(bits));
+  }
+  return pair;
+}
+
+/// A point, a segment or a triangle that has the point `at`: in its inside, on an edge or as a
+/// corner.
+Corners shape_with(RandomDraws& draws, int dimension, const Vec3& at, double extent) {
+  if (dimension == 0) return {at, at, at};
+  const Vec3 u = draws.whole_point(extent);
+  if (dimension == 1) {
+    switch (draws.below(4)) {
+      case 0:
+        return {at, at + u, at + u};  // the point is an end, and a corner stands twice
+      case 1:
+        return {at - u, at + u, at - u};
+      case 2:
+        return {at - u, at + 2 * u, at + u};  // three corners on a line
+      default:
+        return {at - u, at, at + u};
+    }
+  }
+  const Vec3 v = draws.whole_point(extent);
+  switch (draws.below(3)) {
+    case 0:
+      return {at, at + u, at + v};
+    case 1:
+      return {at - u, at + u, at + v};
+    default:
+      return {at - u - v, at + u, at + v};
+  }
+}
+
+/// b moved by a unit, or far, every third time.
+Vec3 step_aside(RandomDraws& draws) {
+  if (!draws.chance(3)) return Vec3::Zero();
+  return draws.whole_point(1);
+}
+
+DrawnPair points(RandomDraws& draws, double bits) {
+  const double extent = std::ldexp(1, static_cast<int>(bits) - 3);
+  const Vec3 at = draws.whole_point(extent);
+  const Corners a = {at, at, at};
+  const Vec3 step = step_aside(draws);
+  return in_units({a, shape_with(draws, draws.below(3), at + step, extent)}, bits);
+}
+
+DrawnPair segments(RandomDraws& draws, double bits) {
+  const double extent = std::ldexp(1, static_cast<int>(bits) - 3);
+  const Vec3 at = draws.whole_point(extent);
+  const Corners a = shape_with(draws, 1, at, extent);
+  const Vec3 step = step_aside(draws);
+  Corners b = shape_with(draws, 1 + draws.below(2), at + step, extent);
+  if (draws.chance(4)) {  // on the line of a
+    const Vec3 u = a[1] - a[0];
+    const double i = draws.whole(-1, 1);
+    b = {at + i * u, at + i * u, a[1]};
+    if (draws.chance(2)) b[2] = b[0];
+  }
+  return in_units({a, b}, bits);
+}
+
+/// Neighbours by their coordinates along the axes of a frame.
+DrawnPair fold(RandomDraws& draws, const Corners& a, const Corners& b) {
+  DrawnPair out = mapped(frame_of(draws), a, b);
+  out.neighbours = true;
+  return out;
+}
+
+/// Both have the edge from 0 to 1 on the x axis; a lies in the plane z = 0, and b's third corner is
+/// above it by the height, on the side of a or on the other.
+DrawnPair fold_edge(RandomDraws& draws, double height) {
+  const double x = draws.coarse(0.25, 1);
+  const double y = draws.coarse(0.25, 1);
+  const double u = draws.coarse(-0.5, 1.5);
+  const double side = draws.chance(3) ? -1 : 1;
+  const double v = side * draws.coarse(0.25, 1);
+  const Vec3 p(0, 0, 0);
+  const Vec3 q(1, 0, 0);
+  return fold(draws, {p, q, Vec3(x, y, 0)}, {p, q, Vec3(u, v, height)});
+}
+
+/// Both have the corner 0; a lies in the plane z = 0. b has a corner above the inside of a by the
+/// height, or below it where that is negative, and one far above.
+DrawnPair fold_vertex(RandomDraws& draws, double height) {
+  const double x = draws.coarse(0.5, 1);
+  const double y = draws.coarse(0.5, 1);
+  const bool outside = draws.chance(4);
+  const double u = draws.coarse(0.25, 1.25);
+  const double v = outside ? -u : draws.coarse(-0.25, 0.25) * u;
+  const double s = draws.coarse(-1, 1);
+  const double t = draws.coarse(-1, 1);
+  const double top = draws.coarse(0.25, 1);
+  const Vec3 p(0, 0, 0);
+  return fold(draws, {p, Vec3(x, -y, 0), Vec3(x, y, 0)}, {p, Vec3(u, v, height), Vec3(s, t, top)});
+}
+
+}  // namespace
+
+std::vector<PairFamily> distance_families() {
+  const std::vector<double> up_to_1e15 =
+      powers_of_ten({"1", "1e1", "1e2", "1e3", "1e4", "1e5", "1e6", "1e7", "1e8", "1e9", "1e10",
+                     "1e11", "1e12", "1e13", "1e14", "1e15"});
+  const std::vector<double> magnitudes =
+      powers_of_ten({"1e-150", "1e-120", "1e-100", "1e-80", "1e-60", "1e-40", "1e-30", "1e-20",
+                     "1e-15",  "1e-10",  "1e-5",   "1",     "1e5",   "1e10",  "1e15",  "1e20",
+                     "1e30",   "1e40",   "1e60",   "1e80",  "1e100", "1e120", "1e150"});
+  return {
+      {"gap-face", "a corner above a face, or below it",
+       "the gap, of triangles of the size 1; negative below", signed_powers(false), gap_face},
+      {"gap-edge", "an edge above an edge, or below it",
+       "the gap, of triangles of the size 1; negative below", signed_powers(false), gap_edge},
+      {"far-away", "moved away from the origin", "the distance, in sizes of the triangles",
+       up_to_1e15, far_away},
+      {"scales", "tiny and huge triangles", "the size", magnitudes, scales},
+      {"mixed-scales", "a triangle and a small one at it", "the ratio of their sizes", up_to_1e15,
+       mixed_scales},
+  };
+}
+
+std::vector<PairFamily> shape_families() {
+  const std::vector<double> aspects = {1,   1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                       1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+  return {
+      {"random", "corners anywhere in a cube", "", {0}, random_pair},
+      {"slivers", "long thin triangles that pass each other at about their width",
+       "length over width", aspects, slivers},
+      {"points", "a point and a point, a segment or a triangle", "bits of the coordinates", kBits,
+       points},
+      {"segments", "a segment and a segment or a triangle", "bits of the coordinates", kBits,
+       segments},
+      {"fold-edge", "neighbours with an edge in common, folded until they are flat",
+       "height of the fold, of triangles of the size 1", signed_powers(true), fold_edge},
+      {"fold-vertex", "neighbours with a corner in common, one above the face of the other",
+       "the gap, of triangles of the size 1; negative below", signed_powers(true), fold_vertex},
+  };
+}
+
+}  // namespace farcull

@@ -1,0 +1,470 @@
+// Families of meshes. Of two or three objects: scans, plates, shells, copies, and what stands on a
+// ground. Of one object that is tested against itself: cloth, ropes, soup, fans and folds.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <utility>
+
+#include "experiments/generators/families.h"
+#include "experiments/scenes/mesh/shapes.h"
+
+namespace farcull {
+namespace {
+
+using Objects = std::vector<SuiteObject>;
+
+std::uint32_t index(std::size_t i) { return static_cast<std::uint32_t>(i); }
+
+/// A sheet of `columns` by `rows` cells whose vertex (i, j) is at place(i, j).
+template <class Place>
+SuiteObject sheet(int columns, int rows, const Place& place) {
+  SuiteObject out;
+  for (int i = 0; i <= columns; ++i) {
+    for (int j = 0; j <= rows; ++j) out.vertices.push_back(place(i, j));
+  }
+  const auto at = [&](int i, int j) {
+    return index(static_cast<std::size_t>(i) * (static_cast<std::size_t>(rows) + 1) +
+                 static_cast<std::size_t>(j));
+  };
+  for (int i = 0; i < columns; ++i) {
+    for (int j = 0; j < rows; ++j) {
+      out.add(at(i, j), at(i + 1, j), at(i + 1, j + 1));
+      out.add(at(i, j), at(i + 1, j + 1), at(i, j + 1));
+    }
+  }
+  return out;
+}
+
+/// The place of column i of a sheet that is folded to and fro in layers of `width` columns.
+double folded(int i, int width) {
+  const int layer = i / width;
+  const int within = i % width;
+  return layer % 2 == 0 ? within : width - within;
+}
+
+/// A cloth in four layers with the gap between them, and noise of half a gap.
+Objects cloth(RandomDraws& draws, double gap, int cells) {
+  const int width = cells / 2;
+  return {sheet(4 * width, cells, [&](int i, int j) {
+    const double x = folded(i, width) + 0.2 * draws.between(-1, 1);
+    const double y = j + 0.2 * draws.between(-1, 1);
+    const double layer = i / width;
+    return Vec3(x, y, gap * (layer + 0.55 * draws.between(-1, 1)));
+  })};
+}
+
+/// A sheet folded flat: every layer is in the plane z = 0 exactly, a little aside of the others.
+Objects accordion(RandomDraws&, double layers, int width) {
+  const int columns = static_cast<int>(layers) * width;
+  return {sheet(columns, 2 * width,
+                [&](int i, int j) { return Vec3(folded(i, width), j + i * 0x1p-10, 0); })};
+}
+
+/// A sheet whose vertices are moved by up to `amount` cells.
+Objects crumpled(RandomDraws& draws, double amount, int cells) {
+  return {sheet(cells, cells,
+                [&](int i, int j) { return Vec3(Vec3(i, j, 0) + amount * draws.point()); })};
+}
+
+/// Points of the unit circle without sines: a rational parameter for each quarter.
+Vec3 on_circle(int i, int per_quarter) {
+  const double t = static_cast<double>(i % per_quarter) / per_quarter;
+  const double c = (1 - t * t) / (1 + t * t);
+  const double s = 2 * t / (1 + t * t);
+  switch (i / per_quarter % 4) {
+    case 0:
+      return {c, s, 0};
+    case 1:
+      return {-s, c, 0};
+    case 2:
+      return {-c, -s, 0};
+    default:
+      return {s, -c, 0};
+  }
+}
+
+/// A tube that winds three times around; windings are one pitch (in diameters) above each other.
+Objects rope(RandomDraws& draws, double pitch, int per_quarter) {
+  const int around = 12;
+  const int turn = 4 * per_quarter;
+  SuiteObject out = sheet(3 * turn, around, [&](int i, int j) {
+    const Vec3 along = on_circle(i, per_quarter);
+    const Vec3 across = on_circle(j % around, around / 4);
+    const double radius = 4 + across.x() * (1 + 0x1p-10 * draws.between(-1, 1));
+    return Vec3(along.x() * radius, along.y() * radius, across.y() + 2 * pitch * i / turn);
+  });
+  // The last row of vertices around the tube is the first one.
+  for (auto& triangle : out.triangles) {
+    for (std::uint32_t& v : triangle) {
+      if (v % (around + 1) == around) v -= around;
+    }
+  }
+  return {std::move(out)};
+}
+
+/// Triangles that share no vertices.
+Objects soup(RandomDraws& draws, double size, int count) {
+  SuiteObject out;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 at = draws.point();
+    for (int k = 0; k < 3; ++k) out.vertices.emplace_back(at + size * draws.point());
+    out.add(index(3 * i), index(3 * i + 1), index(3 * i + 2));
+  }
+  return {std::move(out)};
+}
+
+/// Triangles with one corner in common, all near one plane.
+Objects fan(RandomDraws& draws, double spread, int count) {
+  SuiteObject out;
+  out.vertices = {Vec3::Zero()};
+  for (int i = 0; i < count; ++i) {
+    const int from = draws.below(400);
+    const int to = from + 1 + draws.below(20);
+    for (const int at : {from, to}) {
+      Vec3 p = on_circle(at, 100) * draws.between(0.5, 1);
+      p.z() = spread * draws.between(-1, 1);
+      out.vertices.push_back(p);
+    }
+    out.add(0, index(2 * i + 1), index(2 * i + 2));
+  }
+  return {std::move(out)};
+}
+
+/// Pages with one edge in common; some of them lie in one plane, on one side of the edge or on
+/// both.
+Objects book(RandomDraws& draws, double pages, int directions) {
+  SuiteObject out;
+  out.vertices = {Vec3(0, 0, -1), Vec3(0, 0, 1)};
+  for (int i = 0; i < static_cast<int>(pages); ++i) {
+    const double x = draws.whole(-directions, directions);
+    const double y = draws.whole(1, directions);
+    const double length = draws.coarse(0.25, 1);
+    const double z = draws.coarse(-1, 1);
+    out.vertices.emplace_back(x * length, y * length, z);
+    out.add(0, 1, index(out.vertices.size() - 1));
+  }
+  return {std::move(out)};
+}
+
+/// A crumpled sheet, of whose triangles one in so many is a segment or a point.
+Objects degenerate(RandomDraws& draws, double one_in, int cells) {
+  SuiteObject out = sheet(cells, cells, [&](int i, int j) {
+    const double x = i + draws.coarse(-0.75, 0.75);
+    const double y = j + draws.coarse(-0.75, 0.75);
+    return Vec3(x, y, draws.coarse(-0.5, 0.5));
+  });
+  for (auto& [i, j, k] : out.triangles) {
+    if (!draws.chance(static_cast<int>(one_in))) continue;
+    switch (draws.below(3)) {
+      case 0:
+        k = i;
+        break;
+      case 1:
+        j = k = i;
+        break;
+      default: {  // the middle of an edge: three corners on a line
+        const Vec3 middle = (out.vertices[i] + out.vertices[j]) / 2;
+        out.vertices.push_back(middle);
+        k = index(out.vertices.size() - 1);
+      }
+    }
+  }
+  return {std::move(out)};
+}
+
+/// An icosahedron, each triangle divided into 4^level, on the unit sphere.
+SuiteObject sphere(int level) {
+  Mesh mesh = shapes::sphere(level);
+  return {std::move(mesh.vertices), std::move(mesh.triangles)};
+}
+
+template <class Function>
+void each_vertex(SuiteObject& object, const Function& function) {
+  for (Vec3& p : object.vertices) p = function(p);
+}
+
+/// A closed surface with bumps, and with noise of about a twentieth of an edge.
+SuiteObject scan(RandomDraws& draws, int level) {
+  SuiteObject out = sphere(level);
+  std::array<Vec3, 8> bumps;
+  for (Vec3& bump : bumps) bump = draws.point();
+  const Frame turn = turned_frame(draws);
+  const double noise = std::ldexp(0.05, -level);
+  each_vertex(out, [&](const Vec3& p) {
+    double radius = 1;
+    for (const Vec3& bump : bumps) {
+      const double along = bump.dot(p);
+      radius += 0.1 * along * along * along;
+    }
+    return turn.at(radius * (1 + noise * draws.between(-1, 1)) * p);
+  });
+  return out;
+}
+
+/// Two scans; the outermost vertex of the second along x is inside the first by the depth.
+Objects scans(RandomDraws& draws, double depth, int level) {
+  SuiteObject a = scan(draws, level);
+  SuiteObject b = scan(draws, level);
+  const auto by_x = [](const Vec3& p, const Vec3& q) { return p.x() < q.x(); };
+  const Vec3 right = *std::max_element(a.vertices.begin(), a.vertices.end(), by_x);
+  const Vec3 left = *std::min_element(b.vertices.begin(), b.vertices.end(), by_x);
+  const Vec3 move = right - left - Vec3(depth, 0, 0);
+  each_vertex(b, [&](const Vec3& p) { return Vec3(p + move); });
+  return {std::move(a), std::move(b)};
+}
+
+Objects far_scans(RandomDraws& draws, double distance, int level) {
+  Objects out = scans(draws, 0.25, level);
+  const Vec3 to(1, draws.between(-1, 1), -0.75);
+  for (SuiteObject& object : out)
+    each_vertex(object, [&](const Vec3& p) { return Vec3(p + distance * to); });
+  return out;
+}
+
+Objects scaled_scans(RandomDraws& draws, double scale, int level) {
+  Objects out = scans(draws, 0.25, level);
+  for (SuiteObject& object : out)
+    each_vertex(object, [&](const Vec3& p) { return Vec3(p * scale); });
+  return out;
+}
+
+/// A box from `lo` to `hi` whose top and bottom are fans of long thin triangles to `steps` points
+/// on each of two edges.
+SuiteObject plate(const Vec3& lo, const Vec3& hi, int steps) {
+  SuiteObject out;
+  for (const double z : {lo.z(), hi.z()}) {
+    const auto first = static_cast<std::uint32_t>(out.vertices.size());
+    out.vertices.emplace_back(lo.x(), lo.y(), z);
+    for (int i = 0; i <= steps; ++i)
+      out.vertices.emplace_back(hi.x(), lo.y() + (hi.y() - lo.y()) * i / steps, z);
+    for (int i = 1; i <= steps; ++i)
+      out.vertices.emplace_back(hi.x() - (hi.x() - lo.x()) * i / steps, hi.y(), z);
+    for (std::uint32_t i = 1; i <= 2 * static_cast<std::uint32_t>(steps); ++i)
+      out.add(first, first + i, first + i + 1);
+  }
+  // The sides: from each of the four corners below to the same ones above.
+  const auto n = static_cast<std::uint32_t>(steps);
+  const std::uint32_t above = 2 * n + 2;
+  const std::array<std::uint32_t, 5> corner = {0, 1, n + 1, 2 * n + 1, 0};
+  for (int i = 0; i < 4; ++i) {
+    out.add(corner[i], corner[i + 1], above + corner[i + 1]);
+    out.add(corner[i], above + corner[i + 1], above + corner[i]);
+  }
+  return out;
+}
+
+/// Two plates that lie on each other, and a bar through both, made narrower by 2^halvings. Every
+/// coordinate is short, so the faces are in one plane exactly.
+Objects plates(RandomDraws&, double slivers, int halvings) {
+  const double width = std::ldexp(1, -halvings);
+  const int steps = static_cast<int>(slivers * width);
+  Objects out = {plate(Vec3(0, 0, 0), Vec3(1, 1, 0.125), steps),
+                 plate(Vec3(0.25, 0.375, 0.125), Vec3(1.25, 1.375, 0.25), steps),
+                 plate(Vec3(0.5, 0.5, -0.5), Vec3(0.625, 0.625, 0.75), 1)};
+  for (SuiteObject& object : out)
+    each_vertex(object, [&](const Vec3& p) { return Vec3(p.x(), p.y() * width, p.z()); });
+  return out;
+}
+
+/// Three shells, each outside the one before by the gap; the outermost is moved by 1.5 gaps, so
+/// that it crosses the one below it.
+Objects shells(RandomDraws& draws, double gap, int level) {
+  Objects out;
+  const Vec3 move = draws.point() * gap;
+  for (int i = 0; i < 3; ++i) {
+    out.push_back(sphere(level));
+    const Vec3 by = i == 2 ? Vec3(move + Vec3(1.5 * gap, 0, 0)) : Vec3::Zero();
+    each_vertex(out.back(), [&](const Vec3& p) { return Vec3(p * (1 + i * gap) + by); });
+  }
+  return out;
+}
+
+/// A surface and its copy with the triangles in the opposite order, moved by some units.
+Objects copies(RandomDraws& draws, double units, int level) {
+  SuiteObject a = scan(draws, level);
+  SuiteObject b = a;
+  std::reverse(b.triangles.begin(), b.triangles.end());
+  each_vertex(b, [&](const Vec3& p) { return Vec3(p + Vec3(units * 0x1p-52, 0, 0)); });
+  return {std::move(a), std::move(b)};
+}
+
+/// Two large triangles, and many small ones that stand on them, above and below.
+Objects ground(RandomDraws& draws, double ratio, int count) {
+  SuiteObject large;
+  large.vertices = {Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(1, 1, 0), Vec3(-1, 1, 0)};
+  large.add(0, 1, 2);
+  large.add(0, 2, 3);
+  SuiteObject small;
+  for (int i = 0; i < count; ++i) {
+    Vec3 at = draws.point();
+    at.z() = draws.chance(3) ? 1 / ratio : 0;
+    const auto first = static_cast<std::uint32_t>(small.vertices.size());
+    for (int k = 0; k < 3; ++k) small.vertices.emplace_back(at + draws.point() / ratio);
+    if (draws.chance(4)) small.vertices[first].z() = 0;
+    small.add(first, first + 1, first + 2);
+  }
+  return {std::move(large), std::move(small)};
+}
+
+/// A sheet above another one by the gap; some of its vertices touch the lower one or are below it.
+Objects sheets(RandomDraws& draws, double gap, int cells) {
+  const auto above = [&](int i, int j) {
+    const double height = draws.chance(20) ? gap * draws.whole(-1, 0) : gap;
+    return Vec3(i + 0.25, j + 0.125, height);
+  };
+  return {sheet(cells, cells, [](int i, int j) { return Vec3(i, j, 0); }),
+          sheet(cells, cells, above)};
+}
+
+/// Vertices at one position become the first of them, and those that no triangle uses are left out.
+void join_vertices(SuiteObject& object) {
+  std::map<std::array<double, 3>, std::uint32_t> first;
+  std::vector<Vec3> kept;
+  for (auto& triangle : object.triangles) {
+    for (std::uint32_t& v : triangle) {
+      const Vec3& p = object.vertices[v];
+      const auto [at, is_new] = first.try_emplace({p.x(), p.y(), p.z()}, kept.size());
+      if (is_new) kept.push_back(p);
+      v = at->second;
+    }
+  }
+  object.vertices = std::move(kept);
+}
+
+std::vector<MeshFamily> make_families() {
+  const auto number = [](const char* text) { return std::strtod(text, nullptr); };
+  return {
+      {"scans",
+       "two bumpy surfaces with noise",
+       "depth to which they go into each other",
+       false,
+       scans,
+       {{0.25, 3}, {0.25, 5}, {number("1e-3"), 5}, {number("1e-9"), 5}},
+       true},
+      {"far-scans",
+       "two scans far from the origin",
+       "the distance, in their radii",
+       false,
+       far_scans,
+       {{1e6, 3}, {1e10, 4}, {1e14, 4}},
+       true},
+      {"scaled-scans",
+       "tiny and huge scans",
+       "the radius",
+       false,
+       scaled_scans,
+       {{number("1e-100"), 3}, {number("1e100"), 3}},
+       false},
+      {"plates",
+       "plates of long thin triangles that lie on each other, and a bar through both",
+       "length over width of the triangles, about",
+       false,
+       plates,
+       {{64, 0}, {0x1p16, 10}, {0x1p36, 30}},
+       true},
+      {"shells",
+       "nested shells, of which the outermost crosses the one below it",
+       "the gap between two, in radii",
+       false,
+       shells,
+       {{0x1p-10, 3}, {0x1p-20, 4}, {0x1p-34, 4}},
+       true},
+      {"copies",
+       "a surface and its copy",
+       "units of 2^-52 by which the copy is moved",
+       false,
+       copies,
+       {{0, 2}, {1, 3}, {1024, 3}},
+       true},
+      {"ground",
+       "two large triangles and small ones on them",
+       "the ratio of their sizes",
+       false,
+       ground,
+       {{1e6, 1000}, {1e12, 1000}},
+       false},
+      {"sheets",
+       "a sheet above another one, touching it here and there",
+       "the gap, in cells",
+       false,
+       sheets,
+       {{0x1p-20, 40}, {0x1p-50, 40}},
+       false},
+      {"cloth",
+       "a cloth in four layers",
+       "the gap between layers, in cells",
+       true,
+       cloth,
+       {{number("1e-1"), 12}, {number("1e-3"), 48}, {number("1e-6"), 48}, {number("1e-12"), 32}},
+       true},
+      {"accordion", "a sheet folded flat", "its layers", true, accordion, {{4, 4}, {16, 6}}, true},
+      {"crumpled",
+       "a sheet whose vertices are moved",
+       "by how much at most, in cells",
+       true,
+       crumpled,
+       {{1, 20}, {2, 60}, {4, 30}},
+       true},
+      {"rope",
+       "a rope in three windings",
+       "from one winding to the next, in diameters",
+       true,
+       rope,
+       {{0.9375, 12}, {1 + 0x1p-10, 40}, {1.0625, 40}},
+       true},
+      {"soup",
+       "triangles that share no vertices",
+       "their size, in halves of the box around them",
+       true,
+       soup,
+       {{0.125, 1000}, {0.015625, 10000}, {0.5, 500}},
+       true},
+      {"fan",
+       "triangles with one corner in common",
+       "their heights above a plane",
+       true,
+       fan,
+       {{0.125, 200}, {number("1e-3"), 500}, {number("1e-9"), 500}},
+       true},
+      {"book",
+       "triangles with one edge in common",
+       "their number",
+       true,
+       book,
+       {{40, 2}, {200, 3}},
+       false},
+      {"degenerate",
+       "a sheet with segments and points among its triangles",
+       "one triangle in so many",
+       true,
+       degenerate,
+       {{4, 20}, {2, 40}},
+       true},
+  };
+}
+
+}  // namespace
+
+const std::vector<MeshFamily>& mesh_families() {
+  static const std::vector<MeshFamily> families = [] {
+    std::vector<MeshFamily> out = make_families();
+    std::sort(out.begin(), out.end(),
+              [](const MeshFamily& x, const MeshFamily& y) { return x.name < y.name; });
+    return out;
+  }();
+  return families;
+}
+
+std::vector<SuiteObject> make_suite_mesh(const MeshFamily& family, std::uint64_t seed,
+                                         std::size_t index) {
+  RandomDraws draws(seed_of_item(seed, "mesh " + family.name, index));
+  const MeshFamily::Member& member = family.members.at(index);
+  std::vector<SuiteObject> out = family.make(draws, member.parameter, member.detail);
+  if (family.self) {
+    for (SuiteObject& object : out) join_vertices(object);
+  }
+  return out;
+}
+
+}  // namespace farcull

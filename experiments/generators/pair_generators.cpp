@@ -1,0 +1,265 @@
+// Contact is made exactly, on integers, and then spoilt on purpose: by an ulp, by rounding, by
+// scale. Corners change places and a changes places with b, since predicates branch on their order.
+#include "experiments/generators/pair_generators.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace farcull {
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+
+Corners whole_triangle(RandomDraws& random, double extent) {
+  return {random.whole_point(extent), random.whole_point(extent), random.whole_point(extent)};
+}
+
+/// Every coordinate through a function.
+template <class Function>
+DrawnPair mapped(DrawnPair pair, const Function& function) {
+  for (Corners* t : {&pair.a, &pair.b}) {
+    for (Vec3& p : *t) {
+      for (int k = 0; k < 3; ++k) p[k] = function(p[k]);
+    }
+  }
+  return pair;
+}
+
+double nudged(RandomDraws& random, double x) {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  return std::nextafter(x, random.chance(2) ? kMost : -kMost);
+}
+
+DrawnPair small_grid(RandomDraws& random) {
+  const int extent = random.whole(1, 3);
+  return {whole_triangle(random, extent), whole_triangle(random, extent)};
+}
+
+DrawnPair random_pair(RandomDraws& random) {
+  DrawnPair pair;
+  for (Vec3& p : pair.a) p = random.point();
+  for (Vec3& p : pair.b) p = random.point();
+  return pair;
+}
+
+/// Contact in one point, exactly: a corner, a point of an edge or of the face of a (multiples of 4,
+/// so that quarters are whole), with a corner, an edge or the face of b. b leaves it to any side,
+/// so that it may also cross, and every third time steps back from it by one.
+DrawnPair contact(RandomDraws& random) {
+  constexpr int kExtent = 64;
+  DrawnPair pair;
+  for (Vec3& p : pair.a) p = 4 * random.whole_point(kExtent);
+  Vec3 at = pair.a[0];
+  switch (random.below(3)) {
+    case 0:
+      break;
+    case 1: {
+      const int weight = random.whole(1, 3);
+      at = (weight * pair.a[0] + (4 - weight) * pair.a[1]) / 4;
+      break;
+    }
+    default:
+      at = (2 * pair.a[0] + pair.a[1] + pair.a[2]) / 4;
+  }
+  const Vec3 u = random.whole_point(kExtent);
+  const Vec3 v = random.whole_point(kExtent);
+  switch (random.below(4)) {
+    case 0:
+      pair.b = {at, at + u, at + v};
+      break;
+    case 1:
+      pair.b = {at - u, at + random.whole(1, 3) * u, at + v};
+      break;
+    case 2:
+      pair.b = {at - u - v, at + u, at + v};
+      break;
+    default:  // along an edge of a
+      pair.b = {pair.a[0], pair.a[1], at + v};
+      if (random.chance(2)) pair.b[1] = at - (pair.a[1] - pair.a[0]) / 4;
+  }
+  if (random.chance(3)) {
+    const Vec3 step = random.whole_point(1);
+    for (Vec3& p : pair.b) p += step;
+  }
+  return pair;
+}
+
+DrawnPair coplanar(RandomDraws& random) {
+  const Vec3 u = random.whole_point(20);
+  const Vec3 v = random.whole_point(20);
+  const Vec3 origin = random.whole_point(1000);
+  const auto corner = [&] {
+    const int i = random.whole(-5, 5);
+    const int j = random.whole(-5, 5);
+    return Vec3(origin + i * u + j * v);
+  };
+  DrawnPair pair;
+  for (Vec3& p : pair.a) p = corner();
+  for (Vec3& p : pair.b) p = corner();
+  if (random.chance(4)) {  // b is a copy of a, moved in the plane
+    const Vec3 move = random.whole(-3, 3) * u + random.whole(-3, 3) * v;
+    for (int i = 0; i < 3; ++i) pair.b[i] = pair.a[i] + move;
+  }
+  return pair;
+}
+
+/// A contact of coordinates with all 53 bits, rounded, so that it is missed or overdone by about an
+/// ulp; then one more coordinate in three moved by an ulp.
+DrawnPair one_ulp(RandomDraws& random) {
+  DrawnPair pair;
+  for (Vec3& p : pair.a) p = random.point();
+  const double s = random.chance(3) ? 0 : random.unit();
+  const double t = random.chance(3) ? 0 : random.unit() * (1 - s);
+  const Vec3 at = pair.a[0] + s * (pair.a[1] - pair.a[0]) + t * (pair.a[2] - pair.a[0]);
+  const Vec3 u = random.point();
+  const Vec3 v = random.point();
+  switch (random.below(4)) {
+    case 0:
+      pair.b = {at, at + u, at + v};
+      break;
+    case 1:
+      pair.b = {at - u, at + u, at + v};
+      break;
+    case 2:  // coplanar but for the rounding
+      pair.b = {at, at + (at - pair.a[1]) * random.between(-1, 2),
+                at + (at - pair.a[2]) * random.between(-1, 2)};
+      break;
+    default:  // a plate on a plate, one coordinate the same
+      for (int i = 0; i < 3; ++i) {
+        pair.a[i].z() = at.z();
+        pair.b[i] = {random.point().x(), random.point().y(), at.z()};
+      }
+      pair.b[0].z() = at.z() + random.unit();
+  }
+  for (Vec3& p : pair.b) {
+    for (int k = 0; k < 3; ++k) {
+      if (random.chance(3)) p[k] = nudged(random, p[k]);
+    }
+  }
+  return pair;
+}
+
+DrawnPair needles(RandomDraws& random) {
+  const double width = std::pow(10, -random.between(3, 12));
+  const auto needle = [&](const Vec3& through) {
+    const Vec3 along = random.point();
+    const double before = random.between(-0.2, 1.2);
+    return Corners{through - before * along, through + (1 - before) * along,
+                   through + (random.between(-1, 2) - before) * along + width * random.point()};
+  };
+  const Vec3 centre = random.point();
+  return {needle(centre), needle(centre + random.below(3) * width * random.point())};
+}
+
+/// Points and segments against each other and against triangles, in contact every other time.
+DrawnPair degenerate(RandomDraws& random) {
+  const auto shape = [&](int dimension, const Vec3& through) -> Corners {
+    const Vec3 u = random.whole_point(6);
+    if (dimension == 0) return {through, through, through};
+    if (dimension == 1) {
+      const int from = random.whole(-3, 1);
+      return {through + from * u, through + random.whole(from, 3) * u,
+              through + random.whole(from, 3) * u};
+    }
+    const Vec3 v = random.whole_point(6);
+    return {through - u - v, through + random.whole(0, 2) * u, through + random.whole(0, 2) * v};
+  };
+  const Vec3 at = random.whole_point(10);
+  const Vec3 near = random.chance(2) ? at : Vec3(at + random.whole_point(2));
+  return {shape(random.below(2), at), shape(random.below(3), near)};
+}
+
+/// One scale for the pair or one per axis, 1e-30 .. 1e30; exact contacts are rounded away by some
+/// scales and kept by others.
+DrawnPair magnitudes(RandomDraws& random) {
+  DrawnPair pair = random.chance(2) ? contact(random) : one_ulp(random);
+  const auto scale = [&] {
+    const double exponent = random.between(-30, 30);
+    return random.chance(2) ? std::pow(10, exponent) : std::exp2(std::round(exponent * 3.3));
+  };
+  Vec3 factors = Vec3::Constant(scale());
+  if (random.chance(2)) factors = {scale(), scale(), scale()};
+  for (Corners* t : {&pair.a, &pair.b}) {
+    for (Vec3& p : *t) p = p.cwiseProduct(factors);
+  }
+  return pair;
+}
+
+/// Whole multiples of the least double, and some axes of the pair in normal size beside them.
+DrawnPair denormals(RandomDraws& random) {
+  DrawnPair pair = random.chance(2) ? contact(random) : small_grid(random);
+  const int exponent = random.whole(-1074, -1030);
+  if (random.chance(2)) return mapped(pair, [&](double x) { return std::ldexp(x, exponent); });
+  const int axis = random.below(3);
+  for (Corners* t : {&pair.a, &pair.b}) {
+    for (Vec3& p : *t) p[axis] = std::ldexp(p[axis], exponent);
+  }
+  return pair;
+}
+
+/// 1e9 of its own diagonals from the origin: rounding leaves some 23 bits of the shape.
+DrawnPair far_away(RandomDraws& random) {
+  DrawnPair pair = random.chance(2) ? one_ulp(random) : contact(random);
+  double size = 0;
+  for (const Corners* t : {&pair.a, &pair.b}) {
+    for (const Vec3& p : *t) size = std::max(size, p.norm());
+  }
+  const Vec3 move = 2e9 * size * random.point();
+  for (Corners* t : {&pair.a, &pair.b}) {
+    for (Vec3& p : *t) p += move;
+  }
+  return pair;
+}
+
+/// A triangle of 1e3 .. 1e30 and one of about 1 in, on or near its corner, edge or face.
+DrawnPair huge_beside_tiny(RandomDraws& random) {
+  const double size = std::pow(10, random.between(3, 30));
+  DrawnPair pair;
+  const Vec3 at = random.whole_point(8);
+  const Vec3 u = std::round(size) * (random.chance(3) ? Vec3(Vec3::UnitX()) : random.point());
+  const Vec3 v = std::round(size) * (random.chance(3) ? Vec3(Vec3::UnitY()) : random.point());
+  switch (random.below(3)) {
+    case 0:
+      pair.a = {at, at + u, at + v};
+      break;
+    case 1:
+      pair.a = {at - u, at + u, at + v};
+      break;
+    default:
+      pair.a = {at - u - v, at + u, at + v};
+  }
+  for (Vec3& p : pair.b) p = at + random.whole_point(2);
+  if (random.chance(2)) pair.b[0] = at;
+  if (random.chance(3)) pair.b[1] = pair.b[0];
+  return pair;
+}
+
+template <DrawnPair (*Make)(RandomDraws&)>
+DrawnPair any_order(RandomDraws& random) {
+  return shuffled(random, Make(random));
+}
+
+}  // namespace
+
+const std::vector<PairGenerator>& pair_generators() {
+  static const std::vector<PairGenerator> generators = {
+      {"grid", "corners on a grid of 3 to 7 points a side", any_order<small_grid>},
+      {"random", "corners anywhere in a cube", any_order<random_pair>},
+      {"contact", "exact contact at corners, edges and faces, and one step beside it",
+       any_order<contact>},
+      {"coplanar", "in one plane: overlapping, touching, apart", any_order<coplanar>},
+      {"one-ulp", "contacts missed or overdone by about one ulp", any_order<one_ulp>},
+      {"needles", "needles of aspect 1e3 to 1e12 that nearly cross", any_order<needles>},
+      {"degenerate", "points and segments", any_order<degenerate>},
+      {"magnitudes", "contacts at scales from 1e-30 to 1e30, also another one per axis",
+       any_order<magnitudes>},
+      {"denormals", "subnormal coordinates, also beside normal ones", any_order<denormals>},
+      {"far-away", "1e9 diagonals from the origin", any_order<far_away>},
+      {"huge-beside-tiny", "a triangle of up to 1e30 and one of 1 near it",
+       any_order<huge_beside_tiny>},
+  };
+  return generators;
+}
+
+}  // namespace farcull

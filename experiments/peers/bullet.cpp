@@ -1,0 +1,128 @@
+// Bullet's GImpact: its tree of boxes (btGImpactBvh) in double, with the boxes that it is given.
+// Bullet's own test of two triangles rounds, so the leaves are candidates here.
+//
+// Bullet's find_collision() is not called. It compares centres and extents that it rounds, with a
+// tolerance relative to the extents, so that it can lose small boxes that touch far from the
+// origin. It also stores all pairs, and has one thread. search_trees() visits the nodes instead,
+// with btAABB::has_collision(), which compares without rounding. The quantized tree is not used: it
+// rounds boxes to the nearest of 65,535 steps, inward as well as outward.
+#include <BulletCollision/Gimpact/btGImpactBvh.h>
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <type_traits>
+
+#include "experiments/peers/parts.h"
+
+namespace farcull {
+namespace {
+
+static_assert(std::is_same_v<btScalar, double>, "boxes in float would have to be rounded outward");
+
+std::string library() {
+  return "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
+         std::to_string(BT_BULLET_VERSION % 100);
+}
+
+/// Boxes, as Bullet asks for them while it builds a tree.
+class Boxes : public btPrimitiveManagerBase {
+ public:
+  explicit Boxes(std::span<const Box> boxes) : boxes_(boxes) {}
+
+  bool is_trimesh() const override { return false; }
+  int get_primitive_count() const override { return static_cast<int>(boxes_.size()); }
+  void get_primitive_box(int index, btAABB& box) const override {
+    const Box& from = boxes_[static_cast<std::size_t>(index)];
+    box.m_min.setValue(from.lo.x(), from.lo.y(), from.lo.z());
+    box.m_max.setValue(from.hi.x(), from.hi.y(), from.hi.z());
+  }
+  void get_primitive_triangle(int, btPrimitiveTriangle&) const override {}  // of narrow phases
+
+ private:
+  std::span<const Box> boxes_;
+};
+
+/// A tree of boxes, as search_trees() takes it; primitive i is called first + i.
+class BulletTree {
+ public:
+  /// There is at least one box. Boxes are not kept.
+  BulletTree(std::span<const Box> boxes, std::uint32_t first)
+      : tree_(std::make_unique<btGImpactBvh>()), first_(first) {
+    Boxes asked(boxes);
+    tree_->setPrimitiveManager(&asked);
+    tree_->buildSet();
+    tree_->setPrimitiveManager(nullptr);
+    nodes_ = tree_->get_node_pointer();
+  }
+
+  bool is_leaf(int node) const { return nodes_[node].isLeafNode(); }
+  int left(int node) const { return tree_->getLeftNode(node); }
+  int right(int node) const { return tree_->getRightNode(node); }
+  std::uint32_t triangle(int leaf) const {
+    return first_ + static_cast<std::uint32_t>(nodes_[leaf].getDataIndex());
+  }
+  double size(int node) const {
+    const btAABB& box = nodes_[node].m_bound;
+    return (box.m_max - box.m_min).length2();
+  }
+  bool meets(int node, const BulletTree& other, int other_node) const {
+    return nodes_[node].m_bound.has_collision(other.nodes_[other_node].m_bound);
+  }
+
+ private:
+  std::unique_ptr<btGImpactBvh> tree_;
+  const GIM_BVH_TREE_NODE* nodes_;
+  std::uint32_t first_;
+};
+
+/// The pairs of boxes that overlap, by a tree of them.
+std::vector<TrianglePair> overlapping(std::span<const Box> boxes) {
+  std::vector<TrianglePair> pairs;
+  if (boxes.size() < 2) return pairs;
+  const BulletTree tree(boxes, 0);
+  descend(TreeTask<BulletTree>{&tree, &tree, 0, 0, true},
+          [&pairs](std::uint32_t a, std::uint32_t b) {
+            pairs.push_back({a, b});
+          });
+  return pairs;
+}
+
+BenchAnswer collide(const Scene& raw, unsigned threads) {
+  const Stopwatch building;
+  const std::vector<Box> boxes = triangle_boxes(raw);
+  const std::vector<Box> of_all = object_boxes(raw, boxes);
+  const std::vector<std::uint32_t> objects = objects_with_triangles(raw);
+  std::vector<Box> of_objects;
+  for (const std::uint32_t o : objects) of_objects.push_back(of_all[o]);
+  std::vector<std::unique_ptr<BulletTree>> trees(objects.size());
+  for_each_taken(objects.size(), 1, threads, [&](std::size_t i) {
+    const Object& object = raw.objects[objects[i]];
+    const auto mine = std::span(boxes).subspan(object.first_triangle, object.triangle_count);
+    trees[i] = std::make_unique<BulletTree>(mine, object.first_triangle);
+  });
+  const double build_ms = building.ms();
+
+  PeerCandidates candidates(raw, threads, threads > 1);
+  std::vector<TreeTask<BulletTree>> tasks;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (raw.objects[objects[i]].self) tasks.push_back({trees[i].get(), trees[i].get(), 0, 0, true});
+  }
+  for (const TrianglePair& pair : overlapping(of_objects)) {
+    tasks.push_back({trees[pair.a].get(), trees[pair.b].get()});
+  }
+  search_trees(raw, std::move(tasks), threads, candidates);
+  BenchAnswer answer = candidates.finish();
+  answer.build_ms = build_ms;
+  return answer;
+}
+
+}  // namespace
+
+LibraryPeers bullet_library() {
+  return {.broad = {{"bullet-gimpact", library(), "", [](unsigned threads) -> BenchRun {
+                       return [=](const Scene& scene) { return collide(scene, threads); };
+                     }}}};
+}
+
+}  // namespace farcull

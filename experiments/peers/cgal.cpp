@@ -1,0 +1,479 @@
+// CGAL, in three ways. Broad phases: box_intersection_d (Zomorodian, Edelsbrunner: Fast software
+// for box intersections, 2002) and AABB_tree, of which only the boxes are CGAL's; what they find is
+// decided as everyone's candidates are. self_intersections(), which decides exactly by itself. And
+// distances, by AABB_tree.
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/AABB_triangle_primitive.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/box_intersection_d.h>
+#include <CGAL/squared_distance_3.h>
+#include <CGAL/version.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#ifdef CGAL_LINKED_WITH_TBB
+#include <tbb/global_control.h>
+#endif
+
+#include "core/base/stopwatch.h"
+#include "experiments/peers/parts.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Triangle = Kernel::Triangle_3;
+using Triangles = std::vector<Triangle>;
+using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
+using Traits = CGAL::AABB_traits<Kernel, Primitive>;
+using Tree = CGAL::AABB_tree<Traits>;
+
+constexpr const char* kLibrary = "CGAL " CGAL_VERSION_STR;
+
+Triangle triangle(const std::array<Vec3, 3>& corners) {
+  const auto& [a, b, c] = corners;
+  return {{a.x(), a.y(), a.z()}, {b.x(), b.y(), b.z()}, {c.x(), c.y(), c.z()}};
+}
+
+using Runner = BenchAnswer (*)(const Scene&, unsigned threads);
+
+std::function<BenchRun(unsigned)> sequential(Runner run) {
+  return [run](unsigned threads) -> BenchRun {
+    return [run, threads](const Scene& scene) { return run(scene, threads); };
+  };
+}
+#ifdef CGAL_LINKED_WITH_TBB
+// TBB's threads start with the first run, the cold one, which counts for nothing else.
+std::function<BenchRun(unsigned)> parallel(Runner run) {
+  return [run](unsigned threads) -> BenchRun {
+    const auto limit = std::make_shared<tbb::global_control>(
+        tbb::global_control::max_allowed_parallelism, threads);
+    return [limit, run, threads](const Scene& scene) { return run(scene, threads); };
+  };
+}
+using ParallelTag = CGAL::Parallel_tag;
+const char* parallel_missing(unsigned threads) {
+  return threads > 1 ? "" : "the same as without -parallel on one thread";
+}
+#else
+std::function<BenchRun(unsigned)> parallel(Runner) { return {}; }
+using ParallelTag = CGAL::Sequential_tag;
+const char* parallel_missing(unsigned) { return "built without TBB (Debian: libtbb-dev)"; }
+#endif
+
+constexpr std::ptrdiff_t kUntuned = 10;  // CGAL's default cutoff
+constexpr std::ptrdiff_t kTuned = 2000;
+
+/// A box with the interface that box_intersection_d expects.
+struct PeerBox {
+  using NT = double;
+  using ID = std::uint32_t;
+  Box box;
+  std::uint32_t index;  // of a triangle or an object
+
+  static int dimension() { return 3; }
+  double min_coord(int axis) const { return box.lo[axis]; }
+  double max_coord(int axis) const { return box.hi[axis]; }
+  ID id() const { return index; }
+};
+using Handles = std::vector<const PeerBox*>;
+
+Handles handles(const std::vector<PeerBox>& boxes) {
+  Handles all;
+  all.reserve(boxes.size());
+  for (const PeerBox& box : boxes) all.push_back(&box);
+  return all;
+}
+
+std::vector<PeerBox> numbered(const std::vector<Box>& boxes) {
+  std::vector<PeerBox> all;
+  all.reserve(boxes.size());
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) all.push_back({boxes[i], i});
+  return all;
+}
+
+/// All boxes at once, as the manual calls it.
+template <class Tag, std::ptrdiff_t cutoff>
+BenchAnswer join_boxes(const Scene& raw, unsigned threads) {
+  constexpr bool kParallel = !std::is_same_v<Tag, CGAL::Sequential_tag>;
+  PeerCandidates candidates(raw, threads, kParallel);
+  const PeerScene scene(raw);
+  if (!scene.has_pairs()) return candidates.finish();
+  const std::vector<PeerBox> boxes = numbered(scene.boxes);
+  Handles all = handles(boxes);
+  PeerCandidates::Part* const only = kParallel ? nullptr : &candidates.part();
+  const auto add = [&candidates, only](std::uint32_t a, std::uint32_t b) {
+    (kParallel ? candidates.part() : *only).add(a, b);
+  };
+  if (scene.two_sides) {
+    const auto second = all.begin() + scene.second;
+    CGAL::box_intersection_d<Tag>(
+        all.begin(), second, second, all.end(),
+        [add](const PeerBox* a, const PeerBox* b) { add(a->index, b->index); }, cutoff);
+  } else {
+    CGAL::box_self_intersection_d<Tag>(
+        all.begin(), all.end(),
+        [add, &scene](const PeerBox* a, const PeerBox* b) {
+          if (scene.counts(a->index, b->index)) add(a->index, b->index);
+        },
+        cutoff);
+  }
+  return candidates.finish();
+}
+
+/// The boxes of an object that meet a region.
+std::vector<PeerBox> clipped(const PeerScene& scene, const Object& object, const Box& region) {
+  std::vector<PeerBox> inside;
+  for (std::uint32_t i = 0; i < object.triangle_count; ++i) {
+    const std::uint32_t t = object.first_triangle + i;
+    if (overlap(scene.boxes[t], region)) inside.push_back({scene.boxes[t], t});
+  }
+  return inside;
+}
+
+/// The boxes of two objects after another, or of one with itself, clipped to the common part of the
+/// objects' boxes.
+BenchAnswer join_object_pairs(const Scene& raw, unsigned threads) {
+  // With one pair of objects there is nothing to divide but the decisions.
+  const bool parallel = threads > 1 && raw.objects.size() > 2;
+  PeerCandidates candidates(raw, threads, parallel);
+  const PeerScene scene(raw);
+  const std::vector<Box> regions = object_boxes(raw, scene.boxes);
+  std::vector<TrianglePair> meeting;  // of objects; one with itself where it is self
+  for (std::uint32_t o = 0; o < raw.objects.size(); ++o) {
+    if (raw.objects[o].self) meeting.push_back({o, o});
+  }
+  std::vector<PeerBox> boxes;
+  for (std::uint32_t o = 0; o < regions.size(); ++o) {
+    if (!regions[o].is_empty()) boxes.push_back({regions[o], o});
+  }
+  Handles all = handles(boxes);
+  CGAL::box_self_intersection_d(
+      all.begin(), all.end(),
+      [&](const PeerBox* a, const PeerBox* b) {
+        meeting.push_back({a->index, b->index});
+      },
+      kTuned);
+  const auto join = [&](std::size_t i) {
+    const auto [o, p] = meeting[i];
+    const Box region = intersection(regions[o], regions[p]);
+    PeerCandidates::Part& part = candidates.part();
+    const auto add = [&part](const PeerBox* a, const PeerBox* b) { part.add(a->index, b->index); };
+    const std::vector<PeerBox> first = clipped(scene, raw.objects[o], region);
+    Handles of_first = handles(first);
+    if (o == p) {
+      CGAL::box_self_intersection_d(
+          of_first.begin(), of_first.end(),
+          [&](const PeerBox* a, const PeerBox* b) {
+            if (!share_vertex(raw, a->index, b->index)) add(a, b);
+          },
+          kTuned);
+      return;
+    }
+    const std::vector<PeerBox> second = clipped(scene, raw.objects[p], region);
+    Handles of_second = handles(second);
+    CGAL::box_intersection_d(of_first.begin(), of_first.end(), of_second.begin(), of_second.end(),
+                             add, kTuned);
+  };
+  for_each_taken(meeting.size(), 1, parallel ? threads : 1, join);
+  return candidates.finish();
+}
+
+/// Asks the tree for the triangles whose boxes meet the box of a query, on the way down by its box
+/// or by the query itself.
+template <class Query, class Found>
+struct Walk {
+  CGAL::Bbox_3 box;
+  Found found;
+
+  bool go_further() const { return true; }
+  bool do_intersect(const Query& query, const CGAL::AABB_node<Traits>& node) const {
+    if constexpr (std::is_same_v<Query, CGAL::Bbox_3>) {
+      return CGAL::do_overlap(query, node.bbox());
+    } else {
+      return CGAL::do_overlap(box, node.bbox()) && CGAL::do_intersect(query, node.bbox());
+    }
+  }
+  void intersection(const Query&, const Primitive& primitive) {
+    if (CGAL::do_overlap(box, primitive.datum().bbox())) found(primitive.id());
+  }
+};
+
+/// A tree of the smaller side, asked with the triangles of the other one; or of all, asked with
+/// all.
+template <bool by_triangle>
+BenchAnswer search_tree(const Scene& raw, unsigned threads) {
+  const Stopwatch building;
+  const PeerScene scene(raw);
+  const auto count = static_cast<std::uint32_t>(raw.triangles.size());
+  std::uint32_t begin = 0, end = count;  // of the tree
+  if (scene.two_sides) {
+    if (scene.second < count - scene.second) {
+      end = scene.second;
+    } else {
+      begin = scene.second;
+    }
+  }
+  Triangles triangles;
+  triangles.reserve(end - begin);
+  for (std::uint32_t t = begin; t < end; ++t) triangles.push_back(triangle(raw.corners(t)));
+  std::optional<Tree> tree;
+  if (scene.has_pairs()) {
+    tree.emplace(triangles.cbegin(), triangles.cend());
+    tree->build();
+  }
+  const double build_ms = building.ms();
+
+  PeerCandidates candidates(raw, threads, threads > 1);
+  const auto search = [&](std::size_t i) {
+    const auto t = static_cast<std::uint32_t>(i);
+    if (scene.two_sides && t >= begin && t < end) return;
+    PeerCandidates::Part& part = candidates.part();
+    const auto found = [&](Triangles::const_iterator at) {
+      const auto other = begin + static_cast<std::uint32_t>(at - triangles.cbegin());
+      if (scene.two_sides || (other > t && scene.counts(t, other))) part.add(t, other);
+    };
+    const Triangle query = scene.two_sides ? triangle(raw.corners(t)) : triangles[i];
+    const CGAL::Bbox_3 box = query.bbox();
+    // The test of a triangle against a box takes no degenerate ones.
+    if (by_triangle && shape(raw.corners(t)) == Shape::triangle) {
+      Walk<Triangle, decltype(found)> walk{box, found};
+      tree->traversal(query, walk);
+    } else {
+      Walk<CGAL::Bbox_3, decltype(found)> walk{box, found};
+      tree->traversal(box, walk);
+    }
+  };
+  if (tree) for_each_taken(count, 256, threads, search);
+  BenchAnswer answer = candidates.finish();
+  answer.build_ms = build_ms;
+  return answer;
+}
+
+// Polygon_mesh_processing::self_intersections(): the pairs of a mesh with itself, found by
+// box_intersection_d with cutoff 2000 and decided at once by CGAL's exact predicates. So there are
+// no candidates to be counted but the pairs reported.
+
+using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+
+/// The only object with triangles, where it is tested against itself; else null.
+const Object* only_self(const Scene& scene) {
+  const Object* only = nullptr;
+  for (const Object& object : scene.objects) {
+    if (object.triangle_count == 0) continue;
+    if (only || !object.self) return nullptr;
+    only = &object;
+  }
+  return only;
+}
+
+/// A mesh whose face i is triangle i of the object. A triangle that would make the mesh no manifold
+/// gets corners of its own. Its neighbours are then reported as pairs, and dropped by position.
+Mesh mesh_of(const Scene& scene, const Object& object) {
+  Mesh mesh;
+  mesh.reserve(static_cast<Mesh::size_type>(scene.vertices.size()),
+               object.triangle_count + object.triangle_count / 2, object.triangle_count);
+  const auto add_vertex = [&](std::uint32_t v) {
+    const Vec3& p = scene.vertices[v];
+    return mesh.add_vertex({p.x(), p.y(), p.z()});
+  };
+  std::vector<Mesh::Vertex_index> made(scene.vertices.size(), Mesh::null_vertex());
+  for (std::uint32_t i = 0; i < object.triangle_count; ++i) {
+    const auto& [a, b, c] = scene.triangles[object.first_triangle + i];
+    for (const std::uint32_t v : {a, b, c}) {
+      if (made[v] == Mesh::null_vertex()) made[v] = add_vertex(v);
+    }
+    if (mesh.add_face(made[a], made[b], made[c]) == Mesh::null_face()) {
+      mesh.add_face(add_vertex(a), add_vertex(b), add_vertex(c));
+    }
+  }
+  return mesh;
+}
+
+/// self_intersections() writes here, from one thread.
+struct Collector {
+  const Scene& scene;
+  std::uint32_t first;
+  BenchAnswer& answer;
+
+  void operator()(const std::pair<Mesh::Face_index, Mesh::Face_index>& faces) const {
+    const std::uint32_t a = first + faces.first.idx(), b = first + faces.second.idx();
+    ++answer.candidate_pairs;
+    if (share_position(scene.corners(a), scene.corners(b))) return;
+    answer.pairs.push_back({std::min(a, b), std::max(a, b)});
+  }
+};
+
+template <class Tag>
+BenchAnswer self_intersections(const Scene& scene, unsigned) {
+  BenchAnswer answer;
+  const Object* const object = only_self(scene);
+  if (!object) return answer;
+  const Stopwatch building;
+  const Mesh mesh = mesh_of(scene, *object);
+  answer.build_ms = building.ms();
+  const Stopwatch finding;
+  const Collector collect{scene, object->first_triangle, answer};
+  CGAL::Polygon_mesh_processing::self_intersections<Tag>(
+      mesh, boost::make_function_output_iterator(collect));
+  std::sort(answer.pairs.begin(), answer.pairs.end());
+  answer.candidates_ms = finding.ms();
+  return answer;
+}
+
+/// self_intersections() makes no box for a degenerate triangle, and so reports none of its pairs.
+std::string refuses_self(const Scene& scene) {
+  if (!only_self(scene)) return "it takes one object, tested against itself";
+  if (degenerate_triangles(scene) > 0) return "it leaves degenerate triangles out";
+  return "";
+}
+
+// Distances: the triangles of one object against the AABB_tree of another. The tree's own functions
+// measure from a point alone, so its traversal is given a triangle and the least distance so far,
+// and leaves out the nodes whose boxes are farther away.
+
+double squared_gap(const CGAL::Bbox_3& a, const CGAL::Bbox_3& b) {
+  double sum = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double gap = std::max({a.min(axis) - b.max(axis), b.min(axis) - a.max(axis), 0.0});
+    sum += gap * gap;
+  }
+  return sum;
+}
+
+/// Tells AABB_tree::traversal() where to descend, and what to do at a triangle.
+class NearerTriangle {
+ public:
+  NearerTriangle(const Triangle& triangle, double& least)
+      : triangle_(triangle), box_(triangle.bbox()), least_(least) {}
+
+  bool go_further() const { return least_ > 0; }
+  void intersection(const Triangle&, const Primitive& primitive) {
+    const Triangle& other = *primitive.id();
+    if (squared_gap(box_, other.bbox()) >= least_) return;
+    const double found = CGAL::squared_distance(triangle_, other);
+    if (found < least_) least_ = found;
+  }
+  template <class Node>
+  bool do_intersect(const Triangle&, const Node& node) const {
+    return squared_gap(box_, node.bbox()) < least_;
+  }
+
+ private:
+  const Triangle& triangle_;
+  CGAL::Bbox_3 box_;
+  double& least_;
+};
+
+struct TreeOfObject {
+  std::uint32_t number = 0;  // of the object
+  Triangles triangles;
+  CGAL::Bbox_3 box;
+  Tree tree;
+};
+
+/// The square of the distance where it is below `most`; else `most`.
+double squared_distance_of(const TreeOfObject& a, const TreeOfObject& b, double most) {
+  if (squared_gap(a.box, b.box) >= most) return most;
+  const TreeOfObject& asked = a.triangles.size() < b.triangles.size() ? a : b;
+  const TreeOfObject& tree = &asked == &a ? b : a;
+  double least = most;
+  // A first bound: from one corner, by the tree's own function.
+  const double first = tree.tree.squared_distance(asked.triangles.front()[0]);
+  if (first < least) least = std::nextafter(first, HUGE_VAL);
+  for (const Triangle& triangle : asked.triangles) {
+    if (squared_gap(triangle.bbox(), tree.box) >= least) continue;
+    NearerTriangle nearer(triangle, least);
+    tree.tree.traversal(triangle, nearer);
+    if (least <= 0) break;
+  }
+  return least;
+}
+
+std::vector<std::unique_ptr<TreeOfObject>> trees_of(const Scene& scene, unsigned threads) {
+  std::vector<std::unique_ptr<TreeOfObject>> out;
+  for (const std::uint32_t o : objects_with_triangles(scene)) {
+    out.push_back(std::make_unique<TreeOfObject>());
+    out.back()->number = o;
+  }
+  for_each_taken(out.size(), 1, threads, [&](std::size_t i) {
+    TreeOfObject& object = *out[i];
+    const Object& of = scene.objects[object.number];
+    object.triangles.reserve(of.triangle_count);
+    for (std::uint32_t t = 0; t < of.triangle_count; ++t) {
+      object.triangles.push_back(triangle(scene.corners(of.first_triangle + t)));
+      object.box += object.triangles.back().bbox();
+    }
+    object.tree.rebuild(object.triangles.begin(), object.triangles.end());
+    object.tree.build();
+    object.tree.accelerate_distance_queries();
+  });
+  return out;
+}
+
+double root_within(double squared, double within) {
+  const double root = std::sqrt(squared);
+  return root <= within ? root : std::numeric_limits<double>::infinity();
+}
+
+PeerDistances distances(const Scene& scene, const PeerQuestion& question, unsigned threads) {
+  const Stopwatch building;
+  const auto trees = trees_of(scene, threads);
+  PeerDistances answer{.build_ms = building.ms()};
+  const Stopwatch asking;
+  std::vector<std::uint32_t> numbers;
+  for (const auto& tree : trees) numbers.push_back(tree->number);
+  answer.distances = distances_of_trees(
+      numbers, question.task, std::nextafter(question.within * question.within, HUGE_VAL), threads,
+      [&](std::size_t i, std::size_t k) { return squared_gap(trees[i]->box, trees[k]->box); },
+      [&](std::size_t i, std::size_t k, double least) {
+        return squared_distance_of(*trees[i], *trees[k], least);
+      },
+      [&](double squared) { return root_within(squared, question.within); });
+  answer.query_ms = asking.ms();
+  return answer;
+}
+
+}  // namespace
+
+bool cgal_do_intersect(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  return CGAL::do_intersect(triangle(a), triangle(b));
+}
+
+LibraryPeers cgal_library(unsigned threads) {
+  using CGAL::Sequential_tag;
+  LibraryPeers out;
+  out.broad = {
+      {"cgal-boxes", kLibrary, "", sequential(join_boxes<Sequential_tag, kUntuned>)},
+      {"cgal-boxes-2000", kLibrary, "", sequential(join_boxes<Sequential_tag, kTuned>)},
+      {"cgal-boxes-parallel", kLibrary, parallel_missing(threads),
+       parallel(join_boxes<ParallelTag, kUntuned>)},
+      {"cgal-boxes-2000-parallel", kLibrary, parallel_missing(threads),
+       parallel(join_boxes<ParallelTag, kTuned>)},
+      {"cgal-object-pairs", kLibrary, "", sequential(join_object_pairs)},
+      {"cgal-aabb", kLibrary, "", sequential(search_tree<false>)},
+      {"cgal-aabb-triangles", kLibrary, "", sequential(search_tree<true>)},
+      {"cgal-self-intersections", kLibrary, "", sequential(self_intersections<Sequential_tag>),
+       refuses_self},
+      {"cgal-self-intersections-parallel", kLibrary, parallel_missing(threads),
+       parallel(self_intersections<ParallelTag>), refuses_self},
+  };
+  out.distances = {{.name = "cgal-aabb",
+                    .library = kLibrary,
+                    .run = distances,
+                    .refuses = [](const Scene& scene) {
+                      return refuse_degenerate(
+                          scene, "its tree and distances take no degenerate triangle");
+                    }}};
+  return out;
+}
+
+}  // namespace farcull

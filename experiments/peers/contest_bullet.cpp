@@ -1,0 +1,172 @@
+// Bullet's GImpact meshes, by btCollisionWorld::contactPairTest(): its trees of boxes and its own
+// test of two triangles. The file is compiled twice, for Bullet in float and in double.
+//
+// Contacts are a list of points, each with the triangles that it is between. Bullet adds a margin
+// to every shape, so that it reports triangles that are apart. It is asked twice: with the margin
+// that it has by default, as its manual advises, and with a margin of 0, which the manual advises
+// against and which is the only one that could tell triangles that meet from those that do not.
+#include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
+#include <BulletCollision/Gimpact/btGImpactShape.h>
+#include <btBulletCollisionCommon.h>
+
+#include <memory>
+
+#include "core/scene/members.h"
+#include "experiments/peers/contestant.h"
+#include "experiments/peers/parts.h"
+
+namespace farcull {
+namespace {
+
+#ifdef BT_USE_DOUBLE_PRECISION
+constexpr const char* kType = "double";
+#else
+constexpr const char* kType = "float";
+#endif
+
+enum class Margin { none, by_default };
+
+/// An object as Bullet holds it, which keeps the vertices and triangles of its maker.
+class Body {
+ public:
+  Body(const Scene& scene, const Object& object, Margin margin) {
+    const auto [first, last] = vertices_of(scene, object);
+    for (std::uint32_t v = first; v <= last; ++v) {
+      for (const double x : scene.vertices[v]) vertices_.push_back(static_cast<btScalar>(x));
+    }
+    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+      for (const std::uint32_t v : scene.triangles[object.first_triangle + t])
+        indices_.push_back(static_cast<int>(v - first));
+    }
+    arrays_ = std::make_unique<btTriangleIndexVertexArray>(
+        static_cast<int>(object.triangle_count), indices_.data(), 3 * sizeof(int),
+        static_cast<int>(last - first + 1), vertices_.data(), 3 * sizeof(btScalar));
+    shape_ = std::make_unique<btGImpactMeshShape>(arrays_.get());
+    if (margin == Margin::none) shape_->setMargin(0);
+    shape_->updateBound();
+    object_ = std::make_unique<btCollisionObject>();
+    object_->setCollisionShape(shape_.get());
+    object_->setWorldTransform(btTransform::getIdentity());
+  }
+  btCollisionObject* object() { return object_.get(); }
+
+ private:
+  std::vector<btScalar> vertices_;
+  std::vector<int> indices_;
+  std::unique_ptr<btTriangleIndexVertexArray> arrays_;
+  std::unique_ptr<btGImpactMeshShape> shape_;
+  std::unique_ptr<btCollisionObject> object_;
+};
+
+/// Notes the triangles of each contact.
+struct Contacts : btCollisionWorld::ContactResultCallback {
+  const btCollisionObject* first = nullptr;
+  std::vector<std::pair<int, int>> pairs;
+
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int,
+                           int triangle_a, const btCollisionObjectWrapper*, int,
+                           int triangle_b) override {
+    if (point.getDistance() > 0) return 0;  // near, and no contact
+    if (a->getCollisionObject() != first) std::swap(triangle_a, triangle_b);
+    pairs.emplace_back(triangle_a, triangle_b);
+    return 0;
+  }
+};
+
+class World {
+ public:
+  World() : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &configuration_) {
+    // registerAlgorithm() is for the steps of a simulation; contactPairTest() looks up the
+    // algorithm in a table of its own.
+    btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
+    dispatcher_.registerClosestPointsCreateFunc(GIMPACT_SHAPE_PROXYTYPE, GIMPACT_SHAPE_PROXYTYPE,
+                                                &create_);
+  }
+  std::vector<std::pair<int, int>> contacts(Body& a, Body& b) {
+    Contacts out;
+    out.first = a.object();
+    world_.contactPairTest(a.object(), b.object(), out);
+    return out.pairs;
+  }
+
+ private:
+  btGImpactCollisionAlgorithm::CreateFunc create_;
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_;
+  btDbvtBroadphase broadphase_;
+  btCollisionWorld world_;
+};
+
+World& world() {
+  static World one;
+  return one;
+}
+
+template <Margin margin>
+std::vector<TrianglePair> meshes(const Scene& scene) {
+  if (has_self(scene)) throw Refusal("GImpact tests no mesh against itself");
+  std::vector<std::unique_ptr<Body>> bodies;
+  for (const Object& object : scene.objects)
+    bodies.push_back(std::make_unique<Body>(scene, object, margin));
+  std::vector<TrianglePair> out;
+  for_each_object_pair(scene, [&](const Object& a, const Object& b) {
+    const auto body = [&](const Object& of) -> Body& {
+      return *bodies[&of - scene.objects.data()];
+    };
+    for (const auto& [t, u] : world().contacts(body(a), body(b))) {
+      out.push_back({a.first_triangle + static_cast<std::uint32_t>(t),
+                     b.first_triangle + static_cast<std::uint32_t>(u)});
+    }
+  });
+  return out;
+}
+
+template <Margin margin>
+bool pair(const SuitePair& asked) {
+  return !meshes<margin>(two_objects(asked)).empty();
+}
+
+ContestantCard card(const std::string& name, const std::string& margin) {
+  return {.name = name + kType,
+          .library = "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
+                     std::to_string(BT_BULLET_VERSION % 100),
+          .means = Means::crossing,
+          .degenerate = false,
+          .call = "btCollisionWorld::contactPairTest() of two btGImpactMeshShape with " + margin +
+                  ", btScalar " + kType,
+          .use =
+              "games and simulation, with moving objects of about 0.2 to 5 units and triangles "
+              "below 10 units, as the manual advises"};
+}
+
+constexpr const char* kSource =
+    "Bullet 2.83 Physics SDK Manual (the newest that Bullet 3 has), Collision Margin and General "
+    "Tips; btCollisionWorld.h, contactPairTest()";
+
+Contestant without_margin() {
+  ContestantCard out = card("bullet-gimpact-", "margin 0");
+  out.says =
+      "nothing of exact answers or of touching; of the margin 0 that it has here: \"zero margin "
+      "might "
+      "introduce problems\"; of degenerate triangles and slivers that they \"can better be "
+      "avoided\"";
+  out.source = kSource;
+  return {.card = out, .pair = pair<Margin::none>, .mesh = meshes<Margin::none>};
+}
+
+Contestant with_margin() {
+  ContestantCard out = card("bullet-gimpact-margin-", "the margin that it has by default");
+  out.margin = 0.08;  // two shapes, each of which has 0.04 by the manual
+  out.says =
+      "nothing of exact answers; triangles closer than two margins may be reported, since \"the "
+      "collision margin will expand the object\", and it \"is set to 0.04\"";
+  out.source = kSource;
+  return {.card = out, .pair = pair<Margin::by_default>, .mesh = meshes<Margin::by_default>};
+}
+
+}  // namespace
+}  // namespace farcull
+
+int main(int argc, char** argv) {
+  return farcull::contest(argc, argv, {farcull::without_margin(), farcull::with_margin()});
+}

@@ -1,0 +1,182 @@
+// CGAL's test of two triangles, with the kernel whose predicates are exact and with plain doubles;
+// and its self-intersections of a mesh, intersections of meshes, and tree of boxes.
+//
+// The checks of CGAL stay on here (they are off where NDEBUG is defined): a broken precondition is
+// then an error, and not an answer.
+#undef NDEBUG
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/AABB_triangle_primitive.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/intersection.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/version.h>
+
+#include <array>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "experiments/peers/contestant.h"
+
+namespace farcull {
+namespace {
+
+namespace PMP = CGAL::Polygon_mesh_processing;
+using Exact = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Plain = CGAL::Simple_cartesian<double>;
+using Mesh = CGAL::Surface_mesh<Exact::Point_3>;
+
+constexpr const char* kLibrary = "CGAL " CGAL_VERSION_STR;
+
+template <class Kernel>
+typename Kernel::Point_3 point(const Vec3& p) {
+  return {p[0], p[1], p[2]};
+}
+template <class Kernel>
+typename Kernel::Triangle_3 triangle(const std::array<Vec3, 3>& t) {
+  return {point<Kernel>(t[0]), point<Kernel>(t[1]), point<Kernel>(t[2])};
+}
+
+template <class Kernel>
+bool do_intersect(const SuitePair& pair) {
+  return CGAL::do_intersect(triangle<Kernel>(pair.a), triangle<Kernel>(pair.b));
+}
+
+/// Adds a face. A triangle that is turned the other way than its neighbours is turned. Throws
+/// Refusal where more than two triangles would have an edge in common.
+void add_face(Mesh& mesh, const std::array<Mesh::Vertex_index, 3>& corners) {
+  const auto& [a, b, c] = corners;
+  if (a == b || b == c || c == a)
+    throw Refusal("Surface_mesh takes no triangle with a vertex twice");
+  if (!mesh.add_face(a, b, c).is_valid() && !mesh.add_face(a, c, b).is_valid())
+    throw Refusal("Surface_mesh holds no mesh that is not manifold");
+}
+
+/// The self-intersections of one mesh of all objects, whose face i is triangle i.
+std::vector<TrianglePair> self_scene(const Scene& scene) {
+  Mesh mesh;
+  std::vector<Mesh::Vertex_index> at;
+  for (const Vec3& p : scene.vertices) at.push_back(mesh.add_vertex(point<Exact>(p)));
+  for (const auto& [a, b, c] : scene.triangles) add_face(mesh, {at[a], at[b], at[c]});
+  std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
+  PMP::self_intersections(mesh, std::back_inserter(pairs));
+  std::vector<TrianglePair> out;
+  for (const auto& [a, b] : pairs) out.push_back({a.idx(), b.idx()});
+  leave_out_untested(scene, out);  // a face with itself only says that it is degenerate
+  return out;
+}
+
+bool self_pair(const SuitePair& pair) { return !self_scene(scene_of(pair)).empty(); }
+
+bool mesh_pair(const SuitePair& pair) {
+  std::array<Mesh, 2> meshes;
+  for (int i = 0; i < 2; ++i) {
+    const auto& t = i == 0 ? pair.a : pair.b;
+    const auto add = [&](int corner) { return meshes[i].add_vertex(point<Exact>(t[corner])); };
+    const auto a = add(0), b = add(1), c = add(2);
+    meshes[i].add_face(a, b, c);
+  }
+  return PMP::do_intersect(meshes[0], meshes[1]);
+}
+
+/// A tree of the second object of each pair, asked with the triangles of the first.
+std::vector<TrianglePair> tree_scene(const Scene& scene) {
+  using Triangles = std::vector<Exact::Triangle_3>;
+  using Primitive = CGAL::AABB_triangle_primitive<Exact, Triangles::const_iterator>;
+  using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Exact, Primitive>>;
+  Triangles triangles;
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
+    triangles.push_back(triangle<Exact>(scene.corners(t)));
+  std::vector<TrianglePair> out;
+  for_each_object_pair(scene, [&](const Object& a, const Object& b) {
+    const auto first = triangles.cbegin() + b.first_triangle;
+    const Tree tree(first, first + b.triangle_count);
+    for (std::uint32_t i = 0; i < a.triangle_count; ++i) {
+      const std::uint32_t t = a.first_triangle + i;
+      std::vector<Triangles::const_iterator> found;
+      tree.all_intersected_primitives(triangles[t], std::back_inserter(found));
+      for (const auto at : found) {
+        const auto u = static_cast<std::uint32_t>(at - triangles.cbegin());
+        if (&a != &b || t < u) out.push_back({t, u});
+      }
+    }
+  });
+  return out;
+}
+
+const char* const kExact = "where every answer must be exact";
+
+Contestant exact() {
+  return {
+      .card = {.name = "cgal-exact",
+               .library = kLibrary,
+               .degenerate = false,
+               .call = "CGAL::do_intersect(Triangle_3, Triangle_3); meshes by AABB_tree's "
+                       "all_intersected_primitives(); kernel "
+                       "Exact_predicates_inexact_constructions_kernel",
+               .says = "the kernel \"provides exact geometric predicates\"; two objects intersect "
+                       "\"if there is a point p that is part of both\"; triangles must not be "
+                       "degenerate, which the code checks and the manual does not say",
+               .source = "CGAL 5.5 manual, 2D and 3D Linear Geometry Kernel, "
+                         "Exact_predicates_inexact_constructions_kernel and do_intersect(); "
+                         "Triangle_3_Triangle_3_do_intersect.h",
+               .use = kExact},
+      .pair = do_intersect<Exact>,
+      .mesh = tree_scene};
+}
+
+Contestant plain() {
+  return {
+      .card = {.name = "cgal-double",
+               .library = kLibrary,
+               .degenerate = false,
+               .call = "CGAL::do_intersect(Triangle_3, Triangle_3), kernel "
+                       "Simple_cartesian<double>",
+               .says = "with double \"the geometry provided by the kernel is only an approximation "
+                       "of Euclidean geometry\"; what intersects is as with cgal-exact",
+               .source = "CGAL 5.5 manual, 2D and 3D Linear Geometry Kernel, Simple_cartesian",
+               .use = "for those who \"need speed and can live with approximate results\" "
+                      "(manual, Choosing a Kernel)"},
+      .pair = do_intersect<Plain>};
+}
+
+Contestant self_intersections() {
+  return {.card = {.name = "cgal-self-intersections",
+                   .library = kLibrary,
+                   .degenerate = false,
+                   .neighbours = true,
+                   .call = "Polygon_mesh_processing::self_intersections() of a Surface_mesh of "
+                           "both triangles, or of all objects; the kernel of cgal-exact",
+                   .says = "faces intersect if \"the corresponding triangles intersect and the "
+                           "intersection is not an edge nor a vertex incident to both faces\"; "
+                           "degenerate faces are reported by themselves; exact as its kernel",
+                   .source = "CGAL 5.5 manual, Polygon Mesh Processing, self_intersections()",
+                   .use = kExact},
+          .pair = self_pair,
+          .mesh = self_scene};
+}
+
+Contestant meshes_intersect() {
+  return {
+      .card = {.name = "cgal-do-intersect",
+               .library = kLibrary,
+               .degenerate = false,
+               .call = "Polygon_mesh_processing::do_intersect() of two meshes of one triangle; "
+                       "the kernel of cgal-exact",
+               .says = "true \"if there exists a face of tm1 and a face of tm2 which intersect\"; "
+                       "exact and closed as its kernel",
+               .source = "CGAL 5.5 manual, Polygon Mesh Processing, do_intersect()",
+               .use = kExact},
+      .pair = mesh_pair};
+}
+
+}  // namespace
+}  // namespace farcull
+
+int main(int argc, char** argv) {
+  using namespace farcull;
+  return contest(argc, argv, {exact(), plain(), self_intersections(), meshes_intersect()});
+}

@@ -1,0 +1,78 @@
+// libccd's tests of convex bodies, GJK and MPR, on triangles as the hulls of their corners. It is
+// what FCL calls for shapes.
+#include <ccd/ccd.h>
+
+#include "experiments/peers/contestant.h"
+
+namespace farcull {
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+
+const Corners& triangle(const void* object) { return *static_cast<const Corners*>(object); }
+
+void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
+  const Corners& corners = triangle(object);
+  const Vec3* best = nullptr;
+  double most = 0;
+  for (const Vec3& p : corners) {
+    const double along = p[0] * direction->v[0] + p[1] * direction->v[1] + p[2] * direction->v[2];
+    if (best == nullptr || along > most) {
+      best = &p;
+      most = along;
+    }
+  }
+  ccdVec3Set(out, (*best)[0], (*best)[1], (*best)[2]);
+}
+
+void centre(const void* object, ccd_vec3_t* out) {
+  const Corners& t = triangle(object);
+  ccdVec3Set(out, (t[0][0] + t[1][0] + t[2][0]) / 3, (t[0][1] + t[1][1] + t[2][1]) / 3,
+             (t[0][2] + t[1][2] + t[2][2]) / 3);
+}
+
+ccd_t settings() {
+  ccd_t out;
+  CCD_INIT(&out);
+  out.support1 = support;
+  out.support2 = support;
+  out.center1 = centre;
+  out.center2 = centre;
+  out.max_iterations = 100;
+  return out;
+}
+
+template <int (*intersect)(const void*, const void*, const ccd_t*)>
+bool pair(const SuitePair& asked) {
+  const ccd_t ccd = settings();
+  return intersect(&asked.a, &asked.b, &ccd) != 0;
+}
+
+ContestantCard card(const std::string& name, const std::string& call) {
+  return {.name = name,
+          .library = std::string("libccd ") + FARCULL_CCD_VERSION,
+          .means = Means::crossing,
+          .degenerate = false,
+          .call = call +
+                  ", each triangle by its support function and centre, at most 100 "
+                  "iterations",
+          .says =
+              "nothing of exactness or of touching; it is for \"a collision detection between two "
+              "convex shapes\" and has a \"Boundary tolerance for MPR algorithm\" (0.0001) and a "
+              "\"Maximal number of iterations\"",
+          .source =
+              "libccd README; ccd/ccd.h, struct _ccd_t; the manual's examples, whose limit of "
+              "100 iterations is taken",
+          .use = "convex shapes; of flat ones, such as a triangle, nothing is said"};
+}
+
+}  // namespace
+}  // namespace farcull
+
+int main(int argc, char** argv) {
+  using namespace farcull;
+  return contest(
+      argc, argv,
+      {{.card = card("libccd-gjk", "ccdGJKIntersect()"), .pair = pair<ccdGJKIntersect>},
+       {.card = card("libccd-mpr", "ccdMPRIntersect()"), .pair = pair<ccdMPRIntersect>}});
+}

@@ -1,0 +1,162 @@
+// farcull's own methods as contestants, on the device that the variable FARCULL_CONTEST_DEVICE
+// names, or on the cores of the CPU: there far-pairs runs by the library, the others as `farcull
+// run` runs them.
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+
+#include "experiments/library/farcull.h"
+#include "experiments/method/run.h"
+#include "experiments/peers/contestant.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+std::string device() {
+  const char* const named = std::getenv("FARCULL_CONTEST_DEVICE");
+  return named != nullptr && *named != '\0' ? named : "native";
+}
+
+/// Pairs of triangles of one object that have a position in common, but no index. farcull calls
+/// them neighbours, which it reports only where they meet in more than that. A suite goes by the
+/// indices: to it they are two triangles that touch. Sorted.
+std::vector<TrianglePair> touching_strangers(const Scene& scene) {
+  std::map<std::array<double, 3>, std::vector<std::uint32_t>> at;
+  for (const Object& object : scene.objects) {
+    if (!object.self) continue;
+    for (std::uint32_t i = 0; i < object.triangle_count; ++i) {
+      const std::uint32_t t = object.first_triangle + i;
+      for (const Vec3& p : scene.corners(t)) {
+        std::vector<std::uint32_t>& of = at[{p.x() + 0.0, p.y() + 0.0, p.z() + 0.0}];
+        if (of.empty() || of.back() != t) of.push_back(t);
+      }
+    }
+  }
+  const std::vector<std::uint32_t> owner = owners(scene);
+  std::vector<TrianglePair> out;
+  for (const auto& [position, of] : at) {
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      for (std::size_t j = i + 1; j < of.size(); ++j) {
+        if (owner[of[i]] == owner[of[j]] &&
+            !share_index(scene.triangles[of[i]], scene.triangles[of[j]]))
+          out.push_back({of[i], of[j]});
+      }
+    }
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+/// The pairs that a method reports, neighbours in the sense of a suite among them.
+std::vector<TrianglePair> pairs_by(Method method, const Scene& scene) {
+  static Session session(device(), 1, {});
+  RunOptions options{.method = method};
+  options.device = device();
+  options.verify = false;
+  const Record record = run(scene, options, session);
+  std::vector<TrianglePair> out = record.collisions.all();
+  const std::vector<std::uint32_t>& kept = record.found.triangles;
+  for (const TrianglePair& pair : touching_strangers(scene)) {
+    const auto is_kept = [&](std::uint32_t t) {
+      return std::binary_search(kept.begin(), kept.end(), t);
+    };
+    // A method that culls triangles has to keep both; others have no such set.
+    if (!draws(method) || (is_kept(pair.a) && is_kept(pair.b))) out.push_back(pair);
+  }
+  return out;
+}
+
+std::vector<TrianglePair> pairs_by_library(const Scene& scene) {
+  static Collider collider(ColliderOptions{.threads = 1});
+  static Collider of_self(ColliderOptions{.threads = 1, .self = true});
+  const bool self = !scene.objects.empty() && scene.objects.front().self;
+  std::vector<std::uint32_t> triangles, starts;
+  for (const auto& triangle : scene.triangles)
+    triangles.insert(triangles.end(), triangle.begin(), triangle.end());
+  for (const Object& object : scene.objects) starts.push_back(object.first_triangle);
+  const ColliderInput input{.vertices = {scene.vertices.front().data(), 3 * scene.vertices.size()},
+                            .triangles = triangles,
+                            .object_starts = starts};
+  const ColliderResult result = (self ? of_self : collider).find(input);
+  std::vector<TrianglePair> out = touching_strangers(scene);
+  for (const auto* some : {&result.pairs, &result.neighbour_pairs}) {
+    for (const ColliderPair& pair : *some) out.push_back({pair.a, pair.b});
+  }
+  return out;
+}
+
+using Finder = std::function<std::vector<TrianglePair>(const Scene&)>;
+
+/// S-CULLIDE tests triangles of one object.
+Scene as_one_object(Scene scene) {
+  scene.objects = {{.name = "0",
+                    .first_triangle = 0,
+                    .triangle_count = static_cast<std::uint32_t>(scene.triangles.size()),
+                    .self = true}};
+  return scene;
+}
+
+Contestant contestant(ContestantCard card, const Finder& find, bool one_object = false) {
+  card.library = "farcull";
+  card.source = "docs/methods.md and docs/reliability.md";
+  return {.card = std::move(card),
+          .pair =
+              [=](const SuitePair& pair) {
+                const Scene scene = scene_of(pair);
+                return !find(one_object ? as_one_object(scene) : scene).empty();
+              },
+          .mesh =
+              [=](const Scene& scene) {
+                if (one_object && (scene.objects.size() != 1 || !scene.objects.front().self))
+                  throw Refusal("S-CULLIDE tests one object against itself");
+                return find(scene);
+              }};
+}
+
+Contestant of_method(Method method, const std::string& says, const std::string& use) {
+  const bool exact = !culls(method);
+  return contestant(
+      {.name = to_string(method),
+       .neighbours = tests_self(method),
+       .promises = exact || promises(RunOptions{.method = method}),
+       .call = "farcull run --method " + to_string(method) + " --device " + device(),
+       .says = says,
+       .use = use},
+      [method](const Scene& scene) { return pairs_by(method, scene); }, tests_self_alone(method));
+}
+
+constexpr const char* kWhereNoneIsMissed = "where no pair may be missed";
+
+Contestant far_pairs_of_library(const std::string& says) {
+  return contestant({.name = "far-pairs",
+                     .neighbours = true,
+                     .promises = true,
+                     .call = "farcull::Collider::find() on the CPU",
+                     .says = says,
+                     .use = kWhereNoneIsMissed},
+                    pairs_by_library);
+}
+
+}  // namespace
+}  // namespace farcull
+
+int main(int argc, char** argv) {
+  using namespace farcull;
+  ::setenv("LP_NUM_THREADS", "0", 0);  // as farcull does (docs/drivers.md)
+  const char* const reliable = "misses no pair; exact tests decide what is left";
+  const char* const loses = "can miss a pair that is smaller than a pixel (docs/methods.md)";
+  const char* const published = "to see what the published method loses";
+  return contest(
+      argc, argv,
+      {device() == "native" ? far_pairs_of_library(reliable)
+                            : of_method(Method::far_pairs, reliable, kWhereNoneIsMissed),
+       of_method(Method::exact, "every pair whose boxes meet is decided exactly",
+                 "the answer to compare with"),
+       of_method(Method::far, reliable, "FAR as published, with the radius of the budget"),
+       of_method(Method::i_collide, reliable, "few objects that move little"),
+       of_method(Method::cullide, loses, published),
+       of_method(Method::quick_cullide, loses, published),
+       of_method(Method::s_cullide, loses, published)});
+}

@@ -1,0 +1,348 @@
+// FCL, in three ways: its hierarchies with exact decisions behind them (broad), as its users run it
+// with its own test of two triangles, which rounds (narrow), and its distances.
+//
+// FCL's headers declare the templates that its library holds, all of them in double; what is made
+// here is the rest.
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/config.h>
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/math/bv/AABB.h>
+#include <fcl/math/bv/OBB.h>
+#include <fcl/math/bv/OBBRSS.h>
+#include <fcl/narrowphase/collision_object.h>
+#include <fcl/narrowphase/collision_request.h>
+#include <fcl/narrowphase/collision_result.h>
+#include <fcl/narrowphase/detail/traversal/collision/mesh_collision_traversal_node.h>
+#include <fcl/narrowphase/detail/traversal/collision_node.h>
+#include <fcl/narrowphase/detail/traversal/distance/mesh_distance_traversal_node.h>
+#include <fcl/narrowphase/distance_request.h>
+#include <fcl/narrowphase/distance_result.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/stopwatch.h"
+#include "experiments/peers/parts.h"
+#include "verify/exact.h"
+
+namespace farcull {
+namespace {
+
+constexpr const char* kLibrary = "FCL " FCL_VERSION;
+
+/// The hierarchy of one object; its primitive i is triangle first + i.
+template <class Volume>
+struct Model {
+  std::shared_ptr<fcl::BVHModel<Volume>> hierarchy;
+  std::uint32_t first = 0;
+};
+
+/// Coordinates are rounded to the scalar of the volume, each by itself and to the nearest. The
+/// object has triangles. Throws Error where FCL builds nothing.
+template <class Volume>
+Model<Volume> model_of(const Scene& scene, const Object& object) {
+  const auto triangles =
+      std::span(scene.triangles).subspan(object.first_triangle, object.triangle_count);
+  const auto [least, most] = vertices_of(scene, object);
+  std::vector<fcl::Vector3<typename Volume::S>> points;
+  points.reserve(most - least + 1);
+  for (std::uint32_t v = least; v <= most; ++v) {
+    points.push_back(scene.vertices[v].template cast<typename Volume::S>());
+  }
+  std::vector<fcl::Triangle> faces;
+  faces.reserve(triangles.size());
+  for (const auto& [a, b, c] : triangles) faces.emplace_back(a - least, b - least, c - least);
+  Model<Volume> model{std::make_shared<fcl::BVHModel<Volume>>(), object.first_triangle};
+  const auto count = static_cast<int>(faces.size());
+  if (model.hierarchy->beginModel(count, static_cast<int>(points.size())) != fcl::BVH_OK ||
+      model.hierarchy->addSubModel(points, faces) != fcl::BVH_OK ||
+      model.hierarchy->endModel() != fcl::BVH_OK) {
+    throw Error(kLibrary, "builds no hierarchy of this object", "leave it out with --peers");
+  }
+  return model;
+}
+
+using IndexPair = std::pair<std::size_t, std::size_t>;
+
+/// The objects of a scene that have triangles, and FCL's broad phase over them.
+template <class Volume>
+struct Objects {
+  using Scalar = typename Volume::S;
+  using Placed = fcl::CollisionObject<Scalar>;
+  using Manager = fcl::DynamicAABBTreeCollisionManager<Scalar>;
+
+  Objects(const Scene& scene, unsigned threads)
+      : numbers(objects_with_triangles(scene)), models(numbers.size()), placed(numbers.size()) {
+    for_each_taken(numbers.size(), 1, threads, [&](std::size_t i) {
+      models[i] = model_of<Volume>(scene, scene.objects[numbers[i]]);
+      placed[i] = std::make_unique<Placed>(models[i].hierarchy);
+      placed[i]->setUserData(reinterpret_cast<void*>(i));
+    });
+  }
+
+  static std::size_t index_of(const Placed* object) {
+    return reinterpret_cast<std::size_t>(object->getUserData());
+  }
+  void register_in(Manager& manager) const {
+    for (const auto& object : placed) manager.registerObject(object.get());
+    manager.setup();
+  }
+  /// The objects whose boxes meet.
+  std::vector<IndexPair> meeting() const {
+    std::vector<IndexPair> pairs;
+    if (placed.size() < 2) return pairs;
+    Manager manager;
+    register_in(manager);
+    manager.collide(&pairs, [](Placed* a, Placed* b, void* data) {
+      static_cast<std::vector<IndexPair>*>(data)->emplace_back(index_of(a), index_of(b));
+      return false;  // there may be more
+    });
+    return pairs;
+  }
+
+  std::vector<std::uint32_t> numbers;  // of the objects
+  std::vector<Model<Volume>> models;
+  std::vector<std::unique_ptr<Placed>> placed;
+};
+
+/// The hierarchy of an object, as search_trees() takes it. The larger node is divided first, as in
+/// FCL.
+template <class Volume>
+class FclTree {
+ public:
+  explicit FclTree(const Model<Volume>& model)
+      : hierarchy_(model.hierarchy.get()), first_(model.first) {}
+
+  bool is_leaf(int node) const { return hierarchy_->getBV(node).isLeaf(); }
+  int left(int node) const { return hierarchy_->getBV(node).leftChild(); }
+  int right(int node) const { return hierarchy_->getBV(node).rightChild(); }
+  double size(int node) const { return hierarchy_->getBV(node).bv.size(); }
+  std::uint32_t triangle(int leaf) const {
+    return first_ + static_cast<std::uint32_t>(hierarchy_->getBV(leaf).primitiveId());
+  }
+  bool meets(int node, const FclTree& other, int other_node) const {
+    return hierarchy_->getBV(node).overlap(other.hierarchy_->getBV(other_node));
+  }
+
+ private:
+  const fcl::BVHModel<Volume>* hierarchy_;
+  std::uint32_t first_;
+};
+
+/// FCL's hierarchies and overlap tests; its leaves are candidates. FCL's traversal has one thread
+/// and takes no model with itself, so that search_trees() takes its place.
+template <class Volume>
+BenchAnswer candidates_of(const Scene& scene, unsigned threads) {
+  const Stopwatch building;
+  const Objects<Volume> objects(scene, threads);
+  const double build_ms = building.ms();
+
+  PeerCandidates candidates(scene, threads, threads > 1);
+  std::vector<FclTree<Volume>> trees(objects.models.begin(), objects.models.end());
+  std::vector<TreeTask<FclTree<Volume>>> tasks;
+  for (std::size_t i = 0; i < trees.size(); ++i) {
+    if (scene.objects[objects.numbers[i]].self) tasks.push_back({&trees[i], &trees[i], 0, 0, true});
+  }
+  const std::vector<IndexPair> meeting =
+      trees.size() == 2 ? std::vector<IndexPair>{{0, 1}} : objects.meeting();
+  for (const auto& [i, j] : meeting) tasks.push_back({&trees[i], &trees[j]});
+  search_trees(scene, std::move(tasks), threads, candidates);
+  BenchAnswer answer = candidates.finish();
+  answer.build_ms = build_ms;
+  return answer;
+}
+
+/// Sets up FCL's traversal of two hierarchies.
+template <class Node, class Volume, class Request, class Result>
+void initialize(Node& node, const Model<Volume>& a, const Model<Volume>& b, const Request& request,
+                Result& result) {
+  const auto still = fcl::Transform3<typename Volume::S>::Identity();
+  if (!fcl::detail::initialize(node, *a.hierarchy, still, *b.hierarchy, still, request, result)) {
+    throw Error(kLibrary, "compares no two of its hierarchies", "build farcull without FCL");
+  }
+}
+
+/// The pairs of triangles that fcl::collide() finds between two models. This calls the function
+/// that fcl::collide() calls once it has looked up the kinds of the two; calling fcl::collide()
+/// would compile its table for all kinds of shapes in float, which Debian's library is without.
+template <class Scalar>
+void collide_two(const Model<fcl::OBBRSS<Scalar>>& a, const Model<fcl::OBBRSS<Scalar>>& b,
+                 std::vector<TrianglePair>& pairs) {
+  const fcl::CollisionRequest<Scalar> request(std::numeric_limits<std::size_t>::max(), false);
+  fcl::CollisionResult<Scalar> result;
+  fcl::detail::MeshCollisionTraversalNodeOBBRSS<Scalar> node;
+  initialize(node, a, b, request, result);
+  fcl::detail::collide(&node);
+  std::vector<fcl::Contact<Scalar>> contacts;
+  result.getContacts(contacts);
+  pairs.reserve(pairs.size() + contacts.size());
+  for (const fcl::Contact<Scalar>& contact : contacts) {
+    pairs.push_back({a.first + static_cast<std::uint32_t>(contact.b1),
+                     b.first + static_cast<std::uint32_t>(contact.b2)});
+  }
+}
+
+/// FCL's own broad phase, hierarchies and test of two triangles.
+template <class Scalar>
+BenchAnswer collide(const Scene& scene, unsigned threads) {
+  const Stopwatch building;
+  const Objects<fcl::OBBRSS<Scalar>> objects(scene, threads);
+  BenchAnswer answer;
+  answer.build_ms = building.ms();
+  const Stopwatch finding;
+  std::vector<IndexPair> tasks = objects.meeting();
+  for (std::size_t i = 0; i < objects.numbers.size(); ++i) {
+    if (scene.objects[objects.numbers[i]].self) tasks.emplace_back(i, i);
+  }
+  std::vector<std::vector<TrianglePair>> found(tasks.size());
+  for_each_taken(tasks.size(), 1, threads, [&](std::size_t i) {
+    const auto [a, b] = tasks[i];
+    collide_two<Scalar>(objects.models[a], objects.models[b], found[i]);
+    if (a != b) return;
+    // A model with itself: every pair in both orders, every triangle with itself and with its
+    // neighbours.
+    std::erase_if(found[i], [&scene](const TrianglePair& pair) {
+      return pair.a >= pair.b || share_position(scene.corners(pair.a), scene.corners(pair.b));
+    });
+  });
+  for (const std::vector<TrianglePair>& some : found) {
+    for (const TrianglePair& pair : some) {
+      answer.pairs.push_back({std::min(pair.a, pair.b), std::max(pair.a, pair.b)});
+    }
+  }
+  std::sort(answer.pairs.begin(), answer.pairs.end());
+  answer.candidates_ms = finding.ms();
+  answer.candidate_pairs = answer.pairs.size();
+  return answer;
+}
+
+/// The distance that fcl::distance() gives two models; infinity where it finds none below `most`.
+/// This calls the function that fcl::distance() calls, as collide_two() does.
+template <class Scalar>
+Scalar distance_of(const Model<fcl::OBBRSS<Scalar>>& a, const Model<fcl::OBBRSS<Scalar>>& b,
+                   Scalar most) {
+  const fcl::DistanceRequest<Scalar> request(true);  // the nearest points too
+  fcl::DistanceResult<Scalar> result(most);
+  fcl::detail::MeshDistanceTraversalNodeOBBRSS<Scalar> node;
+  initialize(node, a, b, request, result);
+  fcl::detail::distance(&node);
+  if (result.b1 == fcl::DistanceResult<Scalar>::NONE)
+    return std::numeric_limits<Scalar>::infinity();
+  return std::max(result.min_distance, Scalar(0));  // below 0: they meet
+}
+
+/// FCL finds what is nearer than this: anything that is at most `within`.
+template <class Scalar>
+Scalar most_of(double within) {
+  constexpr auto kMost = std::numeric_limits<Scalar>::max();
+  if (!(within < static_cast<double>(kMost))) return kMost;
+  return std::nextafter(static_cast<Scalar>(within), kMost);
+}
+
+/// The nearest other object of one, by FCL's dynamic tree of boxes.
+template <class Scalar>
+struct Search {
+  using Of = Objects<fcl::OBBRSS<Scalar>>;
+  const Of* objects;
+  std::size_t of, nearest;
+  Scalar least;
+
+  /// Called with the object of the search and another one; true ends the search.
+  static bool visit(typename Of::Placed* a, typename Of::Placed* b, void* data, Scalar& least) {
+    auto& search = *static_cast<Search*>(data);
+    const std::size_t i = Of::index_of(a), k = Of::index_of(b);
+    const std::size_t other = i == search.of ? k : i;
+    if (other != search.of) {
+      const auto& models = search.objects->models;
+      const Scalar found = distance_of(models[search.of], models[other], search.least);
+      if (found < search.least) {
+        search.least = found;
+        search.nearest = other;
+      }
+    }
+    least = search.least;
+    return search.least <= 0;
+  }
+};
+
+template <class Scalar>
+std::vector<PeerDistance> nearest(const Objects<fcl::OBBRSS<Scalar>>& objects, double within,
+                                  unsigned threads) {
+  const std::size_t count = objects.numbers.size();
+  if (count < 2) return {};
+  typename Objects<fcl::OBBRSS<Scalar>>::Manager manager;
+  objects.register_in(manager);
+  std::vector<PeerDistance> out(count);
+  for_each_taken(count, 1, threads, [&](std::size_t i) {
+    Search<Scalar> search{&objects, i, i, most_of<Scalar>(within)};
+    manager.distance(objects.placed[i].get(), &search, Search<Scalar>::visit);
+    out[i] = {objects.numbers[i], objects.numbers[search.nearest],
+              search.nearest == i ? std::numeric_limits<double>::infinity() : search.least};
+  });
+  std::erase_if(out, [within](const PeerDistance& d) {
+    return d.distance > within || std::isinf(d.distance);
+  });
+  return out;
+}
+
+template <class Scalar>
+PeerDistances distances(const Scene& scene, const PeerQuestion& question, unsigned threads) {
+  const Stopwatch building;
+  const Objects<fcl::OBBRSS<Scalar>> objects(scene, threads);
+  PeerDistances answer{.build_ms = building.ms()};
+  const Stopwatch asking;
+  if (question.task == DistanceTask::nearest) {
+    answer.distances = nearest<Scalar>(objects, question.within, threads);
+  } else {
+    answer.distances = distances_of_trees(
+        objects.numbers, question.task, most_of<Scalar>(question.within), threads,
+        [](std::size_t, std::size_t) { return Scalar(0); },
+        [&](std::size_t i, std::size_t k, Scalar most) {
+          return distance_of(objects.models[i], objects.models[k], most);
+        },
+        [&](Scalar found) {
+          const double distance = found;
+          return distance > question.within ? std::numeric_limits<double>::infinity() : distance;
+        });
+  }
+  answer.query_ms = asking.ms();
+  return answer;
+}
+
+/// The oriented box of a segment or a point has no axes.
+std::string refuses(const Scene& scene) {
+  return refuse_degenerate(scene, "oriented boxes of degenerate triangles have no axes");
+}
+
+Peer peer(const char* name, BenchAnswer (*run)(const Scene&, unsigned)) {
+  return {name, kLibrary, "", [run](unsigned threads) -> BenchRun {
+            return [=](const Scene& scene) { return run(scene, threads); };
+          }};
+}
+
+}  // namespace
+
+LibraryPeers fcl_library() {
+  LibraryPeers out{
+      .broad = {peer("fcl-obbrss", candidates_of<fcl::OBBRSSd>),
+                peer("fcl-obb", candidates_of<fcl::OBBd>),
+                peer("fcl-aabb", candidates_of<fcl::AABBd>)},
+      .narrow = {peer("fcl-float", collide<float>), peer("fcl-double", collide<double>)}};
+  out.broad[0].refuses = out.broad[1].refuses = refuses;
+  out.distances = {
+      {.name = "fcl-double", .library = kLibrary, .run = distances<double>, .refuses = refuses},
+      {.name = "fcl-float",
+       .library = kLibrary,
+       .comparable = false,
+       .run = distances<float>,
+       .refuses = refuses}};
+  return out;
+}
+
+}  // namespace farcull

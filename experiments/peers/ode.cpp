@@ -1,0 +1,180 @@
+// ODE as its users run it: its sweep and prune, its trees (OPCODE, in float) and its contacts of
+// two triangles, which round. The public interface has no candidates, so no exact test can follow.
+//
+// Contacts are no list of pairs. Each names its two triangles, but ODE merges contacts that are
+// within 1e-4 units: at equal depth it asks a callback, which notes both pairs here; else it keeps
+// the deeper one only. It also reports 65,535 contacts of two objects at most, and none of an
+// object with itself. What is lost that way counts as missed.
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+#include <memory>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.h"
+#include "experiments/peers/parts.h"
+
+namespace farcull {
+namespace {
+
+static_assert(std::is_same_v<dReal, double> && sizeof(Vec3) == 3 * sizeof(double));
+
+constexpr const char* kLibrary = "ODE " dODE_VERSION;
+constexpr int kMostContacts = 65535;  // what dCollide() can be asked for
+
+[[noreturn]] void refuse(int, const char* message, std::va_list arguments) {
+  char text[400];
+  std::vsnprintf(text, sizeof text, message, arguments);
+  throw Error(kLibrary, text, "leave it out");
+}
+
+/// Starts ODE once. A failed assertion, which would end the process, becomes an Error; warnings of
+/// contacts that are not merged are not printed.
+void start_ode() {
+  static const bool started = [] {
+    dSetErrorHandler(refuse);
+    dSetDebugHandler(refuse);
+    dSetMessageHandler([](int, const char*, std::va_list) {});
+    return dInitODE2(0) != 0;
+  }();
+  if (!started || dAllocateODEDataForThread(dAllocateMaskAll) == 0) {
+    throw Error(kLibrary, "does not start", "build farcull without ODE");
+  }
+}
+
+/// The merged contacts of two objects: ODE tells the triangles of the contact that it has and of
+/// the one that it merges into that, of the first object and then of the second.
+struct Merged {
+  dGeomID first = nullptr;
+  int had = 0;
+  int merged = 0;
+  std::vector<std::pair<int, int>> pairs;  // of triangles: of the first, of the second object
+};
+
+/// An object in ODE, with a tree. ODE keeps pointers to the scene's vertices and to the faces.
+class Model {
+ public:
+  Model(const Scene& scene, const Object& object, Merged& merged)
+      : first_(object.first_triangle), merged_(merged) {
+    const auto triangles = std::span(scene.triangles).subspan(first_, object.triangle_count);
+    const auto [least, most] = vertices_of(scene, object);
+    faces_.reserve(triangles.size());
+    for (const auto& [a, b, c] : triangles) faces_.push_back({a - least, b - least, c - least});
+    data_ = dGeomTriMeshDataCreate();
+    dGeomTriMeshDataBuildDouble(data_, scene.vertices[least].data(), sizeof(Vec3),
+                                static_cast<int>(most - least + 1), faces_.data(),
+                                static_cast<int>(3 * faces_.size()), sizeof(faces_[0]));
+    geom_ = dCreateTriMesh(nullptr, data_, nullptr, nullptr, nullptr);
+    dGeomTriMeshSetTriMergeCallback(geom_, note_merged);
+    dGeomSetData(geom_, this);
+  }
+  ~Model() {
+    dGeomDestroy(geom_);
+    dGeomTriMeshDataDestroy(data_);
+  }
+  Model(const Model&) = delete;
+  Model& operator=(const Model&) = delete;
+
+  static Model& of(dGeomID geom) { return *static_cast<Model*>(dGeomGetData(geom)); }
+  dGeomID geom() const { return geom_; }
+  std::uint32_t triangle(int face) const { return first_ + static_cast<std::uint32_t>(face); }
+
+ private:
+  static int note_merged(dGeomID geom, int had, int merged) {
+    Merged& note = of(geom).merged_;
+    if (geom == note.first) {
+      note.had = had;
+      note.merged = merged;
+    } else {
+      note.pairs.insert(note.pairs.end(), {{note.had, had}, {note.merged, merged}});
+    }
+    return merged;
+  }
+
+  std::uint32_t first_;
+  Merged& merged_;
+  std::vector<std::array<dTriIndex, 3>> faces_;
+  dTriMeshDataID data_;
+  dGeomID geom_;
+};
+
+/// The objects whose boxes meet, by ODE's sweep and prune.
+std::vector<std::pair<const Model*, const Model*>> meeting(
+    const std::vector<std::unique_ptr<Model>>& models) {
+  std::vector<std::pair<const Model*, const Model*>> pairs;
+  const dSpaceID space = dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);
+  dSpaceSetCleanup(space, 0);  // it does not own what is in it
+  for (const auto& model : models) dSpaceAdd(space, model->geom());
+  dSpaceCollide(space, &pairs, [](void* data, dGeomID a, dGeomID b) {
+    static_cast<decltype(pairs)*>(data)->emplace_back(&Model::of(a), &Model::of(b));
+  });
+  for (const auto& model : models) dSpaceRemove(space, model->geom());
+  dSpaceDestroy(space);
+  return pairs;
+}
+
+/// The pairs of triangles that the contacts of two objects name, each once.
+class Contacts {
+ public:
+  explicit Contacts(Merged& merged) : merged_(merged), contacts_(kMostContacts) {}
+
+  void add(const Model& a, const Model& b, std::vector<TrianglePair>& pairs) {
+    merged_.first = a.geom();
+    merged_.pairs.clear();
+    const int count =
+        dCollide(a.geom(), b.geom(), kMostContacts, contacts_.data(), sizeof(dContactGeom));
+    for (int i = 0; i < count; ++i) {
+      merged_.pairs.emplace_back(contacts_[i].side1, contacts_[i].side2);
+    }
+    std::sort(merged_.pairs.begin(), merged_.pairs.end());
+    const auto end = std::unique(merged_.pairs.begin(), merged_.pairs.end());
+    for (auto at = merged_.pairs.begin(); at != end; ++at) {
+      const std::uint32_t t = a.triangle(at->first), u = b.triangle(at->second);
+      pairs.push_back({std::min(t, u), std::max(t, u)});
+    }
+  }
+
+ private:
+  Merged& merged_;
+  std::vector<dContactGeom> contacts_;
+};
+
+BenchAnswer collide(const Scene& scene) {
+  start_ode();
+  BenchAnswer answer;
+  Merged merged;
+  const Stopwatch building;
+  std::vector<std::unique_ptr<Model>> models;
+  for (const std::uint32_t o : objects_with_triangles(scene))
+    models.push_back(std::make_unique<Model>(scene, scene.objects[o], merged));
+  answer.build_ms = building.ms();
+  const Stopwatch finding;
+  Contacts contacts(merged);
+  for (const auto& [a, b] : meeting(models)) contacts.add(*a, *b, answer.pairs);
+  std::sort(answer.pairs.begin(), answer.pairs.end());
+  answer.candidates_ms = finding.ms();
+  answer.candidate_pairs = answer.pairs.size();
+  return answer;
+}
+
+std::string refuses_self(const Scene& scene) {
+  return std::ranges::any_of(scene.objects, [](const Object& object) { return object.self; })
+             ? "it tests no object against itself"
+             : "";
+}
+
+}  // namespace
+
+LibraryPeers ode_library() {
+  // Its collider keeps its state in one place for all threads, so it runs on one.
+  return {.narrow = {{"ode-trimesh", kLibrary, "", [](unsigned) -> BenchRun { return collide; },
+                      refuses_self}}};
+}
+
+}  // namespace farcull

@@ -1,0 +1,355 @@
+// Turns questions into lines and lines into answers (contestant.h has the protocol), and starts a
+// new process where one ended. And the list of contestants that the study knows.
+#include "experiments/peers/runner.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "experiments/peers/child.h"
+
+namespace farcull {
+namespace {
+
+ChildLimits child_limits(const Invited& invited, const ContestLimits& limits) {
+  return {.start_s = limits.start_s,
+          .line_s = limits.answer_s,
+          .cpu_s = limits.cpu_s,
+          .memory_mib = limits.memory_mib > 0 ? limits.memory_mib : invited.card.memory_mib};
+}
+
+std::vector<std::string> command_of(const Invited& invited, const char* what) {
+  std::vector<std::string> out = invited.program;
+  out.push_back(invited.card.name);
+  out.emplace_back(what);
+  return out;
+}
+
+ContestOutcome outcome_of(ChildEnd::How how) {
+  constexpr std::array kOutcomes = {ContestOutcome::unanswered, ContestOutcome::crashed,
+                                    ContestOutcome::hung, ContestOutcome::no_memory};
+  return kOutcomes.at(static_cast<std::size_t>(how));
+}
+
+void add_corners(const std::array<Vec3, 3>& corners, std::string& out) {
+  for (const Vec3& p : corners) out += fmt::format("\t{}\t{}\t{}", p.x(), p.y(), p.z());
+}
+
+std::string question(std::size_t number, const SuitePair& pair) {
+  std::string out = fmt::format("{}\t", number);
+  for (const SharedCorner& corner : pair.shared)
+    out += fmt::format("{}{}-{}", out.back() == '\t' ? "" : ",", corner.a, corner.b);
+  if (pair.shared.empty()) out += "-";
+  add_corners(pair.a, out);
+  add_corners(pair.b, out);
+  return out + "\n";
+}
+
+/// The field up to the next tabulator, which is removed with it.
+std::string_view take_field(std::string_view& line) {
+  const std::size_t at = std::min(line.find('\t'), line.size());
+  const std::string_view out = line.substr(0, at);
+  line.remove_prefix(std::min(at + 1, line.size()));
+  return out;
+}
+
+/// The answer that stands after the number; empty: no answer.
+std::optional<ContestAnswer> read_answer(std::string_view line) {
+  const std::string_view word = take_field(line);
+  if (word == "refused") return ContestAnswer{ContestOutcome::refused, 0, std::string(line)};
+  const auto ns = parse_number<double>(line);
+  if (!ns || *ns < 0 || (word != "0" && word != "1")) return {};
+  return ContestAnswer{word == "1" ? ContestOutcome::meets : ContestOutcome::apart, *ns, ""};
+}
+
+/// Asks about the pairs at some positions, in their order.
+class PairAsker {
+ public:
+  PairAsker(const Invited& invited, std::span<const SuitePair> pairs, const ContestLimits& limits)
+      : invited_(invited), pairs_(pairs), limits_(limits) {}
+
+  std::vector<ContestAnswer> ask(const std::vector<std::size_t>& order) {
+    std::vector<ContestAnswer> answers(order.size());
+    std::size_t next = 0, deaths = 0;
+    while (next < order.size() && deaths < limits_.most_deaths) {
+      ++processes;
+      const std::size_t first = next;
+      const ChildEnd end = ask_from(next, order, answers);
+      if (next == order.size()) break;
+      // A process that answered others may have used its limit up with them: this question is asked
+      // again, as the first of a new one.
+      if (end.used_up && next > first) continue;
+      // The others may have been in its pipe, and are asked in a new one.
+      answers[next++] = {outcome_of(end.how), 0, end.reason};
+      ++deaths;
+    }
+    return answers;
+  }
+
+  std::size_t processes = 0;
+
+ private:
+  /// One process. `next`: the first position that is not answered, before and after.
+  ChildEnd ask_from(std::size_t& next, const std::vector<std::size_t>& order,
+                    std::vector<ContestAnswer>& answers) const {
+    std::size_t sent = next;
+    const auto more = [&] {
+      std::string out;
+      while (sent < order.size() && out.size() < kPart) {
+        out += question(sent, pairs_[order[sent]]);
+        ++sent;
+      }
+      return out;
+    };
+    const auto line = [&](std::string_view text) {
+      const auto number = parse_number<std::size_t>(take_field(text));
+      std::optional<ContestAnswer> answer = read_answer(text);
+      if (!number || !answer || *number < next || *number >= sent) return false;
+      for (; next < *number; ++next) answers[next].outcome = ContestOutcome::unanswered;
+      answers[next++] = std::move(*answer);
+      return true;
+    };
+    ChildLimits limits = child_limits(invited_, limits_);
+    // Once it has started, the program and its libraries are in memory.
+    if (processes > 1) limits.start_s = std::min(limits.start_s, 2 * limits.line_s);
+    return run_child(command_of(invited_, "pairs"), limits, more, line);
+  }
+
+  static constexpr std::size_t kPart = 1 << 15;  // bytes of questions at a time
+  const Invited& invited_;
+  std::span<const SuitePair> pairs_;
+  const ContestLimits& limits_;
+};
+
+/// A pair of the scene by object and triangle; empty where there is no such.
+std::optional<TrianglePair> read_found(std::string_view line, const Scene& scene) {
+  std::array<std::uint32_t, 2> out;
+  for (std::uint32_t& t : out) {
+    const auto o = parse_number<std::uint32_t>(take_field(line));
+    const auto i = parse_number<std::uint32_t>(take_field(line));
+    if (!o || !i || *o >= scene.objects.size() || *i >= scene.objects[*o].triangle_count) return {};
+    t = scene.objects[*o].first_triangle + *i;
+  }
+  if (!line.empty()) return {};
+  return TrianglePair{std::min(out[0], out[1]), std::max(out[0], out[1])};
+}
+
+// A program that reports pairs without end would take all memory.
+constexpr std::size_t kMostFound = 50'000'000;
+constexpr std::size_t kMostCards = 1 << 20;  // bytes
+
+MeshAnswer ask_mesh_once(const Invited& invited, const SuiteMesh& mesh, const std::string& folder,
+                         const ContestLimits& limits) {
+  std::string input = fmt::format("0\t{}", mesh.self ? 1 : 0);
+  for (std::size_t o = 0; o < mesh.scene.objects.size(); ++o)
+    input += fmt::format("\t{}/{}.obj", folder, o);
+  input += "\n";
+  MeshAnswer out;
+  bool done = false;
+  const auto line = [&](std::string_view text) {
+    if (done || take_field(text) != "0") return false;
+    const std::string_view word = take_field(text);
+    if (word == "pair") {
+      const std::optional<TrianglePair> pair = read_found(text, mesh.scene);
+      if (pair && pair->a != pair->b) out.pairs.push_back(*pair);
+      return pair.has_value() && out.pairs.size() <= kMostFound;
+    }
+    const auto ns = parse_number<double>(text);
+    done = word == "refused" || (word == "done" && ns);
+    out.outcome = word == "refused" ? ContestOutcome::refused : ContestOutcome::meets;
+    if (word == "refused") out.reason = std::string(text);
+    if (ns) out.ns = *ns;
+    return done;
+  };
+  // The whole answer of a scene may come at its end, so it has the time of a start.
+  ChildLimits child = child_limits(invited, limits);
+  child.start_s = std::max(child.start_s, child.line_s);
+  const ChildEnd end = run_child(
+      command_of(invited, "meshes"), child, [&] { return std::exchange(input, {}); }, line);
+  if (!done) {
+    out = MeshAnswer{.outcome = outcome_of(end.how), .ns = 0, .reason = end.reason, .pairs = {}};
+  }
+  std::sort(out.pairs.begin(), out.pairs.end());
+  out.pairs.erase(std::unique(out.pairs.begin(), out.pairs.end()), out.pairs.end());
+  return out;
+}
+
+// The list of contestants that the study knows, and where their programs are.
+
+using Names = std::vector<const char*>;
+
+void add(std::vector<KnownContestant>& all, const char* program, const char* package,
+         const Names& names, bool pairs = true, bool meshes = true, bool ours = false) {
+  for (const char* name : names) all.push_back({name, program, package, pairs, meshes, ours});
+}
+
+std::vector<KnownContestant> make_list() {
+  std::vector<KnownContestant> all;
+  add(all, "ours", "",
+      {"far-pairs", "exact", "far", "i-collide", "cullide", "quick-cullide", "s-cullide"}, true,
+      true, true);
+  add(all, "cgal", "libcgal-dev", {"cgal-exact", "cgal-self-intersections"});
+  add(all, "cgal", "libcgal-dev", {"cgal-do-intersect", "cgal-double"}, true, false);
+  add(all, "peers", "libfcl-dev", {"fcl-double", "fcl-float"});
+  add(all, "bullet_double", "libbullet-dev",
+      {"bullet-gimpact-double", "bullet-gimpact-margin-double"});
+  add(all, "bullet_float", "libbullet-dev",
+      {"bullet-gimpact-float", "bullet-gimpact-margin-float"});
+  add(all, "peers", "libode-dev", {"ode-trimesh"});
+  add(all, "libccd", "libccd-dev", {"libccd-gjk", "libccd-mpr"}, true, false);
+  add(all, "gts", "libgts-dev", {"gts"});
+  add(all, "vtk", "libvtk9-dev", {"vtk-collision"});
+  add(all, "vtk", "libvtk9-dev", {"vtk-triangle", "vtk-intersection"}, true, false);
+  add(all, "open3d", "libopen3d-dev", {"open3d"});
+  add(all, "three_mesh_bvh", "nodejs, npm and then the npm package three-mesh-bvh",
+      {"three-mesh-bvh"});
+  add(all, "textbook", "",
+      {"moeller-double", "moeller-double-0", "moeller-float", "guigue-devillers-double",
+       "guigue-devillers-float", "edge-face-double"},
+      true, false);
+  add(all, "peers", "libcgal-dev", {"cgal-boxes-exact", "cgal-aabb-exact"}, false);
+  add(all, "peers", "libfcl-dev", {"fcl-obbrss-exact"}, false);
+  add(all, "peers", "libembree-dev", {"embree-medium-exact"}, false);
+  add(all, "peers", "libbullet-dev", {"bullet-gimpact-exact"}, false);
+  return all;
+}
+
+std::string folder() {
+  const char* const named = std::getenv("FARCULL_CONTESTANTS");
+  if (named != nullptr && *named != '\0') return named;
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  return (self.parent_path() / "contestants").string();
+}
+
+/// The cards of a program, read once; or why there are none.
+struct Cards {
+  std::vector<Invited> invited;
+  std::string missing;
+};
+const Cards& cards_of(const std::string& path) {
+  static std::map<std::string, Cards> known;
+  const auto at = known.find(path);
+  if (at != known.end()) return at->second;
+  Cards cards;
+  if (::access(path.c_str(), X_OK) != 0) {
+    cards.missing = "its program was not built";
+  } else {
+    try {
+      cards.invited = invite({path});
+    } catch (const Error& error) {
+      cards.missing = error.reason;
+    }
+  }
+  return known.emplace(path, std::move(cards)).first->second;
+}
+
+}  // namespace
+
+std::string to_string(ContestOutcome outcome) {
+  constexpr std::array kNames = {"apart",   "meets", "refused",   "unanswered",
+                                 "crashed", "hung",  "no memory", "not asked"};
+  return kNames.at(static_cast<std::size_t>(outcome));
+}
+
+bool answered(ContestOutcome outcome) {
+  return outcome == ContestOutcome::apart || outcome == ContestOutcome::meets ||
+         outcome == ContestOutcome::refused;
+}
+
+bool is_death(ContestOutcome outcome) {
+  return outcome == ContestOutcome::crashed || outcome == ContestOutcome::hung ||
+         outcome == ContestOutcome::no_memory;
+}
+
+PairsAnswer ask_pairs(const Invited& invited, std::span<const SuitePair> pairs,
+                      const ContestLimits& limits, std::size_t sample) {
+  PairsAnswer out;
+  PairAsker asker(invited, pairs, limits);
+  std::vector<std::size_t> order(pairs.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  out.answers = asker.ask(order);
+  std::vector<std::size_t> again;
+  for (std::size_t i = 0; sample > 0 && i < pairs.size(); i += sample) {
+    if (answered(out.answers[i].outcome)) again.push_back(i);
+  }
+  std::reverse(again.begin(), again.end());
+  const std::vector<ContestAnswer> second = asker.ask(again);
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    // No answer, where there was one before, is another one.
+    if (second[i].outcome == ContestOutcome::not_asked) continue;
+    ++out.asked_twice;
+    if (second[i].outcome != out.answers[again[i]].outcome) out.differing.push_back(again[i]);
+  }
+  std::sort(out.differing.begin(), out.differing.end());
+  out.processes = asker.processes;
+  return out;
+}
+
+MeshAnswer ask_mesh(const Invited& invited, const SuiteMesh& mesh, const std::string& folder,
+                    const ContestLimits& limits, bool twice) {
+  MeshAnswer out = ask_mesh_once(invited, mesh, folder, limits);
+  if (!twice || !answered(out.outcome)) return out;
+  const MeshAnswer second = ask_mesh_once(invited, mesh, folder, limits);
+  out.differs = second.outcome != out.outcome || second.pairs != out.pairs;
+  if (second.outcome == out.outcome) out.ns = std::min(out.ns, second.ns);
+  return out;
+}
+
+std::vector<Invited> invite(const ContestProgram& program, const ContestLimits& limits) {
+  ContestProgram command = program;
+  command.emplace_back("list");
+  std::string text;
+  const ChildEnd end = run_child(
+      command, {.start_s = limits.start_s, .line_s = limits.answer_s, .cpu_s = limits.cpu_s},
+      [] { return std::string(); },
+      [&text](std::string_view line) {
+        text += std::string(line) + "\n";
+        return text.size() <= kMostCards;
+      });
+  if (end.how != ChildEnd::How::peace)
+    throw Error(program.back(), "says not who it is: " + end.reason, "start it with `list`");
+  std::vector<Invited> out;
+  for (ContestantCard& card : read_cards(text, program.back()))
+    out.push_back({std::move(card), program});
+  return out;
+}
+
+const std::vector<KnownContestant>& known_contestants() {
+  static const std::vector<KnownContestant> all = make_list();
+  return all;
+}
+
+const KnownContestant& known_contestant(const std::string& name) {
+  const std::vector<KnownContestant>& all = known_contestants();
+  const auto at = std::find_if(all.begin(), all.end(),
+                               [&](const KnownContestant& of) { return of.name == name; });
+  if (at == all.end()) {
+    std::string names;
+    for (const KnownContestant& of : all) names += (names.empty() ? "" : ", ") + of.name;
+    throw Error("contestant", "'" + name + "' is none", "choose of " + names);
+  }
+  return *at;
+}
+
+Invitation invite_known(const KnownContestant& contestant) {
+  const Cards& cards = cards_of(folder() + "/farcull_contestant_" + contestant.program);
+  for (const Invited& invited : cards.invited) {
+    if (invited.card.name == contestant.name) return {invited, ""};
+  }
+  std::string missing =
+      contestant.name + ": " + (cards.missing.empty() ? "not part of this build" : cards.missing);
+  if (!contestant.package.empty()) missing += " (Debian: " + contestant.package + ")";
+  return {{}, missing};
+}
+
+}  // namespace farcull
