@@ -257,9 +257,32 @@ struct Ring {
   std::vector<char> reflex;
 };
 
+// The corners times a power of two that brings the largest coordinate to [2^499, 2^500), where
+// certain_turn() neither overflows nor underflows: a product of two differences is below 2^1002,
+// and rounds to a multiple of the least double only if it is 2^-2074 of the largest or less. The
+// corners as they are if they are large enough, or if the scaling would round one of them, which it
+// can only if a bit of one coordinate is 2^-1573 of another coordinate or less. Else every sum of
+// products of two coordinates is exactly the sum before times the square of the power of two, so
+// every sign and every comparison stays.
+std::span<const Vec3> scaled(std::span<const Vec3> corners, std::vector<Vec3>& store) {
+  double largest = 0;
+  for (const Vec3& p : corners) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  if (largest == 0 || (exponent > -200 && exponent <= 500)) return corners;
+  const auto times = [](const Vec3& p, int power) {
+    return Vec3(std::ldexp(p.x(), power), std::ldexp(p.y(), power), std::ldexp(p.z(), power));
+  };
+  for (const Vec3& p : corners) {
+    store.push_back(times(p, 500 - exponent));
+    if (times(store.back(), exponent - 500) != p) return corners;
+  }
+  return store;
+}
+
 }  // namespace
 
-int turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v) {
+int certain_turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v) {
   // Each product has a relative error of at most 3 kUnit to first order, and kTiny / 2 if it
   // underflows; the difference keeps the sign of what is subtracted. 4 kUnit of the computed
   // products have room for the higher orders and for the roundings of the bound. Where anything
@@ -269,6 +292,11 @@ int turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v) {
   const double area = left - right;
   if (std::abs(area) > 4 * kUnit * (std::abs(left) + std::abs(right)) + 4 * kTiny)
     return area > 0 ? 1 : -1;
+  return 0;
+}
+
+int turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v) {
+  if (const int sign = certain_turn(a, b, c, u, v)) return sign;
   ExactSum sum;
   sum.add_difference(a[u], b[v], a[v], b[u]);
   sum.add_difference(b[u], c[v], b[v], c[u]);
@@ -276,12 +304,14 @@ int turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v) {
   return sum.sign();
 }
 
-Triangulation triangulate(std::span<const Vec3> corners, std::vector<Triangle>& triangles,
+Triangulation triangulate(std::span<const Vec3> polygon, std::vector<Triangle>& triangles,
                           Turn by) {
-  if (corners.size() == 3) {
+  if (polygon.size() == 3) {
     triangles.push_back({0, 1, 2});
     return Triangulation::whole;
   }
+  std::vector<Vec3> store;
+  const std::span<const Vec3> corners = scaled(polygon, store);
   const Plane plane = plane_of(corners);
   Ring ring(corners, plane, by);
   const std::uint32_t n = ring.size();

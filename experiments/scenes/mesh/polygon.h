@@ -16,6 +16,9 @@ namespace farcull {
 /// turns left at b (u to the right, v up), -1 if it turns right, 0 if the three are collinear
 /// there. Exact for finite doubles of any size.
 int turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v);
+/// The same where rounded arithmetic is certain of the sign; 0 where turn() has to add without
+/// rounding: three points close to a line, or products of differences that overflow or underflow.
+int certain_turn(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v);
 using Turn = int (*)(const Vec3& a, const Vec3& b, const Vec3& c, int u, int v);
 
 enum class Triangulation {
