@@ -616,7 +616,7 @@ break_includes() {
   breaks core/view/view.cpp '"../canvas/canvas.h"' 'let core/view include core/canvas'
   breaks verify/canvas.h '<offsets/obb.h>' 'let verify include offsets'
   breaks verify/deep/canvas.h '"offsets/obb.h"' 'let verify include offsets'
-  breaks core/gl/shaders/cull.frag '"offsets/obb.glsl"' 'let core/gl include offsets'
+  breaks core/gl/canvas/cull.frag '"offsets/obb.glsl"' 'let core/gl include offsets'
   printf '  #  include\t"offsets/obb.h" // why\r\n' >verify/odd.h
   expect "an include with odd spaces" caught "$(verdict verify/odd.h 'let verify include offsets')"
   rm verify/odd.h
@@ -629,7 +629,7 @@ break_includes() {
   keeps offsets/file.cpp '"core/view/budget.h"'
   keeps verify/file.cpp '"core/canvas/canvas.h"'
   keeps verify/file.cpp '"verify/certificate/json.h"'
-  keeps experiments/method/file.cpp '"core/gl/canvas.h"'
+  keeps experiments/method/file.cpp '"core/gl/canvas/canvas.h"'
   keeps experiments/suite/file.cpp '"verify/certificate/integer_pair.h"'
   keeps experiments/peers/file.cpp '"experiments/suite/reader.h"'
   keeps experiments/peers/contest_cgal.cpp '<CGAL/Kernel.h>'

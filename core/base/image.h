@@ -1,4 +1,4 @@
-// A picture in memory: core/gl/picture.h draws it, experiments compose and write it.
+// A picture in memory: core/gl/picture/picture.h draws it, experiments compose and write it.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-// The few verbs that culling needs of a rasterizer. Implementations: GL (core/gl/canvas.h), the
-// cores of the CPU (core/native/canvas.h), and one that behaves as badly as the device assumptions
-// allow (verify/worst_canvas.h).
+// The few verbs that culling needs of a rasterizer. Implementations: GL (core/gl/canvas/canvas.h),
+// the cores of the CPU (core/native/canvas.h), and one that behaves as badly as the device
+// assumptions allow (verify/worst_canvas.h).
 #pragma once
 
 #include <array>

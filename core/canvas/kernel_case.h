@@ -1,5 +1,5 @@
 // Questions to a kernel and its answers, wherever it runs: on a device
-// (core/gl/probe_kernels.h) or on the CPU. verify/kernel_check.h decides which answers are right.
+// (core/gl/probe/probe.h) or on the CPU. verify/kernel_check.h decides which answers are right.
 #pragma once
 
 #include <array>

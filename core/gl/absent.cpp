@@ -2,14 +2,12 @@
 // (-DFARCULL_GL=OFF). GlContext cannot be made then, so that nothing that takes one is ever called;
 // those functions are here for the linker, and end in the same Error.
 #include "core/base/error.h"
-#include "core/gl/canvas.h"
-#include "core/gl/context.h"
-#include "core/gl/driver_threads.h"
-#include "core/gl/pairs.h"
-#include "core/gl/picture.h"
-#include "core/gl/probe.h"
-#include "core/gl/probe_kernels.h"
-#include "core/gl/voronoi.h"
+#include "core/gl/base/context.h"
+#include "core/gl/canvas/canvas.h"
+#include "core/gl/pairs/pairs.h"
+#include "core/gl/picture/picture.h"
+#include "core/gl/probe/probe.h"
+#include "core/gl/voronoi/voronoi.h"
 
 namespace farcull {
 namespace {

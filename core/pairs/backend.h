@@ -1,6 +1,6 @@
 // FAR pairs asks a device for the raw pairs of one view. Two implementations from one kernel
 // text (core/pairs/interval.glsl): threads of the CPU (core/pairs/cpu.h) and GL compute shaders
-// (core/gl/pairs.h).
+// (core/gl/pairs/pairs.h).
 #pragma once
 
 #include <algorithm>

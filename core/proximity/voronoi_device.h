@@ -1,7 +1,7 @@
 // The discrete Voronoi diagram computed slice by slice, on a device that rasterizes distances: on
-// OpenGL (core/gl/voronoi.h) or on the CPU, cell by cell. The CPU divides each slab of slices into
-// bricks, blocks of cells with the triangles that may matter there; the device computes the
-// distances of the cells of each brick from these triangles.
+// OpenGL (core/gl/voronoi/voronoi.h) or on the CPU, cell by cell. The CPU divides each slab of
+// slices into bricks, blocks of cells with the triangles that may matter there; the device computes
+// the distances of the cells of each brick from these triangles.
 #pragma once
 
 #include <array>

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/gl/probe_options.h"
+#include "core/gl/probe/probe.h"
 
 namespace farcull {
 

@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
-#include "core/gl/driver_threads.h"
+#include "core/gl/base/context.h"
 #include "core/view/view.h"
 #include "experiments/library/answers.h"
 #include "experiments/library/farcull.h"

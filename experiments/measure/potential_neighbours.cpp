@@ -13,7 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
-#include "core/gl/voronoi.h"
+#include "core/gl/voronoi/voronoi.h"
 #include "experiments/measure/neighbour_sets.h"
 #include "experiments/method/options.h"
 #include "experiments/method/session.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/gl/context.h"
+#include "core/gl/base/context.h"
 #include "core/proximity/voronoi.h"
 #include "core/scene/scene.h"
 

@@ -10,7 +10,7 @@
 #include "core/base/stage.h"
 #include "core/canvas/work.h"
 #include "core/cull/cull.h"
-#include "core/gl/context.h"
+#include "core/gl/base/context.h"
 #include "core/pairs/pairs.h"
 #include "experiments/method/device_verdict.h"
 #include "verify/exact.h"

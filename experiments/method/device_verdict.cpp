@@ -25,8 +25,8 @@
 #include "core/base/count.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
-#include "core/gl/driver_threads.h"
-#include "core/gl/probe.h"
+#include "core/gl/base/context.h"
+#include "core/gl/probe/probe.h"
 #include "experiments/method/kernel_probes.h"
 #include "probed.h"
 

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/gl/context.h"
+#include "core/gl/base/context.h"
 
 namespace farcull {
 
-struct ProbeResult;  // core/gl/probe.h
+struct ProbeResult;  // core/gl/probe/probe.h
 
 /// What a method relies on a device for. pairs: FAR pairs on GL, A4 in compute shaders, A7, A8,
 /// A10. drawing: far, A1 to A10.

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/gl/context.h"
-#include "core/gl/probe.h"
+#include "core/gl/base/context.h"
+#include "core/gl/probe/probe.h"
 
 namespace farcull {
 

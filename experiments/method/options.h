@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/cull/cull.h"
-#include "core/gl/canvas.h"
+#include "core/gl/canvas/canvas.h"
 #include "core/scene/object_pair.h"
 #include "experiments/method/method.h"
 

@@ -1,7 +1,7 @@
 #include "experiments/method/pair_device.h"
 
 #include "core/base/error.h"
-#include "core/gl/pairs.h"
+#include "core/gl/pairs/pairs.h"
 #include "core/pairs/cpu.h"
 #include "experiments/method/options.h"
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "core/gl/context.h"
+#include "core/gl/base/context.h"
 #include "core/pairs/backend.h"
 
 namespace farcull {

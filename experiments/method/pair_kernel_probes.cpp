@@ -1,6 +1,6 @@
 // The probes of A4 that FAR pairs relies on. The device answers all intervals in one dispatch, and
 // slices in one for each window; verify/kernel_check draws the cases and counts what answers lose.
-#include "core/gl/probe_kernels.h"
+#include "core/gl/probe/probe.h"
 #include "experiments/method/kernel_probes_parts.h"
 
 namespace farcull {

@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "core/canvas/fatten.h"
-#include "core/gl/canvas.h"
-#include "core/gl/context.h"
+#include "core/gl/base/context.h"
+#include "core/gl/canvas/canvas.h"
 #include "core/native/canvas.h"
 #include "core/pairs/pairs.h"
 #include "core/sweep/sweep_prune.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/gl/probe_kernels.h"
+#include "core/gl/probe/probe.h"
 #include "experiments/method/kernel_probes_parts.h"
 #include "offsets/fit.h"
 #include "offsets/minkowski.h"

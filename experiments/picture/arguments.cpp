@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "core/base/error.h"
-#include "core/gl/picture.h"
+#include "core/gl/picture/picture.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/system/shell_word.h"

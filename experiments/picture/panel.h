@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/gl/picture.h"
+#include "core/gl/picture/picture.h"
 #include "experiments/method/run.h"
 #include "experiments/picture/colours.h"
 #include "experiments/picture/sheet.h"

@@ -10,7 +10,7 @@
 
 #include "core/base/count.h"
 #include "core/base/error.h"
-#include "core/gl/driver_threads.h"
+#include "core/gl/base/context.h"
 
 namespace farcull {
 namespace {

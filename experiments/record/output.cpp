@@ -9,7 +9,7 @@
 #include <span>
 
 #include "commit.h"
-#include "core/gl/driver_threads.h"
+#include "core/gl/base/context.h"
 #include "experiments/record/tables.h"
 #include "verify/certificate/not_asked.h"
 #include "verify/certificate/pair_list.h"

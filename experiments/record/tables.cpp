@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/gl/driver_threads.h"
+#include "core/gl/base/context.h"
 #include "core/scene/members.h"
 #include "experiments/system/text_table.h"
 #include "verify/certificate/not_asked.h"

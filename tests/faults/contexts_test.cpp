@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/gl/canvas.h"
+#include "core/gl/canvas/canvas.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/faults/flat_scene.h"
 

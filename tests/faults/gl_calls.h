@@ -13,7 +13,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "core/gl/entry_point.h"
+#include "core/gl/base/driver_fault.h"
 
 namespace farcull::lab {
 

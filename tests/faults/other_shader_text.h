@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/gl/entry_point.h"
+#include "core/gl/base/driver_fault.h"
 
 namespace farcull::lab {
 

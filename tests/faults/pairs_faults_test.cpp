@@ -12,10 +12,10 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/gl/context.h"
-#include "core/gl/echo.h"
-#include "core/gl/entry_point.h"
-#include "core/gl/pairs.h"
+#include "core/gl/base/context.h"
+#include "core/gl/base/driver_fault.h"
+#include "core/gl/base/objects.h"
+#include "core/gl/pairs/pairs.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/core/pairs/pairs_lab.h"
 #include "tests/core/pairs/repeated_scenes.h"

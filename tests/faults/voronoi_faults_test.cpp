@@ -6,9 +6,8 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/gl/driver_fault.h"
-#include "core/gl/entry_point.h"
-#include "core/gl/voronoi.h"
+#include "core/gl/base/driver_fault.h"
+#include "core/gl/voronoi/voronoi.h"
 #include "tests/core/proximity/voronoi_slices_lab.h"
 #include "tests/faults/other_shader_text.h"
 #include "tests/faults/outcomes.h"

@@ -61,7 +61,7 @@ std::vector<ByHand> proved_by_hand() {
        "`interval.strip`, `interval.depth`, then `interval.depth_margin`"},
       {"The bounds that the margin is computed from reach the largest |coordinate| plus `widen`",
        "they are those before the limits cut them: `core/pairs/rows.h`, "
-       "`core/gl/shaders/pair_source.glsl`",
+       "`core/gl/pairs/pair_source.glsl`",
        "`interval.depth_margin`, `interval.image_margin`: it pays for the rounding of `widen`"},
       {"The part of a pixel is exact below and above the pixel too",
        "[budget.md](budget.md), \"Parts of a pixel\"", "`interval.part`"},

@@ -8,8 +8,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/gl/driver_fault.h"
-#include "core/gl/entry_point.h"
+#include "core/gl/base/driver_fault.h"
 #include "offsets/obb.h"
 #include "tests/core/gl/gl_lab.h"
 #include "tests/core/gl/reversed_depth.h"

@@ -1,8 +1,8 @@
 // The laboratory with a GL context.
 #pragma once
 
-#include "core/gl/canvas.h"
-#include "core/gl/context.h"
+#include "core/gl/base/context.h"
+#include "core/gl/canvas/canvas.h"
 #include "tests/core/canvas/lab.h"
 
 namespace farcull::lab {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/gl/picture.h"
+#include "core/gl/picture/picture.h"
 #include "tests/core/gl/gl_lab.h"
 #include "tests/core/gl/reversed_depth.h"
 

@@ -1,6 +1,6 @@
 // Every probe of farcull doctor passes on the software device, and every one has a twin: a
 // deliberate defect under which it must fail.
-#include "core/gl/probe.h"
+#include "core/gl/probe/probe.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The diagram on OpenGL beside that of the CPU, and the reliable form on OpenGL against rationals.
-#include "core/gl/voronoi.h"
+#include "core/gl/voronoi/voronoi.h"
 
 #include <gtest/gtest.h>
 

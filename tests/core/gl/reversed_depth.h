@@ -1,7 +1,7 @@
 // A driver that reverses the depth test: what shall keep the nearest keeps the farthest.
 #pragma once
 
-#include "core/gl/entry_point.h"
+#include "core/gl/base/driver_fault.h"
 
 namespace farcull::lab {
 

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "core/gl/pairs.h"
+#include "core/gl/pairs/pairs.h"
 #include "core/pairs/pairs.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/core/gl/gl_lab.h"

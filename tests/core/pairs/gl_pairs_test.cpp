@@ -1,7 +1,7 @@
 // FAR pairs on a GL device against the CPU's: the same candidates, entry for entry, whatever the
 // memory; nothing missed; and every fault of assumption A7 noticed.
-#include "core/gl/driver_fault.h"
-#include "core/gl/pairs.h"
+#include "core/gl/base/driver_fault.h"
+#include "core/gl/pairs/pairs.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

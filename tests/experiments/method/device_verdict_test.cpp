@@ -7,7 +7,7 @@
 
 #include <csignal>
 
-#include "core/gl/probe.h"
+#include "core/gl/probe/probe.h"
 #include "tests/experiments/method/cache_lab.h"
 
 namespace farcull {

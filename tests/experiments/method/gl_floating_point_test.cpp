@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/gl/context.h"
+#include "core/gl/base/context.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
 #include "tests/core/base/floating_point_lab.h"

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "core/gl/driver_threads.h"
-#include "core/gl/probe.h"
+#include "core/gl/base/context.h"
+#include "core/gl/probe/probe.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
 #include "experiments/record/certificate.h"

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/gl/probe.h"
+#include "core/gl/probe/probe.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "core/gl/pairs.h"
+#include "core/gl/pairs/pairs.h"
 #include "core/scene/members.h"
 #include "experiments/measure/frames.h"
 #include "experiments/method/run.h"

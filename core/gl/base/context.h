@@ -1,0 +1,93 @@
+// A headless OpenGL context through EGL: no window system, the device chosen by name or number.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace farcull {
+
+/// One EGL device of this machine, as `--device` numbers them.
+struct GlDevice {
+  int index = 0;
+  std::string kind;        // "software" or "hardware"
+  std::string extensions;  // EGL device extensions
+  std::string drm;         // device file, where it has one
+  bool usable = false;     // a context of the version that farcull needs could be made
+  std::string vendor, renderer, version;  // of that context
+  std::string problem;                    // why it is not usable
+};
+
+/// The device that answered; recorded with every result.
+struct GlInfo {
+  std::string kind;  // "software" or "hardware"
+  std::string vendor, renderer, version, glsl;
+  int subpixel_bits = 0;
+  int max_texture_size = 0;
+  int max_viewport = 0;
+  int max_compute_groups = 0;
+  long max_storage_block = 0;  // bytes
+  bool reset_detection = false;
+};
+
+/// A context of OpenGL 4.3 core or later, destroyed with the object. It is current only while a
+/// GlCurrent of it lives: any number of contexts can be used in turn in one thread, beside contexts
+/// of the caller's own, and one context by several threads, one at a time.
+class GlContext {
+ public:
+  /// device: "" (hardware first, then software), "hardware", "software" or a number of
+  /// list_devices(). Throws Error where there is no EGL, no such device, or its OpenGL is too old.
+  /// The context that was current in the calling thread is current again afterwards.
+  explicit GlContext(const std::string& device = "");
+  ~GlContext();
+  GlContext(const GlContext&) = delete;
+  GlContext& operator=(const GlContext&) = delete;
+
+  const GlInfo& info() const;
+
+  /// Every device, each tried with a context of its own; an empty list where there are none. Throws
+  /// Error without EGL.
+  static std::vector<GlDevice> list_devices();
+  /// True where EGL lists a hardware device; none is opened. Throws Error without EGL.
+  static bool hardware_listed();
+
+ private:
+  friend class GlCurrent;
+  struct Handles;
+  std::unique_ptr<Handles> handles_;
+};
+
+/// Makes a context current in this thread for as long as the object lives; then the
+/// context from before is current again: nothing, another GlContext, or a context of the caller's
+/// own with its surfaces and its rendering API. Nests. Whatever calls GL holds one.
+class GlCurrent {
+ public:
+  /// Throws Error where the context cannot be made current: another thread is using it, or a
+  /// context of another window-system interface (GLX) is current in this thread.
+  explicit GlCurrent(const GlContext& context);
+  ~GlCurrent();
+  GlCurrent(const GlCurrent&) = delete;
+  GlCurrent& operator=(const GlCurrent&) = delete;
+
+ private:
+  friend class GlContext;
+  struct Before;
+  GlCurrent();                      // remembers what is current, and changes nothing
+  std::unique_ptr<Before> before_;  // null: the context was current already
+};
+
+/// How many threads of the driver draw in this process: those of Mesa's llvmpipe, if the renderer
+/// is it or draws with it, or as many as LP_NUM_THREADS asked for if that is more; else 0. They may
+/// write to memory that was freed (docs/drivers.md), so no promise rests on a device that has some
+/// (assumption A10).
+int driver_threads(const std::string& renderer);
+
+/// The risk of those threads and the remedy, without a full stop; empty if there are none.
+std::string risk_of_threads(const std::string& renderer);
+
+/// Reads GL's error flags and the reset status; throws Error naming `stage` unless both are clean
+/// (assumption A7), or where the driver has left this thread with another floating-point
+/// environment than the proofs are about.
+void check_gl(const std::string& stage);
+
+}  // namespace farcull

@@ -1,0 +1,154 @@
+// Each fault replaces the entry points that it takes; a value of the thread says which call is at
+// fault. Without that value, in other threads, a replacement passes the call on.
+#include "core/gl/base/driver_fault.h"
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+namespace farcull {
+namespace {
+
+using Kind = DriverFaultKind;
+
+struct Plan {
+  Kind kind;
+  std::size_t at;                     // of wrong_count
+  std::optional<std::size_t> strike;  // the call at fault; empty: none yet
+  std::size_t calls = 0;              // since strike()
+  bool query_lost = false;            // the query that is not open
+
+  bool now() { return strike && calls++ == *strike; }
+};
+std::mutex one_at_a_time;
+thread_local std::optional<Plan> plan;
+
+using DrawArrays = GlEntryPoint<&epoxy_glDrawArrays>;
+using Dispatch = GlEntryPoint<&epoxy_glDispatchCompute>;
+using BeginQuery = GlEntryPoint<&epoxy_glBeginQuery>;
+using EndQuery = GlEntryPoint<&epoxy_glEndQuery>;
+using ShaderSource = GlEntryPoint<&epoxy_glShaderSource>;
+
+void draw(GLenum mode, GLint first, GLsizei count) {
+  if (!plan || !plan->now()) DrawArrays::original(mode, first, count);
+}
+
+// The text of every compute program of ours ends an invocation where its work items end; here, also
+// at the one before far_lost_item.
+constexpr const char* kEnd = "if (w >= u_count) break;";
+constexpr const char* kEarlierEnd = "if (w >= u_count || w + 1u == far_lost_item) break;";
+// Programs of far-pairs may learn on the device how many items they have.
+constexpr const char* kCountedEnd = "if (w >= items) break;";
+constexpr const char* kEarlierCountedEnd =
+    "if (w >= items || (far_lost_item != 0u && w == items / 2u)) break;";
+constexpr const char* kSize = "layout(local_size_x = 64) in;";
+constexpr const char* kSizeAndItem =
+    "layout(local_size_x = 64) in;\nlayout(location = 64) uniform uint far_lost_item;";
+constexpr GLint kCount = 0, kLostItem = 64;  // locations of u_count and far_lost_item
+
+void dispatch(GLuint x, GLuint y, GLuint z) {
+  if (!plan || !plan->now()) return Dispatch::original(x, y, z);
+  if (plan->kind == Kind::lost_dispatch) return;
+  if (plan->kind == Kind::oversized_dispatch) {
+    GLint most = 0;
+    glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0, &most);
+    return Dispatch::original(static_cast<GLuint>(most) + 1, y, z);
+  }
+  GLint program = 0;
+  glGetIntegerv(GL_CURRENT_PROGRAM, &program);
+  if (glGetUniformLocation(static_cast<GLuint>(program), "far_lost_item") != kLostItem)
+    throw std::logic_error("driver fault: the program was not compiled with this fault");
+  GLuint count[4] = {};  // the uniform, or the first four words of an array
+  glGetUniformuiv(static_cast<GLuint>(program), kCount, count);
+  glProgramUniform1ui(static_cast<GLuint>(program), kLostItem, count[0] / 2 + 1);
+  Dispatch::original(x, y, z);
+  glProgramUniform1ui(static_cast<GLuint>(program), kLostItem, 0);
+}
+
+void begin_query(GLenum target, GLuint query) {
+  if (target != GL_ANY_SAMPLES_PASSED || !plan || !plan->strike)
+    return BeginQuery::original(target, query);
+  if (plan->kind == Kind::lost_query) {
+    plan->query_lost = plan->now();
+    if (!plan->query_lost) BeginQuery::original(target, query);
+    return;
+  }
+  BeginQuery::original(target, query);
+  EndQuery::original(target);
+}
+
+void end_query(GLenum target) {
+  const bool ours = target == GL_ANY_SAMPLES_PASSED && plan && plan->strike;
+  if (ours && (plan->kind == Kind::blind_queries || plan->query_lost)) return;
+  EndQuery::original(target);
+}
+
+void replace(std::string& text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos;
+       at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+}
+
+// gl_program() gives one text, ended by 0.
+void shader_source(GLuint shader, GLsizei count, const GLchar* const* texts, const GLint* lengths) {
+  if (!plan || count != 1 || lengths != nullptr)
+    return ShaderSource::original(shader, count, texts, lengths);
+  std::string text = texts[0];
+  if (plan->kind == Kind::unfinished_item &&
+      (text.find(kEnd) != std::string::npos || text.find(kCountedEnd) != std::string::npos)) {
+    replace(text, kSize, kSizeAndItem);
+    replace(text, kEnd, kEarlierEnd);
+    replace(text, kCountedEnd, kEarlierCountedEnd);
+  }
+  if (plan->kind == Kind::kept_bits)
+    replace(text, "FAR_AT(to, w) = 0u;", "if (u_extra.x == 0u) FAR_AT(to, w) = 0u;");
+  // The text of lists has three steps, of which the second counts.
+  if (plan->kind == Kind::wrong_count && text.find("#define FAR_STEP 1\n") != std::string::npos &&
+      text.find("atomicExchange(FAR_AT(listed, record)") != std::string::npos) {
+    replace(text, "void work(uint w) {",
+            "void work(uint w) {\n  if (w == 0u) atomicAdd(counts[" + std::to_string(plan->at) +
+                "u % (u_cells * u_bins.x)], 1u);");
+  }
+  const GLchar* const changed = text.c_str();
+  ShaderSource::original(shader, count, &changed, lengths);
+}
+
+}  // namespace
+
+DriverFault::DriverFault(DriverFaultKind kind, std::size_t at) : alone_(one_at_a_time) {
+  plan = Plan{.kind = kind, .at = at, .strike = {}};
+  switch (kind) {
+    case Kind::lost_draw:
+      replaced_ = {std::make_shared<DrawArrays>(draw)};
+      break;
+    case Kind::unfinished_item:
+      replaced_.push_back(std::make_shared<ShaderSource>(shader_source));
+      [[fallthrough]];
+    case Kind::lost_dispatch:
+    case Kind::oversized_dispatch:
+      replaced_.push_back(std::make_shared<Dispatch>(dispatch));
+      break;
+    case Kind::lost_query:
+    case Kind::blind_queries:
+      replaced_ = {std::make_shared<BeginQuery>(begin_query),
+                   std::make_shared<EndQuery>(end_query)};
+      break;
+    case Kind::wrong_count:
+    case Kind::kept_bits:
+      replaced_ = {std::make_shared<ShaderSource>(shader_source)};
+      break;
+  }
+}
+
+DriverFault::~DriverFault() {
+  replaced_.clear();
+  plan.reset();
+}
+
+void DriverFault::strike(std::size_t call) {
+  plan->strike = call;
+  plan->calls = 0;
+}
+
+}  // namespace farcull

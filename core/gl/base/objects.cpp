@@ -1,0 +1,243 @@
+// Compiles programs, and asks GL after every binding and allocation whether it took effect.
+#include "core/gl/base/objects.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+
+#include "core/base/error.h"
+
+namespace farcull {
+namespace {
+
+constexpr const char* kReport = "report this driver's log with the output of `farcull doctor`";
+
+// Shaders write out and inout parameters through these names, so that kernels compile as C++ too
+// (core/base/glsl_shim.h).
+constexpr const char* kKernelNames =
+    "#define FAR_OUT(type) out type\n#define FAR_INOUT(type) inout type\n#define FAR_PRECISE "
+    "precise\n#define FAR_FIXED(x) (x)\n#define FAR_KERNEL\n#define FAR_CONSTANT const float\n"
+    "#define FAR_BOOL bool\n#define FAR_SELECT(c, a, b) ((c) ? (a) : (b))\n"
+    "#define FAR_UNIFORM(c) (c)\n";
+
+// An element of the array at the end of a storage block; the last one where the index is beyond it.
+// An upload, a binding or a uniform that was lost is noticed when results are read. Until then
+// indices that come from buffers may be anything, and a device without robust access must not read
+// or write outside the buffer. A storage buffer of ours is never empty.
+constexpr const char* kElement =
+    "#define FAR_AT(array, index) array[min(uint(index), uint(array.length()) - 1u)]\n";
+
+template <class Get, class Log>
+std::string log_of(GLuint object, Get get, Log log) {
+  GLint length = 0;
+  get(object, GL_INFO_LOG_LENGTH, &length);
+  std::string text(static_cast<std::size_t>(std::max(length, 1)), '\0');
+  log(object, length, nullptr, text.data());
+  while (!text.empty() && (text.back() == '\0' || text.back() == '\n')) text.pop_back();
+  return text;
+}
+
+// Every update goes through this binding. Whether it took effect is asked of GL: the contents that
+// follow would otherwise end in the buffer that was bound before.
+void bind_storage(GLuint name) {
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
+  GLint bound = 0;
+  glGetIntegerv(GL_SHADER_STORAGE_BUFFER_BINDING, &bound);
+  if (static_cast<GLuint>(bound) != name || name == 0)
+    throw_lost("buffer", "a buffer was not bound");
+}
+
+}  // namespace
+
+void throw_lost(const std::string& stage, const std::string& reason, const std::string& cause) {
+  throw Error("GL " + stage, reason, cause + ": run again, or with another --device");
+}
+
+bool gl_forget(const GlContext& context, const std::function<void()>& drop) {
+  try {
+    const GlCurrent current(context);
+    for (const GLenum target : {GL_PRIMITIVES_GENERATED, GL_ANY_SAMPLES_PASSED}) {
+      GLint open = 0;
+      glGetQueryiv(target, GL_CURRENT_QUERY, &open);
+      if (open != 0) glEndQuery(target);
+    }
+    drop();
+    // Errors of the deleted objects concern nobody. A lost context may report errors without end.
+    for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; ++i) {
+    }
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+// Numbers that look random, so that no few of them cancel in a sum; each step is a bijection, so no
+// two are equal before 2^32 of them.
+std::uint32_t gl_number() {
+  static std::atomic<std::uint32_t> last{0};
+  std::uint32_t tag = last += 1;
+  tag = (tag ^ tag >> 16) * 0x85ebca6bu;
+  tag = (tag ^ tag >> 13) * 0xc2b2ae35u;
+  return tag ^ tag >> 16;
+}
+
+bool GlStore::reserve(std::size_t wanted, std::size_t most) {
+  wanted = std::max<std::size_t>(wanted, 16);
+  if (name_ != 0 && wanted <= bytes_) return false;
+  const std::size_t grown_to = std::max(wanted, std::min(most, bytes_ + bytes_ / 2));
+  const std::size_t bytes = (grown_to + 15) / 16 * 16;
+  const auto size = static_cast<GLsizeiptr>(kTagBytes + bytes);
+  GlBuffer grown = gl_make<GlBuffer>(glGenBuffers);
+  bind_storage(grown);
+  glBufferData(GL_SHADER_STORAGE_BUFFER, size, nullptr, GL_DYNAMIC_COPY);
+  GLint64 given = 0;
+  glGetBufferParameteri64v(GL_SHADER_STORAGE_BUFFER, GL_BUFFER_SIZE, &given);
+  check_gl("buffer of " + std::to_string(size) + " bytes");
+  if (given != size) throw_lost("buffer", "a buffer has not the size that was asked for");
+  const std::uint32_t head[4] = {gl_number(), 0, 0, 0};
+  glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof head, head);
+  std::swap(name_, grown);
+  tag_ = head[0];
+  bytes_ = bytes;
+  return true;
+}
+
+void GlStore::write(std::size_t at, const void* data, std::size_t bytes) {
+  if (bytes == 0) return;
+  bind_storage(name_);
+  glBufferSubData(GL_SHADER_STORAGE_BUFFER, static_cast<GLintptr>(kTagBytes + at),
+                  static_cast<GLsizeiptr>(bytes), data);
+}
+
+void GlStore::clear(std::size_t bytes) {
+  bind_storage(name_);
+  glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, kTagBytes,
+                       static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+}
+
+void GlStore::read(std::size_t at, void* out, std::size_t bytes) const {
+  if (bytes == 0) return;
+  bind_storage(name_);
+  glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, static_cast<GLintptr>(kTagBytes + at),
+                     static_cast<GLsizeiptr>(bytes), out);
+}
+
+void gl_wait(const std::string& stage) {
+  const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  GLenum answer = GL_TIMEOUT_EXPIRED;
+  for (int second = 0; second < kLongestWait && answer == GL_TIMEOUT_EXPIRED; ++second)
+    answer = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, 1'000'000'000);
+  glDeleteSync(fence);
+  if (answer == GL_ALREADY_SIGNALED || answer == GL_CONDITION_SATISFIED) return;
+  check_gl(stage);
+  throw Error("GL " + stage,
+              answer == GL_TIMEOUT_EXPIRED
+                  ? "the device did not finish within " + std::to_string(kLongestWait) + " s"
+                  : "the device does not say whether it has finished",
+              "choose a smaller resolution, or another --device");
+}
+
+GlTexture gl_texture(GLenum format, int width, int height) {
+  GlTexture out = gl_make<GlTexture>(glGenTextures);
+  glBindTexture(GL_TEXTURE_2D, out);
+  glTexStorage2D(GL_TEXTURE_2D, 1, format, width, height);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  return out;
+}
+
+GlProgram gl_program(const std::string& name, const std::vector<std::string>& defines,
+                     const std::vector<ShaderText>& stages) {
+  GlProgram program(glCreateProgram());
+  for (const ShaderText& stage : stages) {
+    std::string text = std::string("#version 430 core\n") + kKernelNames + kElement;
+    for (const std::string& define : defines) text += "#define " + define + "\n";
+    for (const std::string& part : stage.texts) text += part;
+    const GLuint shader = glCreateShader(stage.stage);
+    const char* source = text.c_str();
+    glShaderSource(shader, 1, &source, nullptr);
+    glCompileShader(shader);
+    GLint ok = GL_FALSE;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+    const std::string log = ok ? "" : log_of(shader, glGetShaderiv, glGetShaderInfoLog);
+    if (ok) glAttachShader(program, shader);
+    glDeleteShader(shader);
+    if (!ok) throw Error("GL shader " + name, "it does not compile: " + log, kReport);
+  }
+  GLint attached = 0;
+  glGetProgramiv(program, GL_ATTACHED_SHADERS, &attached);
+  if (attached != static_cast<GLint>(stages.size()))
+    throw_lost("shader " + name, "it lacks a stage");
+  glLinkProgram(program);
+  GLint ok = GL_FALSE;
+  glGetProgramiv(program, GL_LINK_STATUS, &ok);
+  if (!ok) {
+    throw Error("GL shader " + name,
+                "it does not link: " + log_of(program, glGetProgramiv, glGetProgramInfoLog),
+                kReport);
+  }
+  check_gl("shader " + name);
+  return program;
+}
+
+void gl_dispatch(std::uint32_t groups, int row) {
+  const std::uint32_t columns = std::min(groups, static_cast<std::uint32_t>(row));
+  glDispatchCompute(columns, (groups + columns - 1) / columns, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void gl_fill(GLuint buffer, const void* data, std::size_t bytes) {
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
+  if (bytes < 16) {
+    glBufferData(GL_SHADER_STORAGE_BUFFER, 16, nullptr, GL_STREAM_DRAW);
+    if (bytes > 0 && data)
+      glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
+  } else {
+    glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), data, GL_STREAM_DRAW);
+  }
+}
+
+GlClock::GlClock(std::size_t stamps) : stamps_(stamps) {
+  GLint bits = 0;
+  glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
+  ticks_ = bits > 0;
+}
+
+void GlClock::forget() {
+  for (GlQuery& stamp : stamps_) stamp = GlQuery();
+}
+
+// A new name each time: a stamp that is lost then has no object, and no stale time to give.
+void GlClock::stamp(std::size_t place) {
+  if (!ticks_) return;
+  GlQuery& query = stamps_.at(place);
+  query = gl_make<GlQuery>(glGenQueries);
+  glQueryCounter(query, GL_TIMESTAMP);
+}
+
+double GlClock::between(std::size_t from, std::size_t to) const {
+  std::array<GLuint64, 2> ns{};
+  for (std::size_t k = 0; k < ns.size(); ++k) {
+    const GlQuery& query = stamps_.at(k == 0 ? from : to);
+    if (query == 0) return -1;
+    GLuint ready = GL_FALSE;
+    glGetQueryObjectuiv(query, GL_QUERY_RESULT_AVAILABLE, &ready);
+    if (ready == GL_TRUE) glGetQueryObjectui64v(query, GL_QUERY_RESULT, &ns[k]);
+    check_gl("clock");
+    if (ns[k] == 0) return -1;
+  }
+  return ns[1] >= ns[0] ? static_cast<double>(ns[1] - ns[0]) / 1e6 : -1;
+}
+
+std::uint32_t gl_sum(std::span<const std::byte> data) {
+  std::uint32_t sum = 0;
+  const auto count = static_cast<std::uint32_t>(data.size() / sizeof(std::uint32_t));
+  for (std::uint32_t w = 0; w < count; ++w) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, data.data() + w * sizeof word, sizeof word);
+    sum += gl_mixed(word, w);
+  }
+  return sum;
+}
+
+}  // namespace farcull

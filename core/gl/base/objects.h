@@ -1,0 +1,176 @@
+// The GL objects that this folder shares: names that are deleted with their owners, programs,
+// storage buffers, the device's clock, and the echo by which lost commands are seen. For core/gl
+// and its tests alone.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/gl/base/context.h"
+
+namespace farcull {
+
+/// Throws Error naming the GL stage: `cause` happened, and `reason` says how that was seen.
+[[noreturn]] void throw_lost(const std::string& stage, const std::string& reason,
+                             const std::string& cause = "a command was lost");
+
+/// Ends open queries, makes the context current while drop() deletes objects, and forgets GL's
+/// errors. False where the context cannot be had: then drop() was not called.
+bool gl_forget(const GlContext& context, const std::function<void()>& drop);
+
+template <void (*Delete)(GLuint)>
+class GlName {
+ public:
+  GlName() = default;
+  explicit GlName(GLuint name) : name_(name) {}
+  GlName(GlName&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+  GlName& operator=(GlName&& other) noexcept {
+    std::swap(name_, other.name_);
+    return *this;
+  }
+  ~GlName() {
+    if (name_ != 0) Delete(name_);
+  }
+  operator GLuint() const { return name_; }
+
+ private:
+  GLuint name_ = 0;
+};
+
+inline void delete_buffer(GLuint name) { glDeleteBuffers(1, &name); }
+inline void delete_texture(GLuint name) { glDeleteTextures(1, &name); }
+inline void delete_framebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
+inline void delete_vertex_array(GLuint name) { glDeleteVertexArrays(1, &name); }
+inline void delete_program(GLuint name) { glDeleteProgram(name); }
+inline void delete_query(GLuint name) { glDeleteQueries(1, &name); }
+
+using GlBuffer = GlName<delete_buffer>;
+using GlTexture = GlName<delete_texture>;
+using GlFramebuffer = GlName<delete_framebuffer>;
+using GlVertexArray = GlName<delete_vertex_array>;
+using GlProgram = GlName<delete_program>;
+using GlQuery = GlName<delete_query>;
+
+template <class Object>
+Object gl_make(void (*generate)(GLsizei, GLuint*)) {
+  GLuint name = 0;
+  generate(1, &name);
+  return Object(name);
+}
+
+/// A texture of one level, bound, with the nearest filter.
+GlTexture gl_texture(GLenum format, int width, int height);
+
+struct ShaderText {
+  GLenum stage;
+  std::vector<std::string> texts;
+};
+/// Compiles and links "#version 430 core", `defines` (one #define line each) and the texts of each
+/// stage. Throws Error with the driver's log and the name.
+GlProgram gl_program(const std::string& name, const std::vector<std::string>& defines,
+                     const std::vector<ShaderText>& stages);
+
+/// Starts so many work groups of the program in use, in rows of at most `row`, and lets what they
+/// write be read by what follows.
+void gl_dispatch(std::uint32_t groups, int row);
+
+/// Replaces the contents of a shader storage buffer (at least 16 bytes long, so that it can always
+/// be bound).
+void gl_fill(GLuint buffer, const void* data, std::size_t bytes);
+
+/// A number that no other call in the process has returned, before the first 2^32 of them.
+std::uint32_t gl_number();
+
+/// Bytes of a storage buffer that stand before its data: its tag and three words 0.
+constexpr std::size_t kTagBytes = 16;
+
+/// A shader storage buffer that grows and never shrinks. It begins with a tag, a number that no
+/// other buffer of the process has: a program that reads it knows that this buffer is bound.
+/// Programs declare it as { uvec4 tag; T data[]; }; offsets here count from the data. Every
+/// function asks GL whether the buffer is bound before it touches contents, so that a lost binding
+/// cannot spoil another buffer. Each throws Error where GL fails.
+class GlStore {
+ public:
+  /// Grows to hold `wanted` bytes of data, up to half as much again within `most`. True where the
+  /// contents are lost: they are undefined then. The store is as before where it throws.
+  bool reserve(std::size_t wanted, std::size_t most);
+  void write(std::size_t at, const void* data, std::size_t bytes);
+  /// Zeros, from the beginning; a multiple of 4.
+  void clear(std::size_t bytes);
+  void read(std::size_t at, void* out, std::size_t bytes) const;
+
+  GLuint name() const { return name_; }
+  std::uint32_t tag() const { return tag_; }
+  std::size_t bytes() const { return bytes_; }  // of data
+
+ private:
+  GlBuffer name_;
+  std::uint32_t tag_ = 0;
+  std::size_t bytes_ = 0;
+};
+
+/// Waits until the device has done all that it was told. Throws Error naming `stage` where that
+/// takes longer than kLongestWait, or the device cannot say.
+void gl_wait(const std::string& stage);
+constexpr int kLongestWait = 600;  // s
+
+/// Notes when the device gets to a place in its work, where it has a clock (GL_TIMESTAMP). Nothing
+/// is waited for, and no answer depends on it. A context must be current in every call.
+class GlClock {
+ public:
+  /// For `stamps` places.
+  explicit GlClock(std::size_t stamps);
+  /// Forgets all places.
+  void forget();
+  void stamp(std::size_t place);
+  /// ms on the device between two places; negative where they are not known. The device must have
+  /// finished what it was told. Throws Error where a stamp was lost.
+  double between(std::size_t from, std::size_t to) const;
+
+ private:
+  bool ticks_ = false;
+  std::vector<GlQuery> stamps_;
+};
+
+// The echo (assumption A7): a device says back what a program read and the sum of what was sent, so
+// that lost commands are seen. core/gl/base/echo.glsl has the same arithmetic.
+
+/// Mixes a word with its place: a bijection of the word, after which a change of any bit may change
+/// every bit (the finalizer of MurmurHash3). So changes of a few words do not cancel in a sum, as
+/// changes of signs or of small numbers would if words were only multiplied.
+inline std::uint32_t gl_mixed(std::uint32_t word, std::uint32_t place) {
+  std::uint32_t mixed = word ^ place * 0x9e3779b9u;
+  mixed = (mixed ^ mixed >> 16) * 0x85ebca6bu;
+  mixed = (mixed ^ mixed >> 13) * 0xc2b2ae35u;
+  return mixed ^ mixed >> 16;
+}
+
+/// The sum of words, each mixed with its place.
+struct GlEcho {
+  std::uint32_t sum = 0;
+  std::uint32_t place = 0;  // of the word that comes next
+
+  template <class Number, std::size_t N>
+  void add(const std::array<Number, N>& words) {
+    for (const Number word : words) sum += gl_mixed(std::bit_cast<std::uint32_t>(word), place++);
+  }
+  void add(std::initializer_list<std::uint32_t> words) {
+    for (const std::uint32_t word : words) sum += gl_mixed(word, place++);
+  }
+  void add_at(std::uint32_t at, std::uint32_t word) { sum += gl_mixed(word, at); }
+};
+
+/// The sum of the words of `data` (a multiple of 4 bytes), each mixed with its place.
+std::uint32_t gl_sum(std::span<const std::byte> data);
+
+}  // namespace farcull

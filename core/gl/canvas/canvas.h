@@ -1,0 +1,80 @@
+// The canvas on OpenGL 4.3: a depth texture, proxies or triangles fetched from storage buffers, and
+// the full-visibility query either as an occlusion query per slot or as a flag that the fragment
+// program raises.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/canvas/asked_depth.h"
+#include "core/canvas/canvas.h"
+#include "core/gl/base/context.h"
+
+namespace farcull {
+
+enum class DepthFormat { float32, fixed24 };
+/// flags: an asked fragment raises its slot's flag. Proxies compare with the stored depth in the
+/// shader (float32 only: a comparison with a texel of a 24-bit texture loses equal depths);
+/// triangles at fixed depth rely on early fragment tests. occlusion: GL_ANY_SAMPLES_PASSED, many in
+/// flight, as published.
+enum class QueryMode { flags, occlusion };
+
+/// The define with which canvas.frag asks, by the bits of the slack.
+inline std::string ask_define(float behind = kAskedBehind) {
+  return "FAR_ASK uintBitsToFloat(" + std::to_string(std::bit_cast<std::uint32_t>(behind)) + "u)";
+}
+
+struct GlCanvasOptions {
+  DepthFormat depth_format = DepthFormat::float32;
+  QueryMode query = QueryMode::flags;
+  /// Triangles have a fragment in each pixel that they touch, by GL_NV_conservative_raster or
+  /// GL_INTEL_conservative_rasterization.
+  bool conservative = false;
+  /// Bytes; as if a storage block held no more than this. 0: the device's own limit.
+  long storage_limit = 0;
+};
+
+struct CanvasState;
+
+class GlCanvas final : public Canvas {
+ public:
+  /// `mode` and `solid` as in the fattener whose drawables will come. Throws Error where the
+  /// options do not go together or the device refuses. The context must outlive the canvas, which
+  /// makes it current for each of its calls. After any exception of begin(), run(), samples() or
+  /// depths() all that lies on the device is dropped; the next begin() makes it anew, and the
+  /// others throw std::logic_error before it.
+  GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram& solid,
+           const GlCanvasOptions& options = {});
+  ~GlCanvas() override;
+
+  const RasterLimits& limits() const override;
+  void begin(const Window& window, const Drawables& drawables) override;
+  std::vector<std::uint8_t> run(const Pass& pass) override;
+  std::vector<float> samples(Verb verb, const std::vector<Draw>& draws) override;
+  std::vector<float> depths(Verb verb, const std::vector<Draw>& draws) override;
+
+  CanvasWork work() const override;
+
+ private:
+  void forget();
+  void require_begun(const char* function) const;
+  template <class Work>
+  auto guarded(const Work& work);
+
+  const GlContext& context_;
+  DepthMode mode_;
+  std::string solid_;  // GLSL
+  GlCanvasOptions options_;
+  RasterLimits limits_;
+  std::unique_ptr<CanvasState> state_;  // null after a failure
+  CanvasWork earlier_;                  // of the states before it
+};
+
+/// The same behind the interface.
+std::unique_ptr<Canvas> gl_canvas(const GlContext& context, DepthMode mode,
+                                  const SolidProgram& solid, const GlCanvasOptions& options = {});
+
+}  // namespace farcull

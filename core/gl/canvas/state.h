@@ -1,0 +1,200 @@
+// The canvas on the device: what a pass sends, the report in which the device says what it has read
+// and done (assumption A7), and the state. For core/gl/canvas alone.
+//
+// The canvas draws elements of its own besides those of the caller: the quad for kEverywhere, and
+// control items, by which lost commands are seen. Control items stand in corner pixels of the
+// render target, outside the window. In pixel 0 the store of step k leaves the depth kControlTop -
+// k * kControlGap. The next ask's control item, at that depth (or half a gap behind it, where equal
+// depths are not seen), is seen only if that store ran. A pass marks pixel 1 or 2 in turn and asks
+// in the other, where the pass before it left its mark: kAsked must not be seen, so the buffer has
+// been cleared since.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/gl/base/objects.h"
+#include "core/gl/canvas/canvas.h"
+
+namespace farcull {
+
+constexpr double kControlTop = 0.95;
+constexpr double kControlGap = 0x1p-21;
+constexpr float kMark = 0.96f, kAsked = 0.98f;
+constexpr float kLeft = 0.5f;  // depth of every pixel before the first pass and after depths()
+
+struct GpuDraw {
+  std::uint32_t element;
+  std::uint32_t slot;
+};
+
+/// A batch of draws: consecutive ones of one step that read one element buffer.
+struct CanvasBatch {
+  std::size_t step;
+  Verb verb;
+  std::size_t chunk;   // element buffer; kExtras for the canvas's own elements
+  std::size_t offset;  // of its head in the draw list; its draws follow
+  std::size_t count;   // of draws
+};
+constexpr std::size_t kExtras = static_cast<std::size_t>(-1);
+
+/// All that a pass sends.
+struct CanvasPass {
+  std::uint32_t serial = 0;   // no other pass of the process has it
+  std::vector<GpuDraw> list;  // begins with two entries where the store has its tag; each
+                              // batch begins with {serial, word of the report}
+  std::vector<float> own;     // the canvas's own elements
+  std::vector<CanvasBatch> batches;
+  std::uint32_t slots = 0;  // of the caller's; with marks, one that must not be seen; controls
+  std::span<const std::byte> list_bytes() const {
+    return std::as_bytes(std::span(list).subspan(2));
+  }
+};
+
+/// The binding of the report in every program of the canvas.
+constexpr GLuint kReport = 3;
+
+/// A storage buffer into which every batch of draws writes its echo, every dispatch its own and the
+/// number of its work items that finished, and which holds the flags of a pass.
+class CanvasReport {
+ public:
+  static constexpr std::uint32_t kHead = 2;  // words before the echoes: finished, sum
+
+  /// block: bytes of data in a storage block; alignment: of a storage buffer range, in bytes.
+  CanvasReport(const GlContext& context, std::size_t block, std::size_t alignment);
+
+  /// Expects so many batches of draws, at most `dispatches` dispatches, and `flags` to be packed.
+  void start(std::size_t batches, std::size_t dispatches, std::uint32_t flags);
+  /// The dispatches that expect() makes for so many bytes.
+  std::size_t dispatches(std::size_t bytes) const { return (bytes + piece_ - 1) / piece_; }
+  /// Lets the device sum what the store holds from its beginning; read() compares the sum with that
+  /// of `data`, of a multiple of 16 bytes.
+  void expect(const GlStore& store, std::span<const std::byte> data);
+  /// The echo that a batch writes to word kHead + batch.
+  void expect_batch(std::size_t batch, std::uint32_t echo) { echoes_[batch] = echo; }
+  /// Lets the device pack the flags that hold `serial`; the last dispatch before read().
+  void pack(const GlStore& flags, std::uint32_t serial, std::uint32_t count);
+  /// Waits and reads. Throws Error naming `stage` unless every echo and the sum are those that were
+  /// expected, every work item finished and GL has no error. A flag each, where pack() was called.
+  std::vector<std::uint8_t> read(const std::string& stage);
+  const GlStore& store() const { return store_; }
+  /// Totals of all passes: dispatches that were started, and bytes that were read.
+  std::uint64_t dispatches_in_all() const { return dispatches_; }
+  std::uint64_t bytes_in_all() const { return bytes_; }
+
+ private:
+  struct Numbers {  // the uniforms of canvas_work.comp
+    std::uint32_t count, echo, serial, flags, bits;
+  };
+  void dispatch(std::uint32_t step, const GlStore& from, std::size_t offset, std::size_t bytes,
+                std::uint32_t tag, const Numbers& numbers, std::uint32_t groups);
+
+  const GlContext& context_;
+  std::size_t block_, piece_;
+  std::array<GlProgram, 2> programs_;  // by step: sum, pack
+  GlStore store_;
+  std::vector<std::uint32_t> echoes_;     // expected: of the batches, then of the dispatches
+  std::uint32_t finished_ = 0, sum_ = 0;  // expected
+  std::uint32_t flags_ = 0;               // packed
+  std::uint64_t dispatches_ = 0, bytes_ = 0;
+};
+
+// Storage buffer bindings of canvas.vert and canvas.frag, beside kReport.
+constexpr GLuint kElements = 0, kDraws = 1, kFlags = 2;
+
+/// A program of canvas.vert and canvas.frag, and the echo of its uniforms.
+struct CanvasProgram {
+  GlProgram name;
+  std::uint32_t number = 0;  // no other program of the process has it
+  std::uint32_t echo = 0;    // of the uniforms that belong to the window
+};
+
+/// Elements that were sent, so that the same ones are not sent twice.
+struct CanvasElements {
+  std::vector<GlStore> chunks;
+  std::vector<std::byte> bytes;  // what was sent to them
+};
+
+/// The canvas on the device: its programs, render targets and stores, and the state that a pass
+/// sets before it draws.
+struct CanvasState {
+  const GlContext& context;
+  DepthMode mode;
+  GlCanvasOptions options;
+  std::string solid;  // GLSL
+  bool begun = false;
+
+  CanvasProgram store_program, ask_program, exit_program, entry_values, exit_values;
+  GlVertexArray vertex_array;
+  GlTexture depth;
+  GlFramebuffer depth_target, bare_target;
+  int target_width = 0, target_height = 0;
+  bool odd = false;                     // which of two pixels the next pass marks
+  CanvasElements current;               // of the last begin()
+  std::vector<CanvasElements> earlier;  // of those before, which may come again
+  std::size_t per_chunk = 0;            // elements
+  std::size_t elements = 0;
+  std::size_t block = 0;        // bytes of data in a storage block
+  std::size_t alignment = 256;  // of a storage buffer range, in bytes
+  GLenum conservative = 0;      // what turns conservative rasterization on; 0: not wanted
+  GlStore extras, draws, flags;
+  std::optional<CanvasReport> report;
+  std::vector<GlQuery> queries;
+  Window window;
+  GlClock clock{2};  // when a pass or an upload begins and ends
+  CanvasWork work;
+
+  CanvasState(const GlContext& context, DepthMode mode, const std::string& solid,
+              const GlCanvasOptions& options);
+
+  std::size_t vec4s() const { return mode == DepthMode::fragment ? 7 : 3; }
+  GLsizei vertices() const { return mode == DepthMode::fragment ? 6 : 3; }
+  // Proxies write their depth, so their fragments compare with the stored one themselves. Triangles
+  // at fixed depth let the depth test decide before the fragment program raises the flag: then no
+  // step reads the texture that another draws to, which would have to be finished first.
+  bool compares_in_shader() const {
+    return options.query == QueryMode::flags && mode == DepthMode::fragment;
+  }
+  GLuint primitives() const { return mode == DepthMode::fragment ? 2 : 1; }
+  const GlStore& elements_of(const CanvasBatch& batch) const {
+    return batch.chunk == kExtras ? extras : current.chunks[batch.chunk];
+  }
+
+  void bind_target(GLuint framebuffer) const;
+  void set_depth_func(GLenum function) const;
+  GlTexture texture(GLenum format) const;  // of the target's size
+  CanvasProgram program(const std::string& name, std::vector<std::string> defines) const;
+  void resize_target();
+  void set_uniforms(CanvasProgram& program) const;
+  void clear_depth(float value) const;
+  void start(float clear) const;
+  void set_verb(Verb verb, bool touching);
+  void set_conservative(bool on) const;
+  void upload(const CanvasPass& laid, bool with_flags);
+  void bind(const CanvasBatch& batch, const CanvasBatch* before) const;
+  std::uint32_t echo(const CanvasPass& laid, const CanvasBatch& batch, const CanvasProgram& program,
+                     bool touching) const;
+  void draw(std::size_t first, std::size_t count);
+
+  // Uploads the elements of `drawables` and prepares the targets. All functions throw Error where
+  // the device refuses or a command was lost; nothing on it is to be believed then.
+  void begin(const Window& window, const Drawables& drawables);
+  std::vector<std::uint8_t> run(const Pass& pass);
+  std::vector<float> depths(Verb verb, const std::vector<Draw>& wanted);
+  std::vector<float> samples(Verb verb, const std::vector<Draw>& wanted);
+
+ private:
+  std::uint64_t draw_pass(const Pass& pass, const CanvasPass& laid);
+  void draw_queries(const CanvasPass& laid, const CanvasBatch& batch, std::uint32_t& open);
+  void draw_all(CanvasProgram& program, Verb verb, const std::vector<Draw>& wanted, GLuint target);
+  std::vector<std::uint8_t> read_queries(std::uint32_t slots);
+  std::vector<std::uint8_t> read_report(const std::string& stage);
+  bool choose_elements(std::span<const std::byte> bytes);
+};
+
+}  // namespace farcull

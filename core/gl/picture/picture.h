@@ -1,0 +1,49 @@
+// Pictures of scenes for people: triangles in colours, seen orthographically, the nearest in front,
+// antialiased. Nothing here takes part in culling, and no guarantee rests on it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/image.h"
+#include "core/gl/base/context.h"
+#include "core/scene/scene.h"
+#include "core/view/view.h"
+
+namespace farcull {
+
+/// A triangle of the scene and how it is drawn.
+struct PictureTriangle {
+  std::uint32_t triangle = 0;
+  Rgba colour;         // opaque, whatever its `a`
+  bool shaded = true;  // Lambert on both sides, and ambient light; false: the colour as it is
+  float outline = 0;   // px: its edges are drawn as strips that wide, so that it covers a disc of
+                       // this diameter, however small, narrow or degenerate it is
+  float lift = 0;      // px that it is moved towards the eye, in front of what it touches
+};
+
+struct PictureSettings {
+  int samples = 3;  // along a side of a pixel: it is the mean of their square
+};
+
+/// Largest width and height of a picture, px. OpenGL 4.3 allows it with 4 samples.
+constexpr int kMostPicture = 4096;
+
+/// The window that looks along the view and holds the boxes with `margin` (a part of its size, <
+/// 1/2) around them, in a picture of that many pixels (each even, 2 to kMostPicture). The origin is
+/// inside the boxes, so what is far from the origin of the world is drawn as sharply as what is
+/// not. Throws Error naming the scene where doubles cannot distinguish its pixels.
+Window picture_window(const View& view, std::span<const Box> boxes, int width, int height,
+                      double margin, const std::string& scene_name);
+
+/// Draws the triangles inside the window's width and height, of whatever depth. Image x is right
+/// along window.view's first row, image up is its second, and a smaller depth is nearer. Where no
+/// triangle is, alpha is 0; at an edge it is the covered part. Triangles that pixel space cannot
+/// resolve (clip.h) are left out. Memory does not grow with their number. Throws Error where the
+/// device refuses the size or reports an error.
+Image draw_picture(const GlContext& context, const Scene& scene, const Window& window,
+                   std::span<const PictureTriangle> triangles,
+                   const PictureSettings& settings = {});
+
+}  // namespace farcull

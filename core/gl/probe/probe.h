@@ -1,0 +1,102 @@
+// Probes of the device assumptions A1 to A10: each tries to catch this device breaking one, and
+// gives the worst that it measured beside the bound that the proofs rely on (docs/budget.md). A
+// probe can refute an assumption, never prove it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/canvas/kernel_case.h"
+#include "core/gl/base/context.h"
+
+namespace farcull {
+
+/// The user of an assumption. drawing: the canvas, A1 to A10. pairs: FAR pairs, which rasterizes
+/// nothing: A4 in compute shaders, A7 and A8.
+enum class ProbeUse { all, drawing, pairs };
+
+struct ProbeResult {
+  std::string assumption;  // "A1" .. "A9"
+  std::string name;
+  double measured = 0;  // the worst seen, in `unit`
+  double bound = 0;     // in `unit`
+  std::string unit;
+  std::uint64_t samples = 0;  // edges, pixels, results, ... that were compared
+  bool pass = false;          // measured <= bound, and something was compared
+  std::string note;  // what was tried and seen besides; the error's text where the probe broke off
+  bool drawing = true;     // drawing relies on it
+  bool pairs = false;      // FAR pairs relies on it
+  bool broke_off = false;  // an Error ended it: nothing was found out
+};
+
+/// All but the first four are deliberate defects, one for each probe, so that tests can see
+/// every probe fail.
+struct ProbeOptions {
+  std::uint64_t seed = 1;
+  std::string only = {};         // an assumption, as in "A3"; empty: all of them
+  bool brief = false;            // about a third of the samples
+  ProbeUse use = ProbeUse::all;  // probes that something else relies on are left out
+
+  int snap_bits = 0;                // A2: demand 2^-snap_bits px instead of what the device says
+  bool no_vertex_term = false;      // A1: vertex arithmetic may not err at all
+  bool dropped_triangle = false;    // A3: the second triangle of each proxy is lost
+  bool fat_zero_area = false;       // A3: the triangles without area get one
+  bool shifted_pixel = false;       // A9: gl_FragCoord is half a pixel off
+  bool exact_arithmetic = false;    // A4: operations may not round
+  bool loose_text = false;          // A4: shaders without `precise`
+  bool damaged_operand = false;     // A4, A9: one bit of one operand changes on its way
+  bool reversed_depth_map = false;  // A4: farther is mapped nearer
+  bool blind_queries = false;       // A6: queries end before their draws or ask in front of all
+  bool damaged_texel = false;       // A5: one bit of one texel changes on its way
+  bool skipped_faults = false;      // A7: no fault happens
+  bool plain_atomics = false;       // A8: a read and a write instead of an atomic
+  bool unordered_reads = false;     // A8: what is read may not have been written yet
+  bool one_thread = false;          // A10: the driver draws in a thread of its own
+};
+
+/// Runs the probes in the order of the assumptions; `started`, where given, is called with the
+/// assumption before each group. The same device and options give the same results. A probe that
+/// breaks off by an Error fails; others go on. GL state is not kept.
+std::vector<ProbeResult> run_probes(const GlContext& context, const ProbeOptions& options = {},
+                                    const std::function<void(const std::string&)>& started = {});
+
+// The kernels of this product run on a device as its methods run them: solids by the canvas's own
+// fragment program, intervals and slices by compute shaders with the text of
+// core/pairs/interval.glsl. verify/kernel_check.h decides whether the answers are right.
+
+/// px: solids are asked on a window of this side, one in each pixel.
+constexpr int kSolidSide = 128;
+constexpr std::size_t kSolidCases = std::size_t{kSolidSide} * kSolidSide;
+/// The pixel centre at which case i is asked.
+inline SolidCase solid_case_at(std::size_t i) {
+  constexpr float kHalf = 0.5f * kSolidSide;
+  return {static_cast<float>(i % kSolidSide) + 0.5f - kHalf,
+          static_cast<float>(i / kSolidSide) + 0.5f - kHalf,
+          {}};
+}
+
+/// The answers of `solid` for kSolidCases cases, each with the centre of solid_case_at. This
+/// function and those below make the context current while they run. Throws Error as GlCanvas
+/// does.
+std::vector<SolidAnswer> device_solids(const GlContext& context, const SolidProgram& solid,
+                                       std::span<const SolidCase> cases);
+
+/// Whether each of kSolidCases solids is seen behind the one that is stored in its pixel, by the
+/// programs of the method, in a window this deep (px): with flags, with queries, and with queries
+/// on 24 bits, all three. Where the two are the same solid and the line hits it, it must be.
+std::vector<std::uint8_t> device_seen(const GlContext& context, const SolidProgram& solid,
+                                      std::span<const SolidCase> stored,
+                                      std::span<const SolidCase> asked, double depth);
+
+/// The answers of the kernel of FAR pairs; `before` stands before its text, for twins that must
+/// fail.
+std::vector<IntervalAnswer> device_intervals(const GlContext& context,
+                                             std::span<const IntervalCase> cases,
+                                             const std::string& before = "");
+
+std::vector<SliceAnswer> device_slices(const GlContext& context, std::span<const SliceCase> cases);
+
+}  // namespace farcull

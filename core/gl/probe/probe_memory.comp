@@ -1,0 +1,60 @@
+// Values that shaders write and other shaders read, and atomics. FAR_STEP 0: every invocation takes a ticket of each kind of atomic
+// that the product uses; 1: a link of a chain, which reads what another invocation of the link before wrote; 2: copies what a draw
+// counted; 3: copies the texels of a depth texture that a draw has written. FAR_PLAIN: for the twin, plain reads and writes instead
+// of atomics.
+layout(local_size_x = 64) in;
+layout(location = 0) uniform uint u_count;  // invocations
+layout(location = 1) uniform uint u_salt;   // 3: width, px
+#if FAR_STEP == 3
+layout(location = 2) uniform sampler2D u_depth;
+#else
+layout(std430, binding = 0) buffer From { uint from[]; };
+#endif
+layout(std430, binding = 1) buffer To { uint to[]; };
+
+#if FAR_STEP == 0
+// from: kSpread counters that count up, as many that count down from u_salt, one bit for each invocation, and a mark for each two.
+const uint kSpread = 16u;
+uint take(uint at, uint n) {
+#ifdef FAR_PLAIN
+  uint before = from[at];
+  from[at] = before + n;
+  return before;
+#else
+  return atomicAdd(from[at], n);
+#endif
+}
+
+void main() {
+  uint w = gl_GlobalInvocationID.x;
+  if (w >= u_count) return;
+  uint k = w % kSpread;
+  to[3u * w] = take(k, 1u);
+  to[3u * w + 1u] = take(kSpread + k, 0xffffffffu);
+#ifdef FAR_PLAIN
+  from[2u * kSpread + w / 32u] |= 1u << (w % 32u);
+#else
+  atomicOr(from[2u * kSpread + w / 32u], 1u << (w % 32u));
+#endif
+  uint mark = 2u * kSpread + u_count / 32u + w / 2u;
+  to[3u * w + 2u] = atomicExchange(from[mark], 1u);
+}
+#elif FAR_STEP == 1
+void main() {
+  uint w = gl_GlobalInvocationID.x;
+  if (w >= u_count) return;
+  // u_count is a power of two and the factor odd, so each is read once, mostly from another group.
+  uint other = (w * 40503u + u_salt) & (u_count - 1u);
+  to[w] = from[other] * 1664525u + (w ^ u_salt);
+}
+#elif FAR_STEP == 2
+void main() {
+  uint w = gl_GlobalInvocationID.x;
+  if (w < u_count) to[w] = from[w];
+}
+#else
+void main() {
+  uint w = gl_GlobalInvocationID.x;
+  if (w < u_count) to[w] = floatBitsToUint(texelFetch(u_depth, ivec2(w % u_salt, w / u_salt), 0).r);
+}
+#endif

@@ -1,0 +1,162 @@
+// The groups of probes, and what they share: random numbers, results, and a target that places
+// proxies as the canvas does. For core/gl/probe alone.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/gl/base/objects.h"
+#include "core/gl/canvas/canvas.h"
+#include "core/gl/probe/probe.h"
+#include "core/view/budget.h"
+
+namespace farcull::probe {
+
+/// The groups of probes by assumption.
+using Group = std::vector<ProbeResult>(const GlContext& context, const ProbeOptions& options);
+Group edges;          // A1, A2
+Group coverage;       // A3, A9
+Group arithmetic;     // A4, A9
+Group depth_tests;    // A5
+Group queries;        // A6
+Group commands;       // A7
+Group pair_commands;  // A7
+Group memory;         // A8
+Group driver;         // A10
+
+/// The same numbers with every standard library: its distributions are not specified, its engines
+/// are.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  std::uint64_t bits() { return engine_(); }
+  double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }  // [0, 1)
+  double in(double lo, double hi) { return lo + (hi - lo) * unit(); }
+  int below(int n) { return static_cast<int>(bits() >> 33) % n; }
+  /// A normal float of either sign, exponent lowest .. highest.
+  float normal(int lowest, int highest);
+  float in_float(double lo, double hi) { return static_cast<float>(in(lo, hi)); }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// `steps` floats above x (below where negative).
+float neighbour(float x, int steps);
+
+/// The worst of what was measured; not-a-number counts as infinite.
+struct Worst {
+  double value = 0;
+  std::uint64_t samples = 0;
+  void add(double x) {
+    ++samples;
+    if (std::isnan(x)) x = std::numeric_limits<double>::infinity();
+    if (x > value) value = x;
+  }
+  void count(bool wrong) {
+    ++samples;
+    value += wrong;
+  }
+};
+
+ProbeResult result(const std::string& assumption, const std::string& name, const Worst& measured,
+                   double bound, const std::string& unit, const std::string& note);
+
+/// A failed probe that an Error ended.
+ProbeResult broken(const std::string& assumption, const std::string& name, const Error& error);
+
+/// The ways in which a canvas may ask.
+struct Configuration {
+  const char* name;
+  GlCanvasOptions options;
+};
+inline constexpr Configuration kConfigurations[] = {
+    {"flags, 32F", {}},
+    {"occlusion queries, 32F", {.query = QueryMode::occlusion}},
+    {"occlusion queries, 24 bits",
+     {.depth_format = DepthFormat::fixed24, .query = QueryMode::occlusion}}};
+
+/// Appends the results of a probe for each configuration. A canvas may refuse (its control items
+/// depend on the depth test and the queries, too): that is a failure of this probe, and the next
+/// goes on.
+using CanvasProbe = ProbeResult(const std::string& name, const GlContext& context,
+                                const ProbeOptions& options, const GlCanvasOptions& canvas);
+void on_canvases(const std::string& assumption, const std::string& kind, CanvasProbe run,
+                 const GlContext& context, const ProbeOptions& options,
+                 std::vector<ProbeResult>& out);
+
+/// Corners (px about the target's centre); the solid all 0 but for s0 = (-, -, entry, exit), s4 =
+/// (-, fixed, depth, -).
+Proxy quad(const std::array<double, 8>& corners);
+Proxy box(double x0, double y0, double x1, double y1);
+/// Pixel i, counted in rows, of a square target of this side (px, even).
+Proxy pixel_box(int i, int side);
+
+enum class DepthBuffer { none, float32, fixed24 };
+
+/// A render target that places proxies as GlCanvas does: its vertex program, viewport and scale to
+/// normalized device coordinates, at a size of the probe's choosing (px, even). Colour: one uint a
+/// pixel.
+class Target {
+ public:
+  Target(int width, int height, DepthBuffer depth = DepthBuffer::none);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  int viewport() const;  // the larger side, px
+  std::size_t pixels() const { return static_cast<std::size_t>(width_) * height_; }
+
+  /// Binds the target with its viewport, clears colour to 0 and depth to `clear`.
+  void start(double clear = 1) const;
+  /// LESS and stored, or GEQUAL and not stored.
+  static void depth_test(GLenum function, bool store);
+  /// The program's uniforms, those of canvas.vert and canvas.frag and u_width; leaves it in use.
+  void use(GLuint program, float depth_scale = 1) const;
+  /// Makes `proxies` the elements 0, 1, ..., each with its number as slot.
+  void upload(const std::vector<Proxy>& proxies);
+  void draw(std::size_t first, std::size_t count) const;
+
+  GLuint depth_texture() const { return depth_; }
+  std::vector<std::uint32_t> colour() const;
+  /// Depths as bits: of a float, or the buffer's integer scaled to 32 bits. Both keep the order.
+  std::vector<std::uint32_t> depths() const;
+
+ private:
+  int width_, height_;
+  DepthBuffer format_;
+  GlTexture colour_, depth_;
+  GlFramebuffer framebuffer_;
+  GlVertexArray vertex_array_;
+  GlBuffer elements_, draws_;
+};
+
+/// canvas.vert with proxies, and these fragment texts.
+GlProgram proxy_program(const std::string& name, const std::vector<std::string>& fragment,
+                        std::vector<std::string> defines = {});
+
+/// A storage buffer of `words` zeros, bound.
+void bind_zeros(GlBuffer& buffer, GLuint binding, std::size_t words);
+std::vector<std::uint32_t> words_of(const GlBuffer& buffer, std::size_t words);
+
+/// The shape that GlCanvas sees.
+Window window(int width, int height, double depth = 100);
+/// A canvas's solid with the depths of `quad`.
+SolidProgram depth_solid();
+
+/// How often what is repeated `n` times is done.
+inline int rounds(const ProbeOptions& options, int n) { return options.brief ? (n + 2) / 3 : n; }
+
+/// Largest target side (px) that a canvas on this device could have.
+int largest_side(const GlContext& context);
+/// Bounds of displacement per axis (px), as the budget of this viewport has them.
+double snap_bound(const GlContext& context, const ProbeOptions& options);
+double vertex_bound(const ProbeOptions& options, int viewport);
+
+}  // namespace farcull::probe

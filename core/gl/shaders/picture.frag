@@ -1,5 +1,0 @@
-// Writes the colour, which is decided before: core/gl/picture.cpp shades a triangle as a whole.
-flat in vec4 v_colour;
-out vec4 o_colour;
-
-void main() { o_colour = v_colour; }
