@@ -1,6 +1,4 @@
 // Options of `farcull bench`, and its run.
-#include "experiments/command/bench.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,9 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/scene/ignored.h"
+#include "experiments/command/commands.h"
+#include "experiments/command/options.h"
+#include "experiments/measure/bench.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
@@ -46,7 +47,20 @@ std::string peers_text() {
   return with + "\n" + without;
 }
 
-}  // namespace
+class BenchCommand {
+ public:
+  CLI::App* add_to(CLI::App& app);
+  int run();
+
+ private:
+  BenchOptions parse() const;
+  DistanceBenchOptions parse_distances(const BenchOptions& options) const;
+
+  std::vector<std::string> scene_;
+  bool self_ = false;
+  Text peers_, methods_, threads_, repeat_, limit_, device_, distances_, within_;
+  Outputs outputs_;
+};
 
 CLI::App* BenchCommand::add_to(CLI::App& app) {
   CLI::App* command =
@@ -169,5 +183,9 @@ int BenchCommand::run() {
   complain(describe(scene, *result.disagreement));
   return 1;
 }
+
+}  // namespace
+
+Command add_bench(CLI::App& app) { return declare<BenchCommand>(app); }
 
 }  // namespace farcull

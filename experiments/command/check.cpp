@@ -5,21 +5,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
-#include "experiments/command/check_distances.h"
-#include "experiments/command/frame_checks.h"
+#include "core/scene/ignored.h"
 #include "experiments/record/check_result.h"
 #include "experiments/record/check_scene.h"
+#include "experiments/record/distance_result.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/mesh/cache.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/scenes/scene_file.h"
@@ -37,9 +40,18 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30;  // of a certificate or a list
 
-Certificate read_certificate(const std::string& path) {
-  return parse_certificate(read_file(path, kMaxBytes), clean_name(path));
+// Text that a terminal can show, line by line.
+std::string clean_lines(const std::string& text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    out += clean_name(std::string_view(text).substr(at, end - at)) + "\n";
+    at = end + 1;
+  }
+  return out;
 }
+
+int exit_status(Verdict verdict) { return verdict == Verdict::proved ? kExitDone : kExitBroken; }
 
 // The clearance that is asked about: --clearance, or that of the certificate, of several frames the
 // first one. One question for all frames.
@@ -80,77 +92,178 @@ void require_no_list(const CheckArguments& arguments) {
               "does not go with a certificate of distances", "leave it out");
 }
 
+// Whether the file is there and says that it is a certificate of distances.
+bool is_of_distances(const std::string& file) {
+  std::array<char, 1024> start{};
+  std::ifstream in(file, std::ios::binary);
+  in.read(start.data(), start.size());
+  return is_distance_certificate({start.data(), static_cast<std::size_t>(in.gcount())});
+}
+
+CheckedDistances checked_distances(const std::string& file, DistanceCertificate certificate,
+                                   const Scene& scene) {
+  require_nothing_ignored(scene, "a check");
+  CheckedDistances out{clean_name(file), std::move(certificate), {}};
+  out.result = check_distances(out.certificate, scene, out.file);
+  return out;
+}
+
+// Prints the check of one scene, of pairs or of distances.
+template <class Check>
+int print_check(const CheckArguments& arguments, const Scene& scene, const Check& check) {
+  if (!arguments.json.empty()) write_json(check_json(scene, check), arguments.json);
+  if (arguments.json != "-") write_output("-", clean_lines(check_text(scene, check)));
+  return exit_status(check.result.verdict);
+}
+
 int check_one(const CheckArguments& arguments, const GivenList* list) {
-  // Before the scene, which may be large.
+  // The certificate comes before the scene, which may be large.
   std::optional<Certificate> certificate;
+  std::optional<DistanceCertificate> distances;
+  const std::string file = clean_name(arguments.certificate);
   if (!arguments.certificate.empty()) {
     const std::string text = read_file(arguments.certificate, kMaxBytes);
     if (is_distance_certificate(text)) {
       require_no_list(arguments);
-      return check_distance_file(
-          {arguments.certificate, arguments.scene, arguments.self, arguments.json}, text);
+      distances = parse_distance_certificate(text, file);
+    } else {
+      certificate = parse_certificate(text, file);
     }
-    certificate = parse_certificate(text, clean_name(arguments.certificate));
   }
   Scene scene = load_scene(arguments.scene);
   if (arguments.self) make_self(scene);
-  const SceneCheck done = check_scene_with(
-      clearance_of(arguments, certificate), clean_name(arguments.certificate), certificate, scene,
-      list, list ? std::span<const ListedPair>(list->rows) : std::span<const ListedPair>());
-  if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
-  if (arguments.json != "-") write_output("-", clean_lines(check_text(scene, done)));
-  return done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
+  if (distances)
+    return print_check(arguments, scene, checked_distances(file, std::move(*distances), scene));
+  return print_check(
+      arguments, scene,
+      check_scene_with(
+          clearance_of(arguments, certificate), file, certificate, scene, list,
+          list ? std::span<const ListedPair>(list->rows) : std::span<const ListedPair>()));
 }
 
-std::string row_of(long frame, const SceneCheck& check) {
-  const CheckResult& result = check.result;
-  return fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10.1f}\n", frame, to_string(result.verdict),
-                     grouped(result.found.box_pairs), grouped(result.found.meeting), result.ms);
-}
-
-std::string proved_of_frames(double clearance) {
-  return fmt::format(
-      "these pairs {}, and no others",
-      clearance == 0 ? "of the scene meet" : fmt::format("are at distance {} or less", clearance));
-}
-
-int check_frames(const CheckArguments& arguments, const GivenList* list) {
-  const FrameRange range = *arguments.frames;
-  if (!arguments.certificate.empty() &&
-      is_of_distances(numbered(arguments.certificate, range.first))) {
-    require_no_list(arguments);
-    return check_distance_frames(
-        {arguments.certificate, arguments.scene, arguments.self, arguments.json}, range);
+// The JSON of frames, which are added one by one; its text is that of ordered_json::dump(2).
+class FrameChecks {
+ public:
+  explicit FrameChecks(std::string path) : output_(std::move(path)) {}
+  void add(const Json& frame, const Json& summary) {
+    const std::string before = std::exchange(begun_, true) ? ",\n    " : "{\n  \"frames\": [\n    ";
+    output_.add(before + indented(frame, "    "),
+                "\n  ],\n  \"summary\": " + indented(summary, "  ") + "\n}\n");
   }
+  void finish() { output_.finish(); }
+
+ private:
+  static std::string indented(const Json& json, const std::string& by) {
+    std::string out;
+    for (const char c : json.dump(2)) {
+      out += c;
+      if (c == '\n') out += by;
+    }
+    return out;
+  }
+
+  GrowingOutput output_;
+  bool begun_ = false;
+};
+
+// The check of a frame, as it is counted and printed.
+struct FrameCheck {
+  Verdict verdict;
+  std::uint64_t listed;  // pairs or distances
+  std::string row;       // of the table
+  std::string reason;    // for the verdict, unless it is proved
+  Json json;
+};
+template <class Check>
+FrameCheck frame_check(const Scene& scene, const Check& check, std::uint64_t listed,
+                       std::string row) {
+  return {check.result.verdict, listed, std::move(row), verdict_text(scene, check),
+          check_json(scene, check)};
+}
+
+// Checks frame after frame. head: of the table; at_end: lines below it, of the verdict in all.
+int check_each(const CheckArguments& arguments, const std::string& head,
+               const std::function<FrameCheck(FrameSource&, long)>& check,
+               const std::function<std::string(const FrameVerdicts&)>& at_end) {
+  const FrameRange range = *arguments.frames;
   FrameSource source(arguments.scene, range, arguments.self);
   std::optional<FrameChecks> json;
   if (!arguments.json.empty()) json.emplace(arguments.json);
   const bool table = arguments.json != "-";
-  FrameVerdicts verdicts;
-  SceneCheck last;
   Interruptible interruptible(range.count(), "frames", "their verdicts are given", false);
-  if (table) {
-    write_output("-", fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10}\n", "frame", "verdict",
-                                  "box pairs", "meeting", "ms"));
+  if (table) write_output("-", head);
+  FrameVerdicts verdicts;
+  for (long frame = range.first; frame <= range.last; ++frame) {
+    const FrameCheck one = check(source, frame);
+    verdicts.add(frame, one.verdict, one.listed);
+    const std::string reason = one.verdict == Verdict::proved ? "" : "         " + one.reason;
+    if (table) write_output("-", clean_lines(one.row + reason));
+    if (json) {
+      Json record = {{"frame", frame}};
+      record.update(one.json);
+      json->add(record, verdicts.json(range.count()));
+    }
+    interruptible.done(frame - range.first + 1);
+  }
+  if (json) json->finish();
+  if (table) write_output("-", "\n" + clean_lines(at_end(verdicts)));
+  return exit_status(verdicts.in_all());
+}
+
+int check_distance_frames(const CheckArguments& arguments) {
+  const auto check = [&](FrameSource& source, long frame) {
+    const std::string file = numbered(arguments.certificate, frame);
+    DistanceCertificate certificate =
+        parse_distance_certificate(read_file(file, kMaxBytes), clean_name(file));
+    const Scene& scene = source.at(frame);
+    const CheckedDistances checked = checked_distances(file, std::move(certificate), scene);
+    const DistanceCheck& result = checked.result;
+    const std::size_t listed = checked.certificate.distances.size();
+    return frame_check(
+        scene, checked, listed,
+        fmt::format("{:>7}  {:<10}  {:>10}  {:>12}  {:>10.1f}\n", frame, to_string(result.verdict),
+                    grouped(listed), grouped(result.decided), result.ms));
+  };
+  return check_each(
+      arguments,
+      fmt::format("{:>7}  {:<10}  {:>10}  {:>12}  {:>10}\n", "frame", "verdict", "distances",
+                  "decided", "ms"),
+      check, [](const FrameVerdicts& verdicts) {
+        return verdicts.text("the distances are exactly these, and no others were asked for");
+      });
+}
+
+// Throws Error where there is no certificate of the frame.
+Certificate certificate_of_frame(const CheckArguments& arguments, const std::string& file,
+                                 long frame) {
+  std::error_code error;
+  if (std::filesystem::exists(file, error))
+    return parse_certificate(read_file(file, kMaxBytes), clean_name(file));
+  const FrameRange range = *arguments.frames;
+  // The frames of a built-in motion are those up to its last one.
+  const bool motion = arguments.scene.size() == 1 && is_builtin_scene(arguments.scene[0]);
+  throw Error(file, "the file does not exist",
+              motion ? fmt::format("make it with farcull run --certificate --frames {}:{}", frame,
+                                   range.last)
+                     : fmt::format("give the numbers that there are: --frames FIRST:LAST "
+                                   "instead of {}:{}",
+                                   range.first, range.last));
+}
+
+int check_frames(const CheckArguments& arguments, const GivenList* list) {
+  if (!arguments.certificate.empty() &&
+      is_of_distances(numbered(arguments.certificate, arguments.frames->first))) {
+    require_no_list(arguments);
+    return check_distance_frames(arguments);
   }
   std::optional<double> clearance;
-  for (long frame = range.first; frame <= range.last; ++frame) {
+  SceneCheck last;
+  const auto check = [&](FrameSource& source, long frame) {
     std::string file;
     std::optional<Certificate> certificate;
     if (!arguments.certificate.empty()) {
       file = numbered(arguments.certificate, frame);
-      std::error_code error;
-      if (!std::filesystem::exists(file, error)) {
-        // The frames of a built-in motion are those up to its last one.
-        const bool motion = arguments.scene.size() == 1 && is_builtin_scene(arguments.scene[0]);
-        throw Error(file, "the file does not exist",
-                    motion ? fmt::format("make it with farcull run --certificate --frames {}:{}",
-                                         frame, range.last)
-                           : fmt::format("give the numbers that there are: --frames FIRST:LAST "
-                                         "instead of {}:{}",
-                                         range.first, range.last));
-      }
-      certificate = read_certificate(file);
+      certificate = certificate_of_frame(arguments, file, frame);
     }
     std::span<const ListedPair> rows;
     if (list) {
@@ -161,27 +274,24 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
     const Scene& scene = source.at(frame);
     if (!clearance) clearance = clearance_of(arguments, certificate);
     last = check_scene_with(*clearance, clean_name(file), certificate, scene, list, rows);
-    verdicts.add(frame, last.result.verdict, last.result.meeting.size());
-    if (table) {
-      std::string text = row_of(frame, last);
-      if (last.result.verdict != Verdict::proved) text += "         " + verdict_text(scene, last);
-      write_output("-", clean_lines(text));
-    }
-    if (json) {
-      Json one = {{"frame", frame}};
-      one.update(check_json(scene, last));
-      json->add(one, verdicts.json(range.count()));
-    }
-    interruptible.done(frame - range.first + 1);
-  }
-  if (json) json->finish();
-  if (table) {
-    const std::string rest = unattested_text(last);
-    const bool several = range.count() > 1 && !last.result.unattested.empty();
-    write_output("-", "\n" + clean_lines(verdicts.text(proved_of_frames(*clearance)) +
-                                         (several ? "of the last frame's run: " : "") + rest));
-  }
-  return verdicts.in_all() == Verdict::proved ? kExitDone : kExitBroken;
+    const CheckResult& result = last.result;
+    return frame_check(
+        scene, last, result.meeting.size(),
+        fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10.1f}\n", frame, to_string(result.verdict),
+                    grouped(result.found.box_pairs), grouped(result.found.meeting), result.ms));
+  };
+  const auto at_end = [&](const FrameVerdicts& verdicts) {
+    const bool several = arguments.frames->count() > 1 && !last.result.unattested.empty();
+    const std::string which = *clearance == 0
+                                  ? "of the scene meet"
+                                  : fmt::format("are at distance {} or less", *clearance);
+    return verdicts.text("these pairs " + which + ", and no others") +
+           (several ? "of the last frame's run: " : "") + unattested_text(last);
+  };
+  return check_each(arguments,
+                    fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10}\n", "frame", "verdict",
+                                "box pairs", "meeting", "ms"),
+                    check, at_end);
 }
 
 // Whether certificates are of frames and the frames are named, or neither.
@@ -254,7 +364,8 @@ int CheckCommand::run() {
     throw Error("CERTIFICATE", "is missing", "name a certificate and its scene, or see --help");
   if (pairs_ == "") throw Error("--pairs", "the path is empty", "name the list");
   to.pairs = pairs_.value_or("");
-  // A scene of several names is of meshes alone, so a first name that is none is a certificate's.
+  // A scene of several names is of meshes alone, so a first name that is not a mesh's is a
+  // certificate's.
   const bool mesh = has_mesh_extension(to.certificate);
   if (!pairs_ && mesh) {
     throw Error("CERTIFICATE", "'" + to.certificate + "' is named like a mesh",

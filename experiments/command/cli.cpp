@@ -15,22 +15,16 @@
 #include "commit.h"
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
-#include "experiments/command/bench.h"
 #include "experiments/command/check.h"
+#include "experiments/command/commands.h"
 #include "experiments/command/compare.h"
 #include "experiments/command/completion.h"
 #include "experiments/command/distance.h"
-#include "experiments/command/doctor.h"
-#include "experiments/command/experiment.h"
 #include "experiments/command/help.h"
 #include "experiments/command/manual.h"
 #include "experiments/command/options.h"
 #include "experiments/command/picture.h"
-#include "experiments/command/report.h"
 #include "experiments/command/run.h"
-#include "experiments/command/scenes.h"
-#include "experiments/command/studies.h"
-#include "experiments/command/suite.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {
@@ -124,24 +118,26 @@ int dispatch(int argc, char** argv) {
       plan(RunCommand::Kind::plan);
   CompareCommand compare;
   DistanceCommand distance;
-  BenchCommand bench;
-  DoctorCommand doctor;
   CheckCommand check;
-  ExperimentCommands experiments;
-  MergeCommand merge;
   PictureCommand picture;
-  ReportCommand report;
-  ScenesCommand scenes;
-  SuiteCommand suite;
   HelpCommand help;
   CompletionCommand completion;
   ManualCommand manual;
-  std::vector<std::pair<const CLI::App*, std::function<int()>>> commands;
-  const auto add = [&](auto&... command) {  // in the order of the help
-    (commands.emplace_back(command.add_to(app), [&command] { return command.run(); }), ...);
+  std::vector<Command> commands;  // in the order of the help
+  const auto add = [&](auto&... command) {
+    (commands.push_back({command.add_to(app), [&command] { return command.run(); }}), ...);
   };
-  add(run, verify, plan, compare, distance, bench, doctor, check, experiments, merge, picture,
-      report, scenes, suite, help, completion, manual);
+  add(run, verify, plan, compare, distance);
+  commands.push_back(add_bench(app));
+  commands.push_back(add_doctor(app));
+  add(check);
+  commands.push_back(add_experiment(app));
+  commands.push_back(add_merge(app));
+  add(picture);
+  commands.push_back(add_report(app));
+  commands.push_back(add_scenes(app));
+  commands.push_back(add_suite(app));
+  add(help, completion, manual);
 
   try {
     app.parse(argc, argv);
@@ -153,8 +149,8 @@ int dispatch(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     throw refusal(app, error);
   }
-  for (const auto& [command, run_command] : commands) {
-    if (*command) return run_command();
+  for (const Command& command : commands) {
+    if (*command.app) return command.run();
   }
   std::fputs(app.help().c_str(), stderr);
   throw Error("COMMAND", "none is given", "name one, as in farcull run two-spheres");

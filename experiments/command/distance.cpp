@@ -15,7 +15,7 @@
 #include "experiments/measure/frames.h"
 #include "experiments/record/distance_certificate.h"
 #include "experiments/record/distances.h"
-#include "experiments/scenes/mesh/cache.h"
+#include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/interrupt.h"
 #include "experiments/system/output_file.h"

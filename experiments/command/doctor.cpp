@@ -1,9 +1,19 @@
 // Reads the options; experiments/lemma/doctor has the probes.
-#include "experiments/command/doctor.h"
-
 #include "experiments/lemma/doctor.h"
+#include "experiments/command/commands.h"
+#include "experiments/command/options.h"
 
 namespace farcull {
+namespace {
+
+class DoctorCommand {
+ public:
+  CLI::App* add_to(CLI::App& app);
+  int run() const;
+
+ private:
+  Text device_, json_;
+};
 
 CLI::App* DoctorCommand::add_to(CLI::App& app) {
   CLI::App* command =
@@ -28,5 +38,9 @@ int DoctorCommand::run() const {
   return doctor_command(
       {.device = device_of(device_), .json = checked({.json = json_}, {}).json.value_or("")});
 }
+
+}  // namespace
+
+Command add_doctor(CLI::App& app) { return declare<DoctorCommand>(app); }
 
 }  // namespace farcull

@@ -1,9 +1,11 @@
 // Options of `farcull experiment family` and `savings`, and their runs.
-#include "experiments/command/family.h"
-
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "experiments/command/commands.h"
+#include "experiments/command/options.h"
+#include "experiments/measure/family.h"
+#include "experiments/measure/savings.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {
@@ -13,7 +15,17 @@ constexpr const char* kMovingHelp = "built-in scenes that move; default all of t
 
 int resolution_option(const Text& text) { return text ? parse_resolution(*text) : 0; }
 
-}  // namespace
+class FamilyCommand {
+ public:
+  CLI::App* add_to(CLI::App& experiments);
+  int run();
+
+ private:
+  FamilyArguments arguments_;
+  Text frames_, resolution_, views_, query_, device_;
+  Outputs outputs_;
+  bool no_verify_ = false;
+};
 
 CLI::App* FamilyCommand::add_to(CLI::App& experiments) {
   CLI::App* command = add_command(experiments, "family",
@@ -66,6 +78,17 @@ int FamilyCommand::run() {
   return kExitBroken;
 }
 
+class SavingsCommand {
+ public:
+  CLI::App* add_to(CLI::App& experiments);
+  int run();
+
+ private:
+  SavingsArguments arguments_;
+  Text repeat_, resolution_, device_;
+  Outputs outputs_;
+};
+
 CLI::App* SavingsCommand::add_to(CLI::App& experiments) {
   CLI::App* command = add_command(
       experiments, "savings", "what leaving out saves: times as planned over times with --full");
@@ -103,5 +126,11 @@ int SavingsCommand::run() {
   complain(promise);
   return kExitBroken;
 }
+
+}  // namespace
+
+Command add_family(CLI::App& experiment) { return declare<FamilyCommand>(experiment); }
+
+Command add_savings(CLI::App& experiment) { return declare<SavingsCommand>(experiment); }
 
 }  // namespace farcull

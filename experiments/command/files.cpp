@@ -11,9 +11,7 @@
 #include <tuple>
 
 #include "core/base/error.h"
-#include "experiments/scenes/builtin/packaged.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/mesh/cache.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/scene_file.h"
 
@@ -35,8 +33,8 @@ struct Identity {
   Key key() const { return {device, inode, name}; }
 };
 
-// Where the path leads: a link to a file that is not there leads on to that file.
-// Beyond kMostLinks, where the system gives up, whatever is left.
+// The file that writing to the path makes: a link to a file that is not there leads on to that
+// file. Beyond kMostLinks, where the system gives up, whatever is left.
 fs::path made_by(fs::path path) {
   constexpr int kMostLinks = 40;
   std::error_code error;
@@ -59,7 +57,7 @@ std::optional<Identity> identity_of(const std::string& path) {
   return Identity{status.st_dev, status.st_ino, file.filename().string(), true};
 }
 
-// Of a built-in scene, whatever its numbers and suffixes.
+// Whether a built-in scene, whatever its numbers and suffixes, is made of packaged meshes.
 bool needs_meshes(const std::string& name) {
   const BuiltinScene* const scene = find_builtin_scene(name);
   return scene != nullptr && scene->needs_meshes;

@@ -1,6 +1,4 @@
 // The lemma experiment at one radius or along a sweep, as a table, JSON and CSV.
-#include "experiments/command/lemma.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,6 +12,8 @@
 #include "core/base/stopwatch.h"
 #include "core/base/text.h"
 #include "core/native/lanes.h"
+#include "experiments/command/commands.h"
+#include "experiments/command/options.h"
 #include "experiments/lemma/lemma.h"
 #include "experiments/method/run.h"
 #include "experiments/system/output_file.h"
@@ -25,6 +25,20 @@ namespace farcull {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+struct LemmaArguments {
+  std::uint64_t points = 100000;
+  std::string radius = "budget";  // budget, published or a factor
+  std::string sweep;              // FROM:TO:STEP of the factor; then `radius` is not used
+  // native, gl or worst; empty: that of the device; without one GL where hardware answers and
+  // passes its probes, else native.
+  std::string canvas;
+  std::string offset = "obb";  // obb or exact
+  std::string device;
+  std::uint64_t seed = 1;
+  std::string json;
+  std::string csv;  // of the sweep
+};
 
 struct Sweep {
   double from, to, step;
@@ -250,10 +264,52 @@ std::string text_of(const LemmaArguments& arguments, LemmaCanvas& on, double sec
          result_table(results.front()) + took;
 }
 
-}  // namespace
+class LemmaCommand {
+ public:
+  CLI::App* add_to(CLI::App& experiment);
+  int run();
 
-int lemma_command(const LemmaArguments& arguments, const Progress& progress,
-                  const std::function<void()>& done) {
+ private:
+  LemmaArguments arguments_;
+  Text device_;
+  Outputs outputs_;
+};
+
+CLI::App* LemmaCommand::add_to(CLI::App& experiment) {
+  CLI::App* command = add_command(
+      experiment, "lemma", "the reliability lemmas on a canvas, decided in exact arithmetic");
+  add_option(*command, "--points", arguments_.points, "N", "points in all; default 100000");
+  add_option(*command, "--radius", arguments_.radius, "RADIUS",
+             "budget, published, or a factor on the budget;\ndefault budget");
+  add_option(*command, "--sweep", arguments_.sweep, "SWEEP",
+             "instead: factors FROM:TO:STEP, as in 0.5:1.1:0.01");
+  add_option(*command, "--canvas", arguments_.canvas, "native|gl|worst",
+             "native (the cores of the CPU), gl (a device), or worst\n(as bad as the assumptions "
+             "allow); default gl where\n--device is given or hardware answers, else native");
+  add_option(*command, "--offset", arguments_.offset, "OFFSET", "obb or exact; default obb");
+  add_option(*command, "--seed", arguments_.seed, "N", "of the points; default 1");
+  add_option(*command, "--device", device_, "DEVICE", kDeviceHelp);
+  add_option(*command, "--json", outputs_.json, "FILE", kJsonHelp);
+  add_option(*command, "--csv", outputs_.csv, "FILE",
+             "write the sweep as CSV to this file; - for standard\noutput");
+  add_footer(*command,
+             "Examples:\n"
+             "  farcull experiment lemma --points 1000000 --radius budget\n"
+             "  farcull experiment lemma --radius published\n"
+             "  farcull experiment lemma --canvas worst --sweep 0.5:1.1:0.01 --csv sweep.csv\n\n"
+             "Exit status 1: a violation at the budget radius or beyond.");
+  return command;
+}
+
+// Prints the rows; writes --json and --csv.
+int LemmaCommand::run() {
+  const Outputs outputs = checked(outputs_, {});
+  LemmaArguments& arguments = arguments_;
+  arguments.device = device_of(device_);
+  arguments.json = outputs.json.value_or("");
+  arguments.csv = outputs.csv.value_or("");
+  TerminalProgress terminal;
+  const Progress progress = terminal.callback();
   validate(arguments);
   const std::vector<RadiusRule> rules = rules_of(arguments);
   const Fattener fattener = arguments.offset == "exact" ? minkowski_fattener() : obb_fattener();
@@ -267,7 +323,7 @@ int lemma_command(const LemmaArguments& arguments, const Progress& progress,
     broken = broken || (promises && lemma_total(results.back().rows).violations() > 0);
   }
   const double seconds = watch.ms() / 1000;
-  done();
+  terminal.clear();
   if (!arguments.json.empty())
     write_output(arguments.json, to_json(arguments, on, seconds, results).dump(2) + "\n");
   if (!arguments.csv.empty()) write_output(arguments.csv, sweep_csv(results));
@@ -275,5 +331,9 @@ int lemma_command(const LemmaArguments& arguments, const Progress& progress,
     write_output("-", text_of(arguments, on, seconds, results));
   return broken ? 1 : 0;
 }
+
+}  // namespace
+
+Command add_lemma(CLI::App& experiment) { return declare<LemmaCommand>(experiment); }
 
 }  // namespace farcull

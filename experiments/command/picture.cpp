@@ -56,7 +56,7 @@ RunOptions parse_panel(const std::string& text, const RunOptions& usual) {
   return options;
 }
 
-// Where the picture and the page go, from a command that reads these files.
+// The files of the picture and the page, for a command that reads `inputs`.
 Outputs checked_outputs(const Text& picture, const Text& page,
                         const std::vector<NamedFile>& inputs) {
   if (!page && (!picture || picture->empty())) {

@@ -17,7 +17,7 @@ class PictureCommand {
   int run() const;
   /// The parsed options, checked; all but the paths of the files.
   PictureArguments arguments() const;
-  /// What the page of --html shows, from the arguments of its flat picture.
+  /// The contents of the page of --html, from the arguments of its flat picture.
   PageArguments page_arguments(const PictureArguments& picture) const;
 
  private:

@@ -1,20 +1,30 @@
 // Options of `farcull report`, and its summary on standard output.
-#include "experiments/command/report.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <optional>
 
 #include "core/base/error.h"
+#include "experiments/command/commands.h"
 #include "experiments/command/options.h"
-#include "experiments/command/studies.h"
 #include "experiments/picture/page.h"
 #include "experiments/report/report.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
+namespace {
+
+class ReportCommand {
+ public:
+  CLI::App* add_to(CLI::App& app);
+  int run();
+
+ private:
+  std::string folder_;
+  Text device_;
+  bool no_pictures_ = false;
+};
 
 CLI::App* ReportCommand::add_to(CLI::App& app) {
   folder_ = kResultsFolder;
@@ -92,5 +102,9 @@ int ReportCommand::run() {
     complain_broken("a promise is broken: " + broken);
   return summary.broken.empty() ? 0 : 1;
 }
+
+}  // namespace
+
+Command add_report(CLI::App& app) { return declare<ReportCommand>(app); }
 
 }  // namespace farcull

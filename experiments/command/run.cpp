@@ -16,9 +16,9 @@
 #include "experiments/record/output.h"
 #include "experiments/record/plan.h"
 #include "experiments/record/tables.h"
-#include "experiments/scenes/mesh/cache.h"
+#include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/scene_file.h"
-#include "experiments/system/colour.h"
+#include "experiments/system/text_table.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/shell_word.h"
 

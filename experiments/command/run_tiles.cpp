@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "experiments/command/run.h"
 #include "experiments/record/tables.h"
-#include "experiments/scenes/scene_stream.h"
+#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/tiles/run_tile.h"
 

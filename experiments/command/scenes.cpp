@@ -1,6 +1,4 @@
 // Lists the built-in scenes, or writes one of them as meshes.
-#include "experiments/command/scenes.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -8,7 +6,8 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "experiments/scenes/builtin/moving_scene.h"
+#include "experiments/command/commands.h"
+#include "experiments/command/options.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/frames.h"
 #include "experiments/scenes/scene_file.h"
@@ -76,7 +75,18 @@ std::string suffixes_text() {
   return "Every name takes suffixes, as in two-spheres@far:\n" + table.text();
 }
 
-}  // namespace
+class ScenesCommand {
+ public:
+  CLI::App* add_to(CLI::App& app);
+  int run() const;
+
+ private:
+  void list(const Outputs& outputs) const;
+  void write() const;
+
+  Text name_, folder_, frames_;
+  Outputs outputs_;
+};
 
 CLI::App* ScenesCommand::add_to(CLI::App& app) {
   CLI::App* command =
@@ -168,5 +178,9 @@ void ScenesCommand::write() const {
                            counted(written.bytes, "byte", "bytes"), written.scene_file,
                            range ? " --frames " + *frames_ : ""));
 }
+
+}  // namespace
+
+Command add_scenes(CLI::App& app) { return declare<ScenesCommand>(app); }
 
 }  // namespace farcull

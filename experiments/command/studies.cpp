@@ -1,6 +1,4 @@
 // Options of the studies and of `farcull merge`, and the progress of a run.
-#include "experiments/command/studies.h"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -13,6 +11,8 @@
 
 #include "core/base/error.h"
 #include "core/view/view.h"
+#include "experiments/command/commands.h"
+#include "experiments/command/options.h"
 #include "experiments/peers/runner.h"
 #include "experiments/studies/merge.h"
 #include "experiments/studies/provenance.h"
@@ -71,7 +71,24 @@ class PlainProgress {
 
 constexpr std::uint64_t kMostSeed = 1'000'000'000'000;
 
-}  // namespace
+class StudiesCommand {
+ public:
+  // Declares each study, and `all`, as a command of its own.
+  void add_to(CLI::App& experiment);
+  const std::vector<CLI::App*>& commands() const { return commands_; }
+  // Runs the one that the command line named.
+  int run();
+
+ private:
+  std::vector<CLI::App*> commands_;  // of studies() and, last, all
+  std::vector<std::string> devices() const;
+  int run_on(StudiesRequest request, const std::string& name) const;
+
+  std::string out_ = kResultsFolder;
+  bool quick_ = false, resume_ = false;
+  std::uint64_t seed_ = 1;
+  Text shard_, device_, devices_, suite_, contestants_;
+};
 
 void StudiesCommand::add_to(CLI::App& experiment) {
   const auto declare = [&](const std::string& name, const std::string& title) {
@@ -108,13 +125,6 @@ void StudiesCommand::add_to(CLI::App& experiment) {
   };
   for (const Study& study : studies()) declare(study.name, study.title);
   declare("all", "all of these studies but cloth, libraries and\nproximity, one after the other");
-}
-
-bool StudiesCommand::named() const {
-  for (CLI::App* command : commands_) {
-    if (given(*command)) return true;
-  }
-  return false;
 }
 
 std::vector<std::string> StudiesCommand::devices() const {
@@ -225,6 +235,18 @@ int StudiesCommand::run_on(StudiesRequest request, const std::string& name) cons
   return summary.failed.empty() ? 0 : 2;
 }
 
+class MergeCommand {
+ public:
+  CLI::App* add_to(CLI::App& app);
+  int run();
+
+ private:
+  int run_tiles() const;
+
+  std::vector<std::string> sources_;
+  Text out_, json_;
+};
+
 CLI::App* MergeCommand::add_to(CLI::App& app) {
   CLI::App* command =
       add_command(app, "merge", "join what shards of an experiment, or tiles of a scene, gave");
@@ -302,5 +324,18 @@ int MergeCommand::run() {
   }
   return 0;
 }
+
+}  // namespace
+
+std::vector<Command> add_studies(CLI::App& experiment) {
+  const auto studies = std::make_shared<StudiesCommand>();
+  studies->add_to(experiment);
+  std::vector<Command> out;
+  for (CLI::App* command : studies->commands())
+    out.push_back({command, [studies] { return studies->run(); }});
+  return out;
+}
+
+Command add_merge(CLI::App& app) { return declare<MergeCommand>(app); }
 
 }  // namespace farcull

@@ -1,10 +1,10 @@
 // Reads the options and prints the counts; experiments/suite makes and checks the files.
-#include "experiments/command/suite.h"
-
 #include <fmt/format.h>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "experiments/command/commands.h"
+#include "experiments/command/options.h"
 #include "experiments/suite/writer.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
@@ -52,7 +52,16 @@ std::string meshes_table(const std::vector<SuiteCounts>& meshes) {
   return table.text();
 }
 
-}  // namespace
+class SuiteCommand {
+ public:
+  CLI::App* add_to(CLI::App& app);
+  int run() const;
+
+ private:
+  std::string folder_;
+  Text size_, seed_;
+  bool check_ = false;
+};
 
 CLI::App* SuiteCommand::add_to(CLI::App& app) {
   CLI::App* command =
@@ -94,5 +103,9 @@ int SuiteCommand::run() const {
                                     summary.index.seed, summary.index.size, summary.index.sum));
   return kExitDone;
 }
+
+}  // namespace
+
+Command add_suite(CLI::App& app) { return declare<SuiteCommand>(app); }
 
 }  // namespace farcull

@@ -13,7 +13,7 @@
 #include "experiments/measure/harness.h"
 #include "experiments/measure/statistics.h"
 #include "experiments/record/tables.h"
-#include "experiments/scenes/builtin/motion.h"
+#include "experiments/scenes/builtin/generators.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/text_table.h"

@@ -1,10 +1,12 @@
 // Collects the triangles of each frame, the colliding pairs and the answers of each step, and puts
-// them into the page of web/ as compressed blocks and a text of JSON that names the blocks.
+// them into the page of web/ as compressed blocks and a text of JSON that names the blocks. A block
+// of numbers holds their differences by byte, compressed by zlib and written as Base64.
 #include "experiments/picture/page.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
@@ -16,15 +18,61 @@
 #include "embedded/page_html.h"
 #include "embedded/page_js.h"
 #include "embedded/page_view_js.h"
-#include "experiments/picture/answer.h"
-#include "experiments/picture/colours.h"
-#include "experiments/picture/page_blocks.h"
-#include "experiments/picture/three.h"
+#include "experiments/picture/embedded_files.h"
 #include "experiments/record/tables.h"
+#include "experiments/scenes/mesh/text.h"
 #include "experiments/system/text_table.h"
 #include "verify/contact_kind.h"
 
 namespace farcull {
+
+namespace {
+
+std::string base64_of(const std::string& bytes) {
+  return to_base64({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+}
+
+}  // namespace
+
+std::string packed_bytes(std::string_view bytes) { return base64_of(gzip(bytes)); }
+
+std::string packed_numbers(std::span<const std::uint32_t> numbers) {
+  const std::size_t n = numbers.size();
+  std::string planes(4 * n, '\0');
+  std::uint32_t before = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint32_t difference = numbers[i] - before;
+    before = numbers[i];
+    const std::uint32_t sign = difference >> 31 != 0 ? ~std::uint32_t{0} : 0;
+    const std::uint32_t zigzag = difference << 1 ^ sign;
+    for (std::size_t byte = 0; byte < 4; ++byte)
+      planes[byte * n + i] = static_cast<char>(zigzag >> 8 * byte & 255);
+  }
+  return packed_bytes(planes);
+}
+
+std::string bits_of(std::span<const std::uint32_t> numbers, std::size_t count) {
+  std::string out((count + 7) / 8, '\0');
+  for (const std::uint32_t number : numbers)
+    out[number / 8] = static_cast<char>(out[number / 8] | 1 << number % 8);
+  return out;
+}
+
+std::vector<std::uint32_t> quantized(std::span<const Vec3> points, const Box& box) {
+  constexpr double kSteps = 65535;
+  std::vector<std::uint32_t> out;
+  out.reserve(3 * points.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    // Halves, since the extent of a box of doubles may be beyond them.
+    const double lo = 0.5 * box.lo[axis], extent = 0.5 * box.hi[axis] - lo;
+    for (const Vec3& p : points) {
+      const double part = extent > 0 ? std::clamp((0.5 * p[axis] - lo) / extent, 0.0, 1.0) : 0;
+      out.push_back(static_cast<std::uint32_t>(std::lround(kSteps * part)));
+    }
+  }
+  return out;
+}
+
 namespace {
 
 using nlohmann::json;
@@ -121,12 +169,9 @@ class PageMaker {
     entry["b"] = blocks_.add(packed_numbers(b));
     entry["contacts"] = blocks_.add(packed_bytes(contacts));
     frames_.push_back(entry);
-    const std::vector<std::uint32_t> members = members_of(pairs);
-    const std::uint64_t neighbours =
-        pairs.size() - without_neighbours(scene, lab_.truth()).pairs.size();
     for (const RunOptions& options : arguments_.steps) {
       require_scene(scene, options.method);
-      step(scene, options, frame, pairs, members, neighbours);
+      step(scene, options, frame, pairs);
     }
   }
 
@@ -177,10 +222,6 @@ class PageMaker {
   }
 
  private:
-  static std::string base64_of(const std::string& bytes) {
-    return to_base64({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
-  }
-
   // The direction that stays upwards when the reader turns the scene.
   Vec3 world_up() const {
     const View view = camera(arguments_.picture);
@@ -229,23 +270,9 @@ class PageMaker {
   }
 
   void step(const Scene& scene, const RunOptions& options, std::optional<long> frame,
-            const std::vector<TrianglePair>& pairs, const std::vector<std::uint32_t>& members,
-            std::uint64_t neighbours) {
+            const std::vector<TrianglePair>& pairs) {
     const MethodAnswer answer = answer_of(options, scene, lab_);
-    PanelResult result;
-    result.title = panel_title(options);
-    result.colliding = pairs.size();
-    result.neighbours = neighbours;
-    result.missed = answer.missed.size();
-    result.missed_triangles = members_of(answer.missed).size();
-    result.kept = answer.kept.size();
-    std::vector<std::uint32_t> idle;
-    std::set_difference(answer.kept.begin(), answer.kept.end(), members.begin(), members.end(),
-                        std::back_inserter(idle));
-    result.idle = idle.size();
-    result.broken = answer.broken;
-    result.device = answer.device;
-    result.headline = headline_of(result, "missed");
+    const PanelResult& result = answer.result;
     json entry = {{"frame", frames_.size() - 1},
                   {"method", method_title(options)},
                   {"resolution", looks(options.method) ? resolution_of(options) : 0},
@@ -264,8 +291,8 @@ class PageMaker {
       }
       entry["missed"] = blocks_.add(packed_numbers(lost));
     }
-    if (!idle.empty())
-      entry["kept"] = blocks_.add(packed_bytes(bits_of(idle, scene.triangles.size())));
+    if (!answer.idle.empty())
+      entry["kept"] = blocks_.add(packed_bytes(bits_of(answer.idle, scene.triangles.size())));
     steps_.push_back(entry);
     results_.push_back({.result = result, .frame = frame});
   }

@@ -1,16 +1,36 @@
-// A panel of a picture with what it shows, and the parts that both kinds of panels are made of.
+// A panel of a picture with what it shows, the parts that both kinds of panels are made of, and the
+// panel of --view-depth: the depth that a method stores in one of its views.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "core/base/image.h"
 #include "core/gl/picture/picture.h"
+#include "experiments/measure/lab.h"
 #include "experiments/method/run.h"
-#include "experiments/picture/colours.h"
+#include "experiments/picture/arguments.h"
 #include "experiments/picture/sheet.h"
 
 namespace farcull {
+
+/// The colour of missed pairs, with full opacity and unshaded, and of nothing else.
+constexpr Rgba kMissedColour = {220, 0, 90};
+/// Colours of triangles that collide, and of those that a method kept although they do not.
+constexpr Rgba kFoundColour = {0, 128, 116}, kIdleColour = {240, 176, 32};
+constexpr double kIdlePart = 0.6;  // of kIdleColour in the colour of such a triangle's object
+constexpr double kThrough = 0.28;  // how strongly collisions shine through what hides them
+/// Colours of the objects, in turn: pale, so that nothing but what collides has a strong colour.
+constexpr std::array<Rgba, 8> kObjectColours = {{{176, 190, 210},
+                                                 {218, 214, 206},
+                                                 {186, 203, 184},
+                                                 {216, 204, 180},
+                                                 {196, 190, 214},
+                                                 {180, 206, 208},
+                                                 {222, 190, 168},
+                                                 {214, 192, 198}}};
 
 /// The counts and words of a panel. Pairs of neighbours count with the others.
 struct PanelResult {
@@ -51,7 +71,16 @@ std::string method_title(const RunOptions& options);
 std::string panel_title(const RunOptions& options);
 /// "missed 12 of 4,268 colliding pairs".
 std::string headline_of(const PanelResult& result, const std::string& verb);
-/// The same in the panel, and its colour.
-void set_headline(DrawnPanel& panel, const std::string& verb);
+/// The title and the headline of the result over the panel, and the colour of the latter.
+void set_heading(DrawnPanel& panel);
+/// A line of the legend that explains a colour; and one that explains the rings, if there are any.
+void explain(DrawnPanel& panel, Rgba colour, const std::string& text);
+void explain_rings(DrawnPanel& panel, const std::string& text);
+
+/// The panel of arguments.depth_view: run, depths and picture. Throws Error where the method draws
+/// no depth, or nothing is drawn in the view.
+DrawnPanel depth_panel(const RunOptions& options, const PictureArguments& arguments,
+                       const Scene& scene, const Truth& truth, Session& session,
+                       const GlContext& context);
 
 }  // namespace farcull

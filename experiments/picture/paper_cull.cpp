@@ -9,7 +9,6 @@
 #include "core/cull/cull.h"
 #include "core/native/canvas.h"
 #include "core/view/clip.h"
-#include "experiments/picture/drawing.h"
 #include "experiments/picture/paper.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/shapes.h"
@@ -63,7 +62,7 @@ void draw_bits(Drawing& d, double top, const std::string& heading,
   }
 }
 
-// What the published path draws of two triangles, in pixel space, where a corner of four pixels is
+// The published path draws this of two triangles, in pixel space, where a corner of four pixels is
 // the origin.
 constexpr double kGrid = 256;  // of a device with 8 subpixel bits
 struct Pair {

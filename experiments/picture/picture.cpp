@@ -1,24 +1,88 @@
-// Runs the methods of a picture and draws a panel for each: objects pale, what collides strong,
-// missed pairs in a colour of their own.
+// Runs the methods of a picture, takes the pairs that they lack from the truth, and draws a panel
+// for each: objects pale, what collides strong, missed pairs in a colour of their own.
 #include "experiments/picture/picture.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
 
 #include "commit.h"
 #include "core/base/error.h"
-#include "experiments/picture/answer.h"
-#include "experiments/picture/colours.h"
-#include "experiments/picture/depth.h"
-#include "experiments/picture/lettering.h"
 #include "experiments/record/tables.h"
+#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
+namespace {
+
+std::vector<TrianglePair> found_by(const Record& record) {
+  std::vector<TrianglePair> out;
+  std::set_union(record.collisions.pairs.begin(), record.collisions.pairs.end(),
+                 record.collisions.neighbour_pairs.begin(), record.collisions.neighbour_pairs.end(),
+                 std::back_inserter(out));
+  return out;
+}
+
+std::string device_of(const Record& record) {
+  if (record.found.device.gl) return record.found.device.gl->renderer;
+  return record.found.device.cpu ? "cpu" : "none";
+}
+
+}  // namespace
+
+const Scene& open_scene(const PictureArguments& arguments, Lab& lab) {
+  if (arguments.scene.size() == 1 && !arguments.self && !arguments.frame)
+    return lab.scene(arguments.scene.front());
+  // No name of a scene holds a line feed.
+  std::string key = arguments.self ? "self\n" : "\n";
+  for (const std::string& part : arguments.scene) key += part + "\n";
+  if (arguments.frame) {
+    const FrameRange range = frames_of(arguments);
+    key += fmt::format("{} of {}:{}", *arguments.frame, range.first, range.last);
+  }
+  if (lab.progress()) lab.progress()("reading the scene");
+  return lab.scene(key, [&arguments] {
+    if (arguments.frame) {
+      FrameSource source(arguments.scene, frames_of(arguments), arguments.self);
+      return source.at(*arguments.frame);
+    }
+    Scene scene = load_scene(arguments.scene);
+    for (Object& object : scene.objects) object.self |= arguments.self;
+    return scene;
+  });
+}
+
+MethodAnswer answer_of(RunOptions options, const Scene& scene, Lab& lab) {
+  options.verify = false;
+  options.device = lab.device();
+  const Record record = run(scene, options, lab.session(), lab.progress());
+  const std::vector<TrianglePair>& truth = lab.truth().pairs;
+  const std::vector<TrianglePair> found = found_by(record);
+  const std::vector<std::uint32_t>& kept = record.found.triangles;
+  const std::vector<std::uint32_t> hit = members_of(truth);
+  MethodAnswer answer;
+  std::ranges::set_difference(truth, found, std::back_inserter(answer.missed));
+  std::ranges::set_difference(kept, hit, std::back_inserter(answer.idle));
+  answer.lost = members_of(answer.missed);
+  PanelResult& result = answer.result;
+  result.title = panel_title(options);
+  result.colliding = truth.size();
+  result.neighbours = truth.size() - without_neighbours(scene, lab.truth()).pairs.size();
+  result.missed = answer.missed.size();
+  result.missed_triangles = answer.lost.size();
+  result.kept = kept.size();
+  result.idle = answer.idle.size();
+  // As in run: whatever the probes of the device say.
+  result.broken = promises(record.options) && !answer.missed.empty();
+  result.device = device_of(record);
+  result.headline = headline_of(result, "missed");
+  return answer;
+}
+
 namespace {
 
 constexpr Rgba kPaper = {255, 255, 255};
@@ -67,49 +131,32 @@ Image scene_image(const Scene& scene, const Window& window, const std::vector<st
 DrawnPanel panel_of(const RunOptions& options, const Scene& scene, const Window& window,
                     const Truth& truth, Lab& lab, const GlContext& context) {
   const MethodAnswer answer = answer_of(options, scene, lab);
-  const std::vector<TrianglePair>& missed = answer.missed;
   std::vector<std::uint8_t> kind(scene.triangles.size(), kRest);
-  for (const std::uint32_t t : answer.kept) kind[t] = kKept;
+  for (const std::uint32_t t : answer.idle) kind[t] = kKept;
   const std::vector<std::uint32_t> hit = members_of(truth.pairs);
   for (const std::uint32_t t : hit) kind[t] = kCollides;
 
   DrawnPanel panel;
+  panel.result = answer.result;
   PanelResult& result = panel.result;
-  result.title = panel_title(options);
-  result.colliding = truth.pairs.size();
-  result.neighbours = result.colliding - without_neighbours(scene, truth).pairs.size();
-  result.missed = missed.size();
-  result.kept = answer.kept.size();
-  result.idle = static_cast<std::uint64_t>(std::count(kind.begin(), kind.end(), kKept));
-  result.broken = answer.broken;
-  result.device = answer.device;
-
   if (lab.progress()) lab.progress()("drawing " + result.title);
-  Image& image = panel.sheet.image;
-  image = scene_image(scene, window, kind, hit, context);
-  const std::vector<std::uint32_t> lost = members_of(missed);
-  result.missed_triangles = lost.size();
-  result.rings = draw_missed(context, scene, window, lost, image);
+  panel.sheet.image = scene_image(scene, window, kind, hit, context);
+  result.rings = draw_missed(context, scene, window, answer.lost, panel.sheet.image);
 
-  set_headline(panel, "missed");
-  const auto entry = [&](Rgba colour, const std::string& text) {
-    panel.sheet.legend.push_back({.sign = LegendEntry::Sign::box, .colour = colour, .text = text});
-  };
-  entry(kFoundColour,
-        "collide and found: " + counted(truth.pairs.size() - missed.size(), "pair", "pairs"));
-  if (!missed.empty()) {
-    entry(kMissedColour, fmt::format("missed: {} of {}", counted(missed.size(), "pair", "pairs"),
-                                     counted(lost.size(), "triangle", "triangles")));
+  set_heading(panel);
+  explain(panel, kFoundColour,
+          "collide and found: " + counted(result.colliding - result.missed, "pair", "pairs"));
+  if (result.missed > 0) {
+    explain(panel, kMissedColour,
+            fmt::format("missed: {} of {}", counted(result.missed, "pair", "pairs"),
+                        counted(result.missed_triangles, "triangle", "triangles")));
   }
-  if (result.rings > 0) {
-    panel.sheet.legend.push_back({.sign = LegendEntry::Sign::ring,
-                                  .colour = kMissedColour,
-                                  .text = "misses that are easily overlooked"});
-  }
+  explain_rings(panel, "misses that are easily overlooked");
   if (culls(options.method)) {
     Rgba idle = kObjectColours[0];
     blend(idle, kIdleColour, kIdlePart);
-    entry(idle, "kept, collide with nothing: " + counted(result.idle, "triangle", "triangles"));
+    explain(panel, idle,
+            "kept, collide with nothing: " + counted(result.idle, "triangle", "triangles"));
   }
   return panel;
 }

@@ -9,9 +9,25 @@
 #include "experiments/measure/lab.h"
 #include "experiments/picture/arguments.h"
 #include "experiments/picture/panel.h"
-#include "experiments/picture/png_write.h"
 
 namespace farcull {
+
+/// The answer of a method on the scene of a picture, beside the truth.
+struct MethodAnswer {
+  std::vector<TrianglePair> missed;  // colliding pairs that the method lacks; sorted
+  std::vector<std::uint32_t> lost;   // triangles in one of those, ascending
+  std::vector<std::uint32_t>
+      idle;            // triangles that it kept and that are in no collision, ascending
+  PanelResult result;  // its counts and words
+};
+
+/// The scene of the arguments, kept by the lab. Throws Error as load_scene() and FrameSource do.
+const Scene& open_scene(const PictureArguments& arguments, Lab& lab);
+
+/// Runs the method on the scene that the lab opened last, and compares with the lab's truth. The
+/// lab's device answers; the options' device and verification are not looked at. Throws Error as
+/// run() does.
+MethodAnswer answer_of(RunOptions options, const Scene& scene, Lab& lab);
 
 struct PictureResult {
   Image image;

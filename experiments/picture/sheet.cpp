@@ -1,13 +1,128 @@
-// Paints rectangles, rings and lettering into one image.
+// Paints rectangles, rings and lettering into one image. Letters are outlines of the font, scaled
+// to the height of a capital, at places between pixels: each is rendered as coverage and blended.
 #include "experiments/picture/sheet.h"
+
+#include <fmt/format.h>
+#include <ft2build.h>
+#include FT_FREETYPE_H
+#include FT_OUTLINE_H
+#include FT_SFNT_NAMES_H
+#include FT_TRUETYPE_IDS_H
+#include <png.h>
 
 #include <algorithm>
 #include <cmath>
+#include <csetjmp>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+#include <vector>
 
-#include "experiments/picture/lettering.h"
+#include "core/base/error.h"
+#include "experiments/picture/embedded_files.h"
 
 namespace farcull {
 namespace {
+
+constexpr double kUnits = 64;  // of FreeType's coordinates in a px
+constexpr const char* kEllipsis = "\xe2\x80\xa6";
+
+void require(FT_Error error, const char* what) {
+  if (error == 0) return;
+  throw Error("the font of pictures", fmt::format("FreeType {}: error {}", what, error),
+              "build farcull again with libfreetype-dev and fonts-dejavu-core of this system");
+}
+
+// The characters of a UTF-8 text; '?' for each byte that is not UTF-8.
+std::vector<std::uint32_t> characters_of(const std::string& text) {
+  std::vector<std::uint32_t> out;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const std::size_t more = byte < 0x80       ? 0
+                             : byte >> 5 == 6  ? 1
+                             : byte >> 4 == 14 ? 2
+                             : byte >> 3 == 30 ? 3
+                                               : 4;
+    std::uint32_t code = more == 0 ? byte : byte & (0x3fu >> more);
+    bool good = more < 4 && i + more < text.size();
+    for (std::size_t k = 1; good && k <= more; ++k) {
+      const auto next = static_cast<unsigned char>(text[i + k]);
+      good = next >> 6 == 2;
+      code = code << 6 | (next & 0x3fu);
+    }
+    out.push_back(good ? code : '?');
+    i += good ? more + 1 : 1;
+  }
+  return out;
+}
+
+// The font in a size.
+class Font {
+ public:
+  Font(bool bold, double capital) {
+    FT_Library library = nullptr;
+    require(FT_Init_FreeType(&library), "does not start");
+    library_.reset(library);
+    const std::string_view file = font_file(bold);
+    FT_Face face = nullptr;
+    require(FT_New_Memory_Face(library, reinterpret_cast<const FT_Byte*>(file.data()),
+                               static_cast<FT_Long>(file.size()), 0, &face),
+            "cannot read the font");
+    face_.reset(face);
+    // The size is that of the em square; a capital is the part of it that H takes.
+    require(FT_Load_Char(face, 'H', FT_LOAD_NO_SCALE), "has no letter H");
+    const double part = static_cast<double>(face->glyph->metrics.height) / face->units_per_EM;
+    require(FT_Set_Char_Size(face, 0, std::lround(capital / part * kUnits), 72, 72),
+            "cannot scale the font");
+  }
+
+  // Calls at(glyph slot, px from the left of the text) for each letter, its outline loaded, and
+  // returns the width of all.
+  template <class At>
+  double walk(const std::string& text, const At& at) const {
+    double left = 0;
+    FT_UInt before = 0;
+    for (const std::uint32_t code : characters_of(text)) {
+      FT_UInt glyph = FT_Get_Char_Index(face_.get(), code);
+      if (glyph == 0) glyph = FT_Get_Char_Index(face_.get(), '?');
+      FT_Vector kern = {};
+      if (before != 0 &&
+          FT_Get_Kerning(face_.get(), before, glyph, FT_KERNING_UNFITTED, &kern) == 0)
+        left += static_cast<double>(kern.x) / kUnits;
+      require(FT_Load_Glyph(face_.get(), glyph, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP),
+              "cannot load a letter");
+      // Before rendering, which leaves whole pixels in the other advance.
+      const double advance = static_cast<double>(face_->glyph->linearHoriAdvance) / 65536;
+      at(face_->glyph, left);
+      left += advance;
+      before = glyph;
+    }
+    return left;
+  }
+
+  std::string version() const {
+    std::string number;
+    FT_SfntName name = {};
+    for (FT_UInt i = 0; i < FT_Get_Sfnt_Name_Count(face_.get()); ++i) {
+      if (FT_Get_Sfnt_Name(face_.get(), i, &name) == 0 &&
+          name.name_id == TT_NAME_ID_VERSION_STRING && name.platform_id == TT_PLATFORM_MACINTOSH)
+        number.assign(reinterpret_cast<const char*>(name.string), name.string_len);
+    }
+    FT_Int major = 0, minor = 0, patch = 0;
+    FT_Library_Version(library_.get(), &major, &minor, &patch);
+    return fmt::format("{} {}, FreeType {}.{}.{}", face_->family_name,
+                       number.substr(number.rfind(' ') + 1), major, minor, patch);
+  }
+
+ private:
+  struct Done {
+    void operator()(FT_Library library) const { FT_Done_FreeType(library); }
+    void operator()(FT_Face face) const { FT_Done_Face(face); }
+  };
+  std::unique_ptr<FT_LibraryRec_, Done> library_;
+  std::unique_ptr<FT_FaceRec_, Done> face_;
+};
 
 constexpr Rgba kPaper = {255, 255, 255}, kInk = {28, 30, 36}, kGrey = {112, 116, 124},
                kFrame = {205, 208, 213};
@@ -42,7 +157,104 @@ void draw_sign(Image& sheet, const LegendEntry& entry, int left, int top, int si
   }
 }
 
+// ---- PNG, by libpng ----
+
+// libpng reports by a call that must not return; its frames hold nothing that has to be destroyed,
+// but jumping over ours would, so the C++ objects of a call stand outside the function with setjmp.
+struct Failure {
+  char text[200] = "";
+};
+
+extern "C" void png_failed(png_structp png, png_const_charp message) {
+  auto* failure = static_cast<Failure*>(png_get_error_ptr(png));
+  std::strncpy(failure->text, message, sizeof failure->text - 1);
+  png_longjmp(png, 1);
+}
+extern "C" void png_warned(png_structp, png_const_charp) {}
+
+extern "C" void append(png_structp png, png_bytep data, std::size_t length) {
+  static_cast<std::string*>(png_get_io_ptr(png))
+      ->append(reinterpret_cast<const char*>(data), length);
+}
+extern "C" void flush(png_structp) {}
+
+bool ascii(const std::string& text) {
+  return std::all_of(text.begin(), text.end(),
+                     [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+}
+
+struct Written {
+  std::string bytes;
+  std::vector<png_text> texts;
+  std::vector<png_bytep> rows;
+  std::vector<png_byte> channels;
+  Failure failure;
+};
+
+// False: libpng has failed.
+bool write(const Image& image, bool opaque, Written& out) {
+  png_structp png =
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, &out.failure, png_failed, png_warned);
+  if (png == nullptr) return false;
+  png_infop info = png_create_info_struct(png);
+  if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
+    png_destroy_write_struct(&png, &info);
+    return false;
+  }
+  png_set_write_fn(png, &out.bytes, append, flush);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width),
+               static_cast<png_uint_32>(image.height), 8,
+               opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGB_ALPHA, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_text(png, info, out.texts.data(), static_cast<int>(out.texts.size()));
+  png_write_info(png, info);
+  png_write_image(png, out.rows.data());
+  png_write_end(png, nullptr);
+  png_destroy_write_struct(&png, &info);
+  return true;
+}
+
 }  // namespace
+
+double text_width(const std::string& text, const TextStyle& style) {
+  return Font(style.bold, style.height).walk(text, [](FT_GlyphSlot, double) {});
+}
+
+void draw_text(Image& image, double x, double baseline, const std::string& text,
+               const TextStyle& style) {
+  const Font font(style.bold, style.height);
+  font.walk(text, [&](FT_GlyphSlot slot, double left) {
+    const double column = std::floor(x + left), row = std::floor(baseline);
+    FT_Outline_Translate(&slot->outline, std::lround((x + left - column) * kUnits),
+                         -std::lround((baseline - row) * kUnits));
+    require(FT_Render_Glyph(slot, FT_RENDER_MODE_NORMAL), "cannot draw a letter");
+    const FT_Bitmap& bitmap = slot->bitmap;
+    for (unsigned y = 0; y < bitmap.rows; ++y) {
+      const int to_y = static_cast<int>(row) - slot->bitmap_top + static_cast<int>(y);
+      if (to_y < 0 || to_y >= image.height) continue;
+      for (unsigned i = 0; i < bitmap.width; ++i) {
+        const int to_x = static_cast<int>(column) + slot->bitmap_left + static_cast<int>(i);
+        if (to_x < 0 || to_x >= image.width) continue;
+        const int covered = bitmap.buffer[static_cast<std::size_t>(y) * bitmap.pitch + i];
+        if (covered > 0) blend(image.at(to_x, to_y), style.colour, covered / 255.0);
+      }
+    }
+  });
+}
+
+std::string text_that_fits(const std::string& text, const TextStyle& style, double width) {
+  if (text_width(text, style) <= width) return text;
+  std::string cut = text;
+  while (!cut.empty() && text_width(cut + kEllipsis, style) > width) {
+    // A letter of UTF-8 goes as a whole.
+    while (cut.size() > 1 && (static_cast<unsigned char>(cut.back()) & 0xc0) == 0x80)
+      cut.pop_back();
+    cut.pop_back();
+  }
+  return cut + kEllipsis;
+}
+
+std::string lettering_version() { return Font(false, 14).version(); }
 
 void lay_over(Image& below, const Image& above, double opacity) {
   for (std::size_t i = 0; i < below.pixels.size(); ++i) {
@@ -116,6 +328,32 @@ Image compose(const std::string& title, const std::string& subtitle,
   draw_text(sheet, margin, total_height - 0.75 * margin, text_that_fits(small_print, small, room),
             small);
   return sheet;
+}
+
+std::string to_png(const Image& image, const PngTexts& texts) {
+  if (image.width < 1 || image.height < 1) throw std::logic_error("to_png: an image of no pixels");
+  const bool opaque = std::all_of(image.pixels.begin(), image.pixels.end(),
+                                  [](const Rgba& pixel) { return pixel.a == 255; });
+  Written out;
+  for (const auto& [key, text] : texts) {
+    png_text entry = {};
+    entry.compression = ascii(text) ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
+    entry.key = const_cast<char*>(key.c_str());
+    entry.text = const_cast<char*>(text.c_str());
+    out.texts.push_back(entry);
+  }
+  const std::size_t size = opaque ? 3 : 4;
+  out.channels.reserve(image.pixels.size() * size);
+  for (const Rgba& pixel : image.pixels) {
+    out.channels.insert(out.channels.end(), {pixel.r, pixel.g, pixel.b});
+    if (!opaque) out.channels.push_back(pixel.a);
+  }
+  for (int y = 0; y < image.height; ++y)
+    out.rows.push_back(out.channels.data() + static_cast<std::size_t>(y) * image.width * size);
+  if (!write(image, opaque, out))
+    throw Error("PNG", out.failure.text[0] ? out.failure.text : "libpng has no memory",
+                "give another size, or report the command line");
+  return std::move(out.bytes);
 }
 
 }  // namespace farcull

@@ -13,8 +13,8 @@
 
 #include "core/base/error.h"
 #include "core/scene/scene.h"
-#include "experiments/scenes/builtin/moving_scene.h"
-#include "experiments/scenes/mesh/cache.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/mesh/load.h"
 
 namespace farcull {
 
@@ -32,7 +32,7 @@ FrameRange parse_frames(const std::string& text);
 /// A scene that depends on a number.
 class FrameSource {
  public:
-  /// The arguments of load_scene(): a built-in scene that moves (builtin/moving_scene.h), or meshes
+  /// The arguments of load_scene(): a built-in scene that moves (builtin/scenes.h), or meshes
   /// some of whose names hold %d or %04d, on the command line or in a scene file. self: every
   /// object is tested against itself. Throws Error where nothing moves, or as load_scene() does for
   /// the first frame.
@@ -65,7 +65,7 @@ class FrameSource {
   std::optional<MovingScene> built_in_;
   MeshCache meshes_;
   Scene scene_;  // of meshes, as it is now
-  // Of the call before.
+  // The topology of the call before.
   std::size_t vertices_ = 0;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<Object> objects_;

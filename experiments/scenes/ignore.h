@@ -9,8 +9,8 @@
 
 namespace farcull {
 
-/// What a name that no object has means. In a frame after the first one it is no mistake: objects
-/// may come and go, and there is nothing to ignore where one is not.
+/// Treatment of a name that no object has. In a frame after the first one it is no mistake: objects
+/// may come and go, and an object that is not there needs not be ignored.
 enum class Lacking { refused, passed_over };
 
 /// The pairs of different objects of which one has a name of the first pattern and the other one a

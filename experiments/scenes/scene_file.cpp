@@ -1,5 +1,5 @@
-// Reads scene files as JSON: the syntax first, for the line of an error, then the values one by
-// one.
+// Reads and writes scene files as JSON. Reading takes the syntax first, for the line of an error,
+// then the values one by one.
 #include "experiments/scenes/scene_file.h"
 
 #include <fmt/format.h>
@@ -17,14 +17,11 @@
 
 #include "core/base/error.h"
 #include "core/scene/ignored.h"
-#include "experiments/scenes/builtin/field.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/ignore.h"
-#include "experiments/scenes/mesh/foreign.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
-#include "experiments/scenes/scene_stream.h"
 
 namespace farcull {
 namespace {
@@ -294,12 +291,6 @@ class SceneFile {
   MeshCache& meshes_;
 };
 
-std::string extension(const std::string& path) {
-  std::string text = std::filesystem::path(path).extension().string();
-  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
-}
-
 /// The text as JSON, and the lines of what it ignores.
 struct Parsed {
   json root;
@@ -363,9 +354,10 @@ std::vector<ObjectPair> stream_file(const std::string& path, const TakePart& tak
   return reader.read_ignored(file.root["ignore"], names);
 }
 
-// The builder of a scene of mesh files. Every extension is looked at first, so that nothing is read
-// for minutes before the last argument is refused.
-SceneBuilder builder_of_meshes(const std::vector<std::string>& paths) {
+// A scene of mesh files. Every extension is looked at first, so that nothing is read for minutes
+// before the last argument is refused. `added` is called after each file.
+SceneBuilder scene_of_meshes(const std::vector<std::string>& paths, MeshCache& meshes,
+                             const std::function<void(SceneBuilder&)>& added = {}) {
   for (const std::string& path : paths) {
     if (is_scene_file(path) || is_builtin_scene(path)) {
       throw Error(path, "a scene stands among other arguments",
@@ -376,25 +368,21 @@ SceneBuilder builder_of_meshes(const std::vector<std::string>& paths) {
   std::string name = mesh_stem(paths[0]);
   for (std::size_t i = 1; i < paths.size() && i < 3; ++i) name += "+" + mesh_stem(paths[i]);
   if (paths.size() > 3) name += fmt::format("+{} more", paths.size() - 3);
-  return {clean_name(name), paths[0]};
-}
-
-Scene scene_of_meshes(const std::vector<std::string>& paths, MeshCache& meshes) {
-  SceneBuilder builder = builder_of_meshes(paths);
-  for (const std::string& path : paths)
+  SceneBuilder builder(clean_name(name), paths[0]);
+  for (const std::string& path : paths) {
     builder.add(meshes.get(path), mesh_stem(path), Split::kNone, {});
-  return builder.finish();
+    if (added) added(builder);
+  }
+  return builder;
 }
 
 void stream_meshes(const std::vector<std::string>& paths, const TakePart& take) {
-  SceneBuilder builder = builder_of_meshes(paths);
-  for (const std::string& path : paths) {
-    MeshCache meshes;
-    builder.add(meshes.get(path), mesh_stem(path), Split::kNone, {});
+  MeshCache meshes;
+  scene_of_meshes(paths, meshes, [&](SceneBuilder& builder) {
     meshes = MeshCache();  // to make room
     Scene part = builder.take_part();
     take(part);
-  }
+  });
 }
 
 Scene load_any_scene(const std::vector<std::string>& arguments, MeshCache& meshes) {
@@ -402,11 +390,11 @@ Scene load_any_scene(const std::vector<std::string>& arguments, MeshCache& meshe
     throw Error("SCENE", "no scene is named",
                 "name mesh files, a scene file or a built-in scene (farcull scenes lists them)");
   }
-  if (arguments.size() > 1) return scene_of_meshes(arguments, meshes);
+  if (arguments.size() > 1) return scene_of_meshes(arguments, meshes).finish();
   const std::string& name = arguments[0];
   if (is_builtin_scene(name)) return make_builtin_scene(name);
   if (is_scene_file(name)) return parse(read_file(name, kMaxSceneFileBytes), name, meshes);
-  if (has_mesh_extension(name)) return scene_of_meshes(arguments, meshes);
+  if (has_mesh_extension(name)) return scene_of_meshes(arguments, meshes).finish();
   if (const std::optional<Error> foreign = foreign_mesh(name)) throw *foreign;
   throw Error(name,
               "neither a built-in scene nor a file that ends in .obj, .off, .ply, .stl or .json",
@@ -450,7 +438,9 @@ std::vector<ObjectPair> stream_scene(const std::vector<std::string>& arguments,
   return ignored;
 }
 
-bool is_scene_file(const std::string& name) { return extension(name) == ".json"; }
+bool is_scene_file(const std::string& name) {
+  return lower_case(std::filesystem::path(name).extension().string()) == ".json";
+}
 
 std::vector<std::string> meshes_of_scene_file(const std::string& path) {
   std::vector<std::string> out;
@@ -472,6 +462,20 @@ std::vector<std::string> meshes_of_scene_file(const std::string& path) {
 Scene parse_scene_file(const std::string& text, const std::string& path) {
   MeshCache meshes;
   return parse(text, path, meshes);
+}
+
+std::string scene_file_text(const std::string& name, const std::vector<SceneFileObject>& objects,
+                            const std::vector<std::pair<std::string, std::string>>& ignored) {
+  using Json = nlohmann::ordered_json;
+  Json list = Json::array();
+  for (const SceneFileObject& object : objects) {
+    Json& out = list.emplace_back(Json{{"name", object.name}, {"mesh", object.mesh}});
+    if (object.groups) out["split"] = "groups";
+    if (object.self) out["self"] = true;
+  }
+  Json out = {{"name", name}, {"objects", list}};
+  if (!ignored.empty()) out["ignore"] = ignored;
+  return out.dump(2) + "\n";
 }
 
 void require_known(const std::string& name) {

@@ -1,18 +1,22 @@
-// From what stands on the command line to a scene: mesh files, a built-in scene, or a scene file.
+// From what stands on the command line to a scene: mesh files, a built-in scene, or a scene file;
+// as a whole, or part by part for those who cannot hold all of it.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/scene/object_pair.h"
 #include "core/scene/scene.h"
-#include "experiments/scenes/mesh/cache.h"
+#include "experiments/scenes/mesh/load.h"
 
 namespace farcull {
 
 /// The scene that the arguments name. They are one of
 /// - one or more mesh files (.obj, .off, .ply, .stl, or these and .gz), each an object named by its
 ///   file without extension;
-/// - one built-in scene, perhaps with suffixes (builtin_scenes.h);
+/// - one built-in scene, perhaps with suffixes (builtin/scenes.h);
 /// - one scene file, JSON:
 ///     {"name": "two-bunnies", "objects": [
 ///       {"name": "a", "mesh": "bunny00.off"},
@@ -47,8 +51,33 @@ std::vector<std::string> meshes_of_scene_file(const std::string& path);
 /// relative to.
 Scene parse_scene_file(const std::string& text, const std::string& path);
 
+/// An object of a scene file that is written, unmoved.
+struct SceneFileObject {
+  std::string name, mesh;
+  bool groups = false;  // split: groups
+  bool self = false;
+};
+/// The text of a scene file; ignored: pairs of names.
+std::string scene_file_text(const std::string& name, const std::vector<SceneFileObject>& objects,
+                            const std::vector<std::pair<std::string, std::string>>& ignored);
+
 /// Throws Error where load_scene({name}) could only fail: no built-in scene as parse_scene_name()
 /// takes it, and no file. A name with a number in it (%d) is not looked for.
 void require_known(const std::string& name);
+
+/// Takes a part of a scene: some consecutive objects, each whole, as a valid scene of its own with
+/// the whole scene's name. May change it.
+using TakePart = std::function<void(Scene& part)>;
+
+/// Calls take() with one part after the other. Together they are load_scene(arguments): the same
+/// objects, names, triangles and doubles in the same order; only indices of vertices begin anew in
+/// each part. A part is a mesh file, an object of a scene file, or some objects of the built-in
+/// scene `field`; every other built-in scene, or one with suffixes, is a single part. Memory: the
+/// largest part with its file, 256 MiB of meshes that a scene file names several times, and the
+/// names of the objects of mesh and scene files. Returns the pairs of objects that the scene
+/// ignores, in the numbers of the whole scene; parts ignore none. Throws Error as load_scene(),
+/// perhaps after some parts, and what take() throws.
+std::vector<ObjectPair> stream_scene(const std::vector<std::string>& arguments,
+                                     const TakePart& take);
 
 }  // namespace farcull

@@ -1,4 +1,4 @@
-// Writes meshes as text with 17 significant digits, and a scene file that names them.
+// Writes a mesh for each object, and a scene file that names them.
 #include "experiments/scenes/scene_write.h"
 
 #include <fmt/format.h>
@@ -8,9 +8,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <iterator>
-#include <limits>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -19,12 +16,13 @@
 #include "core/base/error.h"
 #include "core/scene/ignored.h"
 #include "experiments/scenes/ignore.h"
+#include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongestName = 100;  // bytes, well below what file systems take
 
@@ -92,87 +90,27 @@ std::vector<std::string> file_names(const Scene& scene) {
   return names;
 }
 
-// The vertices that an object uses, numbered in order of first mention.
-struct Part {
-  std::vector<std::uint32_t> vertices;                  // of the scene
-  std::vector<std::array<std::uint32_t, 3>> triangles;  // indices into vertices
-};
-
-class Parts {
- public:
-  Part of(const Scene& scene, const Object& object) {
-    if (object.triangle_count == 0)
-      throw std::logic_error("mesh_write: object '" + object.name + "' has no triangle");
-    number_.resize(std::max(number_.size(), scene.vertices.size()), kNone);
-    Part part;
-    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
-      std::array<std::uint32_t, 3> corners = scene.triangles[object.first_triangle + t];
-      for (std::uint32_t& corner : corners) {
-        std::uint32_t& n = number_[corner];
-        if (n == kNone) {
-          n = static_cast<std::uint32_t>(part.vertices.size());
-          part.vertices.push_back(corner);
-        }
-        corner = n;
-      }
-      part.triangles.push_back(corners);
-    }
-    for (const std::uint32_t v : part.vertices) number_[v] = kNone;
-    return part;
-  }
-
- private:
-  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> number_;
-};
-
-// 17 significant digits identify a double.
-void add_vertices(const Scene& scene, const Part& part, const char* before,
-                  fmt::memory_buffer& out) {
-  for (const std::uint32_t v : part.vertices) {
-    const Vec3& p = scene.vertices[v];
-    fmt::format_to(std::back_inserter(out), "{}{:.17g} {:.17g} {:.17g}\n", before, p.x(), p.y(),
-                   p.z());
-  }
-}
-
-std::string off_text(const Scene& scene, const Part& part) {
-  fmt::memory_buffer out;
-  fmt::format_to(std::back_inserter(out), "OFF\n{} {} 0\n", part.vertices.size(),
-                 part.triangles.size());
-  add_vertices(scene, part, "", out);
-  for (const auto& [a, b, c] : part.triangles)
-    fmt::format_to(std::back_inserter(out), "3 {} {} {}\n", a, b, c);
-  return fmt::to_string(out);
+// The triangles of an object.
+MeshPart part_of(const Scene& scene, const Object& object, PartMaker& parts) {
+  if (object.triangle_count == 0)
+    throw std::logic_error("mesh_write: object '" + object.name + "' has no triangle");
+  for (std::uint32_t t = 0; t < object.triangle_count; ++t)
+    parts.add(scene.triangles[object.first_triangle + t]);
+  return parts.take();
 }
 
 // All objects as groups.
-std::string obj_text(const Scene& scene, Parts& parts) {
-  fmt::memory_buffer out;
+std::string obj_text(const Scene& scene) {
+  std::string out;
   const std::vector<std::string> names = file_names(scene);
+  PartMaker parts(scene.vertices);
   std::uint64_t first = 1;
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
-    const Part part = parts.of(scene, scene.objects[o]);
-    fmt::format_to(std::back_inserter(out), "o {}\n", names[o]);
-    add_vertices(scene, part, "v ", out);
-    for (const auto& [a, b, c] : part.triangles)
-      fmt::format_to(std::back_inserter(out), "f {} {} {}\n", first + a, first + b, first + c);
+    const MeshPart part = part_of(scene, scene.objects[o], parts);
+    out += obj_object(part, names[o], first);
     first += part.vertices.size();
   }
-  return fmt::to_string(out);
-}
-
-Json object_json(const Object& object, const std::string& mesh) {
-  Json out = {{"name", object.name}, {"mesh", mesh}};
-  if (object.self) out["self"] = true;
   return out;
-}
-
-std::string scene_text(const std::string& name, const Json& objects,
-                       const std::vector<std::pair<std::string, std::string>>& ignored = {}) {
-  Json out = {{"name", name}, {"objects", objects}};
-  if (!ignored.empty()) out["ignore"] = ignored;
-  return out.dump(2) + "\n";
 }
 
 // The pairs of ignored objects by their names, which a scene file is read with.
@@ -194,7 +132,6 @@ std::vector<std::pair<std::string, std::string>> ignored_names(const Scene& scen
 WrittenScene write_groups(const std::function<const Scene&(long)>& at, FrameRange range,
                           const std::string& folder, const Progress& progress) {
   Folder out(folder);
-  Parts parts;
   std::string name, scene_name;
   bool self = false;
   for (long frame = range.first; frame <= range.last; ++frame) {
@@ -211,11 +148,10 @@ WrittenScene write_groups(const std::function<const Scene&(long)>& at, FrameRang
       throw Error(scene.name, "objects come and go and only some are tested against themselves",
                   "write single frames, or leave --frames out");
     }
-    out.write(fmt::format("{}_{:04}.obj", name, frame), obj_text(scene, parts));
+    out.write(fmt::format("{}_{:04}.obj", name, frame), obj_text(scene));
   }
-  Json object = {{"name", name}, {"mesh", name + "_%04d.obj"}, {"split", "groups"}};
-  if (self) object["self"] = true;
-  out.write("scene.json", scene_text(scene_name, Json::array({object})));
+  out.write("scene.json",
+            scene_file_text(scene_name, {{name, name + "_%04d.obj", true, self}}, {}));
   return out.keep("scene.json");
 }
 
@@ -240,22 +176,25 @@ class FrameFiles {
         ignored_ != ignored_names(scene)) {
       throw std::logic_error("write_frames: the objects change");
     }
+    PartMaker parts(scene.vertices);
     for (std::size_t o = 0; o < objects_.size(); ++o)
-      add(o, off_text(scene, parts_.of(scene, scene.objects[o])), frame);
+      add(o, off_text(part_of(scene, scene.objects[o], parts)), frame);
   }
 
   WrittenScene finish() {
     // A scene file of frames has to name a numbered mesh.
     const bool none =
         std::none_of(meshes_.begin(), meshes_.end(), [](const Mesh& m) { return m.moves; });
-    Json list = Json::array();
+    std::vector<SceneFileObject> list;
     for (std::size_t o = 0; o < objects_.size(); ++o) {
       if (none) number_from_first(o, range_.last + 1);
       const bool moves = meshes_[o].moves;
       if (!moves) out_.write(names_[o] + ".off", meshes_[o].first);
-      list.push_back(object_json(objects_[o], names_[o] + (moves ? "_%04d.off" : ".off")));
+      list.push_back({.name = objects_[o].name,
+                      .mesh = names_[o] + (moves ? "_%04d.off" : ".off"),
+                      .self = objects_[o].self});
     }
-    out_.write("scene.json", scene_text(scene_name_, list, ignored_));
+    out_.write("scene.json", scene_file_text(scene_name_, list, ignored_));
     return out_.keep("scene.json");
   }
 
@@ -292,7 +231,6 @@ class FrameFiles {
 
   Folder out_;
   FrameRange range_;
-  Parts parts_;
   std::string scene_name_;
   std::vector<Object> objects_;
   std::vector<std::pair<std::string, std::string>> ignored_;
@@ -304,15 +242,15 @@ class FrameFiles {
 
 WrittenScene write_scene(const Scene& scene, const std::string& folder) {
   Folder out(folder);
-  Parts parts;
-  Json objects = Json::array();
+  PartMaker parts(scene.vertices);
+  std::vector<SceneFileObject> objects;
   const std::vector<std::string> names = file_names(scene);
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const std::string file = names[o] + ".off";
-    out.write(file, off_text(scene, parts.of(scene, scene.objects[o])));
-    objects.push_back(object_json(scene.objects[o], file));
+    out.write(file, off_text(part_of(scene, scene.objects[o], parts)));
+    objects.push_back({.name = scene.objects[o].name, .mesh = file, .self = scene.objects[o].self});
   }
-  out.write("scene.json", scene_text(scene.name, objects, ignored_names(scene)));
+  out.write("scene.json", scene_file_text(scene.name, objects, ignored_names(scene)));
   return out.keep("scene.json");
 }
 

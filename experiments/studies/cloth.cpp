@@ -1,6 +1,6 @@
 // The study "cloth": every frame of a cloth that falls, at four stiffnesses, with every pair of
 // triangles accounted for. The simulation takes hours where the cloth is fine and stiff, so its
-// states are kept (scenes/cloth/kept.h), and the stiffnesses take turns.
+// states are kept (scenes/cloth/cloth.h), and the stiffnesses take turns.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -13,7 +13,6 @@
 #include "core/base/terminal.h"
 #include "experiments/measure/lab.h"
 #include "experiments/record/tables.h"
-#include "experiments/scenes/builtin/packaged.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/versions.h"
 #include "experiments/system/interrupt.h"

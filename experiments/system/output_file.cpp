@@ -15,8 +15,7 @@
 #include <filesystem>
 
 #include "core/base/error.h"
-#include "experiments/system/signals.h"
-#include "experiments/system/streamed_output.h"
+#include "experiments/system/interrupt.h"
 
 namespace farcull {
 namespace {
@@ -31,8 +30,8 @@ constexpr const char* kPathRemedy = "give a path in a folder with room that you 
               standard ? kStdoutRemedy : kPathRemedy);
 }
 
-// Where a path leads. Only a regular file, or none yet, can be put in place by renaming; anything
-// else takes the text as it comes.
+// The place that a path leads to. Only a regular file, or a new one, can be put there by renaming;
+// anything else takes the text as it comes.
 struct Target {
   std::string path;
   bool exists = false;
@@ -67,7 +66,7 @@ char half_written[4096] = "";
 // cut.
 std::string beside(const std::string& path) {
   const std::string end = ".part-" + std::to_string(::getpid());
-  const std::size_t name = path.rfind('/') + 1;  // 0 if there is none
+  const std::size_t name = path.rfind('/') + 1;  // 0 without a folder
   const long most = ::pathconf(folder_of(path).c_str(), _PC_NAME_MAX);
   const std::size_t room = (most > 0 ? static_cast<std::size_t>(most) : NAME_MAX) - end.size();
   std::size_t size = std::min(path.size(), name + room);

@@ -1,8 +1,11 @@
-// Files that appear whole or not at all, and texts that grow during a long run and are whole after
-// each addition.
+// Files that appear whole or not at all, written at once or piece by piece; and texts that grow
+// during a long run and are whole after each addition.
 #pragma once
 
+#include <cstdio>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace farcull {
@@ -58,6 +61,31 @@ class GrowingOutput {
   bool begun_ = false, finished_ = false, streamed_ = false;
   int file_ = -1;       // of a regular file, or of a device or pipe
   long long kept_ = 0;  // bytes before the end
+};
+
+class HalfWritten;
+
+/// Writes beside the path; put() renames into place. What is not put is removed, also where SIGINT,
+/// SIGTERM or SIGHUP ends the program. One at a time in a process, and no write_output() meanwhile.
+/// A symbolic link stays and its file is replaced.
+class StreamedOutput {
+ public:
+  /// Throws Error naming the path where it is standard output, a device or a pipe, which cannot
+  /// appear at once, or where the folder or the disk refuses.
+  explicit StreamedOutput(const std::string& path);
+  ~StreamedOutput();
+  StreamedOutput(const StreamedOutput&) = delete;
+  StreamedOutput& operator=(const StreamedOutput&) = delete;
+
+  /// Throws Error where the disk refuses.
+  void add(std::string_view text);
+  /// Ends the file, on the disk, and puts it in place. Throws Error as add().
+  void put();
+
+ private:
+  std::string path_, place_;
+  std::unique_ptr<HalfWritten> part_;
+  std::FILE* file_ = nullptr;
 };
 
 }  // namespace farcull

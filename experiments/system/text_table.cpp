@@ -1,7 +1,12 @@
-// Lays out tables: the width of a column is that of its widest cell.
+// Lays out tables, where the width of a column is that of its widest cell. Colours are ANSI escape
+// sequences, which every terminal that is not dumb understands.
 #include "experiments/system/text_table.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdlib>
+#include <string_view>
 
 namespace farcull {
 
@@ -23,6 +28,19 @@ std::string Table::text() const {
     out += line + "\n";
   }
   return out;
+}
+
+bool takes_colour(int stream) {
+  const char* const unwanted = std::getenv("NO_COLOR");
+  const char* const terminal = std::getenv("TERM");
+  return ::isatty(stream) == 1 && (unwanted == nullptr || *unwanted == '\0') &&
+         terminal != nullptr && std::string_view(terminal) != "dumb";
+}
+
+std::string coloured(const std::string& text, Colour colour, int stream) {
+  if (!takes_colour(stream)) return text;
+  const char* const number = colour == Colour::good ? "32" : colour == Colour::bad ? "31" : "33";
+  return std::string("\033[1;") + number + "m" + text + "\033[0m";
 }
 
 }  // namespace farcull

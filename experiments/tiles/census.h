@@ -11,7 +11,7 @@
 
 #include "core/base/hash.h"
 #include "core/scene/scene.h"
-#include "experiments/scenes/scene_stream.h"
+#include "experiments/scenes/scene_file.h"
 
 namespace farcull {
 

@@ -17,7 +17,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "experiments/system/streamed_output.h"
+#include "experiments/system/output_file.h"
 #include "experiments/tiles/run_tile.h"
 #include "verify/certificate/sha256.h"
 

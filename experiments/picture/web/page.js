@@ -5,55 +5,6 @@ const byId = (id) => document.getElementById(id);
 const about = JSON.parse(byId("data").textContent);
 const digits = new Intl.NumberFormat("en");
 
-// ---- data ---------------------------------------------------------------------------------------
-
-// The bytes of a block: Base64 of gzip.
-async function bytesOf(name) {
-  const text = atob(byId(name).textContent);
-  const small = new Uint8Array(text.length);
-  for (let i = 0; i < text.length; ++i) small[i] = text.charCodeAt(i);
-  const stream = new Blob([small]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
-}
-
-// Numbers of 32 bits, stored as differences by byte (experiments/picture/page_blocks.h).
-async function numbersOf(name) {
-  const bytes = await bytesOf(name), n = bytes.length / 4;
-  const out = new Uint32Array(n);
-  let before = 0;
-  for (let i = 0; i < n; ++i) {
-    const zigzag = (bytes[i] | bytes[n + i] << 8 | bytes[2 * n + i] << 16 | bytes[3 * n + i] << 24) >>> 0;
-    before = (before + ((zigzag >>> 1) ^ -(zigzag & 1))) >>> 0;
-    out[i] = before;
-  }
-  return out;
-}
-
-// Everything of a frame, kept for the last frame alone.
-let frame = null;
-
-async function loadFrame(number) {
-  if (frame && frame.number === number) return frame;
-  let given = number;  // the frame whose triangles these are
-  while (!about.frames[given].corners) --given;
-  const entry = about.frames[number], same = frame && frame.given === given;
-  const [positions, a, b, contacts, corners] = await Promise.all([
-    numbersOf(entry.positions), numbersOf(entry.a), numbersOf(entry.b), bytesOf(entry.contacts),
-    same ? frame.corners : numbersOf(about.frames[given].corners)]);
-  const objects = about.frames[given].objects, triangles = about.frames[given].triangles;
-  const owner = new Uint32Array(triangles);
-  objects.forEach(([, first, count], o) => owner.fill(o, first, first + count));
-  return { number, given, positions, a, b, contacts, corners, objects, triangles, owner };
-}
-
-// What a step missed (a bit for each pair) and kept for nothing (a bit for each triangle).
-async function loadStep(step, of) {
-  const lost = step.missed ? await numbersOf(step.missed) : [];
-  const missed = new Uint8Array(of.a.length);
-  for (const pair of lost) missed[pair] = 1;
-  return { step, missed, kept: step.kept ? await bytesOf(step.kept) : null };
-}
-
 // ---- state --------------------------------------------------------------------------------------
 
 const methods = [...new Set(about.steps.map((step) => step.method))];
@@ -311,29 +262,6 @@ function isDark() {
   return state.theme ? state.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
 }
 
-// Where the camera is; and where it was put to show everything, which a new size of the window asks
-// for again while the reader has not moved it.
-const cameraText = () => JSON.stringify([view.camera.position, view.controls.target, view.camera.zoom]);
-let fitted = "";
-
-function resetView() {
-  const points = about.zoom ? collidingCorners() : view.cornersOfBoxes();
-  view.fit(points.length > 0 ? points : view.cornersOfBoxes(), new THREE.Vector3().fromArray(about.forward).negate());
-  fitted = cameraText();
-}
-
-function onResize() {
-  if (!view) return;
-  if (cameraText() === fitted) resetView(); else view.resize();
-}
-
-function collidingCorners() {
-  const out = [];
-  for (let p = 0; p < frame.a.length; ++p)
-    for (const t of [frame.a[p], frame.b[p]]) for (const k of [0, 1, 2]) out.push(view.corner(t, k));
-  return out;
-}
-
 // Frame after frame; a frame that takes long to unpack holds up the next one. Odd: it plays.
 let plays = 0;
 async function play() {
@@ -503,28 +431,6 @@ function onKey(event) {
     return;
   }
   event.preventDefault();
-}
-
-// A press and a release at one place choose a triangle; anything else was a drag.
-function connectCanvas() {
-  const canvas = byId("canvas");
-  let down = null;
-  canvas.addEventListener("pointerdown", (e) => { down = e.button === 0 ? [e.clientX, e.clientY] : null; });
-  window.addEventListener("pointerup", (e) => {
-    const at = down;
-    down = null;
-    if (!at || e.target !== canvas || Math.hypot(e.clientX - at[0], e.clientY - at[1]) > 4) return;
-    const place = canvas.getBoundingClientRect();
-    choose(view.pick(e.clientX - place.left, e.clientY - place.top));
-    canvas.focus();
-  });
-  view.controls.addEventListener("end", writeAddress);
-  canvas.addEventListener("wheel", writeAddress, { passive: true });
-  canvas.addEventListener("webglcontextlost", (e) => {
-    e.preventDefault();
-    standIn("The browser took the graphics away. Load the page again to look around.");
-  });
-  new ResizeObserver(onResize).observe(byId("stage"));
 }
 
 // The flat picture in place of the scene, and why.

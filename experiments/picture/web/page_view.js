@@ -1,7 +1,7 @@
-// Draws the scene of the page with three.js and WebGL 2. Every triangle has three corners of its
-// own, so that gl_VertexID / 3 is its number; two textures hold what may change: a byte of state for
-// each triangle, and a place for each object. Lengths are those of the scene's box, whose largest
-// extent is 2 and whose middle is the origin.
+// Unpacks the scene of the page, and draws it with three.js and WebGL 2. Every triangle has three
+// corners of its own, so that gl_VertexID / 3 is its number; two textures hold what may change: a
+// byte of state for each triangle, and a place for each object. Lengths are those of the scene's
+// box, whose largest extent is 2 and whose middle is the origin.
 
 const REST = 0, IDLE = 1, COLLIDES = 2, MISSED = 4, CHOSEN = 8, PARTNER = 16;
 const STATE_WIDTH = 2048, OBJECT_WIDTH = 256;
@@ -162,7 +162,7 @@ class SceneView {
     this.setIndices();
   }
 
-  // Where an exploded view moves each object: away from the middle of the scene, and those in the
+  // An exploded view moves each object: away from the middle of the scene, and those in the
   // middle in directions of their own.
   setPlaces(objects) {
     const rows = Math.max(1, Math.ceil(objects.length / OBJECT_WIDTH));
@@ -297,7 +297,7 @@ class SceneView {
     return p.multiplyScalar(1 / 3);
   }
 
-  // Where the triangle's middle is in the canvas, in CSS px.
+  // The triangle's middle in the canvas, in CSS px.
   project(triangle) {
     const p = this.middle(triangle).project(this.camera);
     const [width, height] = this.size();
@@ -394,4 +394,100 @@ class SceneView {
     this.camera.clearViewOffset();
     return (pixel[0] | pixel[1] << 8 | pixel[2] << 16) - 1;
   }
+}
+
+// ---- the camera and the pointer ----------------------------------------------------------------
+
+// The place of the camera; and the place that shows everything, which a new size of the window asks
+// for again while the reader has not moved the camera.
+const cameraText = () => JSON.stringify([view.camera.position, view.controls.target, view.camera.zoom]);
+let fitted = "";
+
+function resetView() {
+  const points = about.zoom ? collidingCorners() : view.cornersOfBoxes();
+  view.fit(points.length > 0 ? points : view.cornersOfBoxes(), new THREE.Vector3().fromArray(about.forward).negate());
+  fitted = cameraText();
+}
+
+function onResize() {
+  if (!view) return;
+  if (cameraText() === fitted) resetView(); else view.resize();
+}
+
+function collidingCorners() {
+  const out = [];
+  for (let p = 0; p < frame.a.length; ++p)
+    for (const t of [frame.a[p], frame.b[p]]) for (const k of [0, 1, 2]) out.push(view.corner(t, k));
+  return out;
+}
+
+// A press and a release at one place choose a triangle; anything else was a drag.
+function connectCanvas() {
+  const canvas = byId("canvas");
+  let down = null;
+  canvas.addEventListener("pointerdown", (e) => { down = e.button === 0 ? [e.clientX, e.clientY] : null; });
+  window.addEventListener("pointerup", (e) => {
+    const at = down;
+    down = null;
+    if (!at || e.target !== canvas || Math.hypot(e.clientX - at[0], e.clientY - at[1]) > 4) return;
+    const place = canvas.getBoundingClientRect();
+    choose(view.pick(e.clientX - place.left, e.clientY - place.top));
+    canvas.focus();
+  });
+  view.controls.addEventListener("end", writeAddress);
+  canvas.addEventListener("wheel", writeAddress, { passive: true });
+  canvas.addEventListener("webglcontextlost", (e) => {
+    e.preventDefault();
+    standIn("The browser took the graphics away. Load the page again to look around.");
+  });
+  new ResizeObserver(onResize).observe(byId("stage"));
+}
+
+// ---- data ---------------------------------------------------------------------------------------
+
+// The bytes of a block: Base64 of gzip.
+async function bytesOf(name) {
+  const text = atob(byId(name).textContent);
+  const small = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) small[i] = text.charCodeAt(i);
+  const stream = new Blob([small]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+// Numbers of 32 bits, stored as differences by byte (experiments/picture/page.h).
+async function numbersOf(name) {
+  const bytes = await bytesOf(name), n = bytes.length / 4;
+  const out = new Uint32Array(n);
+  let before = 0;
+  for (let i = 0; i < n; ++i) {
+    const zigzag = (bytes[i] | bytes[n + i] << 8 | bytes[2 * n + i] << 16 | bytes[3 * n + i] << 24) >>> 0;
+    before = (before + ((zigzag >>> 1) ^ -(zigzag & 1))) >>> 0;
+    out[i] = before;
+  }
+  return out;
+}
+
+// Everything of a frame, kept for the last frame alone.
+let frame = null;
+
+async function loadFrame(number) {
+  if (frame && frame.number === number) return frame;
+  let given = number;  // the frame whose triangles these are
+  while (!about.frames[given].corners) --given;
+  const entry = about.frames[number], same = frame && frame.given === given;
+  const [positions, a, b, contacts, corners] = await Promise.all([
+    numbersOf(entry.positions), numbersOf(entry.a), numbersOf(entry.b), bytesOf(entry.contacts),
+    same ? frame.corners : numbersOf(about.frames[given].corners)]);
+  const objects = about.frames[given].objects, triangles = about.frames[given].triangles;
+  const owner = new Uint32Array(triangles);
+  objects.forEach(([, first, count], o) => owner.fill(o, first, first + count));
+  return { number, given, positions, a, b, contacts, corners, objects, triangles, owner };
+}
+
+// The pairs that a step missed (a bit each), and the triangles that it kept in vain (a bit each).
+async function loadStep(step, of) {
+  const lost = step.missed ? await numbersOf(step.missed) : [];
+  const missed = new Uint8Array(of.a.length);
+  for (const pair of lost) missed[pair] = 1;
+  return { step, missed, kept: step.kept ? await bytesOf(step.kept) : null };
 }

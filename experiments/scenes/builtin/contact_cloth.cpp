@@ -177,7 +177,8 @@ std::vector<Ring> rings() {
   return out;
 }
 
-// Where the cloth is that was at this distance and angle (in turns) of the flat square.
+// Place of the point of the cloth that was at this distance and angle (in turns) of the flat
+// square.
 Vec3 hung(const std::vector<Ring>& table, double s, double turns, double uneven) {
   const double row = s / kReachOfCloth * kRings;
   const auto k = std::min(static_cast<std::uint32_t>(row), kRings - 1);

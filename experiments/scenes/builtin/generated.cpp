@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "experiments/scenes/builtin/generators.h"
-#include "experiments/scenes/builtin/motion.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/shapes.h"
 

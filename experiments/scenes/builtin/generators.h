@@ -8,27 +8,11 @@
 #include <vector>
 
 #include "core/scene/scene.h"
-#include "experiments/scenes/builtin/built_scene.h"
+#include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/mesh.h"
 #include "experiments/scenes/mesh/scene_build.h"
 
 namespace farcull {
-
-std::vector<BuiltinScene> generated_scenes();
-/// For benchmarks; the counts are those of docs/results/bench.md.
-std::vector<BuiltinScene> bench_scenes();
-/// For benchmarks too, of kinds that people have: cloth, rope and parts in contact.
-std::vector<BuiltinScene> contact_scenes();
-/// The scenes of the papers (CULLIDE, Graphics Hardware 2003; FAR, VRST 2004), which move. Without
-/// frames they are as halfway through their motion.
-std::vector<BuiltinScene> paper_scenes();
-std::vector<BuiltinScene> sheet_scenes();
-std::vector<BuiltinScene> cloth_scenes();
-/// Scenes whose second number goes to an extreme, for the study "stability".
-std::vector<BuiltinScene> extreme_scenes();
-/// Scenes made of the packaged meshes. Making one throws Error where a mesh cannot be read.
-std::vector<BuiltinScene> packaged_scenes();
-std::vector<BuiltinScene> dragon_scenes();
 
 /// Between neighbours in the stack of the scene "shells", all over their surface.
 inline constexpr double kShellGap = 0x1p-34;
@@ -67,5 +51,13 @@ BuiltinScene taking(BuiltinScene entry, BuiltScene (*build)(const SceneParameter
 BuiltinScene drawn(BuiltinScene entry, std::uint64_t seed,
                    BuiltScene (*make)(const SceneParameters&, std::uint64_t));
 BuiltinScene drawn(BuiltinScene entry, std::uint64_t seed, Scene (*make)(std::uint64_t));
+
+/// `rest` is the scene without frames, whose objects share no vertex. The second object comes from
+/// beside the first, goes through it and leaves on the other side.
+Motion pass_through(const Scene& rest);
+/// All objects breathe, out of step, while waves run along them.
+Motion pulse(const Scene& rest);
+/// Each object goes its own way, by up to its diagonal, and comes back.
+Motion drift(const Scene& rest);
 
 }  // namespace farcull

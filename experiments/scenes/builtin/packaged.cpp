@@ -1,16 +1,41 @@
-// Scenes made of the meshes that experiments/meshes.sh unpacks.
-#include "experiments/scenes/builtin/packaged.h"
-
+// Scenes made of the meshes that experiments/meshes.sh unpacks. Among them the dragon of the
+// papers, its triangles divided: a bunny falls through it (FAR: Govindaraju, Lin and Manocha, VRST
+// 2004), or it breaks into pieces (CULLIDE: Govindaraju, Redon, Lin and Manocha, Graphics Hardware
+// 2003).
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <utility>
 
 #include "core/base/error.h"
 #include "experiments/scenes/builtin/generators.h"
-#include "experiments/scenes/builtin/motion.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/mesh/shapes.h"
 
 namespace farcull {
+
+std::string mesh_folder() {
+  const char* const folder = std::getenv("FARCULL_MESHES");
+  return folder != nullptr && *folder != '\0' ? folder : FARCULL_MESH_DIR;
+}
+
+Mesh packaged(const char* file) {
+  const std::string path = (std::filesystem::path(mesh_folder()) / file).string();
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    throw Error(
+        path, "the packaged mesh is not there",
+        "run bash experiments/meshes.sh, or set FARCULL_MESHES to the folder that holds it");
+  }
+  return load_mesh(path);
+}
+
 namespace {
 
 constexpr const char* kArmadillo = "armadillo.off";
@@ -59,11 +84,6 @@ Scene with_copy(const std::string& name, const char* file, const char* first, co
                      {.scale = {}, .rotate = {}, .translate = step});
 }
 
-Scene make_near_copy() { return with_copy("near-copy", kArmadillo, "armadillo", "copy", 1e-9); }
-Scene make_bunnies_far_apart() {
-  return with_copy("bunnies-far-apart", kBunny, "first", "second", 10);
-}
-
 Scene self_colliding(const std::string& name, const char* file) {
   SceneBuilder builder(name, name);
   builder.add(packaged(file), name, Split::kNone, {});
@@ -72,81 +92,227 @@ Scene self_colliding(const std::string& name, const char* file) {
   return scene;
 }
 
-Scene make_mannequin_devil() { return self_colliding("mannequin-devil", kMannequin); }
-Scene make_armadillo() { return self_colliding("armadillo", kArmadillo); }
-Scene make_bunny() { return self_colliding("bunny", kBunny); }
+// ---- the dragon of the papers ----
+
+constexpr std::uint64_t kPackagedDragon = 19'994;  // triangles
+constexpr std::uint32_t kPieces = 200;
+constexpr double kFirstBreak = 0.05, kLastBreak = 0.8;  // times
+
+// A part of the dragon.
+struct Piece {
+  MeshPart part;
+  std::vector<std::uint32_t> source_face;
+  Vec3 middle;      // of its box
+  double late = 0;  // when it comes off
+  Vec3 way;         // of its flight, per unit of time
+  Vec3 axis;        // it turns about
+  double turn = 0;  // radians per unit of time
+};
+
+struct Breaking {
+  std::string name;
+  Mesh dragon;
+  std::vector<std::uint32_t> piece_of;  // per triangle
+  std::vector<Piece> pieces;            // in the order in which they come off; the last one stays
+  double height = 0;                    // of the dragon
+};
+
+// The triangles that `takes`.
+template <class Takes>
+Piece part_of(const Mesh& mesh, const Takes& takes) {
+  PartMaker maker(mesh.vertices);
+  Piece piece;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!takes(t)) continue;
+    maker.add(mesh.triangles[t]);
+    piece.source_face.push_back(mesh.source_face[t]);
+  }
+  piece.part = maker.take();
+  return piece;
+}
+
+// Triangles belong to the nearest of some of their centres, drawn; pieces come off in the order of
+// their distance from where the dragon is hit, its highest point.
+std::shared_ptr<const Breaking> broken_up(Mesh dragon, std::uint64_t seed) {
+  shapes::Random random(seed);
+  auto out = std::make_shared<Breaking>();
+  out->name = "breaking-dragon";
+  out->dragon = std::move(dragon);
+  const Mesh& mesh = out->dragon;
+  const Box box = bounds(mesh);
+  out->height = box.hi.y() - box.lo.y();
+  const Vec3 hit = *std::max_element(mesh.vertices.begin(), mesh.vertices.end(),
+                                     [](const Vec3& a, const Vec3& b) { return a.y() < b.y(); });
+  const auto centre_of = [&](std::size_t t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    return Vec3((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3);
+  };
+  std::vector<Vec3> seeds;
+  while (seeds.size() < kPieces) {
+    const Vec3 p = centre_of(random.below(static_cast<std::uint32_t>(mesh.triangles.size())));
+    if (std::find(seeds.begin(), seeds.end(), p) == seeds.end()) seeds.push_back(p);
+  }
+  std::stable_sort(seeds.begin(), seeds.end(), [&](const Vec3& a, const Vec3& b) {
+    return (a - hit).squaredNorm() < (b - hit).squaredNorm();
+  });
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3 p = centre_of(t);
+    std::uint32_t best = 0;
+    for (std::uint32_t s = 1; s < kPieces; ++s) {
+      if ((p - seeds[s]).squaredNorm() < (p - seeds[best]).squaredNorm()) best = s;
+    }
+    out->piece_of.push_back(best);
+  }
+  for (std::uint32_t s = 0; s < kPieces; ++s) {
+    Piece piece = part_of(mesh, [&](std::uint32_t t) { return out->piece_of[t] == s; });
+    Box around = Box::empty();
+    for (const Vec3& p : piece.part.vertices) around.add(p);
+    piece.middle = centre(around);
+    piece.late = kFirstBreak + (kLastBreak - kFirstBreak) * s / (kPieces - 1);
+    const Vec3 outward = piece.middle - centre(box) + 0.05 * out->height * random.direction();
+    piece.way = 2 * outward + Vec3(0, 0.3 * out->height, 0);
+    piece.axis = random.direction();
+    piece.turn = random.between(-6, 6);
+    out->pieces.push_back(std::move(piece));
+  }
+  return out;
+}
+
+// The topology when the first `off` pieces have come off: what is left, then these.
+void set_topology(const Breaking& dragon, std::size_t off, Scene& scene) {
+  scene.vertices.clear();
+  scene.triangles.clear();
+  scene.source_face.clear();
+  scene.objects.clear();
+  const auto append = [&](const Piece& piece, const std::string& name) {
+    append_object(name, piece.part.vertices, piece.part.triangles, piece.source_face, scene);
+  };
+  append(part_of(dragon.dragon, [&](std::uint32_t t) { return dragon.piece_of[t] >= off; }),
+         "dragon");
+  for (std::size_t s = 0; s < off; ++s) append(dragon.pieces[s], "piece" + std::to_string(s));
+}
+
+void break_at(const Breaking& dragon, double time, Scene& scene) {
+  std::size_t off = 0;  // the last piece stays
+  while (off + 1 < kPieces && dragon.pieces[off].late <= time) ++off;
+  // The number of objects determines the topology.
+  if (scene.objects.size() != off + 1) set_topology(dragon, off, scene);
+  std::size_t v = scene.vertices.size();
+  for (std::size_t s = 0; s < off; ++s) v -= dragon.pieces[s].part.vertices.size();
+  for (std::size_t s = 0; s < off; ++s) {
+    const Piece& piece = dragon.pieces[s];
+    const double since = time - piece.late;
+    const Eigen::Matrix3d turned =
+        Eigen::AngleAxisd(piece.turn * since, piece.axis).toRotationMatrix();
+    const Vec3 fall(0, -1.5 * dragon.height * since * since, 0);
+    const Vec3 to = piece.middle + since * piece.way + fall;
+    for (const Vec3& p : piece.part.vertices)
+      scene.vertices[v++] = turned * (p - piece.middle) + to;
+  }
+}
+
+// size: triangles of the dragon.
+BuiltScene make_bunny_dragon(const SceneParameters& parameters) {
+  const Mesh dragon = refined(packaged(kDragon), parameters.size);
+  const Mesh bunny = packaged(kBunny);
+  const Box place = bounds(dragon);
+  const double scale = 0.5 * diagonal(place) / diagonal(bounds(bunny));
+  BuiltScene built{
+      two_objects("bunny-dragon", "dragon", dragon, "bunny", bunny,
+                  {.scale = Vec3(Vec3::Constant(scale)), .rotate = {}, .translate = {}}),
+      {}};
+  const std::size_t first = dragon.vertices.size();
+  const std::vector<Vec3> rest(built.scene.vertices.begin() + static_cast<std::ptrdiff_t>(first),
+                               built.scene.vertices.end());
+  const Box small = bounds(bunny);
+  const double way =
+      place.hi.y() - place.lo.y() + scale * (small.hi.y() - small.lo.y());  // down, all in all
+  built.motion = [rest, first, way, from = Vec3(scale * centre(small)), to = centre(place)](
+                     const Instant& now, Scene& out, FrameNotes&) {
+    const Eigen::Matrix3d turned =
+        Eigen::AngleAxisd(0.5 + 2 * now.time, Vec3(1, 3, 2).normalized()).toRotationMatrix();
+    const Vec3 at = to + Vec3(0, (0.5 - now.time) * way, 0);
+    for (std::size_t v = 0; v < rest.size(); ++v)
+      out.vertices[first + v] = turned * (rest[v] - from) + at;
+  };
+  return halfway(std::move(built));
+}
+
+BuiltScene make_breaking_dragon(const SceneParameters& parameters, std::uint64_t seed) {
+  const std::shared_ptr<const Breaking> dragon =
+      broken_up(refined(packaged(kDragon), parameters.size), seed);
+  BuiltScene built;
+  built.scene.name = dragon->name;
+  built.motion = [dragon](const Instant& now, Scene& out, FrameNotes&) {
+    break_at(*dragon, now.time, out);
+  };
+  return halfway(std::move(built));
+}
 
 }  // namespace
 
-std::string mesh_folder() {
-  const char* const folder = std::getenv("FARCULL_MESHES");
-  return folder != nullptr && *folder != '\0' ? folder : FARCULL_MESH_DIR;
-}
-
-Mesh packaged(const char* file) {
-  const std::string path = (std::filesystem::path(mesh_folder()) / file).string();
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) {
-    throw Error(
-        path, "the packaged mesh is not there",
-        "run bash experiments/meshes.sh, or set FARCULL_MESHES to the folder that holds it");
-  }
-  return load_mesh(path);
-}
-
 std::vector<BuiltinScene> packaged_scenes() {
-  return {
+  std::vector<BuiltinScene> out = {
       made({.name = "two-bunnies",
             .description = "two interpenetrating Stanford bunnies",
             .objects = 2,
             .triangles = 150816,
-            .needs_meshes = true,
             .motion = "one passes through the other"},
            make_two_bunnies, pass_through),
       made({.name = "armadillo-elephant",
             .description = "armadillo and elephant of one size in one place",
             .objects = 2,
-            .triangles = 140928,
-            .needs_meshes = true},
+            .triangles = 140928},
            make_armadillo_elephant),
       made({.name = "dragon-bunny",
             .description = "dragon and bunny of one size in one place",
             .objects = 2,
-            .triangles = 95402,
-            .needs_meshes = true},
+            .triangles = 95402},
            make_dragon_bunny),
       made({.name = "near-copy",
             .description = "armadillo and its copy moved by 1e-9 of its diagonal",
             .objects = 2,
-            .triangles = 104000,
-            .needs_meshes = true},
-           make_near_copy),
+            .triangles = 104000},
+           [] { return with_copy("near-copy", kArmadillo, "armadillo", "copy", 1e-9); }),
       made({.name = "bunnies-far-apart",
             .description = "two bunnies ten diagonals from each other",
             .objects = 2,
-            .triangles = 150816,
-            .needs_meshes = true},
-           make_bunnies_far_apart),
+            .triangles = 150816},
+           [] { return with_copy("bunnies-far-apart", kBunny, "first", "second", 10); }),
       made({.name = "mannequin-devil",
             .description =
                 "a mannequin with horns; inside it 1,643 pairs = 1,581 + 62 of neighbours collide",
             .objects = 1,
-            .triangles = 25888,
-            .needs_meshes = true},
-           make_mannequin_devil),
+            .triangles = 25888},
+           [] { return self_colliding("mannequin-devil", kMannequin); }),
       made({.name = "armadillo",
             .description = "the armadillo against itself, where nothing collides",
             .objects = 1,
-            .triangles = 52000,
-            .needs_meshes = true},
-           make_armadillo),
+            .triangles = 52000},
+           [] { return self_colliding("armadillo", kArmadillo); }),
       made({.name = "bunny",
             .description = "the Stanford bunny against itself, where nothing collides",
             .objects = 1,
-            .triangles = 75408,
-            .needs_meshes = true},
-           make_bunny),
+            .triangles = 75408},
+           [] { return self_colliding("bunny", kBunny); }),
+      taking({.name = "bunny-dragon",
+              .description = "bunny and dragon, its triangles divided (CULLIDE, FAR)",
+              .objects = 2,
+              .triangles = 325'408,
+              .size = SceneSize{"triangles of the dragon", kPackagedDragon, 100'000'000, 250'000},
+              .motion = "the bunny falls through the dragon"},
+             make_bunny_dragon),
+      drawn({.name = "breaking-dragon",
+             .description = "a dragon that breaks into 200 pieces (CULLIDE)",
+             .objects = 121,
+             .triangles = 250'000,
+             .size = SceneSize{"triangles", kPackagedDragon, 100'000'000, 250'000},
+             .motion = "pieces come off, become objects, fly apart, turn and fall",
+             .topology_changes = true},
+            13, make_breaking_dragon),
   };
+  for (BuiltinScene& scene : out) scene.needs_meshes = true;
+  return out;
 }
 
 }  // namespace farcull

@@ -1,14 +1,17 @@
-// Scenes of the papers, generated: deforming cylinders and torii (CULLIDE: Govindaraju, Redon, Lin
-// and Manocha, Graphics Hardware 2003), leaves that fall from a tree (FAR: Govindaraju, Lin and
-// Manocha, VRST 2004). Shapes, counts and kinds of motion are the papers'; the rest is ours.
+// Scenes that move. Those of the papers, generated: deforming cylinders and torii (CULLIDE:
+// Govindaraju, Redon, Lin and Manocha, Graphics Hardware 2003), leaves that fall from a tree and a
+// simulated cloth (FAR: Govindaraju, Lin and Manocha, VRST 2004); shapes, counts and kinds of
+// motion are the papers', the rest is ours. And open sheets.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "experiments/scenes/builtin/generators.h"
+#include "experiments/scenes/cloth/cloth.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/shapes.h"
 
@@ -248,6 +251,145 @@ BuiltScene make_tree_leaves(const SceneParameters& parameters, std::uint64_t see
   return halfway(std::move(built));
 }
 
+// ---- sheets of which no argument about closed meshes holds: open, with edges of three triangles,
+// and stacked so closely that a depth buffer of 24 bits cannot separate them ----
+
+constexpr std::uint32_t kCells = 18;  // along a side, which is 1 long
+constexpr double kGrain = 0x1p-40;    // heights are multiples of it
+
+std::uint32_t at(std::uint32_t i, std::uint32_t j) { return i * (kCells + 1) + j; }
+
+// A square of 18 by 18 cells of two triangles. From the middle of its grid lines i = 6 and i = 12
+// rise flaps of 12 by 1 cells, over the cells beyond: on these edges three triangles meet. The
+// raised vertices come after those of the grid.
+Mesh sheet() {
+  auto [vertices, triangles, source_face, group, group_names, folded] = grid(kCells);
+  for (const std::uint32_t line : {6u, 12u}) {
+    const auto first = static_cast<std::uint32_t>(vertices.size());
+    for (std::uint32_t j = 3; j <= kCells - 3; ++j) {
+      const Vec3 below = vertices[at(line + 1, j)];
+      vertices.push_back(below);
+    }
+    for (std::uint32_t j = 3; j < kCells - 3; ++j) {
+      const std::uint32_t a = first + j - 3;
+      triangles.push_back({at(line, j), a, a + 1});
+      triangles.push_back({at(line, j), a + 1, at(line, j + 1)});
+    }
+  }
+  return finished(std::move(vertices), std::move(triangles));
+}
+
+double rounded(double height) { return std::nearbyint(height / kGrain) * kGrain; }
+
+// size: sheets. All heights are multiples of 2^-40 below 2^10, so that sums with the gap, 2^-34,
+// are exact: a sheet of the stack is an exact translate of the one below it and never meets it; nor
+// do the flaps, half a gap high over cells of the same corners.
+BuiltScene make_shells(const SceneParameters& parameters, std::uint64_t seed) {
+  static_assert(kShellGap / 2 >= kGrain);
+  const Mesh shape = sheet();
+  const std::size_t grid = at(kCells, kCells) + 1;
+  const std::uint64_t stacked = parameters.size - parameters.size / 4;
+  SceneBuilder builder("shells", "shells");
+  for (std::uint64_t s = 0; s < parameters.size; ++s) {
+    builder.add(shape, (s < stacked ? "sheet" : "crossing") + std::to_string(s), Split::kNone, {});
+  }
+  Random random(seed);
+  std::vector<double> phases(parameters.size);
+  for (double& phase : phases) phase = random.unit();
+  BuiltScene built{builder.finish(), {}};
+  built.motion = [shape = shape.vertices, grid, stacked, phases = std::move(phases)](
+                     const Instant& now, Scene& out, FrameNotes&) {
+    std::vector<double> heights;
+    for (const Vec3& p : shape) {
+      heights.push_back(rounded(0.1 * std::sin(kTurn * (p.x() + now.time)) +
+                                0.05 * std::cos(kTurn * (1.5 * p.y() - now.time))));
+    }
+    const double thick = static_cast<double>(stacked) * kShellGap;
+    std::size_t v = 0;
+    for (std::size_t s = 0; s < phases.size(); ++s) {
+      for (std::size_t i = 0; i < shape.size(); ++i) {
+        const Vec3& p = shape[i];
+        double lift = i < grid ? 0 : kShellGap / 2;
+        if (s < stacked) {
+          lift += static_cast<double>(s) * kShellGap;
+        } else {
+          // From below the stack to above it, the direction turning with time.
+          const double turn = kTurn * (now.time + phases[s]);
+          const double across =
+              0.5 + (p.x() - 0.5) * std::cos(turn) + (p.y() - 0.5) * std::sin(turn);
+          lift += rounded((across - 0.1) * thick * 1.25);
+        }
+        out.vertices[v++] = Vec3(p.x(), p.y(), heights[i] + lift);
+      }
+    }
+  };
+  return halfway(std::move(built));
+}
+
+// ---- the simulated cloth, of which a frame is a time step ----
+
+FrameNotes notes_of(const ClothReport& report) {
+  return {.values = {{"kinetic J", report.kinetic},
+                     {"elastic J", report.elastic},
+                     {"bending J", report.bending},
+                     {"gravitational J", report.gravitational},
+                     {"contact J", report.contact},
+                     {"total J", report.total()},
+                     {"slack J", report.slack},
+                     {"residual N", report.residual},
+                     {"iterations", report.iterations},
+                     {"converged", report.converged ? 1 : 0}},
+          .warning = report.warning};
+}
+
+// A simulation, and the folder that keeps its states where there is one.
+class Simulated {
+ public:
+  explicit Simulated(const ClothSettings& settings) : settings_(settings), cloth_(settings) {}
+
+  const Scene& scene() const { return cloth_.scene(); }
+  const ClothReport& report() const { return cloth_.report(); }
+
+  // Starts from the last frame that is known at or before `frame`: the one that it is at, a kept
+  // one, or the first.
+  void go_to(long frame) {
+    if (frame == report().frame) return;
+    const std::string folder = cloth_folder();
+    if (!folder.empty() && !kept_) kept_.emplace(folder, settings_);
+    const long at = report().frame <= frame ? report().frame : -1;
+    const long last = kept_ ? kept_->last(frame) : 0;
+    if (last > at && last > 0) {
+      cloth_.restore(kept_->read(last));
+    } else if (at < 0) {
+      cloth_ = Cloth(settings_);
+    }
+    while (report().frame < frame) {
+      cloth_.step();
+      if (kept_) kept_->write(cloth_.state());
+    }
+  }
+
+ private:
+  ClothSettings settings_;
+  Cloth cloth_;
+  std::optional<KeptCloth> kept_;
+};
+
+// size: triangles of the cloth, as near as a square grid comes; second: stiffness, N/m.
+BuiltScene make_cloth(const SceneParameters& parameters) {
+  ClothSettings settings;
+  settings.triangles = parameters.size;
+  settings.stiffness = parameters.second;
+  const auto now = std::make_shared<Simulated>(settings);
+  BuiltScene built{now->scene(), {}};
+  built.motion = [now](const Instant& wanted, Scene& out, FrameNotes& notes) {
+    now->go_to(wanted.frame);
+    out.vertices = now->scene().vertices;
+    notes = notes_of(now->report());
+  };
+  return built;
+}
+
 }  // namespace
 
 std::vector<BuiltinScene> paper_scenes() {
@@ -275,6 +417,24 @@ std::vector<BuiltinScene> paper_scenes() {
              .motion = "the leaves fall and turn through the branches",
              .costly = true},
             11, make_tree_leaves),
+      drawn({.name = "shells",
+             .description = "open non-manifold sheets, three in four of them stacked at gaps of "
+                            "2^-34 of their width, the others through them at angles as small",
+             .objects = 16,
+             .triangles = 11'136,
+             .size = SceneSize{"sheets", 4, 10'000, 16},
+             .motion = "waves run through the stack while the others tilt"},
+            12, make_shells),
+      taking({.name = "cloth",
+              .description = "a cloth above a sphere, against itself as well (FAR)",
+              .objects = 2,
+              .triangles = 25'120,
+              .size = SceneSize{"triangles of the cloth", 8, 200'000, 20'000},
+              .second = SceneSecond{"stiffness in N/m", 1e2, 1e8, 1e4},
+              .motion = "it falls on the sphere and folds over itself; a frame is a time step "
+                        "(FARCULL_CLOTH=DIR keeps them)",
+              .costly = true},
+             make_cloth),
   };
 }
 

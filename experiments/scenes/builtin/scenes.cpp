@@ -1,16 +1,20 @@
-// Lists the scenes of all generators, and reads names with their numbers and suffixes.
+// Lists the scenes of all generators, reads names with their numbers and suffixes, and calls the
+// motion of a scene for each frame.
 #include "experiments/scenes/builtin/scenes.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/view/view.h"
-#include "experiments/scenes/builtin/generators.h"
+#include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/mesh/shapes.h"
 #include "experiments/scenes/mesh/text.h"
 
 namespace farcull {
@@ -89,9 +93,8 @@ SceneParameters BuiltinScene::usual() const {
 const std::vector<BuiltinScene>& builtin_scenes() {
   static const std::vector<BuiltinScene> scenes = [] {
     std::vector<BuiltinScene> all;
-    for (const auto group :
-         {generated_scenes, bench_scenes, contact_scenes, paper_scenes, sheet_scenes, cloth_scenes,
-          extreme_scenes, packaged_scenes, dragon_scenes}) {
+    for (const auto group : {generated_scenes, bench_scenes, contact_scenes, paper_scenes,
+                             extreme_scenes, packaged_scenes}) {
       for (BuiltinScene& scene : group()) all.push_back(std::move(scene));
     }
     return all;
@@ -147,6 +150,112 @@ Scene make_builtin_scene(const std::string& name) {
   scene.name = name;
   for (const SceneSuffix* suffix : request.suffixes) apply(suffix->change(scene), scene);
   return scene;
+}
+
+namespace {
+
+SceneChange moved_far(const Scene& scene) {
+  const double step = 1e6 * diagonal(bounds(scene)) / std::sqrt(3.0);
+  return {.scale = 1, .translate = Vec3::Constant(step), .ground = {}};
+}
+
+SceneChange on_ground(const Scene& scene) {
+  const Box box = bounds(scene);
+  assert(!box.is_empty());
+  return {.ground = shapes::square(centre(box), 1000 * diagonal(box))};
+}
+
+}  // namespace
+
+const std::vector<SceneSuffix>& scene_suffixes() {
+  static const std::vector<SceneSuffix> suffixes = {
+      {"@far", "moved by 1e6 of its diagonals along (1, 1, 1)", moved_far},
+      {"@tiny", "scaled by 1e-6", [](const Scene&) { return SceneChange{.scale = 1e-6}; }},
+      {"@huge", "scaled by 1e6", [](const Scene&) { return SceneChange{.scale = 1e6}; }},
+      {"@ground", "with a ground of two triangles a thousand times larger", on_ground},
+  };
+  return suffixes;
+}
+
+void apply(const SceneChange& change, Scene& scene) {
+  if (change.scale != 1 || !change.translate.isZero(0)) {
+    for (Vec3& p : scene.vertices) p = change.scale * p + change.translate;
+  }
+  if (change.ground) {
+    const auto vertex = static_cast<std::uint32_t>(scene.vertices.size());
+    scene.vertices.insert(scene.vertices.end(), change.ground->begin(), change.ground->end());
+    scene.objects.push_back({"ground", static_cast<std::uint32_t>(scene.triangles.size()), 2});
+    scene.triangles.push_back({vertex, vertex + 1, vertex + 2});
+    scene.triangles.push_back({vertex, vertex + 2, vertex + 3});
+    scene.source_face.insert(scene.source_face.end(), {0, 1});
+  }
+  validate(scene, scene.name);
+}
+
+Scene transformed(Scene scene, double scale, const Vec3& translate) {
+  apply({.scale = scale, .translate = translate, .ground = {}}, scene);
+  return scene;
+}
+
+namespace {
+
+BuiltScene built_for(const SceneRequest& request, const std::string& name) {
+  if (request.entry->motion.empty())
+    throw Error(name, "nothing in the scene moves", "name one of " + moving_names());
+  BuiltScene built = request.entry->build(request.parameters);
+  built.scene.name = name;
+  return built;
+}
+
+}  // namespace
+
+bool has_motion(const std::string& name) {
+  const BuiltinScene* const entry = find_builtin_scene(name);
+  return entry != nullptr && !entry->motion.empty();
+}
+
+std::string moving_names() {
+  std::string names;
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    if (!scene.motion.empty()) names += (names.empty() ? "" : ", ") + scene.name;
+  }
+  return names;
+}
+
+MovingScene::MovingScene(BuiltScene built, long frames, bool self)
+    : frames_(frames),
+      self_(self),
+      motion_(std::move(built.motion)),
+      plain_(std::move(built.scene)) {
+  assert(frames >= 1 && motion_);
+}
+
+MovingScene::MovingScene(const std::string& name, long frames, bool self)
+    : MovingScene(built_for(parse_scene_name(name), name), frames, self) {
+  const SceneRequest request = parse_scene_name(name);
+  if (request.suffixes.empty()) return;
+  changed_ = plain_;
+  for (const SceneSuffix* suffix : request.suffixes) {
+    changes_.push_back(suffix->change(changed_));
+    apply(changes_.back(), changed_);
+  }
+}
+
+const Scene& MovingScene::at(long frame) {
+  assert(0 <= frame && frame < frames_);
+  const auto last = static_cast<double>(std::max(1L, frames_ - 1));
+  notes_ = {};
+  motion_({frame, static_cast<double>(frame) / last}, plain_, notes_);
+  Scene* shown = &plain_;
+  if (changes_.empty()) {
+    validate(plain_, plain_.name);
+  } else {
+    shown = &changed_;
+    changed_ = plain_;  // assigned, so that the vectors keep their memory
+    for (const SceneChange& change : changes_) apply(change, changed_);
+  }
+  for (Object& object : shown->objects) object.self = object.self || self_;
+  return *shown;
 }
 
 }  // namespace farcull

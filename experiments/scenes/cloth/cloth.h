@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/scene/scene.h"
@@ -65,21 +66,47 @@ class Cloth {
   /// The energies now. frame, residual, iterations and so on are those of the last step.
   const ClothReport& report() const;
 
-  /// m/s, three numbers for each vertex of the cloth.
-  const Eigen::VectorXd& velocity() const;
-  /// Replaces the velocities. Numbers that are not finite make the next step fail as said above.
-  /// Throws std::logic_error if there are not three for each vertex of the cloth.
-  void set_velocity(const Eigen::VectorXd& velocity);
-
   /// After restore(state()) of a cloth with the same settings, the steps to come give the same bits
   /// as those of that cloth.
   ClothState state() const;
-  /// Throws std::logic_error if there are not three positions and velocities for each vertex.
+  /// The energies of the report are computed anew. Velocities that are not finite make the next
+  /// step fail as said above. Throws std::logic_error if there are not three positions and
+  /// velocities for each vertex.
   void restore(const ClothState& state);
 
  private:
   struct State;
   std::unique_ptr<State> state_;
+};
+
+/// The folder named by the environment variable FARCULL_CLOTH; empty where it is not set.
+std::string cloth_folder();
+
+/// The states of one cloth, one file a frame: its doubles as they are in memory, under a heading
+/// that says which settings and which arithmetic they are of, with a checksum. A file appears whole
+/// or not at all.
+class KeptCloth {
+ public:
+  /// Makes FOLDER and in it the folder of these settings. Throws Error where they cannot be made.
+  KeptCloth(const std::string& folder, const ClothSettings& settings);
+
+  /// The file of a frame.
+  std::string path(long frame) const;
+
+  /// The largest frame from 1 to `frame` that has a file; 0 where none has: the start is not kept.
+  long last(long frame) const;
+
+  /// The state in the file of a frame, bit for bit as write() got it. Throws Error naming the file
+  /// and the remedy where it cannot be read, is truncated or damaged, is of another frame, of other
+  /// settings or of other arithmetic.
+  ClothState read(long frame) const;
+
+  /// Throws Error naming the file where the system refuses it.
+  void write(const ClothState& state) const;
+
+ private:
+  std::string folder_;
+  std::string heading_;  // of each file: settings and arithmetic
 };
 
 }  // namespace farcull

@@ -1,5 +1,5 @@
 // Numbers the grid by nested dissection, then factors part by part with dense matrices of Eigen.
-#include "experiments/scenes/cloth/factor.h"
+#include "experiments/scenes/cloth/solver.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -128,7 +128,7 @@ void add_springs_and_hinges(Model& model) {
   }
 }
 
-// Of the convex spring less the thrust T l^2/2; 0 at rest.
+// Energy of the convex spring less the thrust T l^2/2; 0 at rest.
 double spring_energy(const Model& model, std::size_t spring, double l) {
   const ClothSettings& s = model.settings;
   const double c = s.stiffness + s.buckling_load;
@@ -224,37 +224,6 @@ Step make_step(const Model& model, const Eigen::VectorXd& x0, const Eigen::Vecto
         s.friction * smooth_force(contact_stiffness(model, v), model.crimp, s.radius - distance);
   }
   return step;
-}
-
-double value(const Step& step, const Eigen::VectorXd& x) {
-  const Model& model = step.model;
-  const ClothSettings& s = model.settings;
-  const double h = s.time_step;
-  double sum = 0;
-  for (std::uint32_t v = 0; v < model.mass.size(); ++v) {
-    const Vec3 moved = at(x, v) - at(step.x0, v);
-    sum += 0.5 * model.mass[v] * (moved / h - at(step.v0, v)).squaredNorm();
-    sum += 0.5 * s.drag * model.area[v] / h * moved.squaredNorm();
-    sum += model.mass[v] * s.gravity * x[3 * v + 2];
-    if (step.normal[v].isZero(0)) continue;
-    sum += depth_energy(model, v, s.radius - step.normal[v].dot(at(x, v)));
-    if (step.friction[v] == 0) continue;
-    const double slid = (moved - step.normal[v].dot(moved) * step.normal[v]).norm();
-    const double stick = h * s.stick_speed;
-    sum += step.friction[v] * (slid <= stick ? slid * slid / (2 * stick) : slid - stick / 2);
-  }
-  for (std::size_t i = 0; i < model.springs.size(); ++i) {
-    const auto [a, b] = model.springs[i].vertices;
-    const Vec3 d = at(x, b) - at(x, a);
-    sum += smooth_energy(step.stretch, model.crimp, d.norm() - slack_length(model, i));
-    sum -= s.buckling_load * (at(step.x0, b) - at(step.x0, a)).dot(d);
-  }
-  for (const Hinge& hinge : model.hinges) {
-    Vec3 w = Vec3::Zero();
-    for (int c = 0; c < 4; ++c) w += hinge.weights[c] * at(x, hinge.vertices[c]);
-    sum += 0.5 * hinge.stiffness * w.squaredNorm();
-  }
-  return sum;
 }
 
 void soft_gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result) {

@@ -78,8 +78,6 @@ struct Step {
 /// Precondition: sizes are those of the model. The model must outlive the step.
 Step make_step(const Model& model, const Eigen::VectorXd& x0, const Eigen::VectorXd& v0);
 
-/// Up to a constant, J.
-double value(const Step& step, const Eigen::VectorXd& x);
 /// N. `result` gets the size of x.
 void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result);
 
@@ -92,7 +90,7 @@ double smooth_energy(double c, double crimp, double e);
 
 /// l*, where the convex spring begins, m.
 double slack_length(const Model& model, std::size_t spring);
-/// Of the sphere's surface at a vertex, N/m.
+/// Stiffness of the sphere's surface at a vertex, N/m.
 double contact_stiffness(const Model& model, std::size_t vertex);
 
 /// The part of the gradient that is not of springs or contact, thrust and friction included.

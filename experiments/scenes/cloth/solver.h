@@ -1,17 +1,126 @@
-// The minimum of a step of the cloth: Newton's method, and interior points where that creeps.
+// The minimum of a step of the cloth: Newton's method, and interior points where that creeps; the
+// matrix of both is factored by dense fronts.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <array>
+#include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "experiments/scenes/cloth/factor.h"
 #include "experiments/scenes/cloth/model.h"
 
 namespace farcull::cloth {
+
+/// A grid of side x side vertices cut in half again and again by lines two vertices wide. Vertices
+/// that are at most two rows and two columns apart are on one side of a line, or one is on it.
+struct Dissection {
+  struct Part {
+    std::uint32_t begin = 0;  // its places are begin to end - 1
+    std::uint32_t end = 0;
+    std::uint32_t parent = 0;  // index of the part that cuts it off; of the last: its own
+  };
+  std::vector<std::uint32_t> places;  // per vertex, row by row
+  std::vector<Part> parts;            // by their places; parents come after what they cut off
+};
+Dissection dissect(std::uint32_t side);
+
+class Factor {
+ public:
+  /// The pattern of `matrix`: the lower triangle of a symmetric matrix of 3 x 3 blocks (of which
+  /// the diagonal ones are lower triangles), compressed, in the order of places. It couples only
+  /// vertices that are at most two rows and two columns apart.
+  Factor(const Dissection& dissection, const Eigen::SparseMatrix<double>& matrix);
+
+  /// False iff the matrix, which has the pattern, is not positive definite in double.
+  bool factorize(const Eigen::SparseMatrix<double>& matrix);
+  /// Precondition: factorize() was last true. In the order of places.
+  void solve_in_place(Eigen::VectorXd& x) const;
+
+ private:
+  struct Front {
+    std::uint32_t begin = 0;  // places that are eliminated here
+    std::uint32_t end = 0;
+    std::uint32_t parent = 0;
+    std::vector<std::uint32_t> rows;   // later places that these are coupled to, ascending
+    std::vector<std::uint32_t> above;  // per row: its index among begin ... end, rows of the parent
+    Eigen::MatrixXd panel;             // columns of the factor: of begin ... end; above the rest
+    Eigen::MatrixXd update;            // what they leave to the parent, lower triangle
+  };
+  void assemble(const Eigen::SparseMatrix<double>& matrix, Front& front);
+  static void extend(const Front& child, Front& parent);
+
+  std::vector<Front> fronts_;
+  std::vector<std::vector<std::uint32_t>> children_;
+  std::vector<std::uint32_t> index_;  // scratch, per place: its index in the front at hand
+};
+
+/// A point of the cone t >= |d|, or of its dual, which is the same cone.
+struct ConePoint {
+  double t = 0;
+  Vec3 d = Vec3::Zero();
+};
+/// t^2 - |d|^2.
+double determinant(const ConePoint& u);
+/// The largest a with u + a du in the cone; infinite if there is no largest one. u is inside.
+double reach(const ConePoint& u, const ConePoint& du);
+
+class Interior {
+ public:
+  /// Inside, from the positions. `complementarity`: of each spring and contact at first, J.
+  /// The step must outlive it.
+  Interior(const Step& step, const Eigen::VectorXd& x, double complementarity);
+
+  /// Mean of the complementarities, J.
+  double complementarity() const;
+
+  /// The equations of the next direction, which aims at complementarity `target`. Per spring and
+  /// vertex, what the unknown parts add to the matrix and, for d or x, to the force.
+  void linearize(const Eigen::VectorXd& x, double target);
+  const Block& spring_block(std::size_t spring) const { return springs_[spring].block; }
+  const Vec3& spring_force(std::size_t spring) const { return springs_[spring].force; }
+  Block contact_block(std::size_t vertex) const;
+  Vec3 contact_force(std::size_t vertex) const;
+
+  /// Goes along the direction as far as it may, the positions with it, and returns the part of it
+  /// that was gone, at most 1. Precondition: linearize() came before, at x.
+  double move(const Eigen::VectorXd& direction, Eigen::VectorXd& x);
+
+ private:
+  struct SpringState {
+    double length = 0;  // l*
+    ConePoint u;
+    ConePoint z;
+    ConePoint du;
+    ConePoint dz;
+    double across = 0;  // of the scaling: t with t, and stiffness
+    double right = 0;   // of the equation of t
+    Vec3 mixed;         // of the scaling: t with d
+    Block whole;        // of the scaling: d with d
+    Block block;        // of the matrix, t eliminated
+    Vec3 force;         // of the right hand side
+  };
+  struct ContactState {
+    double stiffness = 0;
+    double s = 0;
+    double f = 0;
+    double ds = 0;
+    double df = 0;
+    double scaling = 0;  // f/s
+    double block = 0;
+    double force = 0;
+    double right = 0;
+    bool is_there = false;
+  };
+
+  const Step& step_;
+  double target_ = 0;
+  std::vector<SpringState> springs_;
+  std::vector<ContactState> contacts_;  // per vertex
+};
 
 struct Minimum {
   Eigen::VectorXd x;

@@ -1,6 +1,7 @@
-// Two tables: extensions and first bytes. The commands were tried with assimp 5.2.5, meshio 5.0,
-// Gmsh 4.8.4 and Blender 3.4.1.
-#include "experiments/scenes/mesh/foreign.h"
+// Formats that are not read: a table of their extensions, their first bytes, and the commands that
+// convert them. The commands were tried with assimp 5.2.5, meshio 5.0, Gmsh 4.8.4 and
+// Blender 3.4.1.
+#include "experiments/scenes/mesh/load.h"
 
 #include <fmt/format.h>
 
@@ -8,100 +9,68 @@
 #include <array>
 #include <filesystem>
 
+#include "experiments/scenes/mesh/text.h"
 #include "experiments/system/shell_word.h"
 
 namespace farcull {
 namespace {
 
-enum class Converter {
-  assimp,
-  meshio,
-  gmsh_mesh,
-  gmsh_shape,
-  blend,
-  usd,
-  abc,
-  xz,
-  bzip2,
-  zstd,
-  zip
+using namespace std::string_view_literals;
+
+struct Converter {
+  // {0}: the file, {1}: the result, each as a shell reads it; {2}: a script for Blender.
+  const char* command;
+  const char* extension = "";  // of the result
+  const char* import = "";  // of the script: how Blender reads the file, where it does not open it
+  bool packed = false;      // the file is unpacked, not converted
 };
+
+constexpr Converter kAssimp = {"assimp export {0} {1} (Debian: assimp-utils)", ".obj"};
+constexpr Converter kMeshio = {"meshio convert {0} {1} (Debian: meshio-tools)", ".off"};
+constexpr Converter kGmshMesh = {"gmsh {0} -save -o {1} (Debian: gmsh)", ".stl"};
+constexpr Converter kGmshShape = {"gmsh {0} -2 -o {1} (Debian: gmsh)", ".stl"};
+constexpr Converter kBlender = {"blender -b {0} --python-expr {2} (Debian: blender)", ".obj"};
+constexpr const char* kNewBlender = "blender -b --python-expr {2} (Blender of blender.org)";
 
 struct Foreign {
   std::string_view name;
   Converter by;
+  std::string_view extensions;
+  // The file begins with one of these; with '<', it holds it among its first bytes.
+  std::array<std::string_view, 2> signs = {};
 };
 
-struct Extension {
-  std::string_view extension;
-  Foreign format;
-};
-
-constexpr Foreign kGltf = {"glTF", Converter::assimp};
-constexpr Foreign kFbx = {"FBX", Converter::assimp};
-constexpr Foreign kDae = {"COLLADA", Converter::assimp};
-constexpr Foreign k3ds = {"3DS", Converter::assimp};
-constexpr Foreign kX3d = {"X3D", Converter::assimp};
-constexpr Foreign k3mf = {"3MF", Converter::assimp};
-constexpr Foreign kVtk = {"VTK", Converter::meshio};
-constexpr Foreign kMedit = {"a mesh of Medit", Converter::meshio};
-constexpr Foreign kAbaqus = {"an input file of Abaqus", Converter::meshio};
-constexpr Foreign kNastran = {"bulk data of Nastran", Converter::meshio};
-constexpr Foreign kNetgen = {"a mesh of Netgen", Converter::meshio};
-constexpr Foreign kMsh = {"a mesh of Gmsh", Converter::gmsh_mesh};
-constexpr Foreign kStep = {"STEP", Converter::gmsh_shape};
-constexpr Foreign kIges = {"IGES", Converter::gmsh_shape};
-constexpr Foreign kBrep = {"a shape of OpenCASCADE", Converter::gmsh_shape};
-constexpr Foreign kUsd = {"USD", Converter::usd};
-constexpr Foreign kAlembic = {"Alembic", Converter::abc};
-constexpr Foreign kBlend = {"a file of Blender", Converter::blend};
-constexpr Foreign kXz = {"compressed by xz", Converter::xz};
-constexpr Foreign kBzip2 = {"compressed by bzip2", Converter::bzip2};
-constexpr Foreign kZstd = {"compressed by zstd", Converter::zstd};
-constexpr Foreign kZip = {"a zip archive", Converter::zip};
-
-constexpr std::array<Extension, 30> kExtensions = {
-    {{".gltf", kGltf},   {".glb", kGltf},    {".fbx", kFbx},    {".dae", kDae},
-     {".3ds", k3ds},     {".x3d", kX3d},     {".3mf", k3mf},    {".vtk", kVtk},
-     {".vtu", kVtk},     {".mesh", kMedit},  {".inp", kAbaqus}, {".bdf", kNastran},
-     {".nas", kNastran}, {".vol", kNetgen},  {".msh", kMsh},    {".step", kStep},
-     {".stp", kStep},    {".iges", kIges},   {".igs", kIges},   {".brep", kBrep},
-     {".usd", kUsd},     {".usda", kUsd},    {".usdc", kUsd},   {".usdz", kUsd},
-     {".abc", kAlembic}, {".blend", kBlend}, {".xz", kXz},      {".bz2", kBzip2},
-     {".zst", kZstd},    {".zip", kZip}}};
-
-struct Sign {
-  std::string_view text;
-  bool first;  // the file begins with it; else it stands among the first bytes
-  Foreign format;
-};
-
-using namespace std::string_view_literals;
-constexpr std::array<Sign, 18> kSigns = {{{"glTF"sv, true, kGltf},
-                                          {"Kaydara FBX Binary"sv, true, kFbx},
-                                          {"; FBX "sv, true, kFbx},
-                                          {"<COLLADA"sv, false, kDae},
-                                          {"<X3D"sv, false, kX3d},
-                                          {"# vtk DataFile"sv, true, kVtk},
-                                          {"<VTKFile"sv, false, kVtk},
-                                          {"$MeshFormat"sv, true, kMsh},
-                                          {"MeshVersionFormatted"sv, true, kMedit},
-                                          {"ISO-10303-21"sv, true, kStep},
-                                          {"DBRep_DrawableShape"sv, true, kBrep},
-                                          {"PXR-USDC"sv, true, kUsd},
-                                          {"#usda"sv, true, kUsd},
-                                          {"Ogawa"sv, true, kAlembic},
-                                          {"BLENDER"sv, true, kBlend},
-                                          {"\xfd"
-                                           "7zXZ\0"sv,
-                                           true, kXz},
-                                          {"\x28\xb5\x2f\xfd"sv, true, kZstd},
-                                          {"PK\x03\x04"sv, true, kZip}}};
-
-std::string lower(std::string text) {
-  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
-}
+constexpr std::array<Foreign, 22> kForeign = {{
+    {"glTF", kAssimp, ".gltf .glb", {"glTF"}},
+    {"FBX", kAssimp, ".fbx", {"Kaydara FBX Binary", "; FBX "}},
+    {"COLLADA", kAssimp, ".dae", {"<COLLADA"}},
+    {"X3D", kAssimp, ".x3d", {"<X3D"}},
+    {"VTK", kMeshio, ".vtk .vtu", {"# vtk DataFile", "<VTKFile"}},
+    {"a mesh of Gmsh", kGmshMesh, ".msh", {"$MeshFormat"}},
+    {"a mesh of Medit", kMeshio, ".mesh", {"MeshVersionFormatted"}},
+    {"STEP", kGmshShape, ".step .stp", {"ISO-10303-21"}},
+    {"a shape of OpenCASCADE", kGmshShape, ".brep", {"DBRep_DrawableShape"}},
+    {"USD", {kNewBlender, ".obj", "usd_import"}, ".usd .usda .usdc .usdz", {"PXR-USDC", "#usda"}},
+    {"Alembic", {kNewBlender, ".obj", "alembic_import"}, ".abc", {"Ogawa"}},
+    {"a file of Blender", kBlender, ".blend", {"BLENDER"}},
+    {"compressed by xz",
+     {"xz -dk {0} (Debian: xz-utils)", "", "", true},
+     ".xz",
+     {"\xfd"
+      "7zXZ\0"sv}},
+    {"compressed by zstd",
+     {"zstd -d {0} (Debian: zstd)", "", "", true},
+     ".zst",
+     {"\x28\xb5\x2f\xfd"}},
+    {"a zip archive", {"unzip {0} (Debian: unzip)", "", "", true}, ".zip", {"PK\x03\x04"}},
+    {"compressed by bzip2", {"bzip2 -dk {0} (Debian: bzip2)", "", "", true}, ".bz2"},
+    {"3DS", kAssimp, ".3ds"},
+    {"3MF", kAssimp, ".3mf"},
+    {"an input file of Abaqus", kMeshio, ".inp"},
+    {"bulk data of Nastran", kMeshio, ".bdf .nas"},
+    {"a mesh of Netgen", kMeshio, ".vol"},
+    {"IGES", kGmshShape, ".iges .igs"},
+}};
 
 // A string of Python, in double quotes.
 std::string python_text(const std::string& text) {
@@ -110,48 +79,18 @@ std::string python_text(const std::string& text) {
   return out + "\"";
 }
 
-std::string blender(const std::string& import, const std::string& from, const std::string& to) {
-  return "blender -b --python-expr " +
-         quoted("import bpy; bpy.ops.wm.read_factory_settings(use_empty=True); bpy.ops.wm." +
-                import + "(filepath=" + python_text(from) +
-                "); bpy.ops.wm.obj_export(filepath=" + python_text(to) + ")");
-}
-
 // The command, and where its program comes from.
-std::string command(Converter by, const std::string& path) {
+std::string command(const Converter& by, const std::string& path) {
   const std::filesystem::path whole(path);
-  const auto beside = [&](const char* extension) {
-    return (whole.parent_path() / (mesh_stem(path) + extension)).string();
-  };
-  const std::string from = quoted(path);
-  switch (by) {
-    case Converter::assimp:
-      return "assimp export " + from + " " + quoted(beside(".obj")) + " (Debian: assimp-utils)";
-    case Converter::meshio:
-      return "meshio convert " + from + " " + quoted(beside(".off")) + " (Debian: meshio-tools)";
-    case Converter::gmsh_mesh:
-      return "gmsh " + from + " -save -o " + quoted(beside(".stl")) + " (Debian: gmsh)";
-    case Converter::gmsh_shape:
-      return "gmsh " + from + " -2 -o " + quoted(beside(".stl")) + " (Debian: gmsh)";
-    case Converter::blend:
-      return "blender -b " + from + " --python-expr " +
-             quoted("import bpy; bpy.ops.wm.obj_export(filepath=" + python_text(beside(".obj")) +
-                    ")") +
-             " (Debian: blender)";
-    case Converter::usd:
-      return blender("usd_import", path, beside(".obj")) + " (Blender of blender.org)";
-    case Converter::abc:
-      return blender("alembic_import", path, beside(".obj")) + " (Blender of blender.org)";
-    case Converter::xz:
-      return "xz -dk " + from + " (Debian: xz-utils)";
-    case Converter::bzip2:
-      return "bzip2 -dk " + from + " (Debian: bzip2)";
-    case Converter::zstd:
-      return "zstd -d " + from + " (Debian: zstd)";
-    case Converter::zip:
-      return "unzip " + from + " (Debian: unzip)";
+  const std::string to = (whole.parent_path() / (mesh_stem(path) + by.extension)).string();
+  std::string script = "import bpy; ";
+  if (*by.import != '\0') {
+    script += fmt::format(
+        "bpy.ops.wm.read_factory_settings(use_empty=True); bpy.ops.wm.{}(filepath={}); ", by.import,
+        python_text(path));
   }
-  return "";
+  script += "bpy.ops.wm.obj_export(filepath=" + python_text(to) + ")";
+  return fmt::format(fmt::runtime(by.command), quoted(path), quoted(to), farcull::quoted(script));
 }
 
 // 3DS begins with the chunk of the whole file: its number and its length. The number of the next
@@ -162,55 +101,56 @@ bool is_3ds(std::string_view bytes) {
   return chunk == "\x02\0"sv || chunk == "\x3d\x3d"sv;
 }
 
-bool is_gltf_text(std::string_view bytes) {
-  return bytes.starts_with("{") && bytes.find("\"asset\"") != std::string_view::npos;
+Error refusal(const Foreign& format, const std::string& path, const char* how) {
+  return Error(path,
+               fmt::format("{}{}, which is not read ({})", how, format.name,
+                           format.by.packed ? "gzip is" : "OBJ, OFF, PLY and STL are"),
+               (format.by.packed ? "unpack it: " : "convert it: ") + command(format.by, path));
 }
 
-Error refusal(const Foreign& format, const std::string& path, const std::string& how) {
-  const bool packed = format.by == Converter::xz || format.by == Converter::bzip2 ||
-                      format.by == Converter::zstd || format.by == Converter::zip;
-  return Error(path,
-               how + std::string(format.name) +
-                   (packed ? ", which is not read (gzip is)"
-                           : ", which is not read (OBJ, OFF, PLY and STL are)"),
-               std::string(packed ? "unpack it: " : "convert it: ") + command(format.by, path));
+const Foreign& named(std::string_view name) {
+  return *std::ranges::find(kForeign, name, &Foreign::name);
 }
 
 }  // namespace
 
 std::string lower_extension(const std::string& path) {
   const std::filesystem::path name(path);
-  const std::string last = lower(name.extension().string());
-  return last == ".gz" ? lower(name.stem().extension().string()) + last : last;
+  const std::string last = lower_case(name.extension().string());
+  return last == ".gz" ? lower_case(name.stem().extension().string()) + last : last;
 }
 
 std::string mesh_stem(const std::string& path) {
   const std::filesystem::path name(path);
-  return lower(name.extension().string()) == ".gz" ? name.stem().stem().string()
-                                                   : name.stem().string();
+  return lower_case(name.extension().string()) == ".gz" ? name.stem().stem().string()
+                                                        : name.stem().string();
 }
 
 std::optional<Error> foreign_name(const std::string& path) {
-  std::string extension = lower_extension(path);
-  if (extension.ends_with(".gz")) return std::nullopt;
-  for (const Extension& known : kExtensions) {
-    if (extension == known.extension) return refusal(known.format, path, "is ");
+  const std::string extension = lower_extension(path);
+  if (extension.empty() || extension.ends_with(".gz")) return std::nullopt;
+  for (const Foreign& format : kForeign) {
+    if ((std::string(format.extensions) + " ").find(extension + " ") != std::string::npos)
+      return refusal(format, path, "is ");
   }
   return std::nullopt;
 }
 
 std::optional<Error> foreign_contents(std::string_view bytes, const std::string& path) {
   bytes = bytes.substr(0, kTellingBytes);
-  for (const Sign& sign : kSigns) {
-    const std::size_t at = bytes.find(sign.text);
-    if (at == 0 || (at != std::string_view::npos && !sign.first))
-      return refusal(sign.format, path, "holds ");
+  for (const Foreign& format : kForeign) {
+    for (const std::string_view sign : format.signs) {
+      const std::size_t at = sign.empty() ? std::string_view::npos : bytes.find(sign);
+      if (at == 0 || (at != std::string_view::npos && sign.starts_with('<')))
+        return refusal(format, path, "holds ");
+    }
   }
   // bzip2: the size of its blocks follows, then the first digits of pi.
   if (bytes.size() > 10 && bytes.starts_with("BZh") && bytes.substr(4, 3) == "1AY")
-    return refusal(kBzip2, path, "holds ");
-  if (is_3ds(bytes)) return refusal(k3ds, path, "holds ");
-  if (is_gltf_text(bytes)) return refusal(kGltf, path, "holds ");
+    return refusal(named("compressed by bzip2"), path, "holds ");
+  if (is_3ds(bytes)) return refusal(named("3DS"), path, "holds ");
+  if (bytes.starts_with("{") && bytes.find("\"asset\"") != std::string_view::npos)
+    return refusal(named("glTF"), path, "holds ");
   return std::nullopt;
 }
 

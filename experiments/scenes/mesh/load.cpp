@@ -1,15 +1,22 @@
-// Chooses the reader by the extension of the path. Compressed contents are decompressed first.
+// Chooses the reader by the extension of the path, collects the faces that it reads, and keeps
+// meshes by their real paths. Compressed contents are decompressed first.
 #include "experiments/scenes/mesh/load.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
+#include <memory>
 #include <new>
 #include <optional>
+#include <utility>
 
 #include "core/base/error.h"
 #include "experiments/scenes/mesh/builder.h"
-#include "experiments/scenes/mesh/foreign.h"
-#include "experiments/scenes/mesh/gzip.h"
 #include "experiments/scenes/mesh/text.h"
 
 namespace farcull {
@@ -19,15 +26,77 @@ namespace {
 // refused at once.
 constexpr std::uint64_t kMaxMeshBytes = std::uint64_t{4} << 30;
 
+struct Reader {
+  std::string_view extension;
+  MeshFormat format;
+  Mesh (*parse)(std::string_view bytes, const std::string& name);
+};
+// In the order of MeshFormat.
+constexpr std::array<Reader, 4> kReaders = {{{".obj", MeshFormat::kObj, parse_obj},
+                                             {".off", MeshFormat::kOff, parse_off},
+                                             {".ply", MeshFormat::kPly, parse_ply},
+                                             {".stl", MeshFormat::kStl, parse_stl}}};
+
 std::optional<MeshFormat> find_format(const std::string& path) {
   std::string extension = lower_extension(path);
   if (extension.ends_with(".gz")) extension.resize(extension.size() - 3);
-  if (extension == ".obj") return MeshFormat::kObj;
-  if (extension == ".off") return MeshFormat::kOff;
-  if (extension == ".ply") return MeshFormat::kPly;
-  if (extension == ".stl") return MeshFormat::kStl;
-  return std::nullopt;
+  const auto found = std::ranges::find(kReaders, extension, &Reader::extension);
+  return found == kReaders.end() ? std::nullopt : std::optional(found->format);
 }
+
+// Contents that are no mesh of this format may be in a format that is not read: the error says so.
+Mesh parse_known(std::string_view bytes, MeshFormat format, const std::string& name) {
+  try {
+    if (bytes.empty()) throw Error(name, "the file is empty", "give a mesh with at least one face");
+    return kReaders.at(static_cast<std::size_t>(format)).parse(bytes, name);
+  } catch (const Error&) {
+    if (const std::optional<Error> foreign = foreign_contents(bytes, name)) throw *foreign;
+    throw;
+  }
+}
+
+// ---- names of files with a place for a number
+
+struct Place {
+  std::size_t at = std::string::npos;  // of the %
+  std::size_t size = 0;
+  int digits = 1;
+};
+
+// The first place for a number, and whether it is the only one.
+std::pair<Place, bool> place_in(const std::string& name) {
+  Place found;
+  int count = 0;
+  for (std::size_t at = name.find('%'); at != std::string::npos; at = name.find('%', at + 1)) {
+    const std::string rest = name.substr(at + 1, 3);
+    Place place{.at = at};
+    if (rest.starts_with('d')) {
+      place.size = 2;
+    } else if (rest.size() == 3 && rest[0] == '0' && rest[1] >= '1' && rest[1] <= '9' &&
+               rest[2] == 'd') {
+      place.size = 4;
+      place.digits = rest[1] - '0';
+    } else {
+      continue;
+    }
+    if (count++ == 0) found = place;
+  }
+  return {found, count == 1};
+}
+
+// The absolute path without links; `path` itself where there is no such file. By the C library,
+// since std::filesystem would hold several more paths at once.
+std::string real_path(const std::string& path) {
+#ifdef _WIN32
+  char* const found = ::_fullpath(nullptr, path.c_str(), 0);
+#else
+  char* const found = ::realpath(path.c_str(), nullptr);
+#endif
+  const std::unique_ptr<char, void (*)(void*)> file(found, &std::free);
+  return file ? file.get() : path;
+}
+
+constexpr std::uint64_t kMaxCount = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
@@ -59,35 +128,6 @@ std::optional<Error> foreign_mesh(const std::string& path) {
 
 bool has_mesh_extension(const std::string& path) { return find_format(path).has_value(); }
 
-namespace {
-
-Mesh parse_plain(std::string_view bytes, MeshFormat format, const std::string& name) {
-  if (bytes.empty()) throw Error(name, "the file is empty", "give a mesh with at least one face");
-  switch (format) {
-    case MeshFormat::kObj:
-      return parse_obj(bytes, name);
-    case MeshFormat::kOff:
-      return parse_off(bytes, name);
-    case MeshFormat::kPly:
-      return parse_ply(bytes, name);
-    case MeshFormat::kStl:
-      return parse_stl(bytes, name);
-  }
-  throw Error(name, "no such mesh format", "use a MeshFormat");
-}
-
-// Where the contents are no mesh of this format, they may be one of another.
-Mesh parse_known(std::string_view bytes, MeshFormat format, const std::string& name) {
-  try {
-    return parse_plain(bytes, format, name);
-  } catch (const Error&) {
-    if (const std::optional<Error> foreign = foreign_contents(bytes, name)) throw *foreign;
-    throw;
-  }
-}
-
-}  // namespace
-
 Mesh load_mesh(const std::string& path) {
   const MeshFormat format = mesh_format(path);
   try {
@@ -107,6 +147,111 @@ Mesh parse_mesh(std::string_view bytes, MeshFormat format, const std::string& na
   const bool compressed = is_gzip(bytes) && !(format == MeshFormat::kStl && is_binary_stl(bytes));
   if (!compressed) return parse_known(bytes, format, name);
   return parse_known(gunzip(bytes, name, {.max_bytes = kMaxMeshBytes}), format, name);
+}
+
+// ---- the builder
+
+MeshBuilder::MeshBuilder(std::string name) : name_(std::move(name)) {}
+
+void MeshBuilder::add_vertex(const Vec3& p, long line) {
+  if (mesh_.vertices.size() == kMaxCount) {
+    throw Error(name_, "more than 4294967295 vertices", "split the mesh", line);
+  }
+  mesh_.vertices.push_back(p);
+}
+
+void MeshBuilder::set_group(std::string_view group_name) {
+  const std::string group = group_name.empty() ? "default" : clean_name(group_name);
+  const auto [entry, is_new] =
+      groups_.try_emplace(group, static_cast<std::uint32_t>(groups_.size()));
+  if (is_new) mesh_.group_names.push_back(group);
+  group_ = entry->second;
+}
+
+void MeshBuilder::add_face(std::span<const std::uint32_t> corners, long line) {
+  if (corners.size() < 3) {
+    throw Error(name_, fmt::format("face {} is a polygon with {} vertices", faces_, corners.size()),
+                "give it 3 or more, or delete it", line);
+  }
+  std::vector<Vec3> points;
+  points.reserve(corners.size());
+  for (const std::uint32_t corner : corners) {
+    if (corner >= mesh_.vertices.size()) {
+      throw Error(name_,
+                  fmt::format("face {} names vertex {} (counted from 0) of {}", faces_, corner,
+                              mesh_.vertices.size()),
+                  "correct the index, or see whether the file is damaged", line);
+    }
+    points.push_back(mesh_.vertices[corner]);
+  }
+  if (corners.size() - 2 > kMaxCount - mesh_.triangles.size()) {
+    throw Error(name_, "more than 4294967295 triangles", "split the mesh", line);
+  }
+  if (mesh_.group_names.empty()) set_group("");
+
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  triangles.reserve(corners.size() - 2);
+  const Triangulation made = triangulate(points, triangles);
+  if (made == Triangulation::folded) mesh_.folded.push_back(faces_);
+  if (made == Triangulation::too_large) {
+    throw Error(name_,
+                fmt::format("face {} is a polygon with {} vertices that is not convex, too large "
+                            "to triangulate here",
+                            faces_, corners.size()),
+                "triangulate the mesh where it was made", line);
+  }
+  for (const auto& [a, b, c] : triangles) {
+    mesh_.triangles.push_back({corners[a], corners[b], corners[c]});
+    mesh_.source_face.push_back(faces_);
+    mesh_.group.push_back(group_);
+  }
+  ++faces_;
+}
+
+Mesh MeshBuilder::finish() {
+  if (mesh_.triangles.empty()) {
+    throw Error(name_, "the mesh has no triangles", "give a mesh with at least one face");
+  }
+  return std::move(mesh_);
+}
+
+// ---- the cache
+
+bool is_numbered(const std::string& name) { return place_in(name).second; }
+
+std::string numbered(const std::string& name, long number) {
+  const Place place = place_in(name).first;
+  return name.substr(0, place.at) + fmt::format("{:0{}}", number, place.digits) +
+         name.substr(place.at + place.size);
+}
+
+const Mesh& MeshCache::get(const std::string& path) {
+  if (frame_ && is_numbered(path)) {
+    const std::string file = numbered(path, *frame_);
+    const auto found = moving_.find(path);
+    if (found == moving_.end())
+      return moving_.emplace(path, Moving{*frame_, load_mesh(file)}).first->second.mesh;
+    Moving& moving = found->second;
+    if (moving.frame != *frame_) moving = {*frame_, load_mesh(file)};
+    return moving.mesh;
+  }
+  std::error_code error;
+  if (!frame_ && is_numbered(path) && !std::filesystem::exists(path, error)) {
+    throw Error(
+        path, "stands for numbered files, and it is not said which",
+        "add --frames FIRST:LAST to farcull run or verify, as in --frames 1:100, or name one "
+        "file");
+  }
+  const std::string key = real_path(path);
+  auto entry = meshes_.find(key);
+  if (entry == meshes_.end()) entry = meshes_.emplace(key, load_mesh(path)).first;
+  return entry->second;
+}
+
+std::vector<std::string> MeshCache::numbered_paths() const {
+  std::vector<std::string> out;
+  for (const auto& [path, moving] : moving_) out.push_back(path);
+  return out;
 }
 
 }  // namespace farcull

@@ -19,7 +19,13 @@ struct Mesh {
   std::vector<std::uint32_t> group;                     // per triangle: index into group_names
   std::vector<std::string> group_names;                 // valid UTF-8, in order of first mention
   std::vector<std::uint32_t> folded =
-      {};  // faces of the file that are folded (polygon.h), ascending
+      {};  // faces of the file that are folded (builder.h), ascending
+};
+
+/// Triangles with vertices of their own.
+struct MeshPart {
+  std::vector<Vec3> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // indices into vertices
 };
 
 }  // namespace farcull

@@ -1,6 +1,6 @@
 // Ear clipping (Meisters: Polygons have ears, 1975) with exact signs: a rounded sign with a bound
 // on its error first, and where that leaves a doubt, a sum without rounding.
-#include "experiments/scenes/mesh/polygon.h"
+#include "experiments/scenes/mesh/builder.h"
 
 #include <algorithm>
 #include <bit>

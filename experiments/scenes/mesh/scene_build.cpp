@@ -172,21 +172,54 @@ Scene SceneBuilder::take_part() {
   return std::exchange(scene_, std::move(next));
 }
 
-Box bounds(const Scene& scene) {
+void PartMaker::add(std::array<std::uint32_t, 3> corners) {
+  for (std::uint32_t& corner : corners) {
+    std::uint32_t& number = number_[corner];
+    if (number == kNone) {
+      number = static_cast<std::uint32_t>(used_.size());
+      used_.push_back(corner);
+      part_.vertices.push_back(vertices_[corner]);
+    }
+    corner = number;
+  }
+  part_.triangles.push_back(corners);
+}
+
+MeshPart PartMaker::take() {
+  for (const std::uint32_t vertex : used_) number_[vertex] = kNone;
+  used_.clear();
+  return std::exchange(part_, {});
+}
+
+void append_object(const std::string& name, std::span<const Vec3> vertices,
+                   std::span<const std::array<std::uint32_t, 3>> triangles,
+                   std::span<const std::uint32_t> source_face, Scene& scene) {
+  const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+  scene.objects.push_back({name, static_cast<std::uint32_t>(scene.triangles.size()),
+                           static_cast<std::uint32_t>(triangles.size())});
+  scene.vertices.insert(scene.vertices.end(), vertices.begin(), vertices.end());
+  for (const auto& [a, b, c] : triangles)
+    scene.triangles.push_back({first + a, first + b, first + c});
+  scene.source_face.insert(scene.source_face.end(), source_face.begin(), source_face.end());
+}
+
+namespace {
+
+// The box of a scene or a mesh.
+template <class Triangles>
+Box box_around(const Triangles& of) {
   Box box = Box::empty();
-  for (const auto& triangle : scene.triangles) {
-    for (const std::uint32_t v : triangle) box.add(scene.vertices[v]);
+  for (const auto& triangle : of.triangles) {
+    for (const std::uint32_t v : triangle) box.add(of.vertices[v]);
   }
   return box;
 }
 
-Box bounds(const Mesh& mesh) {
-  Box box = Box::empty();
-  for (const auto& triangle : mesh.triangles) {
-    for (const std::uint32_t v : triangle) box.add(mesh.vertices[v]);
-  }
-  return box;
-}
+}  // namespace
+
+Box bounds(const Scene& scene) { return box_around(scene); }
+
+Box bounds(const Mesh& mesh) { return box_around(mesh); }
 
 Vec3 centre(const Box& box) { return box.lo + (box.hi - box.lo) / 2; }
 

@@ -4,8 +4,10 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "core/scene/scene.h"
 #include "experiments/scenes/mesh/mesh.h"
@@ -49,7 +51,8 @@ class SceneBuilder {
   /// finite or the scene would have more than 2^32 - 1 triangles or vertices.
   void add(const Mesh& mesh, const std::string& name, Split split, const Placement& placement,
            bool self = false);
-  /// What was added since the last part, as a scene of its own, validated. Names stay in use.
+  /// Takes out what was added since the last part, as a scene of its own, validated. Names stay in
+  /// use.
   Scene take_part();
   /// The scene, validated; the builder is spent.
   Scene finish() { return take_part(); }
@@ -62,6 +65,30 @@ class SceneBuilder {
   std::unordered_map<std::string, int>
       names_;  // names in use, each with the last suffix tried for it
 };
+
+/// Cuts parts out of a mesh or a scene, whose vertices must outlive it.
+class PartMaker {
+ public:
+  explicit PartMaker(std::span<const Vec3> vertices)
+      : vertices_(vertices), number_(vertices.size(), kNone) {}
+  /// Adds a triangle to the part at hand, whose vertices come in order of first mention.
+  void add(std::array<std::uint32_t, 3> corners);
+  /// The part, and the next one begins.
+  MeshPart take();
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  std::span<const Vec3> vertices_;
+  std::vector<std::uint32_t> number_;  // of each vertex in the part
+  std::vector<std::uint32_t> used_;    // vertices of the part
+  MeshPart part_;
+};
+
+/// Appends an object with vertices of its own, as they are and unchecked; triangles name positions
+/// in `vertices`.
+void append_object(const std::string& name, std::span<const Vec3> vertices,
+                   std::span<const std::array<std::uint32_t, 3>> triangles,
+                   std::span<const std::uint32_t> source_face, Scene& scene);
 
 /// The box around all triangles of a scene; empty without triangles.
 Box bounds(const Scene& scene);

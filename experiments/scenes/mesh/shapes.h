@@ -1,4 +1,4 @@
-// Shapes of generated scenes, and the draws that place them.
+// Shapes of generated scenes, the draws that place them, and finer meshes of the same surface.
 #pragma once
 
 #include <array>
@@ -11,7 +11,18 @@
 #include "experiments/scenes/mesh/mesh.h"
 #include "experiments/scenes/mesh/scene_build.h"
 
-namespace farcull::shapes {
+namespace farcull {
+
+/// Divides the longest edge, all its triangles with it, again and again (Rivara 1984), until there
+/// are `triangles` or a few more: one division adds as many as the edge has, two on a closed
+/// surface. New vertices are midpoints, so the surface stays up to their rounding, and closed stays
+/// closed; a triangle that names a vertex twice is left as it is. Edges of equal length are taken
+/// in the order of their vertices: the same on every run. A part keeps the source face and the
+/// group of its triangle. Nothing happens to a mesh that has as many already. Precondition: mesh
+/// has a triangle.
+Mesh refined(Mesh mesh, std::uint64_t triangles);
+
+namespace shapes {
 
 constexpr double kTurn = 2 * std::numbers::pi;  // radians
 
@@ -85,4 +96,6 @@ Vec3 across(const Vec3& along, double length, Random& random);
 /// A point well inside.
 Vec3 inner_point(const Corners& corners, Random& random);
 
-}  // namespace farcull::shapes
+}  // namespace shapes
+
+}  // namespace farcull

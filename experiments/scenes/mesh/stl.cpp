@@ -58,16 +58,10 @@ std::uint32_t little_word(std::string_view bytes, std::size_t at) {
   return word;
 }
 
-std::string lower(std::string_view word) {
-  std::string text(word);
-  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
-}
-
 bool is_text(std::string_view bytes) {
   if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
   const std::size_t start = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
-  if (lower(bytes.substr(start, 5)) != "solid") return false;
+  if (lower_case(bytes.substr(start, 5)) != "solid") return false;
   // No text has NUL bytes; a binary file has them in the padding of its header or in its attribute
   // bytes.
   return bytes.substr(0, 4096).find('\0') == std::string_view::npos;
@@ -119,7 +113,7 @@ void expect(TextReader& in, std::string_view words) {
   for (std::size_t start = 0; start < words.size();) {
     const std::size_t end = std::min(words.find(' ', start), words.size());
     const std::string_view word = in.token();
-    if (lower(word) != words.substr(start, end - start)) {
+    if (lower_case(word) != words.substr(start, end - start)) {
       in.fail(fmt::format("'{}' should stand here, not {}", words, quote_token(word)), remedy);
     }
     start = end + 1;
@@ -133,7 +127,7 @@ Mesh parse_text(std::string_view bytes, const std::string& name) {
   bool inside = false;
   std::vector<std::uint32_t> corners;
   while (in.next_line()) {
-    const std::string word = lower(in.token());
+    const std::string word = lower_case(in.token());
     if (!inside && word == "solid") {
       inside = true;
     } else if (inside && word == "endsolid") {
@@ -144,8 +138,8 @@ Mesh parse_text(std::string_view bytes, const std::string& name) {
       for (;;) {
         if (!in.next_line()) in.fail("the file ends within a facet", "get the whole file");
         const std::string_view token = in.token();
-        if (lower(token) == "endloop") break;
-        if (lower(token) != "vertex") {
+        if (lower_case(token) == "endloop") break;
+        if (lower_case(token) != "vertex") {
           in.fail("'vertex' or 'endloop' should stand here, not " + quote_token(token),
                   "see whether the file is an STL file and whole");
         }

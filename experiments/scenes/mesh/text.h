@@ -1,5 +1,5 @@
-// What the readers of text share: a file as one buffer, its tokens line by line with line numbers,
-// and numbers that are rounded once, to double.
+// Files as bytes, for all readers: read as one buffer, compressed by gzip (RFC 1952), and as text:
+// tokens line by line with line numbers, and numbers that are rounded once, to double.
 #pragma once
 
 #include <cstddef>
@@ -17,6 +17,9 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes);
 
 /// A token for a message: in quotes, printable ASCII, cut after 40 characters.
 std::string quote_token(std::string_view token);
+
+/// The text with A to Z in lower case.
+std::string lower_case(std::string_view text);
 
 /// Valid UTF-8 without control characters, each offending byte replaced by '?', so that a name can
 /// go into JSON.
@@ -43,7 +46,7 @@ class TextReader {
 
   /// Leaves the current line for the next one that holds a token; false at the end of the text.
   bool next_line();
-  /// The next token of the current line; empty where there is none.
+  /// The next token of the current line; empty at its end.
   std::string_view token();
   /// The tokens that are left on the line, joined by single spaces.
   std::string rest();
@@ -73,5 +76,26 @@ class TextReader {
   long line_ = 1;
   bool started_ = false;
 };
+
+/// Whether the bytes begin as gzip data do: 1f 8b, and 8 for the method "deflate".
+bool is_gzip(std::string_view bytes);
+
+/// A little text can be compressed a thousand times, so a small file could fill the memory. Beyond
+/// `free_bytes`, contents of more than `most_ratio` times the compressed size are refused.
+struct GzipLimits {
+  std::uint64_t max_bytes = std::uint64_t{4} << 30;
+  std::uint64_t free_bytes = std::uint64_t{256} << 20;
+  std::uint64_t most_ratio = 100;
+};
+
+/// The contents of gzip data: of one member, or of several one after the other, as `cat a.gz b.gz`
+/// and pigz write them; zeros after the last one are passed over. Checksums and lengths are
+/// compared. Throws Error naming `name` where the data are cut, damaged, followed by something
+/// else, or beyond the limits; std::bad_alloc. Precondition: is_gzip(bytes).
+std::string gunzip(std::string_view bytes, const std::string& name, const GzipLimits& limits = {});
+
+/// The bytes as gzip data of one member. The same bytes give the same data with the same zlib: no
+/// time and no name are in them. Throws std::bad_alloc.
+std::string gzip(std::string_view bytes);
 
 }  // namespace farcull

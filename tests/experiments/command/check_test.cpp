@@ -11,7 +11,7 @@
 #include "experiments/record/certificate.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/mesh/cache.h"
+#include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"

@@ -1,5 +1,5 @@
-// The compressed data of pages: read back as web/page.js reads them, they are what was written.
-#include "experiments/picture/page_blocks.h"
+// The compressed data of pages: read back as web/page_view.js reads them, they are what was written.
+#include "experiments/picture/page.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "core/base/base64.h"
-#include "experiments/scenes/mesh/gzip.h"
+#include "experiments/scenes/mesh/text.h"
 
 namespace farcull {
 namespace {
@@ -21,7 +21,7 @@ std::string unpacked(const std::string& block) {
   return gunzip({reinterpret_cast<const char*>(small->data()), small->size()}, "block");
 }
 
-// The way of numbersOf() in web/page.js.
+// The way of numbersOf() in web/page_view.js.
 std::vector<std::uint32_t> numbers_of(const std::string& block) {
   const std::string bytes = unpacked(block);
   const std::size_t n = bytes.size() / 4;

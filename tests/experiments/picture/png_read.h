@@ -8,7 +8,7 @@
 #include <cstring>
 #include <string>
 
-#include "experiments/picture/png_write.h"
+#include "experiments/picture/sheet.h"
 
 namespace farcull {
 

@@ -1,5 +1,5 @@
 // PNG there and back, and the lettering.
-#include "experiments/picture/png_write.h"
+#include "experiments/picture/sheet.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <set>
 
-#include "experiments/picture/lettering.h"
 #include "tests/experiments/picture/png_read.h"
 
 namespace farcull {

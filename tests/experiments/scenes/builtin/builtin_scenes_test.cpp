@@ -9,7 +9,6 @@
 #include <limits>
 #include <set>
 
-#include "experiments/scenes/builtin/packaged.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/scene_file.h"

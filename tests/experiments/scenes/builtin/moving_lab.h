@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/pairs/backend.h"
-#include "experiments/scenes/builtin/moving_scene.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/shapes.h"
 

@@ -15,7 +15,7 @@
 #include "experiments/measure/frames.h"
 #include "experiments/scenes/builtin/generators.h"
 #include "experiments/scenes/frames.h"
-#include "experiments/scenes/mesh/refine.h"
+#include "experiments/scenes/mesh/shapes.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "tests/core/pairs/pairs_lab.h"
 #include "tests/experiments/scenes/builtin/moving_lab.h"

@@ -10,7 +10,6 @@
 #include <memory>
 #include <utility>
 
-#include "experiments/scenes/cloth/interior.h"
 #include "experiments/scenes/cloth/solver.h"
 #include "experiments/scenes/mesh/shapes.h"
 
@@ -18,6 +17,41 @@ namespace farcull::cloth {
 namespace {
 
 using Eigen::VectorXd;
+
+Vec3 at(const VectorXd& x, std::uint32_t vertex) { return x.segment<3>(3 * vertex); }
+
+// The function of a step (model.h) up to a constant, J.
+double value(const Step& step, const VectorXd& x) {
+  const Model& model = step.model;
+  const ClothSettings& s = model.settings;
+  const double h = s.time_step;
+  double sum = 0;
+  for (std::uint32_t v = 0; v < model.mass.size(); ++v) {
+    const Vec3 moved = at(x, v) - at(step.x0, v);
+    sum += 0.5 * model.mass[v] * (moved / h - at(step.v0, v)).squaredNorm();
+    sum += 0.5 * s.drag * model.area[v] / h * moved.squaredNorm();
+    sum += model.mass[v] * s.gravity * x[3 * v + 2];
+    if (step.normal[v].isZero(0)) continue;
+    sum += smooth_energy(contact_stiffness(model, v), model.crimp,
+                         s.radius - step.normal[v].dot(at(x, v)));
+    if (step.friction[v] == 0) continue;
+    const double slid = (moved - step.normal[v].dot(moved) * step.normal[v]).norm();
+    const double stick = h * s.stick_speed;
+    sum += step.friction[v] * (slid <= stick ? slid * slid / (2 * stick) : slid - stick / 2);
+  }
+  for (std::size_t i = 0; i < model.springs.size(); ++i) {
+    const auto [a, b] = model.springs[i].vertices;
+    const Vec3 d = at(x, b) - at(x, a);
+    sum += smooth_energy(step.stretch, model.crimp, d.norm() - slack_length(model, i));
+    sum -= s.buckling_load * (at(step.x0, b) - at(step.x0, a)).dot(d);
+  }
+  for (const Hinge& hinge : model.hinges) {
+    Vec3 w = Vec3::Zero();
+    for (int c = 0; c < 4; ++c) w += hinge.weights[c] * at(x, hinge.vertices[c]);
+    sum += 0.5 * hinge.stiffness * w.squaredNorm();
+  }
+  return sum;
+}
 
 // Strong thrust, so that what it adds is not lost beside the inertia.
 ClothSettings settings_of(std::uint64_t triangles) {

@@ -20,6 +20,12 @@ namespace {
 
 using Eigen::VectorXd;
 
+void set_velocity(Cloth& cloth, const VectorXd& velocity) {
+  ClothState state = cloth.state();
+  state.velocities = velocity;
+  cloth.restore(state);
+}
+
 ClothSettings small(double stiffness, std::uint64_t triangles = 800) {
   ClothSettings settings;
   settings.triangles = triangles;
@@ -28,7 +34,7 @@ ClothSettings small(double stiffness, std::uint64_t triangles = 800) {
 }
 
 VectorXd positions(const Cloth& cloth) {
-  VectorXd x(cloth.velocity().size());
+  VectorXd x(cloth.state().velocities.size());
   for (Eigen::Index v = 0; v < x.size() / 3; ++v) {
     x.segment<3>(3 * v) = cloth.scene().vertices[static_cast<std::size_t>(v)];
   }
@@ -98,7 +104,7 @@ TEST_P(ClothAt, StaysFiniteAndGainsNoEnergyIn500Frames) {
   // It hangs, rather than having fallen off: its lowest point is above a free fall of 5 seconds,
   // and within the reach of the cloth.
   double lowest = 0;
-  for (Eigen::Index v = 2; v < cloth.velocity().size(); v += 3) {
+  for (Eigen::Index v = 2; v < cloth.state().velocities.size(); v += 3) {
     lowest = std::min(lowest, positions(cloth)[v]);
   }
   EXPECT_GT(lowest, -settings.side);
@@ -145,9 +151,9 @@ TEST(Cloth, CentreOfMassFallsByTheRecurrence) {
     s.radius = 0;
     s.time_step = 0.02;
     Cloth cloth(s);
-    VectorXd start = cloth.velocity();
+    VectorXd start = cloth.state().velocities;
     for (Eigen::Index i = 0; i < start.size(); ++i) start[i] = 0.3 * std::sin(1.0 * i);
-    cloth.set_velocity(start);
+    set_velocity(cloth, start);
     const cloth::Model model = cloth::make_model(s);
     const auto mean = [&](const VectorXd& q) {
       Vec3 sum = Vec3::Zero();
@@ -173,7 +179,7 @@ TEST(Cloth, CentreOfMassFallsByTheRecurrence) {
       const double rounding = 4 * n * 0x1p-53 * (c.norm() + 1);
       allowed_w += h * n * report.residual / mass + rounding / h;
       allowed_c += h * allowed_w + rounding;
-      EXPECT_LE((mean(cloth.velocity()) - w).norm(), allowed_w) << f;
+      EXPECT_LE((mean(cloth.state().velocities) - w).norm(), allowed_w) << f;
       EXPECT_LE((mean(positions(cloth)) - c).norm(), allowed_c) << f;
     }
     EXPECT_LT(allowed_c, 1e-3);  // the bound says something: it fell by more than a metre
@@ -231,8 +237,8 @@ TEST(Cloth, SaysThatItDidNotConvergeAndStays) {
   ClothSettings settings = small(1e4, 200);
   settings.max_iterations = 0;
   Cloth cloth(settings);
-  VectorXd thrown = VectorXd::Constant(cloth.velocity().size(), 0.5);
-  cloth.set_velocity(thrown);
+  VectorXd thrown = VectorXd::Constant(cloth.state().velocities.size(), 0.5);
+  set_velocity(cloth, thrown);
   const VectorXd before = positions(cloth);
   const double total = cloth.report().total();
   const ClothReport report = cloth.step();
@@ -241,7 +247,7 @@ TEST(Cloth, SaysThatItDidNotConvergeAndStays) {
       << report.warning;
   EXPECT_GT(report.residual, 0);
   EXPECT_EQ(positions(cloth), before);
-  EXPECT_EQ(cloth.velocity(), VectorXd::Zero(before.size()));
+  EXPECT_EQ(cloth.state().velocities, VectorXd::Zero(before.size()));
   EXPECT_EQ(report.kinetic, 0);
   EXPECT_LE(report.total(), total);
   EXPECT_EQ(report.frame, 1);
@@ -252,9 +258,9 @@ TEST(Cloth, RecoversFromNumbersThatAreNotFinite) {
                            std::numeric_limits<double>::infinity(), 1e200, 1e308}) {
     Cloth cloth(small(1e4, 200));
     for (int f = 0; f < 3; ++f) ASSERT_TRUE(cloth.step().converged);
-    VectorXd velocity = cloth.velocity();
+    VectorXd velocity = cloth.state().velocities;
     velocity[7] = bad;
-    cloth.set_velocity(velocity);
+    set_velocity(cloth, velocity);
     const VectorXd before = positions(cloth);
     const ClothReport failed = cloth.step();
     EXPECT_FALSE(failed.converged) << bad;
@@ -310,7 +316,7 @@ TEST(Cloth, RefusesSettingsOutOfRange) {
   EXPECT_EQ(refused([](ClothSettings& s) { s.radius = INFINITY; }), "cloth");
   EXPECT_EQ(refused([](ClothSettings& s) { s.max_iterations = -1; }), "cloth");
   Cloth cloth(small(1e4));
-  EXPECT_THROW(cloth.set_velocity(VectorXd::Zero(3)), std::logic_error);
+  EXPECT_THROW(set_velocity(cloth, VectorXd::Zero(3)), std::logic_error);
 }
 
 }  // namespace

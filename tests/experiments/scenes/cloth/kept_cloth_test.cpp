@@ -1,6 +1,6 @@
 // States of the cloth that are kept in files: an interrupted simulation goes on with the same bits,
 // and no file is believed that is not what was written.
-#include "experiments/scenes/cloth/kept.h"
+#include "experiments/scenes/cloth/cloth.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/scenes/builtin/moving_scene.h"
+#include "experiments/scenes/builtin/scenes.h"
 #include "tests/experiments/system/error_of.h"
 
 namespace farcull {

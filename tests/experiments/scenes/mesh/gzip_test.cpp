@@ -1,5 +1,5 @@
 // Meshes compressed by gzip, and files of formats that are not read.
-#include "experiments/scenes/mesh/gzip.h"
+#include "experiments/scenes/mesh/text.h"
 
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -7,8 +7,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "experiments/scenes/mesh/cache.h"
-#include "experiments/scenes/mesh/foreign.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/scene_file.h"
 #include "tests/experiments/scenes/mesh/mesh_samples.h"

@@ -1,11 +1,15 @@
-// three.js, a library for WebGL in browsers (Debian: libjs-three), as part of the program.
+// Files of Debian that are part of the program: the font of pictures, and three.js, a library for
+// WebGL in browsers (libjs-three).
 #pragma once
 
 #include <string_view>
 
 namespace farcull {
 
-/// All three are empty where the program was built without it.
+/// DejaVu Sans, or its bold.
+std::string_view font_file(bool bold);
+
+/// All three are empty where the program was built without three.js.
 struct ThreeJs {
   std::string_view library;   // three.min.js
   std::string_view controls;  // OrbitControls.js: the mouse and fingers turn and move the camera
