@@ -1,29 +1,30 @@
-// Reads certificates, scenes and lists of pairs, and prints what the checker of verify/certificate
-// finds.
+// Reads certificates of pairs and of distances, scenes and lists of pairs, and prints what the
+// checkers of verify/certificate find.
 #include "experiments/command/check.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
-#include "experiments/command/check_distances.h"
-#include "experiments/command/frame_checks.h"
-#include "experiments/record/check_result.h"
-#include "experiments/record/check_scene.h"
+#include "core/scene/ignored.h"
+#include "experiments/measure/frames.h"
+#include "experiments/record/check.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/cache.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/scenes/scene_file.h"
-#include "experiments/system/interrupt.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 #include "verify/certificate/certificate.h"
@@ -80,38 +81,147 @@ void require_no_list(const CheckArguments& arguments) {
               "does not go with a certificate of distances", "leave it out");
 }
 
-int check_one(const CheckArguments& arguments, const GivenList* list) {
-  // Before the scene, which may be large.
-  std::optional<Certificate> certificate;
-  if (!arguments.certificate.empty()) {
-    const std::string text = read_file(arguments.certificate, kMaxBytes);
-    if (is_distance_certificate(text)) {
-      require_no_list(arguments);
-      return check_distance_file(
-          {arguments.certificate, arguments.scene, arguments.self, arguments.json}, text);
-    }
-    certificate = parse_certificate(text, clean_name(arguments.certificate));
+// Text that a terminal can show, line by line.
+std::string clean_lines(const std::string& text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    out += clean_name(std::string_view(text).substr(at, end - at)) + "\n";
+    at = end + 1;
   }
-  Scene scene = load_scene(arguments.scene);
-  if (arguments.self) make_self(scene);
-  const SceneCheck done = check_scene_with(
-      clearance_of(arguments, certificate), clean_name(arguments.certificate), certificate, scene,
-      list, list ? std::span<const ListedPair>(list->rows) : std::span<const ListedPair>());
+  return out;
+}
+
+// Whether the file is there and says that it is a certificate of distances.
+bool is_of_distances(const std::string& file) {
+  std::array<char, 1024> start{};
+  std::ifstream in(file, std::ios::binary);
+  in.read(start.data(), start.size());
+  return is_distance_certificate({start.data(), static_cast<std::size_t>(in.gcount())});
+}
+
+CheckedDistances check_with(const std::string& path, DistanceCertificate certificate,
+                            const Scene& scene) {
+  require_nothing_ignored(scene, "a check");
+  CheckedDistances out{clean_name(path), std::move(certificate), {}};
+  out.result = check_distances(out.certificate, scene, out.file);
+  return out;
+}
+
+// Writes what was found about one scene. Checked: SceneCheck or CheckedDistances.
+template <class Checked>
+int write_check(const CheckArguments& arguments, const Scene& scene, const Checked& done) {
   if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
   if (arguments.json != "-") write_output("-", clean_lines(check_text(scene, done)));
   return done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
 }
 
-std::string row_of(long frame, const SceneCheck& check) {
-  const CheckResult& result = check.result;
-  return fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10.1f}\n", frame, to_string(result.verdict),
-                     grouped(result.found.box_pairs), grouped(result.found.meeting), result.ms);
+Scene read_scene(const CheckArguments& arguments) {
+  Scene scene = load_scene(arguments.scene);
+  if (arguments.self) make_self(scene);
+  return scene;
 }
 
-std::string proved_of_frames(double clearance) {
-  return fmt::format(
-      "these pairs {}, and no others",
-      clearance == 0 ? "of the scene meet" : fmt::format("are at distance {} or less", clearance));
+// Certificates are read before the scene, which may be large.
+int check_one(const CheckArguments& arguments, const GivenList* list) {
+  std::optional<Certificate> certificate;
+  if (!arguments.certificate.empty()) {
+    const std::string text = read_file(arguments.certificate, kMaxBytes);
+    const std::string name = clean_name(arguments.certificate);
+    if (is_distance_certificate(text)) {
+      require_no_list(arguments);
+      DistanceCertificate of_distances = parse_distance_certificate(text, name);
+      const Scene scene = read_scene(arguments);
+      return write_check(arguments, scene,
+                         check_with(arguments.certificate, std::move(of_distances), scene));
+    }
+    certificate = parse_certificate(text, name);
+  }
+  const Scene scene = read_scene(arguments);
+  return write_check(arguments, scene,
+                     check_scene_with(clearance_of(arguments, certificate),
+                                      clean_name(arguments.certificate), certificate, scene, list,
+                                      list ? std::span<const ListedPair>(list->rows)
+                                           : std::span<const ListedPair>()));
+}
+
+// The output of the checks of frames: a row of the table and an element of the record for each,
+// then the verdict in all.
+class FrameChecks {
+ public:
+  FrameChecks(const CheckArguments& arguments, const std::string& names)
+      : table_(arguments.json != "-"), wanted_(arguments.frames->count()) {
+    if (!arguments.json.empty()) json_.emplace(arguments.json);
+    if (table_) write_output("-", names);
+  }
+
+  // listed: pairs or distances; row: of the table.
+  template <class Checked>
+  void add(long frame, const Scene& scene, const Checked& check, std::uint64_t listed,
+           std::string row) {
+    const Verdict verdict = check.result.verdict;
+    verdicts_.add(frame, verdict, listed);
+    if (table_) {
+      if (verdict != Verdict::proved) row += "         " + verdict_text(scene, check);
+      write_output("-", clean_lines(row));
+    }
+    if (!json_) return;
+    Json one = {{"frame", frame}};
+    one.update(check_json(scene, check));
+    json_->add(Json::object(), one, verdicts_.json(wanted_));
+  }
+
+  // proved: what is proved of each frame where all are; rest: what follows.
+  int finish(const std::string& proved, const std::string& rest = "") {
+    if (json_) json_->finish();
+    if (table_) write_output("-", "\n" + clean_lines(verdicts_.text(proved) + rest));
+    return verdicts_.in_all() == Verdict::proved ? kExitDone : kExitBroken;
+  }
+
+ private:
+  bool table_;
+  long wanted_;
+  std::optional<FrameRecord> json_;
+  FrameVerdicts verdicts_;
+};
+
+constexpr const char* kVerdictsGiven = "their verdicts are given";
+
+int check_distance_frames(const CheckArguments& arguments) {
+  FrameSource source(arguments.scene, *arguments.frames, arguments.self);
+  FrameChecks checks(arguments, fmt::format("{:>7}  {:<10}  {:>10}  {:>12}  {:>10}\n", "frame",
+                                            "verdict", "distances", "decided", "ms"));
+  for_each_frame(*arguments.frames, kVerdictsGiven, {}, "", [&](long frame, const Progress&) {
+    const std::string file = numbered(arguments.certificate, frame);
+    DistanceCertificate certificate =
+        parse_distance_certificate(read_file(file, kMaxBytes), clean_name(file));
+    const Scene& scene = source.at(frame);
+    const CheckedDistances check = check_with(file, std::move(certificate), scene);
+    const std::uint64_t listed = check.certificate.distances.size();
+    checks.add(frame, scene, check, listed,
+               fmt::format("{:>7}  {:<10}  {:>10}  {:>12}  {:>10.1f}\n", frame,
+                           to_string(check.result.verdict), grouped(listed),
+                           grouped(check.result.decided), check.result.ms));
+  });
+  return checks.finish("the distances are exactly these, and no others were asked for");
+}
+
+// The certificate of a frame, whose file has to be there.
+Certificate certificate_of_frame(const CheckArguments& arguments, long frame) {
+  const std::string file = numbered(arguments.certificate, frame);
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) {
+    // The frames of a built-in motion are those up to its last one.
+    const bool motion = arguments.scene.size() == 1 && is_builtin_scene(arguments.scene[0]);
+    const FrameRange& range = *arguments.frames;
+    throw Error(file, "the file does not exist",
+                motion ? fmt::format("make it with farcull run --certificate --frames {}:{}", frame,
+                                     range.last)
+                       : fmt::format("give the numbers that there are: --frames FIRST:LAST "
+                                     "instead of {}:{}",
+                                     range.first, range.last));
+  }
+  return read_certificate(file);
 }
 
 int check_frames(const CheckArguments& arguments, const GivenList* list) {
@@ -119,39 +229,16 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
   if (!arguments.certificate.empty() &&
       is_of_distances(numbered(arguments.certificate, range.first))) {
     require_no_list(arguments);
-    return check_distance_frames(
-        {arguments.certificate, arguments.scene, arguments.self, arguments.json}, range);
+    return check_distance_frames(arguments);
   }
   FrameSource source(arguments.scene, range, arguments.self);
-  std::optional<FrameChecks> json;
-  if (!arguments.json.empty()) json.emplace(arguments.json);
-  const bool table = arguments.json != "-";
-  FrameVerdicts verdicts;
+  FrameChecks checks(arguments, fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10}\n", "frame",
+                                            "verdict", "box pairs", "meeting", "ms"));
   SceneCheck last;
-  Interruptible interruptible(range.count(), "frames", "their verdicts are given", false);
-  if (table) {
-    write_output("-", fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10}\n", "frame", "verdict",
-                                  "box pairs", "meeting", "ms"));
-  }
   std::optional<double> clearance;
-  for (long frame = range.first; frame <= range.last; ++frame) {
-    std::string file;
+  for_each_frame(range, kVerdictsGiven, {}, "", [&](long frame, const Progress&) {
     std::optional<Certificate> certificate;
-    if (!arguments.certificate.empty()) {
-      file = numbered(arguments.certificate, frame);
-      std::error_code error;
-      if (!std::filesystem::exists(file, error)) {
-        // The frames of a built-in motion are those up to its last one.
-        const bool motion = arguments.scene.size() == 1 && is_builtin_scene(arguments.scene[0]);
-        throw Error(file, "the file does not exist",
-                    motion ? fmt::format("make it with farcull run --certificate --frames {}:{}",
-                                         frame, range.last)
-                           : fmt::format("give the numbers that there are: --frames FIRST:LAST "
-                                         "instead of {}:{}",
-                                         range.first, range.last));
-      }
-      certificate = read_certificate(file);
-    }
+    if (!arguments.certificate.empty()) certificate = certificate_of_frame(arguments, frame);
     std::span<const ListedPair> rows;
     if (list) {
       const auto found = std::ranges::equal_range(list->rows, static_cast<std::uint32_t>(frame), {},
@@ -160,28 +247,20 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
     }
     const Scene& scene = source.at(frame);
     if (!clearance) clearance = clearance_of(arguments, certificate);
+    const std::string file = certificate ? numbered(arguments.certificate, frame) : "";
     last = check_scene_with(*clearance, clean_name(file), certificate, scene, list, rows);
-    verdicts.add(frame, last.result.verdict, last.result.meeting.size());
-    if (table) {
-      std::string text = row_of(frame, last);
-      if (last.result.verdict != Verdict::proved) text += "         " + verdict_text(scene, last);
-      write_output("-", clean_lines(text));
-    }
-    if (json) {
-      Json one = {{"frame", frame}};
-      one.update(check_json(scene, last));
-      json->add(one, verdicts.json(range.count()));
-    }
-    interruptible.done(frame - range.first + 1);
-  }
-  if (json) json->finish();
-  if (table) {
-    const std::string rest = unattested_text(last);
-    const bool several = range.count() > 1 && !last.result.unattested.empty();
-    write_output("-", "\n" + clean_lines(verdicts.text(proved_of_frames(*clearance)) +
-                                         (several ? "of the last frame's run: " : "") + rest));
-  }
-  return verdicts.in_all() == Verdict::proved ? kExitDone : kExitBroken;
+    const CheckResult& result = last.result;
+    checks.add(
+        frame, scene, last, result.meeting.size(),
+        fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10.1f}\n", frame, to_string(result.verdict),
+                    grouped(result.found.box_pairs), grouped(result.found.meeting), result.ms));
+  });
+  const bool several = range.count() > 1 && !last.result.unattested.empty();
+  return checks.finish(
+      fmt::format("these pairs {}, and no others",
+                  *clearance == 0 ? "of the scene meet"
+                                  : fmt::format("are at distance {} or less", *clearance)),
+      (several ? "of the last frame's run: " : "") + unattested_text(last));
 }
 
 // Whether certificates are of frames and the frames are named, or neither.
@@ -254,7 +333,8 @@ int CheckCommand::run() {
     throw Error("CERTIFICATE", "is missing", "name a certificate and its scene, or see --help");
   if (pairs_ == "") throw Error("--pairs", "the path is empty", "name the list");
   to.pairs = pairs_.value_or("");
-  // A scene of several names is of meshes alone, so a first name that is none is a certificate's.
+  // A scene of several names is of meshes alone, so a first name that is no mesh is a
+  // certificate's.
   const bool mesh = has_mesh_extension(to.certificate);
   if (!pairs_ && mesh) {
     throw Error("CERTIFICATE", "'" + to.certificate + "' is named like a mesh",

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "experiments/command/options.h"
+#include "experiments/measure/compare.h"
 #include "experiments/measure/family.h"
-#include "experiments/measure/savings.h"
 
 namespace farcull {
 

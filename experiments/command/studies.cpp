@@ -15,7 +15,6 @@
 #include "core/view/view.h"
 #include "experiments/contestants/known.h"
 #include "experiments/studies/merge.h"
-#include "experiments/studies/provenance.h"
 #include "experiments/studies/run_studies.h"
 #include "experiments/studies/store.h"
 #include "experiments/studies/study.h"

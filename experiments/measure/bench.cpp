@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "experiments/measure/harness.h"
 #include "experiments/measure/peers/parts.h"
-#include "experiments/measure/statistics.h"
 #include "verify/exact.h"
 
 namespace farcull {

@@ -1,15 +1,19 @@
-// Sets of four methods in one form, their sizes for each object, and what they lack of the truth.
+// Sets of four methods in one form, their sizes for each object, and what they lack of the truth,
+// for which exact arithmetic decides what trees of boxes leave.
 #include "experiments/measure/neighbour_sets.h"
 
 #include <algorithm>
 #include <limits>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/floating_point.h"
 #include "core/proximity/near_pairs.h"
 #include "core/proximity/voronoi_device.h"
+#include "verify/closest.h"
 
 namespace farcull {
 namespace {
@@ -30,11 +34,11 @@ SquaredRange range_of(const Box& a, const Box& b) {
   return out;
 }
 
-// What is farther than this, as computed, is farther than the largest distance that was computed as
-// `largest`. Let u = 2^-53. A difference, a square and two sums round, and a square below 2^-1022
-// is off by 2^-1075: both squares are within the factors (1 - u)^5 and (1 + u)^5 of the exact ones,
-// and 2^-1072. 16 u cover both, and the rounding of this product. What overflows is infinite on
-// both sides, so it is kept.
+// Anything farther than this, as computed, is farther than the largest distance that was computed
+// as `largest`. Let u = 2^-53. A difference, a square and two sums round, and a square below
+// 2^-1022 is off by 2^-1075: both squares are within the factors (1 - u)^5 and (1 + u)^5 of the
+// exact ones, and 2^-1072. 16 u cover both, and the rounding of this product. What overflows is
+// infinite on both sides, so it is kept.
 double limit_of(double largest) { return largest * (1 + 0x1p-49) + 0x1p-1000; }
 
 // An object may hold the nearest neighbour of another one if their boxes come as near as the box of
@@ -91,7 +95,7 @@ NeighbourSets sets_of_diagram(const Scene& scene, const NeighbourOptions& option
   try {
     return diagram_sets(scene, options, nullptr, progress);
   } catch (const Error& error) {
-    // Of options that are out of range the caller hears.
+    // The caller hears of options that are out of range.
     if (error.reason.find("too many pairs") == std::string::npos) throw;
     return {.objects = {}, .left_out = error.reason};
   } catch (const std::bad_alloc&) {
@@ -129,6 +133,32 @@ Sizes sizes_over(std::vector<std::uint64_t> values) {
 }
 
 }  // namespace
+
+std::vector<NearestObjects> nearest_objects(const Scene& scene, const Progress& progress) {
+  const FloatingPointGuard guard;
+  const ProximityTrees trees(scene);
+  std::vector<NearestObjects> out(scene.objects.size());
+  std::vector<std::optional<SquaredDistance>> least(out.size());
+  for (const NearPairs& near :
+       trees.nearest_objects(1, std::numeric_limits<double>::infinity(), progress)) {
+    const std::optional<NearestPair> nearest = nearest_pair(scene, near.pairs);
+    if (!nearest) continue;
+    const SquaredDistance& squared = nearest->closest.squared;
+    const auto add = [&](std::uint32_t object, std::uint32_t other) {
+      if (least[object] && *least[object] < squared) return;
+      if (!least[object] || squared < *least[object]) {
+        least[object] = squared;
+        out[object] = {};
+      }
+      out[object].objects.push_back(other);
+      out[object].triangles.push_back(nearest->pair);
+    };
+    // Pairs of objects come sorted, so the others of one object come ascending.
+    add(near.objects.a, near.objects.b);
+    add(near.objects.b, near.objects.a);
+  }
+  return out;
+}
 
 std::string to_string(NeighbourMethod method) {
   switch (method) {
@@ -224,7 +254,7 @@ NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,
   for (std::uint32_t object = 0; object < truth.size(); ++object) {
     const NearestObjects& nearest = truth[object];
     if (nearest.objects.empty()) continue;
-    ++out.objects;
+    ++out.with_nearest;
     with_objects.push_back(sizes[object].objects);
     with_triangles.push_back(sizes[object].triangles);
     bool found = false;

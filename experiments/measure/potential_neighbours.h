@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "core/base/progress.h"
 #include "core/gl/context.h"
 #include "core/proximity/voronoi.h"
@@ -23,12 +24,12 @@ struct DiagramOptions {
   int resolution = 64;   // cells along the longest side of the scene's box; 1 to kVoronoiLargest
   unsigned threads = 0;  // of the CPU; 0: as many as there are cores; changes no answer
   double widening = 1;   // of VoronoiOptions; below 1 the reliable form loses nearest objects
-  /// Where the cells are computed. "", "native" or "cpu": on the cores of the CPU; else a GL device
-  /// as Session takes it.
+  /// The device that computes the cells. "", "native" or "cpu": on the cores of the CPU; else a GL
+  /// device as Session takes it.
   std::string device = {};
 };
 
-/// Of one object.
+/// The sets of one object.
 struct PotentialNeighbours {
   std::vector<std::uint32_t> nearest;  // the objects at its least distance; none where there is no
                                        // other object with triangles
@@ -36,7 +37,7 @@ struct PotentialNeighbours {
   /// The objects that the diagram leaves, and the triangles of them: all triangles of these objects
   /// with the published form; with the reliable form those that may be nearest.
   std::uint64_t objects = 0, triangles = 0;
-  /// Of `nearest`, how many are not among those objects. With the reliable form also those of which
+  /// How many of `nearest` are not among those objects. With the reliable form also those of which
   /// the first of the nearest pairs of triangles is not left.
   std::uint64_t lost = 0;
 };
@@ -67,6 +68,7 @@ struct DiagramTotals {
   std::uint64_t lost = 0;          // of these
   std::uint64_t objects_lost = 0;  // objects that lost all of theirs
   std::uint64_t potential_objects = 0, potential_triangles = 0;
+  FARCULL_FIELDS(objects, nearest, lost, objects_lost, potential_objects, potential_triangles)
 };
 DiagramTotals totals_of(const DiagramRecord& record);
 

@@ -1,6 +1,6 @@
 // How many nearest neighbours the discrete Voronoi diagram loses, against its resolution: the
 // tables of docs/voronoi.md. The truth of drawn scenes is computed in rationals, that of built-in
-// ones as experiments/measure/neighbours.h says.
+// ones as experiments/measure/neighbour_sets.h says.
 //   farcull_voronoi_losses SCENES LARGEST [NAME...]
 // SCENES: of each kind, drawn with the seeds 0, 1, ...; LARGEST: cells along the longest side, from
 // 64 in doublings; NAME: of built-in scenes. Exits with 1 if the reliable form loses a neighbour.

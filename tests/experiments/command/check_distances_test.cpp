@@ -1,6 +1,4 @@
 // `farcull check` of certificates of distances: what it prints, its status, and what it refuses.
-#include "experiments/command/check_distances.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
