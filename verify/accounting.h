@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "core/scene/object_pair.h"
 #include "core/scene/scene.h"
 #include "verify/exact.h"
@@ -33,6 +34,8 @@ struct Accounting {
   std::uint64_t false_negatives = 0;          // none of these: missed
   std::vector<TrianglePair> examples;         // the first missed pairs in sorted order
   double ms = 0;                              // wall clock of the whole accounting
+  FARCULL_FIELDS(pairs_total, ignored, pairs_kept, certified_by_boxes, certified_by_predicates,
+                 neighbours, false_negatives)
 
   /// True iff the classes sum to pairs_total. Not so by construction: each class is counted where
   /// its pairs are decided, the total is computed.

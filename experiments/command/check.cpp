@@ -1,5 +1,5 @@
-// Reads certificates, scenes and lists of pairs, and prints what the checker of verify/certificate
-// finds.
+// Reads certificates of pairs and of distances, scenes and lists of pairs, and prints what the
+// checkers of verify/certificate find.
 #include "experiments/command/check.h"
 
 #include <fmt/format.h>
@@ -8,7 +8,6 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -19,14 +18,12 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/scene/ignored.h"
-#include "experiments/record/check_result.h"
-#include "experiments/record/check_scene.h"
-#include "experiments/record/distance_result.h"
+#include "experiments/measure/frames.h"
+#include "experiments/record/check.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/scenes/scene_file.h"
-#include "experiments/system/interrupt.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 #include "verify/certificate/certificate.h"
@@ -40,18 +37,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30;  // of a certificate or a list
 
-// Text that a terminal can show, line by line.
-std::string clean_lines(const std::string& text) {
-  std::string out;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    out += clean_name(std::string_view(text).substr(at, end - at)) + "\n";
-    at = end + 1;
-  }
-  return out;
+Certificate read_certificate(const std::string& path) {
+  return parse_certificate(read_file(path, kMaxBytes), clean_name(path));
 }
-
-int exit_status(Verdict verdict) { return verdict == Verdict::proved ? kExitDone : kExitBroken; }
 
 // The clearance that is asked about: --clearance, or that of the certificate, of several frames the
 // first one. One question for all frames.
@@ -92,6 +80,17 @@ void require_no_list(const CheckArguments& arguments) {
               "does not go with a certificate of distances", "leave it out");
 }
 
+// Text that a terminal can show, line by line.
+std::string clean_lines(const std::string& text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    out += clean_name(std::string_view(text).substr(at, end - at)) + "\n";
+    at = end + 1;
+  }
+  return out;
+}
+
 // Whether the file is there and says that it is a certificate of distances.
 bool is_of_distances(const std::string& file) {
   std::array<char, 1024> start{};
@@ -100,171 +99,145 @@ bool is_of_distances(const std::string& file) {
   return is_distance_certificate({start.data(), static_cast<std::size_t>(in.gcount())});
 }
 
-CheckedDistances checked_distances(const std::string& file, DistanceCertificate certificate,
-                                   const Scene& scene) {
+CheckedDistances check_with(const std::string& path, DistanceCertificate certificate,
+                            const Scene& scene) {
   require_nothing_ignored(scene, "a check");
-  CheckedDistances out{clean_name(file), std::move(certificate), {}};
+  CheckedDistances out{clean_name(path), std::move(certificate), {}};
   out.result = check_distances(out.certificate, scene, out.file);
   return out;
 }
 
-// Prints the check of one scene, of pairs or of distances.
-template <class Check>
-int print_check(const CheckArguments& arguments, const Scene& scene, const Check& check) {
-  if (!arguments.json.empty()) write_json(check_json(scene, check), arguments.json);
-  if (arguments.json != "-") write_output("-", clean_lines(check_text(scene, check)));
-  return exit_status(check.result.verdict);
+// Writes what was found about one scene. Checked: SceneCheck or CheckedDistances.
+template <class Checked>
+int write_check(const CheckArguments& arguments, const Scene& scene, const Checked& done) {
+  if (!arguments.json.empty()) write_json(check_json(scene, done), arguments.json);
+  if (arguments.json != "-") write_output("-", clean_lines(check_text(scene, done)));
+  return done.result.verdict == Verdict::proved ? kExitDone : kExitBroken;
 }
 
-int check_one(const CheckArguments& arguments, const GivenList* list) {
-  // The certificate comes before the scene, which may be large.
-  std::optional<Certificate> certificate;
-  std::optional<DistanceCertificate> distances;
-  const std::string file = clean_name(arguments.certificate);
-  if (!arguments.certificate.empty()) {
-    const std::string text = read_file(arguments.certificate, kMaxBytes);
-    if (is_distance_certificate(text)) {
-      require_no_list(arguments);
-      distances = parse_distance_certificate(text, file);
-    } else {
-      certificate = parse_certificate(text, file);
-    }
-  }
+Scene read_scene(const CheckArguments& arguments) {
   Scene scene = load_scene(arguments.scene);
   if (arguments.self) make_self(scene);
-  if (distances)
-    return print_check(arguments, scene, checked_distances(file, std::move(*distances), scene));
-  return print_check(
-      arguments, scene,
-      check_scene_with(
-          clearance_of(arguments, certificate), file, certificate, scene, list,
-          list ? std::span<const ListedPair>(list->rows) : std::span<const ListedPair>()));
+  return scene;
 }
 
-// The JSON of frames, which are added one by one; its text is that of ordered_json::dump(2).
+// Certificates are read before the scene, which may be large.
+int check_one(const CheckArguments& arguments, const GivenList* list) {
+  std::optional<Certificate> certificate;
+  if (!arguments.certificate.empty()) {
+    const std::string text = read_file(arguments.certificate, kMaxBytes);
+    const std::string name = clean_name(arguments.certificate);
+    if (is_distance_certificate(text)) {
+      require_no_list(arguments);
+      DistanceCertificate of_distances = parse_distance_certificate(text, name);
+      const Scene scene = read_scene(arguments);
+      return write_check(arguments, scene,
+                         check_with(arguments.certificate, std::move(of_distances), scene));
+    }
+    certificate = parse_certificate(text, name);
+  }
+  const Scene scene = read_scene(arguments);
+  return write_check(arguments, scene,
+                     check_scene_with(clearance_of(arguments, certificate),
+                                      clean_name(arguments.certificate), certificate, scene, list,
+                                      list ? std::span<const ListedPair>(list->rows)
+                                           : std::span<const ListedPair>()));
+}
+
+// The output of the checks of frames: a row of the table and an element of the record for each,
+// then the verdict in all.
 class FrameChecks {
  public:
-  explicit FrameChecks(std::string path) : output_(std::move(path)) {}
-  void add(const Json& frame, const Json& summary) {
-    const std::string before = std::exchange(begun_, true) ? ",\n    " : "{\n  \"frames\": [\n    ";
-    output_.add(before + indented(frame, "    "),
-                "\n  ],\n  \"summary\": " + indented(summary, "  ") + "\n}\n");
+  FrameChecks(const CheckArguments& arguments, const std::string& names)
+      : table_(arguments.json != "-"), wanted_(arguments.frames->count()) {
+    if (!arguments.json.empty()) json_.emplace(arguments.json);
+    if (table_) write_output("-", names);
   }
-  void finish() { output_.finish(); }
+
+  // listed: pairs or distances; row: of the table.
+  template <class Checked>
+  void add(long frame, const Scene& scene, const Checked& check, std::uint64_t listed,
+           std::string row) {
+    const Verdict verdict = check.result.verdict;
+    verdicts_.add(frame, verdict, listed);
+    if (table_) {
+      if (verdict != Verdict::proved) row += "         " + verdict_text(scene, check);
+      write_output("-", clean_lines(row));
+    }
+    if (!json_) return;
+    Json one = {{"frame", frame}};
+    one.update(check_json(scene, check));
+    json_->add(Json::object(), one, verdicts_.json(wanted_));
+  }
+
+  // proved: what is proved of each frame where all are; rest: what follows.
+  int finish(const std::string& proved, const std::string& rest = "") {
+    if (json_) json_->finish();
+    if (table_) write_output("-", "\n" + clean_lines(verdicts_.text(proved) + rest));
+    return verdicts_.in_all() == Verdict::proved ? kExitDone : kExitBroken;
+  }
 
  private:
-  static std::string indented(const Json& json, const std::string& by) {
-    std::string out;
-    for (const char c : json.dump(2)) {
-      out += c;
-      if (c == '\n') out += by;
-    }
-    return out;
-  }
-
-  GrowingOutput output_;
-  bool begun_ = false;
+  bool table_;
+  long wanted_;
+  std::optional<FrameRecord> json_;
+  FrameVerdicts verdicts_;
 };
 
-// The check of a frame, as it is counted and printed.
-struct FrameCheck {
-  Verdict verdict;
-  std::uint64_t listed;  // pairs or distances
-  std::string row;       // of the table
-  std::string reason;    // for the verdict, unless it is proved
-  Json json;
-};
-template <class Check>
-FrameCheck frame_check(const Scene& scene, const Check& check, std::uint64_t listed,
-                       std::string row) {
-  return {check.result.verdict, listed, std::move(row), verdict_text(scene, check),
-          check_json(scene, check)};
-}
-
-// Checks frame after frame. head: of the table; at_end: lines below it, of the verdict in all.
-int check_each(const CheckArguments& arguments, const std::string& head,
-               const std::function<FrameCheck(FrameSource&, long)>& check,
-               const std::function<std::string(const FrameVerdicts&)>& at_end) {
-  const FrameRange range = *arguments.frames;
-  FrameSource source(arguments.scene, range, arguments.self);
-  std::optional<FrameChecks> json;
-  if (!arguments.json.empty()) json.emplace(arguments.json);
-  const bool table = arguments.json != "-";
-  Interruptible interruptible(range.count(), "frames", "their verdicts are given", false);
-  if (table) write_output("-", head);
-  FrameVerdicts verdicts;
-  for (long frame = range.first; frame <= range.last; ++frame) {
-    const FrameCheck one = check(source, frame);
-    verdicts.add(frame, one.verdict, one.listed);
-    const std::string reason = one.verdict == Verdict::proved ? "" : "         " + one.reason;
-    if (table) write_output("-", clean_lines(one.row + reason));
-    if (json) {
-      Json record = {{"frame", frame}};
-      record.update(one.json);
-      json->add(record, verdicts.json(range.count()));
-    }
-    interruptible.done(frame - range.first + 1);
-  }
-  if (json) json->finish();
-  if (table) write_output("-", "\n" + clean_lines(at_end(verdicts)));
-  return exit_status(verdicts.in_all());
-}
+constexpr const char* kVerdictsGiven = "their verdicts are given";
 
 int check_distance_frames(const CheckArguments& arguments) {
-  const auto check = [&](FrameSource& source, long frame) {
+  FrameSource source(arguments.scene, *arguments.frames, arguments.self);
+  FrameChecks checks(arguments, fmt::format("{:>7}  {:<10}  {:>10}  {:>12}  {:>10}\n", "frame",
+                                            "verdict", "distances", "decided", "ms"));
+  for_each_frame(*arguments.frames, kVerdictsGiven, {}, "", [&](long frame, const Progress&) {
     const std::string file = numbered(arguments.certificate, frame);
     DistanceCertificate certificate =
         parse_distance_certificate(read_file(file, kMaxBytes), clean_name(file));
     const Scene& scene = source.at(frame);
-    const CheckedDistances checked = checked_distances(file, std::move(certificate), scene);
-    const DistanceCheck& result = checked.result;
-    const std::size_t listed = checked.certificate.distances.size();
-    return frame_check(
-        scene, checked, listed,
-        fmt::format("{:>7}  {:<10}  {:>10}  {:>12}  {:>10.1f}\n", frame, to_string(result.verdict),
-                    grouped(listed), grouped(result.decided), result.ms));
-  };
-  return check_each(
-      arguments,
-      fmt::format("{:>7}  {:<10}  {:>10}  {:>12}  {:>10}\n", "frame", "verdict", "distances",
-                  "decided", "ms"),
-      check, [](const FrameVerdicts& verdicts) {
-        return verdicts.text("the distances are exactly these, and no others were asked for");
-      });
+    const CheckedDistances check = check_with(file, std::move(certificate), scene);
+    const std::uint64_t listed = check.certificate.distances.size();
+    checks.add(frame, scene, check, listed,
+               fmt::format("{:>7}  {:<10}  {:>10}  {:>12}  {:>10.1f}\n", frame,
+                           to_string(check.result.verdict), grouped(listed),
+                           grouped(check.result.decided), check.result.ms));
+  });
+  return checks.finish("the distances are exactly these, and no others were asked for");
 }
 
-// Throws Error where there is no certificate of the frame.
-Certificate certificate_of_frame(const CheckArguments& arguments, const std::string& file,
-                                 long frame) {
+// The certificate of a frame, whose file has to be there.
+Certificate certificate_of_frame(const CheckArguments& arguments, long frame) {
+  const std::string file = numbered(arguments.certificate, frame);
   std::error_code error;
-  if (std::filesystem::exists(file, error))
-    return parse_certificate(read_file(file, kMaxBytes), clean_name(file));
-  const FrameRange range = *arguments.frames;
-  // The frames of a built-in motion are those up to its last one.
-  const bool motion = arguments.scene.size() == 1 && is_builtin_scene(arguments.scene[0]);
-  throw Error(file, "the file does not exist",
-              motion ? fmt::format("make it with farcull run --certificate --frames {}:{}", frame,
-                                   range.last)
-                     : fmt::format("give the numbers that there are: --frames FIRST:LAST "
-                                   "instead of {}:{}",
-                                   range.first, range.last));
+  if (!std::filesystem::exists(file, error)) {
+    // The frames of a built-in motion are those up to its last one.
+    const bool motion = arguments.scene.size() == 1 && is_builtin_scene(arguments.scene[0]);
+    const FrameRange& range = *arguments.frames;
+    throw Error(file, "the file does not exist",
+                motion ? fmt::format("make it with farcull run --certificate --frames {}:{}", frame,
+                                     range.last)
+                       : fmt::format("give the numbers that there are: --frames FIRST:LAST "
+                                     "instead of {}:{}",
+                                     range.first, range.last));
+  }
+  return read_certificate(file);
 }
 
 int check_frames(const CheckArguments& arguments, const GivenList* list) {
+  const FrameRange range = *arguments.frames;
   if (!arguments.certificate.empty() &&
-      is_of_distances(numbered(arguments.certificate, arguments.frames->first))) {
+      is_of_distances(numbered(arguments.certificate, range.first))) {
     require_no_list(arguments);
     return check_distance_frames(arguments);
   }
-  std::optional<double> clearance;
+  FrameSource source(arguments.scene, range, arguments.self);
+  FrameChecks checks(arguments, fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10}\n", "frame",
+                                            "verdict", "box pairs", "meeting", "ms"));
   SceneCheck last;
-  const auto check = [&](FrameSource& source, long frame) {
-    std::string file;
+  std::optional<double> clearance;
+  for_each_frame(range, kVerdictsGiven, {}, "", [&](long frame, const Progress&) {
     std::optional<Certificate> certificate;
-    if (!arguments.certificate.empty()) {
-      file = numbered(arguments.certificate, frame);
-      certificate = certificate_of_frame(arguments, file, frame);
-    }
+    if (!arguments.certificate.empty()) certificate = certificate_of_frame(arguments, frame);
     std::span<const ListedPair> rows;
     if (list) {
       const auto found = std::ranges::equal_range(list->rows, static_cast<std::uint32_t>(frame), {},
@@ -273,25 +246,20 @@ int check_frames(const CheckArguments& arguments, const GivenList* list) {
     }
     const Scene& scene = source.at(frame);
     if (!clearance) clearance = clearance_of(arguments, certificate);
+    const std::string file = certificate ? numbered(arguments.certificate, frame) : "";
     last = check_scene_with(*clearance, clean_name(file), certificate, scene, list, rows);
     const CheckResult& result = last.result;
-    return frame_check(
-        scene, last, result.meeting.size(),
+    checks.add(
+        frame, scene, last, result.meeting.size(),
         fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10.1f}\n", frame, to_string(result.verdict),
                     grouped(result.found.box_pairs), grouped(result.found.meeting), result.ms));
-  };
-  const auto at_end = [&](const FrameVerdicts& verdicts) {
-    const bool several = arguments.frames->count() > 1 && !last.result.unattested.empty();
-    const std::string which = *clearance == 0
-                                  ? "of the scene meet"
-                                  : fmt::format("are at distance {} or less", *clearance);
-    return verdicts.text("these pairs " + which + ", and no others") +
-           (several ? "of the last frame's run: " : "") + unattested_text(last);
-  };
-  return check_each(arguments,
-                    fmt::format("{:>7}  {:<10}  {:>12}  {:>10}  {:>10}\n", "frame", "verdict",
-                                "box pairs", "meeting", "ms"),
-                    check, at_end);
+  });
+  const bool several = range.count() > 1 && !last.result.unattested.empty();
+  return checks.finish(
+      fmt::format("these pairs {}, and no others",
+                  *clearance == 0 ? "of the scene meet"
+                                  : fmt::format("are at distance {} or less", *clearance)),
+      (several ? "of the last frame's run: " : "") + unattested_text(last));
 }
 
 // Whether certificates are of frames and the frames are named, or neither.
@@ -364,7 +332,7 @@ int CheckCommand::run() {
     throw Error("CERTIFICATE", "is missing", "name a certificate and its scene, or see --help");
   if (pairs_ == "") throw Error("--pairs", "the path is empty", "name the list");
   to.pairs = pairs_.value_or("");
-  // A scene of several names is of meshes alone, so a first name that is not a mesh's is a
+  // A scene of several names is of meshes alone, so a first name that is no mesh is a
   // certificate's.
   const bool mesh = has_mesh_extension(to.certificate);
   if (!pairs_ && mesh) {

@@ -13,11 +13,10 @@
 #include "core/base/text.h"
 #include "core/scene/ignored.h"
 #include "experiments/measure/frames.h"
-#include "experiments/record/distance_certificate.h"
 #include "experiments/record/distances.h"
+#include "experiments/record/fields.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/scene_file.h"
-#include "experiments/system/interrupt.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {
@@ -65,21 +64,7 @@ double parse_within(const std::string& text) {
   return *value;
 }
 
-void add_up(const DistanceAccounting& frame, DistanceAccounting& sum) {
-  sum.pairs_total += frame.pairs_total;
-  sum.answers += frame.answers;
-  sum.objects_meet += frame.objects_meet;
-  sum.farther_by_boxes += frame.farther_by_boxes;
-  sum.farther_by_planes += frame.farther_by_planes;
-  sum.neighbours += frame.neighbours;
-  sum.farther_by_exact += frame.farther_by_exact;
-  sum.nearer += frame.nearer;
-  sum.earlier += frame.earlier;
-  sum.wrong += frame.wrong;
-  sum.ms += frame.ms;
-}
-
-/// Where the frames go, one after the other, and what they add up to.
+/// The output of the frames, one after the other, and their sums.
 class Frames {
  public:
   Frames(const Outputs& outputs, const DistanceOptions& options, long wanted)
@@ -88,14 +73,13 @@ class Frames {
     if (outputs.csv) csv_.emplace(*outputs.csv);
   }
 
-  long count() const { return static_cast<long>(ms_.size()); }
   const DistanceAccounting& sum() const { return sum_; }
 
   void add(long frame, const Scene& scene, const DistanceRecord& record, Json of,
            bool topology_changed) {
     const bool first = ms_.empty();
     ms_.push_back(record.ms);
-    if (record.verification) add_up(*record.verification, sum_);
+    if (record.verification) add_fields(*record.verification, sum_);
     Json one = {{"frame", frame},
                 {"hash", of["scene"]["hash"]},
                 {"triangles", scene.triangles.size()},
@@ -105,7 +89,7 @@ class Frames {
       of.erase(key);
     }
     if (first) head_ = of;
-    if (json_) json_->add({head_, one, summary(), "", "", frame, ""});
+    if (json_) json_->add(head_, one, summary());
     if (csv_) {
       const std::string rows = distances_rows(scene, record, std::to_string(frame) + ",");
       csv_->add((first ? "frame," + distances_header() : "") + rows, "");
@@ -127,10 +111,9 @@ class Frames {
 
  private:
   Json summary() const {
-    const FrameTimes times = summary_of(ms_);
     return {{"frames", ms_.size()},
             {"wanted", wanted_},
-            {"ms", {{"median", times.median}, {"p95", times.p95}, {"max", times.max}}},
+            {"ms", json_of(summary_of(ms_))},
             {"missed", verify_ ? Json(sum_.nearer) : Json(nullptr)},
             {"wrong", verify_ ? Json(sum_.wrong + sum_.earlier) : Json(nullptr)}};
   }
@@ -308,22 +291,21 @@ int DistanceCommand::run_frames(const DistanceOptions& options, const Outputs& o
     complain(missing->where + ": the file does not exist; the frames before it are run");
   }
   Frames frames(outputs, options, range.count());
-  Interruptible interruptible(range.count(), "frames", "what they gave is written",
-                              static_cast<bool>(progress));
   DistanceMemory memory;
-  for (long frame = range.first; frame <= range.last; ++frame) {
-    const Scene& scene = source.at(frame);
-    require_question(scene, options);
-    const DistanceRecord record = distances(scene, options, progress, &memory);
-    terminal.clear();
-    // First: a frame that the record has has its certificate.
-    if (outputs.certificate) {
-      write_output(numbered(*outputs.certificate, frame), to_text(certificate_of(scene, record)));
-    }
-    frames.add(frame, scene, record, distances_json(scene, record, seed_of(scene_)),
-               source.topology_changed());
-    interruptible.done(frames.count());
-  }
+  for_each_frame(range, "what they gave is written", progress, "",
+                 [&](long frame, const Progress&) {
+                   const Scene& scene = source.at(frame);
+                   require_question(scene, options);
+                   const DistanceRecord record = distances(scene, options, progress, &memory);
+                   terminal.clear();
+                   // First: a frame that the record has has its certificate.
+                   if (outputs.certificate) {
+                     write_output(numbered(*outputs.certificate, frame),
+                                  to_text(certificate_of(scene, record)));
+                   }
+                   frames.add(frame, scene, record, distances_json(scene, record, seed_of(scene_)),
+                              source.topology_changed());
+                 });
   frames.finish();
   if (frames.sum().holds()) return kExitDone;
   complain_broken(verdict_text(frames.sum()));

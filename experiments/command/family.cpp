@@ -5,7 +5,7 @@
 #include "experiments/command/commands.h"
 #include "experiments/command/options.h"
 #include "experiments/measure/family.h"
-#include "experiments/measure/savings.h"
+#include "experiments/measure/compare.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {

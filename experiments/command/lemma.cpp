@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 
@@ -16,6 +15,7 @@
 #include "experiments/command/options.h"
 #include "experiments/lemma/lemma.h"
 #include "experiments/method/run.h"
+#include "experiments/record/fields.h"
 #include "experiments/system/output_file.h"
 #include "offsets/minkowski.h"
 #include "offsets/obb.h"
@@ -78,24 +78,24 @@ struct Result {
   std::vector<LemmaRow> rows;
 };
 
-Json row_json(const LemmaRow& row) {
-  return {{"generator", row.generator},
-          {"points", row.points},
-          {"violations", row.violations()},
-          {"no_sample", row.no_sample},
-          {"not_bounding", row.not_bounding}};
+// A row as it is written.
+struct WrittenRow {
+  std::uint64_t points = 0, violations = 0, no_sample = 0, not_bounding = 0;
+  FARCULL_FIELDS(points, violations, no_sample, not_bounding)
+};
+WrittenRow written(const LemmaRow& row) {
+  return {row.points, row.violations(), row.no_sample, row.not_bounding};
 }
 
 Json result_json(const Result& result) {
-  const LemmaRow total = lemma_total(result.rows);
-  Json rows = Json::array();
-  for (const LemmaRow& row : result.rows) rows.push_back(row_json(row));
-  return {{"radius", result.rule.published ? Json("published") : Json(result.rule.factor)},
-          {"points", total.points},
-          {"violations", total.violations()},
-          {"no_sample", total.no_sample},
-          {"not_bounding", total.not_bounding},
-          {"generators", rows}};
+  Json out = {{"radius", result.rule.published ? Json("published") : Json(result.rule.factor)}};
+  out.update(json_of(written(lemma_total(result.rows))));
+  out["generators"] = Json::array();
+  for (const LemmaRow& row : result.rows) {
+    Json& one = out["generators"].emplace_back(Json{{"generator", row.generator}});
+    one.update(json_of(written(row)));
+  }
+  return out;
 }
 
 std::string result_table(const Result& result) {
@@ -114,13 +114,12 @@ std::string result_table(const Result& result) {
 }
 
 std::string sweep_csv(const std::vector<Result>& results) {
-  std::string out = "factor,generator,points,violations,no_sample,not_bounding\n";
+  std::string out = fmt::format("factor,generator,{}\n", fmt::join(field_names<WrittenRow>(), ","));
   for (const Result& result : results) {
     std::vector<LemmaRow> rows = result.rows;
     rows.push_back(lemma_total(rows));
     for (const LemmaRow& row : rows) {
-      out += fmt::format("{},{},{},{},{},{}\n", result.rule.factor, row.generator, row.points,
-                         row.violations(), row.no_sample, row.not_bounding);
+      out += fmt::format("{},{},{}\n", result.rule.factor, row.generator, csv_of(written(row)));
     }
   }
   return out;
@@ -230,8 +229,7 @@ Json to_json(const LemmaArguments& arguments, LemmaCanvas& on, double seconds,
   } else {
     out["sweep"] = Json::array();
     for (const Result& result : results) out["sweep"].push_back(result_json(result));
-    const std::optional<double> safe = smallest_safe(results);
-    out["smallest_factor_without_violation"] = safe ? Json(*safe) : Json(nullptr);
+    out["smallest_factor_without_violation"] = json_of(smallest_safe(results));
   }
   return out;
 }

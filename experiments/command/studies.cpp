@@ -15,7 +15,6 @@
 #include "experiments/command/options.h"
 #include "experiments/peers/runner.h"
 #include "experiments/studies/merge.h"
-#include "experiments/studies/provenance.h"
 #include "experiments/studies/run_studies.h"
 #include "experiments/studies/store.h"
 #include "experiments/studies/study.h"

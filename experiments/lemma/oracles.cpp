@@ -7,11 +7,11 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "core/base/parallel.h"
 #include "experiments/generators/pair_generators.h"
+#include "experiments/record/fields.h"
 #include "verify/certificate/integer_pair.h"
 #include "verify/exact.h"
 
@@ -187,14 +187,8 @@ nlohmann::ordered_json oracles_json(const std::vector<OracleRow>& rows,
   Json generators = Json::array();
   for (const OracleRow& row : rows) {
     disagreements += row.disagreements;
-    generators.push_back({{"generator", row.generator},
-                          {"question", to_string(row.question)},
-                          {"pairs", row.pairs},
-                          {"intersecting", row.intersecting},
-                          {"disagreements", row.disagreements},
-                          {"cgal_ns", row.cgal_ns},
-                          {"integer_ns", row.integer_ns},
-                          {"example", row.example.empty() ? Json(nullptr) : Json(row.example)}});
+    generators.push_back(json_of(row));
+    generators.back()["example"] = text_json(row.example);
   }
   return {{"seed", seed},
           {"pairs_per_generator", pairs_per_generator},

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/fields.h"
+
 namespace farcull {
 
 /// The question about a pair.
@@ -27,6 +29,7 @@ struct OracleRow {
   std::uint64_t disagreements = 0;  // 0, or one of the two is wrong
   double cgal_ns = 0;               // per pair, in one thread
   double integer_ns = 0;
+  FARCULL_FIELDS(generator, question, pairs, intersecting, disagreements, cgal_ns, integer_ns)
   std::string example;  // the first pair of a disagreement, a then b, in hexadecimal doubles
 };
 

@@ -11,7 +11,7 @@
 #include "commit.h"
 #include "core/base/stopwatch.h"
 #include "core/scene/members.h"
-#include "experiments/measure/statistics.h"
+#include "experiments/measure/harness.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/machine.h"

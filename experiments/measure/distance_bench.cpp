@@ -13,7 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/view/view.h"
-#include "experiments/measure/statistics.h"
+#include "experiments/measure/harness.h"
 #include "experiments/method/distances.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/machine.h"

@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "commit.h"
 #include "core/base/error.h"
 #include "core/scene/members.h"
 #include "experiments/measure/harness.h"
-#include "experiments/measure/statistics.h"
+#include "experiments/record/fields.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/generators.h"
 #include "experiments/scenes/builtin/scenes.h"
@@ -62,9 +61,9 @@ FamilyFrame frame_of(const Record& record, long frame) {
                   .pcs_objects = record.found.object_count,
                   .pcs_triangles = record.found.triangle_count,
                   .object_triangles = record.found.swept_triangles().value_or(0),
-                  .candidates = record.found.count,
-                  .colliding = record.collisions.pairs.size(),
-                  .neighbours = record.collisions.neighbour_pairs.size(),
+                  .candidate_pairs = record.found.count,
+                  .colliding_pairs = record.collisions.pairs.size(),
+                  .neighbour_pairs = record.collisions.neighbour_pairs.size(),
                   .missed = {},
                   .missed_contacts = record.missed,
                   .broken = broken(record, false)};
@@ -140,17 +139,15 @@ std::optional<FamilyCell> run_cell(const std::string& scene, const ListedMethod&
                   .device = {},
                   .frames = {}};
   session.sweep().forget();
-  for (long frame = arguments.range.first; frame <= arguments.range.last; ++frame) {
-    const std::string name =
-        fmt::format("{}, {}, frame {} of {}: ", scene, label(cell),
-                    frame - arguments.range.first + 1, arguments.range.count());
-    const Progress named =
-        progress ? [&](const std::string& stage) { progress(name + stage); } : Progress{};
+  bool asks = true;
+  const auto run_frame = [&](long frame, const Progress& named) {
+    if (!asks) return;
     if (named) named("moving");
     const Scene& moved = frames.at(frame);
+    asks = has_self(moved) || !tests_self_alone(contestant.method);
+    if (!asks) return;
     Scene unmarked;
     const bool strip = has_self(moved) && !tests_self(contestant.method);
-    if (!has_self(moved) && tests_self_alone(contestant.method)) return std::nullopt;
     if (strip) {
       unmarked = moved;
       for (Object& object : unmarked.objects) object.self = false;
@@ -165,8 +162,10 @@ std::optional<FamilyCell> run_cell(const std::string& scene, const ListedMethod&
     if (cell.device.empty() || record.found.device.gl) cell.device = device_of(record);
     cell.setup_ms += record.ms.setup;
     cell.frames.push_back(frame_of(record, frame));
-  }
-  return cell;
+  };
+  for_each_frame(arguments.range, nullptr, progress, fmt::format("{}, {}, ", scene, label(cell)),
+                 run_frame);
+  return asks ? std::optional(cell) : std::nullopt;
 }
 
 // A field of a CSV file, in quotes where it has to be (RFC 4180).
@@ -261,7 +260,7 @@ std::string family_table(const std::vector<FamilyCell>& cells) {
                rate(times.p95), paper.fps > 0 ? fmt::format("{:.0f}", paper.fps) : "",
                count([](const FamilyFrame& f) { return f.pcs_objects; }),
                count([](const FamilyFrame& f) { return f.pcs_triangles; }),
-               count([](const FamilyFrame& f) { return f.candidates; }),
+               count([](const FamilyFrame& f) { return f.candidate_pairs; }),
                count([](const FamilyFrame& f) { return f.queries; }),
                count([](const FamilyFrame& f) { return f.draws; }),
                missed ? grouped(*missed) + (cell.broken() ? " BROKEN" : "") : "-"});
@@ -286,10 +285,10 @@ std::string family_csv(const std::vector<FamilyCell>& cells) {
     if (cell.method != Method::i_collide) continue;
     for (const FamilyFrame& frame : cell.frames) swept[{cell.scene, frame.frame}] = &frame;
   }
-  std::string out =
-      "scene,method,offset,frame,ms,pcs_objects,pcs_triangles,candidate_pairs,colliding_pairs,"
-      "neighbour_pairs,queries,draws,queries_saved,draws_saved,missed,missed_touching,"
-      "missed_penetrating,factor_objects,factor_triangles,factor_pairs\n";
+  std::string out = fmt::format(
+      "scene,method,offset,frame,ms,pcs_objects,pcs_triangles,{},missed_touching,"
+      "missed_penetrating,factor_objects,factor_triangles,factor_pairs\n",
+      fmt::join(field_names<FamilyFrame>(), ","));
   for (const FamilyCell& cell : cells) {
     for (const FamilyFrame& f : cell.frames) {
       const auto found = swept.find({cell.scene, f.frame});
@@ -298,19 +297,16 @@ std::string family_csv(const std::vector<FamilyCell>& cells) {
                    ? fmt::format("{:.6g}", static_cast<double>(theirs) / static_cast<double>(ours))
                    : "";
       };
-      const auto contacts = [&](std::uint64_t ContactCounts::*kind) {
-        return f.missed_contacts ? std::to_string(*f.missed_contacts.*kind) : "";
-      };
       const FamilyFrame none;
       const FamilyFrame& box = found == swept.end() ? none : *found->second;
       out += fmt::format(
-          "{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", field(cell.scene),
-          to_string(cell.method), cell.offset, f.frame, f.ms, f.pcs_objects, f.pcs_triangles,
-          f.candidates, f.colliding, f.neighbours, f.queries, f.draws, f.queries_saved,
-          f.draws_saved, f.missed ? std::to_string(*f.missed) : "",
-          contacts(&ContactCounts::touching), contacts(&ContactCounts::penetrating),
+          "{},{},{},{},{:.3f},{},{},{},{},{},{},{}\n", field(cell.scene), to_string(cell.method),
+          cell.offset, f.frame, f.ms, f.pcs_objects, f.pcs_triangles, csv_of(f),
+          f.missed_contacts
+              ? fmt::format("{},{}", f.missed_contacts->touching, f.missed_contacts->penetrating)
+              : ",",
           factor(box.object_triangles, f.pcs_triangles), factor(box.pcs_triangles, f.pcs_triangles),
-          factor(box.candidates, f.candidates));
+          factor(box.candidate_pairs, f.candidate_pairs));
     }
   }
   return out;
@@ -322,33 +318,26 @@ nlohmann::ordered_json family_json(const std::vector<FamilyCell>& cells,
   for (const FamilyCell& cell : cells) {
     Json frames = Json::array();
     for (const FamilyFrame& f : cell.frames) {
-      frames.push_back({{"frame", f.frame},
-                        {"ms", f.ms},
-                        {"pcs", {{"objects", f.pcs_objects}, {"triangles", f.pcs_triangles}}},
-                        {"candidate_pairs", f.candidates},
-                        {"colliding_pairs", f.colliding},
-                        {"neighbour_pairs", f.neighbours},
-                        {"queries", f.queries},
-                        {"draws", f.draws},
-                        {"queries_saved", f.queries_saved},
-                        {"draws_saved", f.draws_saved},
-                        {"missed", f.missed ? Json(*f.missed) : Json(nullptr)},
-                        {"missed_contacts",
-                         f.missed_contacts ? Json{{"touching", f.missed_contacts->touching},
-                                                  {"penetrating", f.missed_contacts->penetrating}}
-                                           : Json(nullptr)}});
+      Json one = {{"frame", f.frame},
+                  {"ms", f.ms},
+                  {"pcs", {{"objects", f.pcs_objects}, {"triangles", f.pcs_triangles}}}};
+      one.update(json_of(f));
+      one["missed_contacts"] = f.missed_contacts
+                                   ? Json{{"touching", f.missed_contacts->touching},
+                                          {"penetrating", f.missed_contacts->penetrating}}
+                                   : Json(nullptr);
+      frames.push_back(std::move(one));
     }
-    const FrameTimes times = cell.times();
     const PaperRate paper = paper_rate(cell.scene);
     rows.push_back({{"scene", cell.scene},
                     {"objects", cell.objects},
                     {"triangles", cell.triangles},
                     {"method", to_string(cell.method)},
-                    {"offset", cell.offset.empty() ? Json(nullptr) : Json(cell.offset)},
+                    {"offset", text_json(cell.offset)},
                     {"device", cell.device},
                     {"promises", cell.promises},
                     {"pairs_not_asked", cell.pairs_not_asked},
-                    {"ms", {{"median", times.median}, {"p95", times.p95}, {"max", times.max}}},
+                    {"ms", json_of(cell.times())},
                     {"setup_ms", cell.setup_ms},
                     {"paper", paper.fps > 0 ? Json{{"fps", paper.fps}, {"source", paper.source}}
                                             : Json(nullptr)},

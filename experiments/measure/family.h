@@ -27,10 +27,12 @@ struct FamilyFrame {
   double ms = 0;  // from moved vertices to exact pairs: cull + exact
   std::uint64_t pcs_objects = 0, pcs_triangles = 0;
   std::uint64_t object_triangles = 0;  // of i-collide, Record
-  std::uint64_t candidates = 0, colliding = 0, neighbours = 0;
+  std::uint64_t candidate_pairs = 0, colliding_pairs = 0, neighbour_pairs = 0;
   std::uint64_t queries = 0, draws = 0;
   std::uint64_t queries_saved = 0, draws_saved = 0;  // against plain CULLIDE
   std::optional<std::uint64_t> missed;
+  FARCULL_FIELDS(candidate_pairs, colliding_pairs, neighbour_pairs, queries, draws, queries_saved,
+                 draws_saved, missed)
   std::optional<ContactCounts> missed_contacts;
   bool broken = false;  // the method promises, whatever its device's verdict, and missed a pair
 };
@@ -54,7 +56,7 @@ struct FamilyCell {
 };
 
 /// The frame rate (1/s) that a paper gives for a scene like this one, measured on hardware of 2004
-/// with other meshes, and where; 0 where there is none. It is no rate to compare ours with.
+/// with other meshes, and where; 0 if no paper does. It is no rate to compare ours with.
 struct PaperRate {
   double fps = 0;
   std::string source;

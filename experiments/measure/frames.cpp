@@ -12,7 +12,7 @@
 #include "core/base/stopwatch.h"
 #include "core/scene/members.h"
 #include "experiments/method/run.h"
-#include "experiments/record/certificate.h"
+#include "experiments/record/fields.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/interrupt.h"
@@ -40,10 +40,7 @@ constexpr std::array kOfFrame = {"views",
                                  "verification",
                                  "time_ms"};
 
-Json rate_json(double ms) {
-  const std::optional<double> rate = per_second(ms);
-  return rate ? Json(*rate) : Json(nullptr);
-}
+Json rate_json(double ms) { return json_of(per_second(ms)); }
 
 Json frame_json(const Scene& scene, const Record& record, long frame, double read_ms,
                 const FrameSource& source) {
@@ -63,7 +60,7 @@ Json frame_json(const Scene& scene, const Record& record, long frame, double rea
   const FrameNotes notes = source.notes();
   // Null where it is not finite.
   for (const auto& [name, value] : notes.values) out["motion"][name] = value;
-  out["warning"] = notes.warning.empty() ? Json(nullptr) : Json(notes.warning);
+  out["warning"] = text_json(notes.warning);
   return out;
 }
 
@@ -180,18 +177,7 @@ FrameTimes summary_of_sorted(const std::vector<double>& ms) {
   return {.median = 0.5 * (ms[(n - 1) / 2] + ms[n / 2]), .p95 = ms[rank - 1], .max = ms[n - 1]};
 }
 
-void add(const Accounting& frame, Accounting& sum) {
-  sum.pairs_total += frame.pairs_total;
-  sum.ignored += frame.ignored;
-  sum.pairs_kept += frame.pairs_kept;
-  sum.certified_by_boxes += frame.certified_by_boxes;
-  sum.neighbours += frame.neighbours;
-  sum.certified_by_predicates += frame.certified_by_predicates;
-  sum.false_negatives += frame.false_negatives;
-  sum.ms += frame.ms;
-}
-
-// Of the frames up to now.
+// Running totals.
 struct Totals {
   std::vector<double> ms;  // ascending
   double first_ms = 0;     // of the first frame
@@ -261,8 +247,20 @@ FrameTimes summary_of(std::vector<double> ms) {
   return summary_of_sorted(ms);
 }
 
-// The text is that of Json::dump(2) of the whole record.
-void FrameRecord::add(const FrameReport& report) {
+void for_each_frame(const FrameRange& range, const char* end, const Progress& progress,
+                    const std::string& before,
+                    const std::function<void(long frame, const Progress& named)>& one) {
+  std::optional<Interruptible> interruptible;
+  if (end) interruptible.emplace(range.count(), "frames", end, static_cast<bool>(progress));
+  for (long frame = range.first; frame <= range.last; ++frame) {
+    const long done = frame - range.first + 1;
+    const std::string name = fmt::format("{}frame {} of {}: ", before, done, range.count());
+    one(frame, progress ? [&](const std::string& stage) { progress(name + stage); } : Progress{});
+    if (interruptible) interruptible->done(done);
+  }
+}
+
+void FrameRecord::add(const Json& head, const Json& frame, const Json& summary) {
   const auto indented = [](const Json& json, const std::string& by) {
     std::string out;
     for (const char c : json.dump(2)) {
@@ -273,12 +271,12 @@ void FrameRecord::add(const FrameReport& report) {
   };
   std::string text = ",\n    ";
   if (!std::exchange(begun_, true)) {
-    text = report.head.dump(2);
-    text.erase(text.rfind("\n}"));
-    text += ",\n  \"frames\": [\n    ";
+    text = head.empty() ? "{" : head.dump(2);
+    if (!head.empty()) text.replace(text.rfind("\n}"), 2, ",");
+    text += "\n  \"frames\": [\n    ";
   }
-  output_.add(text + indented(report.frame, "    "),
-              "\n  ],\n  \"summary\": " + indented(report.summary, "  ") + "\n}\n");
+  output_.add(text + indented(frame, "    "),
+              "\n  ],\n  \"summary\": " + indented(summary, "  ") + "\n}\n");
 }
 
 FramesResult run_frames(const std::vector<std::string>& arguments, const FramesQuestion& question,
@@ -297,14 +295,7 @@ FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
   Totals totals;
   FrameTable table(std::to_string(question.range.last).size());
   Warnings warnings;
-  Interruptible interruptible(question.range.count(), "frames",
-                              sink ? "what they gave is written" : "nothing was written",
-                              static_cast<bool>(progress));
-  for (long frame = question.range.first; frame <= question.range.last; ++frame) {
-    const std::string name =
-        fmt::format("frame {} of {}", totals.ms.size() + 1, question.range.count());
-    const Progress named =
-        progress ? [&](const std::string& stage) { progress(name + ": " + stage); } : Progress{};
+  const auto run_frame = [&](long frame, const Progress& named) {
     if (named) named("reading");
     const Stopwatch reading;
     const Scene& scene = source.at(frame);
@@ -313,7 +304,10 @@ FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
     if (question.ignored) options.ignored = question.ignored(scene);
     const Record record = run(scene, options, session, named);
     totals.add(record, source.topology_changed());
-    if (record.verification) add(*record.verification, out.sum);
+    if (record.verification) {
+      add_fields(*record.verification, out.sum);
+      out.sum.ms += record.verification->ms;
+    }
     const NothingToTest nothing = nothing_to_test(scene);
     if (frame == question.range.first || nothing.reason.empty()) out.nothing = nothing;
     add_row(scene, record, frame, source.notes(), table);
@@ -344,8 +338,9 @@ FramesResult run_frames(FrameSource& source, const FramesQuestion& question,
           fmt::format("frame {}: {} culled pairs that collide: {}", frame, describe(record.options),
                       grouped(record.verification->false_negatives));
     }
-    interruptible.done(static_cast<long>(totals.ms.size()));
-  }
+  };
+  for_each_frame(question.range, sink ? "what they gave is written" : "nothing was written",
+                 progress, "", run_frame);
 
   if (!sink) out.json["frames"] = std::move(frames);
   out.json["summary"] = totals.json(question);

@@ -15,6 +15,14 @@
 
 namespace farcull {
 
+/// The loop over frames of every command. Calls `one` with each frame of the range and a progress
+/// that puts `before` and "frame 3 of 10: " before its stages. SIGINT, SIGTERM and SIGHUP end the
+/// program at once, with a line on standard error that says how many frames were done, and `end`;
+/// null: without the line.
+void for_each_frame(const FrameRange& range, const char* end, const Progress& progress,
+                    const std::string& before,
+                    const std::function<void(long frame, const Progress& named)>& one);
+
 struct FramesQuestion {
   RunOptions options;
   FrameRange range;
@@ -30,12 +38,13 @@ struct FramesQuestion {
 /// Milliseconds of frames: candidates and exact tests, without reading and accounting.
 struct FrameTimes {
   double median = 0, p95 = 0, max = 0;  // p95: by nearest rank
+  FARCULL_FIELDS(median, p95, max)
 };
 /// Frames per second at so many milliseconds each; empty where that is no positive number.
 std::optional<double> per_second(double ms);
 FrameTimes summary_of(std::vector<double> ms);
 
-/// What a frame that is done adds.
+/// The results of a frame that is done.
 struct FrameReport {
   const nlohmann::ordered_json& head;     // of all frames: the record without the next two
   const nlohmann::ordered_json& frame;    // an element of `frames`
@@ -47,12 +56,16 @@ struct FrameReport {
 };
 using FrameSink = std::function<void(const FrameReport&)>;
 
-/// The record of docs/record.md, written frame by frame.
+/// A record {HEAD, "frames": [FRAME, ...], "summary": SUMMARY} that is written frame by frame; its
+/// text is that of ordered_json::dump(2).
 class FrameRecord {
  public:
   explicit FrameRecord(std::string path) : output_(std::move(path)) {}
-  /// Throws Error as GrowingOutput.
-  void add(const FrameReport& report);
+  /// head: an object, which may be empty; that of the first frame counts. summary: of the frames up
+  /// to this one. Throws Error as GrowingOutput.
+  void add(const nlohmann::ordered_json& head, const nlohmann::ordered_json& frame,
+           const nlohmann::ordered_json& summary);
+  void add(const FrameReport& report) { add(report.head, report.frame, report.summary); }
   void finish() { output_.finish(); }
 
  private:
@@ -65,7 +78,7 @@ struct FramesResult {
   std::string table;            // for people; of a run with a sink what follows the rows
   std::string pairs_csv;        // of a run without a sink
   std::string broken;           // the first guarantee that was broken; empty: none
-  Accounting sum;               // of all frames, without examples; 0 where there is none
+  Accounting sum;               // of all frames, without examples; 0 without an accounting
   NothingToTest nothing;        // why no frame has a pair to test; empty where one has
 };
 

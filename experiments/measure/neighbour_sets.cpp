@@ -1,5 +1,5 @@
-// Sets of four methods in one form, their sizes for each object, and what they lack of the nearest
-// neighbours by exact distances.
+// Sets of four methods in one form, their sizes for each object, and what they lack of the truth,
+// for which exact arithmetic decides what trees of boxes leave.
 #include "experiments/measure/neighbour_sets.h"
 
 #include <algorithm>
@@ -34,11 +34,11 @@ SquaredRange range_of(const Box& a, const Box& b) {
   return out;
 }
 
-// Computed distances above this limit are farther than the largest distance that was computed as
-// `largest`. Let u = 2^-53. A difference, a square and two sums round, and a square below 2^-1022
-// is off by 2^-1075: both squares are within the factors (1 - u)^5 and (1 + u)^5 of the exact ones,
-// and 2^-1072. 16 u cover both, and the rounding of this product. What overflows is infinite on
-// both sides, so it is kept.
+// Anything farther than this, as computed, is farther than the largest distance that was computed
+// as `largest`. Let u = 2^-53. A difference, a square and two sums round, and a square below
+// 2^-1022 is off by 2^-1075: both squares are within the factors (1 - u)^5 and (1 + u)^5 of the
+// exact ones, and 2^-1072. 16 u cover both, and the rounding of this product. What overflows is
+// infinite on both sides, so it is kept.
 double limit_of(double largest) { return largest * (1 + 0x1p-49) + 0x1p-1000; }
 
 // An object may hold the nearest neighbour of another one if their boxes come as near as the box of
@@ -134,9 +134,44 @@ Sizes sizes_over(std::vector<std::uint64_t> values) {
 
 }  // namespace
 
+std::vector<NearestObjects> nearest_objects(const Scene& scene, const Progress& progress) {
+  const FloatingPointGuard guard;
+  const ProximityTrees trees(scene);
+  std::vector<NearestObjects> out(scene.objects.size());
+  std::vector<std::optional<SquaredDistance>> least(out.size());
+  for (const NearPairs& near :
+       trees.nearest_objects(1, std::numeric_limits<double>::infinity(), progress)) {
+    const std::optional<NearestPair> nearest = nearest_pair(scene, near.pairs);
+    if (!nearest) continue;
+    const SquaredDistance& squared = nearest->closest.squared;
+    const auto add = [&](std::uint32_t object, std::uint32_t other) {
+      if (least[object] && *least[object] < squared) return;
+      if (!least[object] || squared < *least[object]) {
+        least[object] = squared;
+        out[object] = {};
+      }
+      out[object].objects.push_back(other);
+      out[object].triangles.push_back(nearest->pair);
+    };
+    // Pairs of objects come sorted, so the others of one object come ascending.
+    add(near.objects.a, near.objects.b);
+    add(near.objects.b, near.objects.a);
+  }
+  return out;
+}
+
 std::string to_string(NeighbourMethod method) {
-  constexpr std::array kNames = {"boxes", "trees", "voronoi", "voronoi-reliable"};
-  return kNames.at(static_cast<std::size_t>(method));
+  switch (method) {
+    case NeighbourMethod::boxes:
+      return "boxes";
+    case NeighbourMethod::trees:
+      return "trees";
+    case NeighbourMethod::voronoi:
+      return "voronoi";
+    case NeighbourMethod::voronoi_reliable:
+      return "voronoi-reliable";
+  }
+  throw std::logic_error("to_string: no method");
 }
 
 bool has_cells(NeighbourMethod method) {
@@ -208,32 +243,6 @@ bool has_triangles(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b,
                         : has_objects(sets, a, b);
 }
 
-std::vector<NearestObjects> nearest_objects(const Scene& scene, const Progress& progress) {
-  const FloatingPointGuard guard;
-  const ProximityTrees trees(scene);
-  std::vector<NearestObjects> out(scene.objects.size());
-  std::vector<std::optional<SquaredDistance>> least(out.size());
-  for (const NearPairs& near :
-       trees.nearest_objects(1, std::numeric_limits<double>::infinity(), progress)) {
-    const std::optional<NearestPair> nearest = nearest_pair(scene, near.pairs);
-    if (!nearest) continue;
-    const SquaredDistance& squared = nearest->closest.squared;
-    const auto add = [&](std::uint32_t object, std::uint32_t other) {
-      if (least[object] && *least[object] < squared) return;
-      if (!least[object] || squared < *least[object]) {
-        least[object] = squared;
-        out[object] = {};
-      }
-      out[object].objects.push_back(other);
-      out[object].triangles.push_back(nearest->pair);
-    };
-    // Pairs of objects come sorted, so the others of one object come ascending.
-    add(near.objects.a, near.objects.b);
-    add(near.objects.b, near.objects.a);
-  }
-  return out;
-}
-
 NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,
                         const std::vector<NearestObjects>& truth) {
   if (!sets.left_out.empty() || truth.size() != scene.objects.size())
@@ -245,7 +254,7 @@ NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,
   for (std::uint32_t object = 0; object < truth.size(); ++object) {
     const NearestObjects& nearest = truth[object];
     if (nearest.objects.empty()) continue;
-    ++out.objects;
+    ++out.with_nearest;
     with_objects.push_back(sizes[object].objects);
     with_triangles.push_back(sizes[object].triangles);
     bool found = false;

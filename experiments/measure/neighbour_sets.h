@@ -1,6 +1,6 @@
 // Potential neighbour sets (PNS): for each object the objects and triangles that may hold its
 // nearest neighbour. Four methods leave such sets; their sizes are compared, and what they lose is
-// counted against exact answers.
+// counted against exact distances.
 #pragma once
 
 #include <array>
@@ -8,11 +8,23 @@
 #include <string>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "core/base/progress.h"
 #include "core/proximity/voronoi.h"
 #include "core/scene/scene.h"
 
 namespace farcull {
+
+/// The other objects at the least distance of an object, by exact arithmetic.
+struct NearestObjects {
+  std::vector<std::uint32_t> objects;   // ascending; none where there is no other one
+  std::vector<TrianglePair> triangles;  // of each of these, the first pair at that distance
+};
+
+/// For each object: ProximityTrees (core/proximity/near_pairs.h) leave the pairs that can be
+/// nearest, and exact arithmetic decides (verify/closest.h). Precondition: the scene satisfies
+/// validate().
+std::vector<NearestObjects> nearest_objects(const Scene& scene, const Progress& progress = {});
 
 class VoronoiDevice;
 
@@ -35,7 +47,7 @@ struct NeighbourOptions {
   std::uint64_t most_pairs = kMostNeighbourPairs;  // VoronoiOptions::most_pairs
 };
 
-/// The sets that a method leaves. One of the two forms below holds the triangles.
+/// The sets that a method leaves. Of the two forms below, one holds the triangles.
 struct NeighbourSets {
   std::vector<ObjectPair> objects;  // sorted, each once: either may hold the other's nearest
   /// trees, voronoi_reliable: the pairs of triangles that may be nearest, sorted, each once.
@@ -75,20 +87,9 @@ bool has_objects(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b);
 bool has_triangles(const NeighbourSets& sets, std::uint32_t a, std::uint32_t b,
                    const TrianglePair& triangles);
 
-/// The other objects at the least distance of an object, by exact arithmetic.
-struct NearestObjects {
-  std::vector<std::uint32_t> objects;   // ascending; none where there is no other one
-  std::vector<TrianglePair> triangles;  // of each of these, the first pair at that distance
-};
-
-/// For each object: ProximityTrees (core/proximity/near_pairs.h) leave the pairs that can be
-/// nearest, and exact arithmetic decides (verify/closest.h). Precondition: the scene satisfies
-/// validate().
-std::vector<NearestObjects> nearest_objects(const Scene& scene, const Progress& progress = {});
-
 /// Sizes of the sets, and what they lack.
 struct NeighbourSizes {
-  std::uint64_t objects = 0;         // that have a nearest neighbour
+  std::uint64_t with_nearest = 0;    // objects that have a nearest neighbour
   std::uint64_t missed = 0;          // of these, with none of the nearest ones in their sets
   std::uint64_t nearest_pairs = 0;   // nearest pairs of triangles, each for each of its objects
   std::uint64_t missed_pairs = 0;    // of these, not in the sets
@@ -98,6 +99,9 @@ struct NeighbourSizes {
   /// neighbour the sum, the median (of an even number the lower one of the two) and the largest.
   std::uint64_t set_objects = 0, median_objects = 0, most_objects = 0;
   std::uint64_t set_triangles = 0, median_triangles = 0, most_triangles = 0;
+  FARCULL_FIELDS(with_nearest, missed, nearest_pairs, missed_pairs, object_pairs, triangle_pairs,
+                 set_objects, median_objects, most_objects, set_triangles, median_triangles,
+                 most_triangles)
 };
 /// truth: nearest_objects() of the scene. Precondition: there are sets.
 NeighbourSizes sizes_of(const Scene& scene, const NeighbourSets& sets,

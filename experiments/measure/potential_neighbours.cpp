@@ -1,12 +1,11 @@
-// Asks the diagram and exact arithmetic, then counts for each object what the one leaves of what
-// the other found. And the record as JSON, CSV and a table.
+// Asks the diagram and exact arithmetic, counts for each object what the one leaves of what the
+// other found, and turns it into JSON, CSV and a table.
 #include "experiments/measure/potential_neighbours.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "commit.h"
@@ -17,6 +16,7 @@
 #include "experiments/measure/neighbour_sets.h"
 #include "experiments/method/options.h"
 #include "experiments/method/session.h"
+#include "experiments/record/fields.h"
 #include "experiments/record/output.h"
 #include "experiments/system/text_table.h"
 #include "verify/closest.h"
@@ -26,6 +26,45 @@ namespace farcull {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kRowsShown = 24;
+
+std::string numbered_name(const Scene& scene, std::uint32_t object) {
+  return fmt::format("{} {}", object, scene.objects[object].name);
+}
+
+// The first of the nearest objects, and how many are as near.
+std::string nearest_text(const Scene& scene, const PotentialNeighbours& of) {
+  if (of.nearest.empty()) return "none";
+  std::string text = numbered_name(scene, of.nearest.front());
+  if (of.nearest.size() > 1) text += fmt::format(" and {} more", of.nearest.size() - 1);
+  return text;
+}
+
+std::string objects_table(const Scene& scene, const DiagramRecord& record) {
+  Table table("llrrrr");
+  table.add({"object", "nearest", "distance", "objects left", "triangles left", "lost"});
+  const std::size_t shown = std::min(record.objects.size(), kRowsShown);
+  for (std::uint32_t object = 0; object < shown; ++object) {
+    const PotentialNeighbours& of = record.objects[object];
+    table.add({numbered_name(scene, object), nearest_text(scene, of),
+               of.nearest.empty() ? "" : fmt::format("{}", of.distance), grouped(of.objects),
+               grouped(of.triangles), grouped(of.lost)});
+  }
+  std::string out = table.text();
+  if (record.objects.size() > shown)
+    out += fmt::format("and {} more (--json and --csv have all)\n",
+                       grouped(record.objects.size() - shown));
+  return out;
+}
+
+Json device_json(const DiagramRecord& record) {
+  if (!record.gl) return {{"kind", "cpu"}};
+  Json out = {{"kind", record.gl->kind}};
+  out.update(gl_json(*record.gl));
+  out.update(Json{{"reason", "--device " + record.options.device}, {"probes", record.probes}});
+  return out;
+}
 
 // Asks the diagram on a GL device, where one is wanted.
 class Asked {
@@ -57,45 +96,6 @@ class Asked {
   std::optional<Session> session_;  // its context outlives the device
   std::unique_ptr<VoronoiDevice> device_;
 };
-
-constexpr std::size_t kRowsShown = 24;
-
-std::string name_of(const Scene& scene, std::uint32_t object) {
-  return fmt::format("{} {}", object, scene.objects[object].name);
-}
-
-// The first of the nearest objects, and how many are as near.
-std::string nearest_text(const Scene& scene, const PotentialNeighbours& of) {
-  if (of.nearest.empty()) return "none";
-  std::string text = name_of(scene, of.nearest.front());
-  if (of.nearest.size() > 1) text += fmt::format(" and {} more", of.nearest.size() - 1);
-  return text;
-}
-
-std::string objects_table(const Scene& scene, const DiagramRecord& record) {
-  Table table("llrrrr");
-  table.add({"object", "nearest", "distance", "objects left", "triangles left", "lost"});
-  const std::size_t shown = std::min(record.objects.size(), kRowsShown);
-  for (std::uint32_t object = 0; object < shown; ++object) {
-    const PotentialNeighbours& of = record.objects[object];
-    table.add({name_of(scene, object), nearest_text(scene, of),
-               of.nearest.empty() ? "" : fmt::format("{}", of.distance), grouped(of.objects),
-               grouped(of.triangles), grouped(of.lost)});
-  }
-  std::string out = table.text();
-  if (record.objects.size() > shown)
-    out += fmt::format("and {} more (--json and --csv have all)\n",
-                       grouped(record.objects.size() - shown));
-  return out;
-}
-
-Json device_json(const DiagramRecord& record) {
-  if (!record.gl) return {{"kind", "cpu"}};
-  return {{"kind", record.gl->kind},         {"vendor", record.gl->vendor},
-          {"renderer", record.gl->renderer}, {"version", record.gl->version},
-          {"glsl", record.gl->glsl},         {"reason", "--device " + record.options.device},
-          {"probes", record.probes}};
-}
 
 }  // namespace
 
@@ -166,25 +166,19 @@ Json diagram_json(const Scene& scene, const DiagramRecord& record,
                        {"potential_triangles", of.triangles},
                        {"lost", of.lost}});
   }
-  const DiagramTotals totals = totals_of(record);
+  Json totals = json_of(totals_of(record));
+  totals["object_pairs"] = record.object_pairs;
+  totals["triangle_pairs"] = record.triangle_pairs;
   return {{"scene", scene_json(scene, record.degenerate_triangles, record.scene_hash)},
           {"diagram", to_string(record.options.form)},
           {"resolution", record.options.resolution},
           {"cells", record.work.cells},
           {"device", device_json(record)},
           {"objects", objects},
-          {"totals",
-           {{"objects", totals.objects},
-            {"nearest", totals.nearest},
-            {"lost", totals.lost},
-            {"objects_lost", totals.objects_lost},
-            {"potential_objects", totals.potential_objects},
-            {"potential_triangles", totals.potential_triangles},
-            {"object_pairs", record.object_pairs},
-            {"triangle_pairs", record.triangle_pairs}}},
+          {"totals", totals},
           {"counts", {{"blocks", record.work.blocks}, {"distances", record.work.distances}}},
           {"time_ms", {{"diagram", record.diagram_ms}, {"exact", record.exact_ms}}},
-          {"seed", seed ? Json(*seed) : Json(nullptr)},
+          {"seed", json_of(seed)},
           {"commit", FARCULL_COMMIT}};
 }
 

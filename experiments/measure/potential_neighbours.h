@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "core/base/progress.h"
 #include "core/gl/base/context.h"
 #include "core/proximity/voronoi.h"
@@ -28,7 +29,7 @@ struct DiagramOptions {
   std::string device = {};
 };
 
-/// The potential neighbours of one object.
+/// The sets of one object.
 struct PotentialNeighbours {
   std::vector<std::uint32_t> nearest;  // the objects at its least distance; none where there is no
                                        // other object with triangles
@@ -67,6 +68,7 @@ struct DiagramTotals {
   std::uint64_t lost = 0;          // of these
   std::uint64_t objects_lost = 0;  // objects that lost all of theirs
   std::uint64_t potential_objects = 0, potential_triangles = 0;
+  FARCULL_FIELDS(objects, nearest, lost, objects_lost, potential_objects, potential_triangles)
 };
 DiagramTotals totals_of(const DiagramRecord& record);
 

@@ -18,11 +18,8 @@
 #include "experiments/python/arrays.h"
 #include "experiments/python/parts.h"
 #include "experiments/python/scene.h"
-#include "experiments/record/certificate.h"
-#include "experiments/record/check_result.h"
-#include "experiments/record/check_scene.h"
+#include "experiments/record/check.h"
 #include "experiments/record/output.h"
-#include "experiments/record/plan.h"
 #include "experiments/record/tables.h"
 #include "verify/certificate/certificate.h"
 

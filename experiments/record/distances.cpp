@@ -1,4 +1,4 @@
-// Turns distances into JSON, CSV and text.
+// Turns distances into JSON, CSV, text and certificates.
 #include "experiments/record/distances.h"
 
 #include <fmt/format.h>
@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "commit.h"
+#include "experiments/record/fields.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"
@@ -40,15 +40,12 @@ std::array<std::uint32_t, 2> within_objects(const Scene& scene, const Distance& 
 
 Json point_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
-// JSON has no infinity.
-Json number_json(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
-
 Json pair_json(const Scene& scene, const Distance& d) {
   const Closest& c = d.closest;
   const auto [s, t] = within_objects(scene, d);
   return {{"a", d.objects.a},
           {"b", d.objects.b},
-          {"distance", number_json(c.distance)},
+          {"distance", c.distance},
           {"squared", c.squared.text()},
           {"witness", {point_json(c.points[0]), point_json(c.points[1])}},
           {"features", {to_string(c.features[0]), to_string(c.features[1])}},
@@ -75,18 +72,10 @@ Json nearest_json(const Scene& scene, const DistanceRecord& record) {
 
 Json verification_json(const Scene& scene, const std::optional<DistanceAccounting>& accounting) {
   if (!accounting) return nullptr;
-  return {{"pairs_total", accounting->pairs_total},
-          {"answers", accounting->answers},
-          {"objects_meet", accounting->objects_meet},
-          {"farther_by_boxes", accounting->farther_by_boxes},
-          {"farther_by_planes", accounting->farther_by_planes},
-          {"neighbours", accounting->neighbours},
-          {"farther_by_exact", accounting->farther_by_exact},
-          {"nearer", accounting->nearer},
-          {"earlier", accounting->earlier},
-          {"wrong", accounting->wrong},
-          {"examples", pairs_json(scene, accounting->examples)},
-          {"ms", accounting->ms}};
+  Json out = json_of(*accounting);
+  out["examples"] = pairs_json(scene, accounting->examples);
+  out["ms"] = accounting->ms;
+  return out;
 }
 
 std::string object_text(const Scene& scene, std::uint32_t object) {
@@ -191,14 +180,22 @@ std::string accounting_lines(const Scene& scene, const DistanceRecord& record) {
   if (!record.verification) return "";
   const DistanceAccounting& v = *record.verification;
   std::string out = verdict_text(v) + "\n" + accounting_sum(v);
-  const std::vector<std::uint32_t> owner = owners(scene);
-  const auto place = [&](std::uint32_t triangle) {
-    const Object& object = scene.objects[owner[triangle]];
-    return fmt::format("{} triangle {}", object.name, triangle - object.first_triangle);
-  };
   for (const TrianglePair& pair : v.examples)
-    out += fmt::format("  missed: {} and {}\n", place(pair.a), place(pair.b));
+    out +=
+        fmt::format("  missed: {} and {}\n", place_text(scene, pair.a), place_text(scene, pair.b));
   return out;
+}
+
+DistanceCertificate::Pairs pairs_of(DistancePairs pairs) {
+  switch (pairs) {
+    case DistancePairs::objects:
+      return DistanceCertificate::Pairs::objects;
+    case DistancePairs::nearest:
+      return DistanceCertificate::Pairs::nearest;
+    case DistancePairs::all:
+      break;
+  }
+  return DistanceCertificate::Pairs::all;
 }
 
 }  // namespace
@@ -214,7 +211,7 @@ Json distances_json(const Scene& scene, const DistanceRecord& record,
           {"objects", names},
           {"pairs_asked", name_of(o.pairs)},
           {"k", o.pairs == DistancePairs::nearest ? Json(o.k) : Json(nullptr)},
-          {"within", number_json(o.within)},
+          {"within", o.within},
           {"inside_asked", o.inside},
           {"pairs", pairs},
           {"nearest", nearest_json(scene, record)},
@@ -295,6 +292,22 @@ std::string distances_table(const Scene& scene, const DistanceRecord& record) {
       "time       {:.1f} ms{}\n", record.ms,
       record.verification ? fmt::format("; accounting {:.1f} more", record.verification->ms) : "");
   return out + accounting_lines(scene, record);
+}
+
+DistanceCertificate certificate_of(const Scene& scene, const DistanceRecord& record) {
+  DistanceCertificate out;
+  out.scene = {scene.name, scene.objects.size(), scene.triangles.size(), record.scene_hash};
+  out.pairs = pairs_of(record.options.pairs);
+  if (record.options.pairs == DistancePairs::nearest) out.k = record.options.k;
+  out.within = record.options.within;
+  out.distances.reserve(record.distances.size());
+  for (const Distance& d : record.distances) {
+    out.distances.push_back(
+        entry_of(scene, d.triangles, d.closest.squared.text(),
+                 {number_of(d.closest.features[0]), number_of(d.closest.features[1])}));
+    out.distances.back().inside = claim_of(d.inside);
+  }
+  return out;
 }
 
 }  // namespace farcull

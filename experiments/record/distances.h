@@ -1,4 +1,5 @@
-// Distances for other programs, as JSON and CSV, and as a table for people (docs/proximity.md).
+// Distances for other programs, as JSON, CSV and certificates, and as a table for people
+// (docs/proximity.md).
 #pragma once
 
 #include <cstdint>
@@ -7,6 +8,7 @@
 #include <string>
 
 #include "experiments/method/distances.h"
+#include "verify/certificate/distance_certificate.h"
 
 namespace farcull {
 
@@ -23,9 +25,13 @@ std::string distances_rows(const Scene& scene, const DistanceRecord& record,
 /// The distances, of many the first ones, then the stages and the accounting.
 std::string distances_table(const Scene& scene, const DistanceRecord& record);
 
-/// What an accounting shows, in one line without its end.
+/// The verdict of an accounting, in one line without its end.
 std::string verdict_text(const DistanceAccounting& accounting);
 /// The pairs, and the classes that they are in.
 std::string accounting_sum(const DistanceAccounting& accounting);
+
+/// The answers of the record in the form that a stranger can check, without times and without which
+/// object is inside another.
+DistanceCertificate certificate_of(const Scene& scene, const DistanceRecord& record);
 
 }  // namespace farcull

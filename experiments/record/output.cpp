@@ -1,18 +1,22 @@
-// Turns a record into JSON and its colliding pairs into CSV.
+// Turns a record into JSON, its colliding pairs into CSV, what a certificate claims of its run into
+// the certificate, and a plan into a table and JSON.
 #include "experiments/record/output.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <span>
+#include <utility>
 
 #include "commit.h"
+#include "core/base/count.h"
+#include "core/base/error.h"
 #include "core/gl/base/context.h"
+#include "experiments/record/fields.h"
 #include "experiments/record/tables.h"
+#include "experiments/system/text_table.h"
 #include "verify/certificate/not_asked.h"
-#include "verify/certificate/pair_list.h"
 
 namespace farcull {
 namespace {
@@ -60,10 +64,9 @@ Json view_json(const PairView& view) {
           {"pair_device_ms", or_null(c.pair_device_ms)}};
 }
 
-// What drawing asked of a GL device.
+// Work of a GL device in drawing.
 Json device_work_json(const CanvasWork& work) {
   if (work.passes == 0) return nullptr;
-  const std::optional<double> ms = work.known_ms();
   return {{"passes", work.passes},
           {"draw_calls", work.draws},
           {"dispatches", work.dispatches},
@@ -73,7 +76,7 @@ Json device_work_json(const CanvasWork& work) {
           {"waits", work.waits},
           {"uploaded_bytes", work.uploaded_bytes},
           {"downloaded_bytes", work.downloaded_bytes},
-          {"device_ms", ms ? Json(*ms) : Json(nullptr)}};
+          {"device_ms", json_of(work.known_ms())}};
 }
 
 Json budget_json(const std::vector<ViewReport>& views) {
@@ -92,15 +95,11 @@ Json device_json(const Record& record) {
   }
   if (!record.found.device.gl) return {{"none", record.found.device.note}};
   const GlInfo& device = *record.found.device.gl;
-  Json out = {{"vendor", device.vendor},
-              {"renderer", device.renderer},
-              {"version", device.version},
-              {"glsl", device.glsl},
-              {"subpixel_bits", device.subpixel_bits},
-              {"depth_bits", record.found.device.depth_bits},
-              {"reset_detection", device.reset_detection},
-              {"threads",
-               device.kind == "software" ? Json(driver_threads(device.renderer)) : Json(nullptr)}};
+  Json out = gl_json(device);
+  out["subpixel_bits"] = device.subpixel_bits;
+  out["depth_bits"] = record.found.device.depth_bits;
+  out["reset_detection"] = device.reset_detection;
+  out["threads"] = threads_json(device);
   out["reason"] = record.found.device.note;
   if (chooses_views(record.options.method)) out.erase("depth_bits");
   return out;
@@ -115,14 +114,11 @@ Json environment_json(const FloatingPoint& floating_point) {
 Json verdict_json(const Record& record) {
   if (!record.promise.verdict) return nullptr;
   const DeviceVerdict& v = *record.promise.verdict;
-  const auto or_null = [](const std::string& text) {
-    return text.empty() ? Json(nullptr) : Json(text);
-  };
   return {{"holds", v.holds},           {"probes", v.probes},
           {"failed", v.failed},         {"made", v.made},
           {"remembered", v.remembered}, {"ms", v.ms},
-          {"file", or_null(v.file)},    {"problem", or_null(v.problem)},
-          {"note", or_null(v.note)}};
+          {"file", text_json(v.file)},  {"problem", text_json(v.problem)},
+          {"note", text_json(v.note)}};
 }
 
 std::uint64_t self_objects(const Scene& scene) {
@@ -134,17 +130,12 @@ std::uint64_t self_objects(const Scene& scene) {
 Json verification_json(const Scene& scene, const Record& record) {
   const std::optional<Accounting>& accounting = record.verification;
   if (!accounting) return nullptr;
-  return {{"pairs_total", accounting->pairs_total},
-          {"ignored", accounting->ignored},
-          {"pairs_kept", accounting->pairs_kept},
-          {"certified_by_boxes", accounting->certified_by_boxes},
-          {"certified_by_predicates", accounting->certified_by_predicates},
-          {"neighbours", accounting->neighbours},
-          {"false_negatives", accounting->false_negatives},
-          {"touching", record.missed ? Json(record.missed->touching) : Json(nullptr)},
-          {"penetrating", record.missed ? Json(record.missed->penetrating) : Json(nullptr)},
-          {"examples", pairs_json(scene, accounting->examples)},
-          {"ms", accounting->ms}};
+  Json out = json_of(*accounting);
+  out["touching"] = record.missed ? Json(record.missed->touching) : Json(nullptr);
+  out["penetrating"] = record.missed ? Json(record.missed->penetrating) : Json(nullptr);
+  out["examples"] = pairs_json(scene, accounting->examples);
+  out["ms"] = accounting->ms;
+  return out;
 }
 
 Json contacts_json(const Record& record) {
@@ -170,15 +161,57 @@ void append_ends(const ContactShape& shape, std::string& out) {
   }
 }
 
+// As docs/reliability.md names them.
+std::vector<std::string> assumptions_about(const GlInfo& device) {
+  std::vector<std::string> lines = {
+      "A1: vertex arithmetic through the viewport transform errs by no more than its term of the "
+      "budget",
+      "A2: window coordinates snap by at most 2^-b px per axis, b = GL_SUBPIXEL_BITS",
+      "A3: coverage is that of one common, infinitesimally shifted sample; zero snapped area "
+      "covers nothing",
+      "A4: fragment and compute arithmetic as GLSL 4.50, 4.7.1 promises, each program by itself",
+      "A5: the depth test compares the depths that the buffer holds; with 24 bits a depth is one "
+      "of the two neighbouring integers",
+      "A6: a query is zero only if no sample passed",
+      "A7: every command ran, or the failure is seen",
+      "A8: what a dispatch or a draw wrote is seen after the barrier; atomics neither lose nor "
+      "double",
+      "A9: gl_FragCoord names the pixel of the fragment; flat inputs, uniforms and what is read "
+      "from a buffer are what was sent, to the bit",
+      "A10: the driver damages no memory of the process"};
+  if (device.kind == "software")
+    lines.back() +=
+        "; it drew in " +
+        counted(static_cast<std::uint64_t>(driver_threads(device.renderer)), "thread", "threads") +
+        " of its own";
+  return lines;
+}
+
 }  // namespace
 
-nlohmann::ordered_json pairs_json(const Scene& scene, const std::vector<TrianglePair>& pairs) {
-  const std::vector<std::uint32_t> owner = owners(scene);
+Json gl_json(const GlInfo& gl) {
+  return {
+      {"vendor", gl.vendor}, {"renderer", gl.renderer}, {"version", gl.version}, {"glsl", gl.glsl}};
+}
+
+Json threads_json(const GlInfo& gl) {
+  return gl.kind == "software" ? Json(driver_threads(gl.renderer)) : Json(nullptr);
+}
+
+Json pair_json(const Scene& scene, const TrianglePair& pair) {
+  const auto place = [&](std::uint32_t triangle) -> Json {
+    const TrianglePlace at = place_of(scene, triangle);
+    return {{"object", at.object},
+            {"name", scene.objects[at.object].name},
+            {"triangle", at.triangle},
+            {"face", scene.source_face[triangle]}};
+  };
+  return {{"a", place(pair.a)}, {"b", place(pair.b)}};
+}
+
+Json pairs_json(const Scene& scene, const std::vector<TrianglePair>& pairs) {
   Json out = Json::array();
-  for (const TrianglePair& pair : pairs) {
-    out.push_back(
-        {{"a", place_json(scene, owner, pair.a)}, {"b", place_json(scene, owner, pair.b)}});
-  }
+  for (const TrianglePair& pair : pairs) out.push_back(pair_json(scene, pair));
   return out;
 }
 
@@ -194,7 +227,6 @@ Json not_asked_json(const Scene& scene) {
 
 Json scene_json(const Scene& scene, std::uint64_t degenerate_triangles, const std::string& hash) {
   constexpr std::size_t kNamed = 100;
-  const std::string nothing = nothing_to_test(scene).reason;
   Json folded = Json::array();
   for (const FoldedFace& f : std::span(scene.folded).first(std::min(kNamed, scene.folded.size())))
     folded.push_back({{"object", scene.objects[f.object].name}, {"face", f.face}});
@@ -202,7 +234,7 @@ Json scene_json(const Scene& scene, std::uint64_t degenerate_triangles, const st
           {"objects", scene.objects.size()},
           {"self_objects", self_objects(scene)},
           {"self_not_asked", not_asked_json(scene)},
-          {"nothing_to_test", nothing.empty() ? Json(nullptr) : Json(nothing)},
+          {"nothing_to_test", text_json(nothing_to_test(scene).reason)},
           {"triangles", scene.triangles.size()},
           {"degenerate_triangles", degenerate_triangles},
           {"folded_polygons", scene.folded.size()},
@@ -229,15 +261,6 @@ Json stages_json(const std::vector<Stage>& trace) {
   return stages;
 }
 
-Json place_json(const Scene& scene, const std::vector<std::uint32_t>& owner,
-                std::uint32_t triangle) {
-  const Object& object = scene.objects[owner[triangle]];
-  return {{"object", owner[triangle]},
-          {"name", object.name},
-          {"triangle", triangle - object.first_triangle},
-          {"face", scene.source_face[triangle]}};
-}
-
 nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
   const RunOptions& o = record.options;
   const bool drawn = draws(o.method);
@@ -246,28 +269,24 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
   Json views = Json::array();
   for (const ViewReport& view : record.found.views()) views.push_back(view_json(view));
   for (const PairView& view : record.found.pair_views()) views.push_back(view_json(view));
-  const std::optional<std::uint64_t> swept = record.found.swept_triangles();
+  const auto only = [](bool has, Json value) { return has ? std::move(value) : Json(nullptr); };
   return {
       {"scene", scene_json(scene, record.degenerate_triangles, record.scene_hash)},
       {"method", to_string(o.method)},
       {"method_reason", method_reason(o)},
       {"resolution", resolution},
-      {"radius", fattens(o.method) ? Json(radius_text(o.radius)) : Json(nullptr)},
-      {"offset", fattens(o.method) ? Json(o.offset) : Json(nullptr)},
-      {"depth",
-       !drawn ? Json(nullptr) : Json(depth_of(o) == DepthMode::fragment ? "fragment" : "fixed")},
-      {"depth_format",
-       drawn ? Json(o.depth_format == DepthFormat::float32 ? "32f" : "24") : Json(nullptr)},
-      {"query", drawn && !record.found.device.cpu
-                    ? Json(query_of(o) == QueryMode::flags ? "flags" : "occlusion")
-                    : Json(nullptr)},
-      {"rounds", drawn && o.rounds > 0 ? Json(o.rounds) : Json(nullptr)},
-      {"clear", drawn ? Json(o.clear == ClearRule::all ? "all" : "any") : Json(nullptr)},
-      {"level", drawn && !tests_self_alone(o.method)
-                    ? Json(o.objects_alone ? "objects" : "triangles")
-                    : Json(nullptr)},
-      {"conservative", drawn && !fattens(o.method) ? Json(o.conservative) : Json(nullptr)},
-      {"clearance", takes_clearance(o.method) ? Json(o.clearance) : Json(nullptr)},
+      {"radius", only(fattens(o.method), radius_text(o.radius))},
+      {"offset", only(fattens(o.method), o.offset)},
+      {"depth", only(drawn, depth_of(o) == DepthMode::fragment ? "fragment" : "fixed")},
+      {"depth_format", only(drawn, o.depth_format == DepthFormat::float32 ? "32f" : "24")},
+      {"query", only(drawn && !record.found.device.cpu,
+                     query_of(o) == QueryMode::flags ? "flags" : "occlusion")},
+      {"rounds", only(drawn && o.rounds > 0, o.rounds)},
+      {"clear", only(drawn, o.clear == ClearRule::all ? "all" : "any")},
+      {"level",
+       only(drawn && !tests_self_alone(o.method), o.objects_alone ? "objects" : "triangles")},
+      {"conservative", only(drawn && !fattens(o.method), o.conservative)},
+      {"clearance", only(takes_clearance(o.method), o.clearance)},
       {"full", o.full},
       {"promises", record.promise.holds},
       {"promise_reason", record.promise.reason},
@@ -279,7 +298,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
       {"floating_point", floating_point_json(record.callers, record.used)},
       {"stages", stages_json(record.trace)},
       {"pcs", {{"objects", record.found.object_count}, {"triangles", record.found.triangle_count}}},
-      {"object_triangles", swept ? Json(*swept) : Json(nullptr)},
+      {"object_triangles", json_of(record.found.swept_triangles())},
       {"candidate_pairs", record.found.count},
       {"colliding_pairs", record.collisions.pairs.size()},
       {"neighbour_pairs", record.collisions.neighbour_pairs.size()},
@@ -288,7 +307,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
       {"neighbours", record.collisions.neighbours},
       {"contacts", contacts_json(record)},
       {"ignored", ignored_json(record)},
-      {"limit", o.limit > 0 ? Json(o.limit) : Json(nullptr)},
+      {"limit", only(o.limit > 0, o.limit)},
       {"decided_pairs", record.decided},
       {"complete", record.complete},
       {"verification", verification_json(scene, record)},
@@ -298,7 +317,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
         {"exact", record.ms.exact},
         {"total", record.ms.total},
         {"contacts", record.ms.contacts}}},
-      {"seed", o.seed ? Json(*o.seed) : Json(nullptr)},
+      {"seed", json_of(o.seed)},
       {"commit", FARCULL_COMMIT}};
 }
 
@@ -348,6 +367,82 @@ std::string pairs_rows(const Scene& scene, const Record& record, const std::stri
 
 std::string pairs_csv(const Scene& scene, const Record& record, const PairColumns& columns) {
   return pairs_header(scene, columns) + pairs_rows(scene, record, "", columns);
+}
+
+Certificate certificate_of(const Scene& scene, const Record& record) {
+  const RunOptions& options = record.options;
+  if (!options.ignored.empty() || options.limit > 0) {
+    throw Error(options.ignored.empty() ? "--limit" : scene.name,
+                options.ignored.empty() ? "was given, and a certificate is about all pairs"
+                                        : "objects are ignored, and a certificate is about all",
+                "ask for no certificate, or leave no pair out");
+  }
+  const std::vector<TrianglePair> kept = pairs_left(record);
+  Certificate::Run run;
+  run.method = to_string(options.method);
+  run.offset = fattens(options.method) ? options.offset : "none";
+  for (const ViewReport& view : record.found.views()) {
+    if (!view.drawn) continue;
+    run.views.push_back({view.name, static_cast<std::uint64_t>(view.width),
+                         static_cast<std::uint64_t>(view.height), view.radius_px});
+    run.radius_px = std::max(run.radius_px, view.radius_px);
+    run.resolution = static_cast<std::uint64_t>(resolution_of(options));
+  }
+  for (const PairView& view : record.found.pair_views()) {
+    if (!view.looked) continue;
+    run.views.push_back({view.name, static_cast<std::uint64_t>(view.width),
+                         static_cast<std::uint64_t>(view.height), 0});
+    run.resolution = std::max({run.resolution, run.views.back().width, run.views.back().height});
+  }
+  if (record.found.device.gl) {
+    const GlInfo& device = *record.found.device.gl;
+    run.device = {device.vendor, device.renderer, device.version, device.glsl};
+    run.assumptions = assumptions_about(device);
+  }
+  return make_certificate(scene, kept, record.collisions.all(), std::move(run), options.clearance);
+}
+
+// A plan is printed stage by stage, with the words that the record of the run uses as well.
+
+std::string decision_of(const Stage& stage) {
+  return stage.depends ? "depends" : stage.ran ? "runs" : "left out";
+}
+
+std::string plan_table(const Scene& scene, const Plan& plan) {
+  Table table("lll");
+  table.add({"stage", "", "why"});
+  for (const Stage& stage : plan.stages())
+    table.add({name_of(stage), decision_of(stage), reason_of(stage)});
+  const RunOptions& options = plan.options;
+  const auto self =
+      static_cast<std::uint64_t>(std::count_if(scene.objects.begin(), scene.objects.end(),
+                                               [](const Object& object) { return object.self; }));
+  const std::string tested = self == 0 ? ""
+                                       : fmt::format("self       {} tested against {}\n",
+                                                     counted(self, "object is", "objects are"),
+                                                     self == 1 ? "itself" : "themselves");
+  return fmt::format("{}: {}, {}, {}{}\n{}\n{}", scene.name,
+                     counted(scene.objects.size(), "object", "objects"),
+                     counted(scene.triangles.size(), "triangle", "triangles"), describe(options),
+                     options.full ? ", --full" : "",
+                     default_method_line(options) + tested + not_asked_line(scene), table.text());
+}
+
+Json plan_json(const Scene& scene, const Plan& plan) {
+  Json list = Json::array();
+  for (const Stage& stage : plan.stages()) {
+    list.push_back(
+        {{"step", name_of(stage)}, {"decision", decision_of(stage)}, {"reason", reason_of(stage)}});
+  }
+  return {{"scene", scene.name},
+          {"objects", scene.objects.size()},
+          {"triangles", scene.triangles.size()},
+          {"nothing_to_test", text_json(nothing_to_test(scene).reason)},
+          {"method", to_string(plan.options.method)},
+          {"method_reason", method_reason(plan.options)},
+          {"form", form_text(plan.options)},
+          {"full", plan.options.full},
+          {"steps", list}};
 }
 
 }  // namespace farcull

@@ -1,11 +1,13 @@
-// A record for other programs, as JSON and CSV.
+// A record for other programs, as JSON, CSV and certificate, and a plan for all.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "experiments/method/plan.h"
 #include "experiments/method/run.h"
+#include "verify/certificate/certificate.h"
 #include "verify/certificate/pair_list.h"
 
 namespace farcull {
@@ -13,22 +15,24 @@ namespace farcull {
 /// Keys keep their order, so that the same run gives the same text.
 nlohmann::ordered_json to_json(const Scene& scene, const Record& record);
 
+/// Names and versions of a GL device; the threads in which a software device draws, of others null.
+nlohmann::ordered_json gl_json(const GlInfo& gl);
+nlohmann::ordered_json threads_json(const GlInfo& gl);
+
 /// The floating-point environment of the caller and the one in force.
 nlohmann::ordered_json floating_point_json(const FloatingPoint& callers, const FloatingPoint& used);
 
-/// What the scene does not ask (verify/certificate/not_asked.h): objects, pairs, and which objects,
-/// as the first and the last of each run of them.
+/// Pairs that the scene leaves out (verify/certificate/not_asked.h): objects, pairs, and which
+/// objects, as the first and the last of each run of them.
 nlohmann::ordered_json not_asked_json(const Scene& scene);
 
 /// Parts of records: the scene; the stages of a trace.
 nlohmann::ordered_json scene_json(const Scene& scene, std::uint64_t degenerate_triangles,
                                   const std::string& hash);
 nlohmann::ordered_json stages_json(const std::vector<Stage>& trace);
-/// A triangle as a person finds it again: its object, its place there and the face of the file it
-/// came from. owner: owners(scene).
-nlohmann::ordered_json place_json(const Scene& scene, const std::vector<std::uint32_t>& owner,
-                                  std::uint32_t triangle);
-/// Pairs of triangles, each as {"a": place, "b": place}.
+/// Each triangle as a person finds it again: its object, its place there and the face of the file
+/// it came from.
+nlohmann::ordered_json pair_json(const Scene& scene, const TrianglePair& pair);
 nlohmann::ordered_json pairs_json(const Scene& scene, const std::vector<TrianglePair>& pairs);
 
 /// Columns of pairs_csv() besides those that every list has, and which rows there are.
@@ -49,5 +53,19 @@ std::string pairs_csv(const Scene& scene, const Record& record, const PairColumn
 std::string pairs_header(const Scene& scene, const PairColumns& columns = {});
 std::string pairs_rows(const Scene& scene, const Record& record, const std::string& before,
                        const PairColumns& columns = {});
+
+/// The claims of the run about every pair of the scene, with their evidence. Times are left out, so
+/// the same run gives the same text.
+Certificate certificate_of(const Scene& scene, const Record& record);
+
+// `farcull plan`: a plan as a table and as JSON.
+
+/// One line a stage: whether it runs, is left out or depends on pixels, and why.
+std::string plan_table(const Scene& scene, const Plan& plan);
+/// docs/record.md, "Plans".
+nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan);
+
+/// "runs", "left out" or "depends": of a planned stage.
+std::string decision_of(const Stage& stage);
 
 }  // namespace farcull

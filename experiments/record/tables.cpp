@@ -28,6 +28,20 @@ std::string scene_line(const Scene& scene, const Record& record) {
 
 }  // namespace
 
+TrianglePlace place_of(const Scene& scene, std::uint32_t triangle) {
+  const auto after = std::upper_bound(
+      scene.objects.begin(), scene.objects.end(), triangle,
+      [](std::uint32_t t, const Object& object) { return t < object.first_triangle; });
+  // An object without triangles starts where the next one does: the last that starts there owns it.
+  const auto owner = static_cast<std::uint32_t>(after - scene.objects.begin() - 1);
+  return {owner, triangle - scene.objects[owner].first_triangle};
+}
+
+std::string place_text(const Scene& scene, std::uint32_t triangle) {
+  const TrianglePlace at = place_of(scene, triangle);
+  return fmt::format("{} triangle {}", scene.objects[at.object].name, at.triangle);
+}
+
 std::string folded_text(const Scene& scene) {
   if (scene.folded.empty()) return "";
   std::string out = fmt::format(", {} folded", counted(scene.folded.size(), "polygon", "polygons"));
@@ -58,7 +72,7 @@ std::string device_text(const Record& record) {
                      record.found.device.depth_bits, gl.subpixel_bits, warnings);
 }
 
-// Where the promise of the method rests on a device.
+// Empty unless the promise of the method rests on a device.
 std::string promise_line(const Record& record) {
   if (!record.promise.verdict) return "";
   return fmt::format("promise    {}{}\n",
@@ -192,20 +206,16 @@ std::string accounting_lines(const Scene& scene, const Record& record) {
     out += fmt::format("           of those missed {} touching, {} penetrating\n",
                        grouped(record.missed->touching), grouped(record.missed->penetrating));
   }
-  const std::vector<std::uint32_t> owner = owners(scene);
-  const auto place = [&](std::uint32_t triangle) {
-    const Object& object = scene.objects[owner[triangle]];
-    return fmt::format("{} triangle {}", object.name, triangle - object.first_triangle);
-  };
   const std::size_t shown = std::min(v.examples.size(), kExamplesShown);
   for (std::size_t i = 0; i < shown; ++i)
-    out += fmt::format("  missed: {} meets {}\n", place(v.examples[i].a), place(v.examples[i].b));
+    out += fmt::format("  missed: {} meets {}\n", place_text(scene, v.examples[i].a),
+                       place_text(scene, v.examples[i].b));
   if (v.false_negatives > shown && shown > 0)
     out += fmt::format("  missed: {} more\n", grouped(v.false_negatives - shown));
   return out;
 }
 
-// What was drawn and asked, of the methods that do so.
+// Elements and queries of the methods that draw.
 std::string work_line(const Record& record) {
   if (!draws(record.options.method)) return "";
   const Stage sum = work_of(record.trace);
@@ -217,7 +227,7 @@ std::string work_line(const Record& record) {
                                        grouped(sum.draws_saved), grouped(sum.queries_saved)));
 }
 
-// What drawing asked of a GL device.
+// Work of a GL device in drawing.
 std::string device_work_line(const Record& record) {
   const CanvasWork& work = record.found.asked;
   if (work.passes == 0) return "";

@@ -1,4 +1,4 @@
-// What people read: aligned tables and short lines. Programs read the JSON (output.h), which holds
+// Text for people: aligned tables and short lines. Programs read the JSON (output.h), which holds
 // more.
 #pragma once
 
@@ -15,6 +15,14 @@ std::string radius_text(const RadiusRule& radius);
 /// The view with the largest budget: the one that a reader should quote. Null where none was drawn.
 const ViewReport* widest_budget(const std::vector<ViewReport>& views);
 
+/// A triangle as a person finds it again: its object, and its number there.
+struct TrianglePlace {
+  std::uint32_t object = 0, triangle = 0;
+};
+TrianglePlace place_of(const Scene& scene, std::uint32_t triangle);
+/// "bunny triangle 3".
+std::string place_text(const Scene& scene, std::uint32_t triangle);
+
 /// Why a scene has no pair of triangles to test.
 struct NothingToTest {
   std::string reason;      // such as "the scene is one object, and ..."; empty: it has one
@@ -30,8 +38,8 @@ std::string default_method_line(const RunOptions& options);
 /// neighbours".
 std::string colliding_text(std::uint64_t pairs, std::uint64_t neighbour_pairs, bool self);
 
-/// What the scene does not ask (verify/certificate/not_asked.h): "12 pairs of triangles inside a
-/// and b"; empty where it leaves out nothing.
+/// Pairs that the scene leaves out (verify/certificate/not_asked.h): "12 pairs of triangles inside
+/// a and b"; empty where it leaves out nothing.
 std::string not_asked_text(const Scene& scene);
 /// The same as a line of its own, with the options that ask it; empty where there is nothing.
 std::string not_asked_line(const Scene& scene, const std::string& options = "--self");
@@ -50,8 +58,8 @@ std::string stage_table(const std::vector<Stage>& stages);
 /// The accounting is at the end, after `verdict`, lines of the caller.
 std::string run_table(const Scene& scene, const Record& record, const std::string& verdict = "");
 
-/// What an accounting shows, in one line without its end: "verified: no colliding pair was culled,
-/// 26,214,400 pairs accounted for".
+/// The verdict of an accounting, in one line without its end: "verified: no colliding pair was
+/// culled, 26,214,400 pairs accounted for".
 std::string verdict_text(const Accounting& accounting);
 
 /// The pairs, and the classes that they are in: two lines.

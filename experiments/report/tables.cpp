@@ -170,7 +170,8 @@ std::string rows_csv(const StoredStudy& stored) {
   const std::vector<std::string> counts = names_of(stored, &Measurement::counts);
   const std::vector<std::string> times = names_of(stored, &Measurement::times);
   std::vector<std::string> header = {"position"};
-  header.insert(header.end(), axis_names().begin(), axis_names().end());
+  const std::vector<std::string> axes = field_names<PointKey>();
+  header.insert(header.end(), axes.begin(), axes.end());
   header.insert(header.end(), counts.begin(), counts.end());
   for (const std::string& name : times) header.push_back(name + "_ms");
   for (const char* name : {"device", "run", "measured", "left_out"}) header.push_back(name);

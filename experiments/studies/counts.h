@@ -1,16 +1,19 @@
-// The result of a point: as structures, and as a row of the store.
+// The result of a point: as structures, and as a row of the store. The names of the fields of a
+// structure are those of the counts in the store; an optional that is empty is left out there.
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "experiments/measure/bench.h"
 #include "experiments/measure/neighbour_sets.h"
-#include "experiments/studies/json_object.h"
 
 namespace farcull {
 
@@ -25,10 +28,12 @@ struct AnswerCounts {
 /// Work of a method that draws.
 struct DrawnCounts {
   std::uint64_t queries = 0, draws = 0, queries_saved = 0, draws_saved = 0;
+  FARCULL_FIELDS(queries, draws, queries_saved, draws_saved)
 };
 /// Radius and size of a pixel in the view with the widest budget.
 struct RadiusCounts {
   double radius_px = 0, pixel_size = 0;
+  FARCULL_FIELDS(radius_px, pixel_size)
 };
 /// FAR: fragments of one drawing (fragments.h). FAR pairs: entries in the lists of pixels
 /// (`fragments`), comparisons (`tests`) and the views that it looked with.
@@ -36,17 +41,20 @@ struct FragmentCounts {
   std::optional<std::uint64_t> elements = {}, covered = {};
   std::uint64_t fragments = 0;
   std::optional<std::uint64_t> tests = {}, views = {};
+  FARCULL_FIELDS(elements, covered, fragments, tests, views)
 };
 
 /// The resolution that was chosen for a RunPoint by the size of triangles.
 struct SizeCounts {
   std::uint64_t resolution = 0;  // px
   double mean_pixels = 0;        // that a triangle covers there
+  FARCULL_FIELDS(resolution, mean_pixels)
 };
 
 /// Neighbours (verify/exact.h) among the candidates of a method, and those of them that collide.
 struct NeighbourCounts {
-  std::uint64_t candidates = 0, colliding = 0;
+  std::uint64_t neighbour_candidates = 0, neighbours = 0;
+  FARCULL_FIELDS(neighbour_candidates, neighbours)
 };
 
 /// Counts of a RunPoint.
@@ -58,7 +66,8 @@ struct RunCounts : AnswerCounts {
   std::uint64_t colliding_triangles = 0;  // of the truth
   std::uint64_t kept_triangles = 0, kept_objects = 0;
   bool promises = false;  // the method, by its options; a miss then breaks the promise
-  bool revoked = false;   // it promises, and its device does not keep what the promise rests on
+  /// True where it promises, and its device does not keep what the promise rests on; else empty.
+  std::optional<bool> revoked = {};
   std::string scene_hash;
   std::optional<std::uint64_t> object_triangles = {};  // of i-collide
   std::optional<DrawnCounts> drawn = {};
@@ -66,14 +75,20 @@ struct RunCounts : AnswerCounts {
   std::optional<FragmentCounts> fragments = {};
   std::optional<SizeCounts> size = {};
   std::optional<NeighbourCounts> neighbours = {};
+  FARCULL_FIELDS(colliding, missed, missed_penetrating, colliding_triangles, missed_triangles,
+                 candidates, kept_triangles, kept_objects, triangles, objects, promises, scene_hash,
+                 revoked, at_risk, object_triangles, drawn, radius, fragments, size, neighbours)
 };
 
 /// Counts of a PeerPoint.
 struct PeerCounts : AnswerCounts {
   std::uint64_t wrong = 0;  // reported pairs that do not collide
   std::optional<std::uint64_t> colliding_triangles = {};
-  std::string library = {};     // with its version; empty: not said
-  std::string scene_hash = {};  // empty: not said; else `promises` is said as well
+  std::optional<std::string> library = {};  // with its version
+  std::optional<bool> promises = {};
+  std::optional<std::string> scene_hash = {};
+  FARCULL_FIELDS(colliding, missed, wrong, colliding_triangles, missed_triangles, candidates,
+                 triangles, objects, library, promises, scene_hash)
 };
 
 /// Counts of a LemmaPoint (lemma/lemma.h, LemmaRow).
@@ -83,7 +98,9 @@ struct LemmaCounts {
   double step_px = 0;  // of the depth buffer
   double radius_px = 0, budget_px = 0;
   bool promises = false;  // fragment depth at the budget radius or more: a violation breaks it
-  bool revoked = false;   // as in RunCounts
+  std::optional<bool> revoked = {};  // as in RunCounts
+  FARCULL_FIELDS(points, violations, no_sample, not_bounding, rounded, largest_px, largest_steps,
+                 step_px, radius_px, budget_px, promises, revoked)
 };
 
 /// Counts of a PlacementPoint (placements.h).
@@ -95,6 +112,8 @@ struct PlacementCounts {
   double largest_miss_px = 0;               // the longest intersection of a missed pair
   double radius_px = 0, budget_px = 0;
   bool promises = false;
+  FARCULL_FIELDS(placements, colliding_placements, missed_placements, colliding, missed,
+                 largest_miss_px, radius_px, budget_px, promises)
 };
 
 /// Counts of a frame of the cloth, with every pair of triangles accounted for
@@ -104,21 +123,26 @@ struct ClothCounts {
   std::uint64_t candidates = 0;                             // pairs given to exact tests
   std::uint64_t kept_triangles = 0, triangles = 0;
   std::uint64_t accounted = 0, by_boxes = 0, by_predicates = 0;  // pairs
-  bool promises = false, revoked = false;                        // as in RunCounts
+  bool promises = false;                                         // as in RunCounts
+  std::optional<bool> revoked = {};                              // likewise
   std::string scene_hash;
   double kinetic = 0, total = 0, slack = 0;  // J
   double residual = 0;                       // N
   std::uint64_t iterations = 0;
   bool converged = false;
+  FARCULL_FIELDS(colliding, neighbours, missed, candidates, kept_triangles, triangles, accounted,
+                 by_boxes, by_predicates, promises, scene_hash, kinetic, total, slack, residual,
+                 iterations, converged, revoked)
 };
 
 constexpr int kSceneResolution = 512;  // px, of PixelCounts
 
 /// Pixels that triangles cover at kSceneResolution in the views x, y and z: the area of a
-/// triangle's image. Of a tenth of them it is at most `tenth`, of half `half`, of nine tenths
-/// `ninety`. At another resolution they are as the squares of the resolutions.
+/// triangle's image. Of a tenth of them it is at most the first number, of half the second, of nine
+/// tenths the third. At another resolution they are as the squares of the resolutions.
 struct PixelCounts {
-  double tenth = 0, half = 0, ninety = 0;
+  double pixels_tenth = 0, pixels_half = 0, pixels_ninety = 0;
+  FARCULL_FIELDS(pixels_tenth, pixels_half, pixels_ninety)
 };
 
 /// Counts of a scene by itself.
@@ -128,6 +152,7 @@ struct SceneCounts {
   std::uint64_t colliding = 0, neighbours = 0;  // pairs, apart from each other
   std::string scene_hash;
   std::optional<PixelCounts> pixels = {};  // empty: no two boxes of objects overlap
+  FARCULL_FIELDS(triangles, objects, self_objects, colliding, neighbours, scene_hash, pixels)
 };
 
 /// Counts of a LibraryPoint (peers/score.h): pairs of triangles, of which `missed` and
@@ -149,31 +174,42 @@ struct LibraryCounts {
   /// IDs of the first pairs of their kind in the family.
   std::optional<std::uint64_t> first_missed = {}, first_wrong = {}, first_death = {};
   /// Minimized (peers/minimize.h) from the first of their kind about which the documentation
-  /// promises the answer: the line of a pair with ID 0 (suite/writer.h); empty where there is none.
-  std::string example_missed = {}, example_wrong = {}, example_death = {};
+  /// promises the answer: the line of a pair with ID 0 (suite/writer.h).
+  std::optional<std::string> example_missed = {}, example_wrong = {}, example_death = {};
+  FARCULL_FIELDS(asked, answered, missed, wrong, own_asked, own_missed, own_wrong, refused,
+                 unanswered, crashed, hung, no_memory, not_asked, timed, twice, differing,
+                 neighbours_left_out, promises, library, means, call, says, source, use, reason,
+                 scores, first_missed, first_wrong, first_death, example_missed, example_wrong,
+                 example_death)
 };
 
 /// Counts of a NeighbourPoint.
 struct SetCounts {
   NeighbourSizes sizes;
-  std::uint64_t triangles = 0, all_objects = 0;  // of the scene
+  std::uint64_t triangles = 0, objects = 0;  // of the scene
   /// All pairs of triangles of different objects: how many the accounting of the exact answers
   /// decided (verify/distance_accounting.h).
   std::uint64_t accounted = 0;
   bool promises = false;  // to lose no nearest neighbour and no nearest pair of triangles
   std::string scene_hash;
+  FARCULL_FIELDS(sizes, triangles, objects, accounted, promises, scene_hash)
 };
 
 /// Counts of a DistancePoint: distances that are wrong in some way, of those asked for
 /// (measure/bench.h).
 struct DistanceCounts {
-  DistanceErrors errors;
   std::uint64_t asked = 0;  // distances that the question has
+  std::uint64_t answers = 0, exact = 0, lacking = 0, beyond = 0, other_zero = 0, other_object = 0;
+  double largest_relative = 0;
   std::uint64_t triangles = 0, objects = 0;
   std::uint64_t accounted = 0;  // as in SetCounts
-  bool promises = false;        // that every distance is the nearest double
-  std::string library = {};     // with its version
+  /// Distances that are not the nearest double, and distances of nothing that was asked for.
+  std::uint64_t wrong = 0;
+  bool promises = false;     // that every distance is the nearest double
+  std::string library = {};  // with its version
   std::string scene_hash;
+  FARCULL_FIELDS(asked, answers, exact, lacking, beyond, other_zero, other_object, largest_relative,
+                 triangles, objects, accounted, wrong, promises, library, scene_hash)
 };
 
 /// std::monostate: nothing was measured.
@@ -193,6 +229,7 @@ struct PointTimes {
   std::optional<double> setup = {};
   std::optional<double> total_min = {}, total_max = {};  // of several runs
   std::vector<double> totals = {};                       // of several runs, each, in their order
+  FARCULL_FIELDS(build, cull, exact, total, setup, total_min, total_max, totals)
 };
 
 /// The result of a point.
@@ -204,6 +241,30 @@ struct PointResult {
                               // "cpu" (nothing was drawn)
   std::string left_out = {};  // why nothing was measured (a library that this build is without, a
                               // resolution beyond the device); empty: it was
+};
+
+/// A JSON object that is copied like a value. It is behind a pointer because <nlohmann/json.hpp>
+/// takes up to a second of every file that includes it: only the files that look inside have to.
+class JsonObject {
+ public:
+  JsonObject();  // an empty object
+  JsonObject(const JsonObject& other);
+  JsonObject(JsonObject&& other) noexcept;  // `other` may then only be assigned to or destroyed
+  JsonObject& operator=(const JsonObject& other);
+  JsonObject& operator=(JsonObject&& other) noexcept;
+  JsonObject& operator=(const nlohmann::ordered_json& value);
+  ~JsonObject();
+
+  nlohmann::ordered_json& operator*() { return *value_; }
+  const nlohmann::ordered_json& operator*() const { return *value_; }
+  nlohmann::ordered_json* operator->() { return value_.get(); }
+  const nlohmann::ordered_json* operator->() const { return value_.get(); }
+  /// As of nlohmann::ordered_json.
+  nlohmann::ordered_json& operator[](const char* key);
+  const nlohmann::ordered_json& operator[](const char* key) const;
+
+ private:
+  std::unique_ptr<nlohmann::ordered_json> value_;
 };
 
 /// The same as a row of a store holds it. Rows of other versions may have other names.

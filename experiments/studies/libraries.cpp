@@ -177,11 +177,11 @@ void add_examples(const Invited& invited, const ContestLimits& limits,
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (!promised(invited.card, pairs[i])) continue;
     const ContestOutcome outcome = answers[i].outcome;
-    std::string* const to = is_death(outcome)           ? &counts.example_death
-                            : missed(pairs[i], outcome) ? &counts.example_missed
-                            : wrong(pairs[i], outcome)  ? &counts.example_wrong
-                                                        : nullptr;
-    if (to == nullptr || !to->empty()) continue;
+    std::optional<std::string>* const to = is_death(outcome)           ? &counts.example_death
+                                           : missed(pairs[i], outcome) ? &counts.example_missed
+                                           : wrong(pairs[i], outcome)  ? &counts.example_wrong
+                                                                       : nullptr;
+    if (to == nullptr || *to) continue;
     std::optional<SuitePair> small = minimized(invited, {pairs[i], outcome}, limits);
     if (!small) continue;
     small->id = 0;

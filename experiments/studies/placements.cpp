@@ -1,6 +1,6 @@
 // Patches grow over shared vertices from a triangle that is drawn. Cell (i, j) of n x n stands at
 // (i, j, i + j modulo n): no two cells share a place in any of the three axis views.
-#include "experiments/studies/placements.h"
+#include "experiments/studies/run_point.h"
 
 #include <fmt/format.h>
 
@@ -82,7 +82,7 @@ class Quarry {
     const double reach = longest(out[0]);
     while (out.size() < kPatchTriangles) {
       Corners more = corners_of(random.below(object_.triangle_count));
-      // Of the size of the first, whose place says nothing about the others.
+      // Scaled to the size of the first; the place of the first says nothing about the others.
       const double size = longest(more);
       if (!(size > 0)) continue;
       const Vec3 from = mean(more), to = middle + reach * random.in_ball();

@@ -3,22 +3,30 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
+#include <utility>
 
+#include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/record/tables.h"
 
 namespace farcull {
 namespace {
 
-std::string text_of(const std::optional<DepthFormat>& format) {
-  if (!format) return "";
-  return *format == DepthFormat::fixed24 ? "fixed24" : "float32";
-}
+// The words of a column; the first one stands for value 0.
+constexpr std::array kDepthFormats = {"float32", "fixed24"};
+constexpr std::array kDepthModes = {"fragment", "fixed"};
 
-std::string text_of(const std::optional<DepthMode>& mode) {
-  if (!mode) return "";
-  return *mode == DepthMode::fixed ? "fixed" : "fragment";
+template <class T, class Words>
+std::optional<T> choice_of(const std::string& text, const Words& words) {
+  if (text.empty()) return {};
+  const auto at = std::find(words.begin(), words.end(), text);
+  if (at == words.end())
+    throw Error("depth", "'" + text + "' is no value of its column",
+                "use the farcull that wrote it");
+  return static_cast<T>(at - words.begin());
 }
 
 void add_scene(const NamedScene& scene, PointKey& key) { key.scene = scene.name; }
@@ -54,9 +62,9 @@ PointKey key_of(const RunPoint& point) {
   key.method = to_string(point.method) + (form.empty() ? "" : " " + form);
   if (point.mean_pixels > 0) key.method += fmt::format(" @{}px", point.mean_pixels);
   key.offset = point.offset;
-  key.radius = point.radius ? radius_text(*point.radius) : "";
-  key.depth_format = text_of(point.depth_format);
-  key.depth_mode = text_of(point.depth_mode);
+  key.radius = point.radius;
+  key.depth_format = point.depth_format;
+  key.depth_mode = point.depth_mode;
   key.resolution = point.resolution;
   key.views = point.views;
   return key;
@@ -90,9 +98,9 @@ PointKey key_of(const LemmaPoint& point) {
   key.scene = LemmaScene{point.generator, point.points, point.depth}.name();
   key.method = point.worst ? "lemma-worst" : "lemma";
   key.offset = "obb";
-  key.radius = radius_text(point.radius);
-  key.depth_format = text_of(point.depth_format);
-  key.depth_mode = text_of(point.depth_mode);
+  key.radius = point.radius;
+  key.depth_format = point.depth_format;
+  key.depth_mode = point.depth_mode;
   key.resolution = point.side;
   key.seed = point.seed;
   return key;
@@ -104,9 +112,9 @@ PointKey key_of(const PlacementPoint& point) {
                           point.side, point.placements);
   key.method = point.subpixel_bits > 0 ? fmt::format("far-snapped-{}", point.subpixel_bits) : "far";
   key.offset = "obb";
-  key.radius = radius_text(point.radius);
-  key.depth_mode = "fragment";
-  key.depth_format = "float32";
+  key.radius = point.radius;
+  key.depth_mode = DepthMode::fragment;
+  key.depth_format = DepthFormat::float32;
   key.resolution = point.resolution;
   key.seed = point.seed;
   return key;
@@ -125,6 +133,29 @@ PointKey key_of(const LibraryPoint& point) {
 
 }  // namespace
 
+std::string column_text(const std::optional<RadiusRule>& radius) {
+  return radius ? radius_text(*radius) : "";
+}
+std::string column_text(const std::optional<DepthFormat>& format) {
+  return format ? kDepthFormats[static_cast<std::size_t>(*format)] : "";
+}
+std::string column_text(const std::optional<DepthMode>& mode) {
+  return mode ? kDepthModes[static_cast<std::size_t>(*mode)] : "";
+}
+
+template <>
+std::optional<RadiusRule> column_of(const std::string& text) {
+  return text.empty() ? std::nullopt : std::optional(parse_radius(text));
+}
+template <>
+std::optional<DepthFormat> column_of(const std::string& text) {
+  return choice_of<DepthFormat>(text, kDepthFormats);
+}
+template <>
+std::optional<DepthMode> column_of(const std::string& text) {
+  return choice_of<DepthMode>(text, kDepthModes);
+}
+
 PointKey key_of(const Point& point) {
   return std::visit([](const auto& of) { return key_of(of); }, point);
 }
@@ -135,24 +166,19 @@ std::vector<PointKey> keys_of(const std::vector<Point>& points) {
   return out;
 }
 
-const std::vector<std::string>& axis_names() {
-  static const std::vector<std::string> names = {
-      "scene",      "method",     "offset", "radius", "depth_format",
-      "depth_mode", "resolution", "views",  "frame",  "seed"};
-  return names;
-}
-
 std::vector<std::string> axis_values(const PointKey& key) {
-  return {key.scene,
-          key.method,
-          key.offset,
-          key.radius,
-          key.depth_format,
-          key.depth_mode,
-          key.resolution > 0 ? std::to_string(key.resolution) : "",
-          key.views,
-          key.frame >= 0 ? std::to_string(key.frame) : "",
-          key.seed > 0 ? std::to_string(key.seed) : ""};
+  std::vector<std::string> out;
+  key.fields([&](std::string_view name, const auto& value) {
+    if constexpr (std::is_convertible_v<decltype(value), std::string>) {
+      out.push_back(value);
+    } else if constexpr (requires { value.has_value(); }) {
+      out.push_back(column_text(value));
+    } else {
+      const bool none = std::cmp_equal(value, name == "frame" ? -1 : 0);
+      out.push_back(none ? "" : std::to_string(value));
+    }
+  });
+  return out;
 }
 
 std::string describe(const PointKey& key) {
@@ -162,9 +188,9 @@ std::string describe(const PointKey& key) {
   };
   add(key.method);
   add(key.offset);
-  if (!key.radius.empty() && key.radius != "budget") add("radius " + key.radius);
-  if (key.depth_format == "fixed24") add("24-bit depth");
-  if (key.depth_mode == "fixed") add("fixed-function depth");
+  if (key.radius && key.radius != RadiusRule{}) add("radius " + column_text(key.radius));
+  if (key.depth_format == DepthFormat::fixed24) add("24-bit depth");
+  if (key.depth_mode == DepthMode::fixed) add("fixed-function depth");
   if (key.resolution > 0)
     add(fmt::format("{} {}", key.resolution, key.method.starts_with("voronoi") ? "cells" : "px"));
   if (!key.views.empty()) add("views " + key.views);

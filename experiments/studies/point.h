@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "experiments/measure/neighbour_sets.h"
 #include "experiments/method/options.h"
 #include "experiments/peers/peer.h"
@@ -57,7 +59,7 @@ struct RunPoint {
   std::optional<DepthMode> depth_mode = {};      // how the depth of a fragment is made
   std::optional<DepthFormat> depth_format = {};  // how the depth buffer holds it
   int resolution = 0;                            // px; 0: none, or chosen by the scene
-  /// Where the resolution is 0: the least at which the triangles that can take part cover so many
+  /// If the resolution is 0: the least one at which the triangles that can take part cover so many
   /// pixels each, on average over them and the axes; 0: see above.
   double mean_pixels = 0;
   std::string views = {};
@@ -116,7 +118,7 @@ struct LibraryPoint {
   std::string suite_name = {};  // of that: the beginning of its sum
 };
 
-/// What a method leaves as potential neighbours (measure/neighbour_sets.h).
+/// The potential neighbours that a method leaves (measure/neighbour_sets.h).
 struct NeighbourPoint {
   PointScene scene;
   NeighbourMethod method = NeighbourMethod::trees;
@@ -136,34 +138,50 @@ struct DistancePoint {
 using Point = std::variant<RunPoint, PeerPoint, LemmaPoint, PlacementPoint, LibraryPoint,
                            NeighbourPoint, DistancePoint>;
 
+inline bool operator==(const RadiusRule& a, const RadiusRule& b) {
+  return a.published == b.published && a.factor == b.factor;
+}
+inline auto operator<=>(const RadiusRule& a, const RadiusRule& b) {
+  return std::pair(a.published, a.factor) <=> std::pair(b.published, b.factor);
+}
+
 /// The columns by which a store knows a point. What does not apply is empty, 0 or -1; no two points
 /// of a grid have the same key.
 struct PointKey {
-  std::string scene = {};         // as on the command line, or as key_of() writes it
-  std::string method = {};        // as --method with the options of its form ("cullide --rounds
-                                  // 1"), perhaps with the mean size of triangles ("@4px"); a peer;
-                                  // "lemma", "lemma-worst"; of placements "far", "far-snapped-8";
-                                  // a contestant, perhaps with what it is asked ("cgal-aabb
-                                  // nearest"); of potential neighbours "boxes", "trees",
-                                  // "voronoi", "voronoi-reliable"
-  std::string offset = {};        // obb or exact
-  std::string radius = {};        // as --radius
-  std::string depth_format = {};  // float32 or fixed24
-  std::string depth_mode = {};    // fragment or fixed
-  int resolution = 0;             // px; of "voronoi" and "voronoi-reliable" cells
+  std::string scene = {};   // as on the command line, or as key_of() writes it
+  std::string method = {};  // as --method with the options of its form ("cullide --rounds
+                            // 1"), perhaps with the mean size of triangles ("@4px"); a peer;
+                            // "lemma", "lemma-worst"; of placements "far", "far-snapped-8";
+                            // a contestant, perhaps with what it is asked ("cgal-aabb
+                            // nearest"); of potential neighbours "boxes", "trees",
+                            // "voronoi", "voronoi-reliable"
+  std::string offset = {};  // obb or exact
+  std::optional<RadiusRule> radius = {};
+  std::optional<DepthFormat> depth_format = {};
+  std::optional<DepthMode> depth_mode = {};
+  int resolution = 0;  // px; of "voronoi" and "voronoi-reliable" cells
   std::string views = {};
   long frame = -1;
   std::uint64_t seed = 0;
 
   auto operator<=>(const PointKey&) const = default;
+  FARCULL_FIELDS(scene, method, offset, radius, depth_format, depth_mode, resolution, views, frame,
+                 seed)
 };
+
+/// A typed column as the store and tables write it, as in "0.9", "float32", "fragment"; "" where it
+/// does not apply.
+std::string column_text(const std::optional<RadiusRule>& radius);  // as --radius
+std::string column_text(const std::optional<DepthFormat>& format);
+std::string column_text(const std::optional<DepthMode>& mode);
+/// The contrary, for these three types. Throws Error where no column is written so.
+template <class T>
+std::optional<T> column_of(const std::string& text);
 
 PointKey key_of(const Point& point);
 std::vector<PointKey> keys_of(const std::vector<Point>& points);
 
-/// Names of the columns in the order of PointKey, for tables.
-const std::vector<std::string>& axis_names();
-/// The values of a key as text, in that order; empty where the column does not apply.
+/// The values of a key as text, in the order of its fields; empty where the column does not apply.
 std::vector<std::string> axis_values(const PointKey& key);
 /// In words, for progress and errors: "two-bunnies, cullide, 512 px".
 std::string describe(const PointKey& key);
@@ -179,5 +197,78 @@ struct LemmaScene {
 };
 /// Precondition: the text is a name(); std::logic_error otherwise.
 LemmaScene parse_lemma_scene(const std::string& text);
+
+// The points that several studies put into their grids, each measured once unless `repeat` is set.
+
+/// FAR at a resolution, with fragment depth in 32 bits. offset: obb or exact.
+inline RunPoint far_point(PointScene scene, const std::string& offset, const RadiusRule& radius,
+                          int resolution) {
+  return {.scene = std::move(scene),
+          .method = Method::far,
+          .offset = offset,
+          .radius = radius,
+          .depth_mode = DepthMode::fragment,
+          .depth_format = DepthFormat::float32,
+          .resolution = resolution};
+}
+
+/// A method of the CULLIDE family at a resolution, with the depth of the rasterizer in 32 bits.
+inline RunPoint cullide_point(PointScene scene, Method method, int resolution) {
+  return {.scene = std::move(scene),
+          .method = method,
+          .depth_mode = DepthMode::fixed,
+          .depth_format = DepthFormat::float32,
+          .resolution = resolution};
+}
+
+/// The same in a form, which the options of RunPoint say.
+struct CullideForm {
+  int rounds = 0;
+  ClearRule clear = ClearRule::any;
+  bool objects_alone = false;
+  bool conservative = false;
+  std::string views = {};
+};
+inline RunPoint in_form(RunPoint point, const CullideForm& form) {
+  point.rounds = form.rounds;
+  point.clear = form.clear;
+  point.objects_alone = form.objects_alone;
+  point.conservative = form.conservative;
+  point.views = form.views;
+  return point;
+}
+/// CULLIDE as published: one round.
+inline const CullideForm kPublishedForm = {.rounds = 1};
+inline constexpr const char* kBothDirections = "x,-x,y,-y,z,-z";
+
+/// The same at the least resolution at which triangles cover so many pixels on average.
+inline RunPoint at_mean_pixels(RunPoint point, double pixels) {
+  point.resolution = 0;
+  point.mean_pixels = pixels;
+  return point;
+}
+
+/// The five seeds that scenes which are drawn at random are measured with: their own, and 101 to
+/// 104. With `count` fewer.
+inline std::vector<std::string> drawn_scenes(const std::string& name, int count = 5) {
+  std::vector<std::string> out = {name};
+  for (int i = 1; i < count; ++i) out.push_back(name + "@seed" + std::to_string(100 + i));
+  return out;
+}
+
+/// A method that draws no sets: far-pairs (resolution 0: chosen by the scene), i-collide, exact.
+inline RunPoint plain_point(PointScene scene, Method method, int resolution = 0) {
+  return {.scene = std::move(scene), .method = method, .resolution = resolution};
+}
+
+inline constexpr RadiusRule kBudgetRadius = {};
+inline constexpr RadiusRule kPublishedRadius = {.published = true};
+
+/// The same point, measured so often.
+template <class OfPoint>
+OfPoint repeated(OfPoint point, int repeat) {
+  point.repeat = repeat;
+  return point;
+}
 
 }  // namespace farcull

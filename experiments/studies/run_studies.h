@@ -7,11 +7,29 @@
 #include <string>
 #include <vector>
 
-#include "experiments/studies/shard.h"
 #include "experiments/studies/store.h"
 #include "experiments/studies/study.h"
 
 namespace farcull {
+
+struct Shard {
+  int index = 1, of = 1;  // 1 <= index <= of
+  std::string from;       // where it was read, for people; empty: nothing was divided
+
+  /// Every of-th point, so that each shard has its share of the cheap and the costly ones.
+  bool holds(std::size_t position) const {
+    return position % static_cast<std::size_t>(of) == static_cast<std::size_t>(index - 1);
+  }
+};
+
+/// "K/N" with 1 <= K <= N <= 100000. Throws Error naming --shard.
+Shard parse_shard(const std::string& text);
+
+/// The shard of this process of an array job of Slurm (SLURM_ARRAY_TASK_ID, _MIN, _MAX, _COUNT;
+/// steps of one from 0 or 1) or of Open MPI (OMPI_COMM_WORLD_RANK, _SIZE); the whole study where
+/// neither is set. `variable` gives an environment variable or null. Throws Error naming the
+/// variable where it is no number, the array has gaps, or both are set.
+Shard shard_from_environment(const std::function<const char*(const char*)>& variable);
 
 struct StudiesRequest {
   std::vector<Study> studies;
@@ -58,7 +76,7 @@ struct StudiesSummary {
 /// program, with a line that says how many points are kept. Throws Error for a folder that cannot
 /// be made, a store as Store and Store::declare() refuse it, one that has rows of a study where
 /// `resume` is not set, or rows by another commit of farcull, another device, other CPU features,
-/// or another version of a library (versions.h).
+/// or another version of a library (merge.h).
 StudiesSummary run_studies(const StudiesRequest& request,
                            const std::function<void(const StudiesProgress&)>& progress = {});
 

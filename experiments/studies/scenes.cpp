@@ -6,7 +6,7 @@
 
 #include "core/view/regions.h"
 #include "core/view/view.h"
-#include "experiments/studies/points.h"
+#include "experiments/studies/point.h"
 #include "experiments/studies/run_point.h"
 #include "experiments/studies/study.h"
 

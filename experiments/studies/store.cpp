@@ -1,4 +1,4 @@
-// The tables of the store and their statements.
+// The tables of the store and their statements; and which program measures, on which machine.
 #include "experiments/studies/store.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -8,13 +8,19 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "commit.h"
 #include "core/base/error.h"
+#include "core/native/lanes.h"
+#include "experiments/method/session.h"
+#include "experiments/system/machine.h"
 
 namespace farcull {
 namespace {
@@ -23,7 +29,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kDeviceFolder = "on-";
 
-// The tables of a file of version kStoreVersion. `results` is for questions in SQL.
+// The tables of a file of version kStoreVersion, with the columns of Provenance and PointKey in the
+// order of their fields. `results` is for questions in SQL.
 constexpr const char* kSchema = R"(
 CREATE TABLE runs (
   run INTEGER PRIMARY KEY, started TEXT NOT NULL, commit_id TEXT NOT NULL, gl_vendor TEXT NOT NULL,
@@ -102,9 +109,44 @@ Json parsed(const std::string& path, const std::string& text) {
   return out;
 }
 
-// Numbers in full; a text that is no UTF-8 (of a driver, say) loses what is none.
+// Numbers in full; bytes of a text (of a driver, say) that are no UTF-8 are replaced.
 std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+// Binds the fields of a row from the parameter `at` on, in the order of the columns of its table.
+template <class Fields>
+void bind_fields(SQLite::Statement& statement, int at, const Fields& row) {
+  row.fields([&](std::string_view name, const auto& value) {
+    if constexpr (std::is_unsigned_v<std::decay_t<decltype(value)>>) {
+      statement.bind(at++, stored(value, ("--" + std::string(name)).c_str()));
+    } else if constexpr (std::is_integral_v<std::decay_t<decltype(value)>>) {
+      statement.bind(at++, static_cast<std::int64_t>(value));
+    } else if constexpr (requires { value.has_value(); }) {
+      statement.bind(at++, column_text(value));
+    } else {
+      statement.bind(at++, value);
+    }
+  });
+}
+
+// The fields of a row that begin at this column of the statement.
+template <class Fields>
+Fields read_fields(SQLite::Statement& statement, int at) {
+  Fields out;
+  const auto read = [&](auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    const SQLite::Column column = statement.getColumn(at++);
+    if constexpr (std::is_same_v<Value, std::string>) {
+      value = column.getString();
+    } else if constexpr (requires { value.has_value(); }) {
+      value = column_of<typename Value::value_type>(column.getString());
+    } else {
+      value = static_cast<Value>(column.getInt64());
+    }
+  };
+  std::apply([&](auto&... value) { (read(value), ...); }, out.members());
+  return out;
 }
 
 std::string grid_text(const GridChoice& choice) {
@@ -112,6 +154,43 @@ std::string grid_text(const GridChoice& choice) {
 }
 
 }  // namespace
+
+std::string utc_now() {
+  const std::time_t seconds =
+      std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc = {};
+  ::gmtime_r(&seconds, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+Provenance provenance_now(const std::string& device, const std::string& options) {
+  Provenance out{.started = utc_now(),
+                 .commit = FARCULL_COMMIT,
+                 .gl_vendor = {},
+                 .gl_renderer = {},
+                 .gl_version = {},
+                 .cpu = cpu_model(),
+                 .cpu_features = cpu_features(),
+                 .cores = usable_cores(),
+                 .options = options};
+  Session session(device);
+  if (session.canvas_device().native) {
+    out.gl_renderer = "native (" + lane_target() + ")";
+  } else {
+    const GlInfo& gl = session.context().info();
+    out.gl_vendor = gl.vendor;
+    out.gl_renderer = gl.renderer;
+    out.gl_version = gl.version;
+  }
+  return out;
+}
+
+std::string driver_text(const Provenance& provenance) {
+  if (provenance.gl_vendor.empty() && provenance.gl_version.empty()) return "none";
+  return provenance.gl_vendor + ", " + provenance.gl_version;
+}
 
 struct Store::State {
   std::string path;
@@ -174,18 +253,11 @@ Store& Store::operator=(Store&&) noexcept = default;
 
 const std::string& Store::path() const { return state_->path; }
 
-std::int64_t Store::begin_run(const Provenance& p) {
+std::int64_t Store::begin_run(const Provenance& provenance) {
   return guarded(state_->path, [&] {
     SQLite::Statement insert(state_->database,
-                             "INSERT INTO runs (started, commit_id, gl_vendor, gl_renderer, "
-                             "gl_version, cpu, cpu_features, cores, options) "
-                             "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
-    int at = 0;
-    for (const std::string& text :
-         {p.started, p.commit, p.gl_vendor, p.gl_renderer, p.gl_version, p.cpu, p.cpu_features})
-      insert.bind(++at, text);
-    insert.bind(++at, static_cast<std::int64_t>(p.cores));
-    insert.bind(++at, p.options);
+                             "INSERT INTO runs VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    bind_fields(insert, 1, provenance);
     insert.exec();
     return static_cast<std::int64_t>(state_->database.getLastInsertRowid());
   });
@@ -194,22 +266,9 @@ std::int64_t Store::begin_run(const Provenance& p) {
 std::vector<std::pair<std::int64_t, Provenance>> Store::runs() const {
   return guarded(state_->path, [&] {
     std::vector<std::pair<std::int64_t, Provenance>> out;
-    SQLite::Statement select(state_->database,
-                             "SELECT run, started, commit_id, gl_vendor, gl_renderer, gl_version, "
-                             "cpu, cpu_features, cores, options FROM runs ORDER BY run");
-    while (select.executeStep()) {
-      const auto text = [&](int column) { return select.getColumn(column).getString(); };
-      out.push_back({select.getColumn(0).getInt64(),
-                     {.started = text(1),
-                      .commit = text(2),
-                      .gl_vendor = text(3),
-                      .gl_renderer = text(4),
-                      .gl_version = text(5),
-                      .cpu = text(6),
-                      .cpu_features = text(7),
-                      .cores = static_cast<unsigned>(select.getColumn(8).getInt64()),
-                      .options = text(9)}});
-    }
+    SQLite::Statement select(state_->database, "SELECT * FROM runs ORDER BY run");
+    while (select.executeStep())
+      out.push_back({select.getColumn(0).getInt64(), read_fields<Provenance>(select, 1)});
     return out;
   });
 }
@@ -235,27 +294,15 @@ std::optional<Declaration> Store::declaration(const std::string& study) const {
                     .shard = select.getColumn(2).getInt(),
                     .of = select.getColumn(3).getInt(),
                     .points = {}};
-    SQLite::Statement points(
-        state_->database,
-        "SELECT scene, method, \"offset\", radius, depth_format, depth_mode, resolution, views, "
-        "frame, seed, position FROM points WHERE study = ? ORDER BY position");
+    SQLite::Statement points(state_->database,
+                             "SELECT * FROM points WHERE study = ? ORDER BY position");
     points.bind(1, study);
     while (points.executeStep()) {
-      const auto text = [&](int column) { return points.getColumn(column).getString(); };
-      if (points.getColumn(10).getInt64() != static_cast<std::int64_t>(out.points.size())) {
+      if (points.getColumn(1).getInt64() != static_cast<std::int64_t>(out.points.size())) {
         throw Error(state_->path, "is damaged: points of " + study + " are missing",
                     "restore it from a copy, or start anew in another folder");
       }
-      out.points.push_back({.scene = text(0),
-                            .method = text(1),
-                            .offset = text(2),
-                            .radius = text(3),
-                            .depth_format = text(4),
-                            .depth_mode = text(5),
-                            .resolution = points.getColumn(6).getInt(),
-                            .views = text(7),
-                            .frame = static_cast<long>(points.getColumn(8).getInt64()),
-                            .seed = static_cast<std::uint64_t>(points.getColumn(9).getInt64())});
+      out.points.push_back(read_fields<PointKey>(points, 2));
     }
     return out;
   });
@@ -287,18 +334,10 @@ void Store::declare(const Declaration& wanted) {
     SQLite::Statement insert(state_->database,
                              "INSERT INTO points VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     for (std::size_t i = 0; i < wanted.points.size(); ++i) {
-      const PointKey& p = wanted.points[i];
       insert.reset();
       insert.bind(1, wanted.study);
       insert.bind(2, static_cast<std::int64_t>(i));
-      int at = 2;
-      for (const std::string& text :
-           {p.scene, p.method, p.offset, p.radius, p.depth_format, p.depth_mode})
-        insert.bind(++at, text);
-      insert.bind(9, p.resolution);
-      insert.bind(10, p.views);
-      insert.bind(11, static_cast<std::int64_t>(p.frame));
-      insert.bind(12, stored(p.seed, "--seed"));
+      bind_fields(insert, 3, wanted.points[i]);
       insert.exec();
     }
     transaction.commit();

@@ -14,10 +14,34 @@
 #include <string>
 #include <vector>
 
-#include "experiments/studies/provenance.h"
 #include "experiments/studies/study.h"
 
 namespace farcull {
+
+/// Which program measured, on which machine, when.
+struct Provenance {
+  std::string started;  // UTC, ISO 8601
+  std::string commit;   // of the program
+  /// Names of the GL device. If the native canvas draws, gl_renderer is "native" with the
+  /// instruction set, as in "native (AVX3)", and the other two are empty.
+  std::string gl_vendor, gl_renderer, gl_version;
+  std::string cpu;           // model
+  std::string cpu_features;  // as /proc/cpuinfo lists them
+  unsigned cores = 0;
+  std::string options;  // of the command line, as JSON
+  FARCULL_FIELDS(started, commit, gl_vendor, gl_renderer, gl_version, cpu, cpu_features, cores,
+                 options)
+};
+
+/// Vendor and version of the driver for people; "none" on the native canvas.
+std::string driver_text(const Provenance& provenance);
+
+/// The provenance of this process, with the device that Session chooses. A GL device is opened to
+/// ask for its names; throws Error where the one that was named does not answer.
+Provenance provenance_now(const std::string& device, const std::string& options);
+
+/// The time now: UTC, ISO 8601, in seconds.
+std::string utc_now();
 
 constexpr std::int32_t kStoreId = 0x46415243;  // "FARC"
 constexpr std::int32_t kStoreVersion = 1;
@@ -49,7 +73,7 @@ class Store {
  public:
   enum class Access { read, write };
   /// write: makes the file where it is not there, and keeps every other program out until it is
-  /// closed. Throws Error naming the path for a file that is none of ours, of another version,
+  /// closed. Throws Error naming the path for a file that is no store of ours, of another version,
   /// damaged, in use, or that cannot be opened.
   Store(const std::string& path, Access access);
   ~Store();
@@ -68,7 +92,7 @@ class Store {
   /// The same again changes nothing. Throws Error where the study was declared otherwise.
   void declare(const Declaration& declaration);
   /// Adds a row in one transaction, on the disk when it returns. A row that says why nothing was
-  /// measured is replaced. Throws Error where the point has another row, is none of the grid, or
+  /// measured is replaced. Throws Error where the point has another row, is not in the grid, or
   /// the disk refuses; the file is then as before.
   void add(const std::string& study, std::int64_t run, std::size_t position,
            const Measurement& measurement);

@@ -45,7 +45,7 @@ struct Study {
 const std::vector<Study>& studies();
 /// Those of `farcull experiment all`: no campaigns.
 std::vector<Study> studies_of_all();
-/// Throws Error naming the studies where there is none of that name.
+/// Throws Error naming the studies where no study has that name.
 const Study& study_named(const std::string& name);
 
 /// The study with those of its points alone whose answer may depend on the device: those of methods

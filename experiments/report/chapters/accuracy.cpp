@@ -10,7 +10,7 @@
 
 #include "experiments/report/chapters/numbers.h"
 #include "experiments/report/chapters/rows.h"
-#include "experiments/studies/points.h"
+#include "experiments/studies/point.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
@@ -245,7 +245,7 @@ Figure kept_figure(const std::vector<SceneGroup>& groups) {
       Rows rows = method.rows;
       std::erase_if(rows, [](const Row* row) {
         return is_sized(*row) || number_of(*row, "colliding") == 0 ||
-               !(count_or_none(*row, "candidates") > 0) || row->point.radius == "published" ||
+               !(count_or_none(*row, "candidates") > 0) || row->point.radius == kPublishedRadius ||
                row->point.offset == "exact" || is_left_out(*row);
       });
       if (rows.empty()) continue;
@@ -480,7 +480,7 @@ const Row* partner_of(const Rows& rows, const Row& cullide) {
   for (const Row* row : rows) {
     if (is_of(*row, "far") && row->point.scene == cullide.point.scene &&
         row->point.resolution == cullide.point.resolution && row->point.offset == "obb" &&
-        row->point.radius == "budget") {
+        row->point.radius == kBudgetRadius) {
       return row;
     }
   }

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "experiments/measure/statistics.h"
+#include "experiments/measure/harness.h"
 #include "experiments/system/shell_word.h"
 #include "experiments/system/text_table.h"
 

@@ -11,7 +11,7 @@
 #include "core/canvas/canvas.h"
 #include "experiments/report/chapters/numbers.h"
 #include "experiments/report/chapters/rows.h"
-#include "experiments/studies/lemma_point.h"
+#include "experiments/studies/run_point.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
@@ -19,11 +19,11 @@ namespace {
 
 // How the depth of a row comes about: "fragment, budget radius".
 std::string line_of(const Row& row) {
-  return std::string(row.point.depth_mode == "fixed" ? "fixed-function" : "fragment") + ", " +
-         row.point.radius + " radius";
+  return std::string(row.point.depth_mode == DepthMode::fixed ? "fixed-function" : "fragment") +
+         ", " + column_text(row.point.radius) + " radius";
 }
 std::string bits_of(const Row& row) {
-  return row.point.depth_format == "fixed24" ? "24 bits" : "32-bit float";
+  return row.point.depth_format == DepthFormat::fixed24 ? "24 bits" : "32-bit float";
 }
 
 // The largest distance in depth steps; infinite where that of a row is not a number.

@@ -11,13 +11,13 @@
 
 #include "experiments/report/chapters/numbers.h"
 #include "experiments/report/chapters/rows.h"
-#include "experiments/studies/lemma_point.h"
+#include "experiments/studies/run_point.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {
 
-bool is_published(const Row& row) { return row.point.radius == "published"; }
+bool is_published(const Row& row) { return row.point.radius == kPublishedRadius; }
 
 // The radius over the budget radius; NaN where the row of a published radius lacks one of the two.
 double factor_of(const Row& row) {
@@ -25,13 +25,13 @@ double factor_of(const Row& row) {
     const auto radius = count_of(row, "radius_px"), budget = count_of(row, "budget_px");
     return radius && budget ? *radius / *budget : kNone;
   }
-  return row.point.radius == "budget" || row.point.radius.empty() ? 1 : std::stod(row.point.radius);
+  return row.point.radius.value_or(kBudgetRadius).factor;
 }
 
 // The canvas and the depth that a lemma was tested with.
 std::string surface_of(const Row& row) {
   if (row.point.method == "lemma-worst") return "worst canvas";
-  return row.point.depth_mode == "fixed" ? "fixed-function depth" : "fragment depth";
+  return row.point.depth_mode == DepthMode::fixed ? "fixed-function depth" : "fragment depth";
 }
 
 std::string generator_of(const Row& row) { return parse_lemma_scene(row.point.scene).generator; }
@@ -234,7 +234,7 @@ DataTable lemma_table(const std::string& name, const std::string& caption, const
 }
 
 RowColumn radius_column() {
-  return {text_column("radius"), [](const Row& row) { return row.point.radius; }};
+  return {text_column("radius"), [](const Row& row) { return column_text(row.point.radius); }};
 }
 
 DataTable all_table(const Rows& rows) {
@@ -266,7 +266,7 @@ void add_lemma_findings(Rows rows, Chapter& chapter) {
   std::erase_if(rows, [](const Row* row) { return is_published(*row) || factor_of(*row) < 1; });
   bool broken = false;
   for (const Row* row : rows) {
-    if (row->point.depth_mode == "fixed" || number_of(*row, "violations") == 0) continue;
+    if (row->point.depth_mode == DepthMode::fixed || number_of(*row, "violations") == 0) continue;
     broken = true;
     if (breaks(*row)) continue;
     chapter.find_broken(fmt::format(
@@ -359,7 +359,7 @@ std::string rate_of_rows(const Rows& rows) {
 void add_headline(const Rows& runs, const Rows& placements, Chapter& chapter) {
   Rows natural, constructed, placed;
   for (const Row* row : runs) {
-    if (!is_published(*row) || row->point.depth_mode != "fragment") continue;
+    if (!is_published(*row) || row->point.depth_mode != DepthMode::fragment) continue;
     (row->point.scene == "pixel-corners" ? constructed : natural).push_back(row);
   }
   for (const Row* row : placements) {
@@ -517,7 +517,7 @@ DataTable placement_table(const Rows& rows) {
   for (const Row* row : rows) {
     const PlacementScene scene = placement_of(*row);
     out.rows.push_back(
-        {row->point.radius, scene.from, scene.contact, rounded(scene.side),
+        {column_text(row->point.radius), scene.from, scene.contact, rounded(scene.side),
          bits_of(*row) > 0 ? std::to_string(bits_of(*row)) : "not snapped",
          std::to_string(row->point.resolution), count_cell(*row, "placements"), rate_of_rows({row}),
          of_all({row}, "missed", "colliding"),

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "experiments/report/chapters/numbers.h"
-#include "experiments/studies/points.h"
+#include "experiments/studies/point.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
@@ -78,8 +78,8 @@ std::vector<Column> columns(const std::vector<std::string>& texts,
 
 std::string contestant(const PointKey& point) {
   std::string out = method_label(point);
-  if (!point.radius.empty() && point.radius != "budget") {
-    out += point.radius == "published" ? ", published radius" : ", radius " + point.radius;
+  if (point.radius && point.radius != RadiusRule{}) {
+    out += point.radius->published ? ", published radius" : ", radius " + column_text(point.radius);
   }
   if (point.views == kBothDirections) out += ", both directions";
   return out;

@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "experiments/measure/statistics.h"
+#include "experiments/measure/harness.h"
 #include "experiments/report/chapters/chapter.h"
 #include "experiments/studies/store.h"
 

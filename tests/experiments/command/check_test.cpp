@@ -8,7 +8,6 @@
 #include <tuple>
 
 #include "experiments/measure/frames.h"
-#include "experiments/record/certificate.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"

@@ -12,7 +12,7 @@
 #include "core/base/stage.h"
 #include "experiments/measure/bench.h"
 #include "experiments/measure/frames.h"
-#include "experiments/record/plan.h"
+#include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/scene_file.h"
 

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "experiments/studies/lemma_point.h"
+#include "experiments/studies/run_point.h"
 #include "experiments/studies/run_studies.h"
 #include "offsets/obb.h"
 #include "verify/exact_point.h"

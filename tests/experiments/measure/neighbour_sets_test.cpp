@@ -33,7 +33,7 @@ TEST(NeighbourSets, HaveTheSizesThatCanBeCounted) {
   // Triangle 0 is object 0, triangles 1 and 2 are object 1, triangle 3 is object 2.
   const NeighbourSizes all =
       sizes_of(scene, sets_with({{0, 1}, {1, 2}}, {{0, 1}, {0, 2}, {1, 3}}), truth);
-  EXPECT_EQ(all.objects, 3u);
+  EXPECT_EQ(all.with_nearest, 3u);
   EXPECT_EQ(all.missed, 0u);
   EXPECT_EQ(all.nearest_pairs, 3u) << "of 0 and 1 each other's, of 2 that of 1";
   EXPECT_EQ(all.missed_pairs, 0u);

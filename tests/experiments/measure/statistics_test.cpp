@@ -1,5 +1,5 @@
 // Intervals by the bootstrap against what combinatorics says about them.
-#include "experiments/measure/statistics.h"
+#include "experiments/measure/harness.h"
 
 #include <gtest/gtest.h>
 

@@ -9,8 +9,7 @@
 #include "core/base/error.h"
 #include "core/scene/ignored.h"
 #include "experiments/method/run.h"
-#include "experiments/record/certificate.h"
-#include "experiments/record/check_scene.h"
+#include "experiments/record/check.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
 

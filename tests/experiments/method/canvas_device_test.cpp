@@ -10,7 +10,7 @@
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/studies/provenance.h"
+#include "experiments/studies/store.h"
 
 namespace farcull {
 namespace {

@@ -9,7 +9,6 @@
 #include "core/gl/probe/probe.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
-#include "experiments/record/certificate.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"

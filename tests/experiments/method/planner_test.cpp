@@ -1,15 +1,15 @@
 // The planner without a GL device: what is left out, that it is said, and that it changes no
 // answer.
 #include "experiments/method/plan.h"
-#include "experiments/record/plan.h"
+#include "experiments/record/output.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <nlohmann/json.hpp>
 
+#include "experiments/measure/compare.h"
 #include "experiments/measure/family.h"
-#include "experiments/measure/savings.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/core/scene/scenes.h"
 #include "tests/experiments/method/plan_lab.h"
@@ -331,7 +331,7 @@ TEST(Family, HasARowForEachFrameAndTheFactorAgainstBoxes) {
     ASSERT_EQ(cell.frames.size(), 4u);
     EXPECT_EQ(cell.missed(), 0u);
     for (std::size_t i = 0; i < 4; ++i) {
-      EXPECT_EQ(cell.frames[i].colliding, cells.back().frames[i].colliding);
+      EXPECT_EQ(cell.frames[i].colliding_pairs, cells.back().frames[i].colliding_pairs);
       EXPECT_GT(cell.frames[i].ms, 0);
     }
   }
@@ -342,7 +342,7 @@ TEST(Family, HasARowForEachFrameAndTheFactorAgainstBoxes) {
   EXPECT_TRUE(row.starts_with("two-spheres,far-pairs,,0,"));
   const FamilyFrame &ours = cells[0].frames[0], &boxes = cells[1].frames[0];
   EXPECT_GE(boxes.pcs_triangles, ours.pcs_triangles);
-  EXPECT_GE(boxes.candidates, ours.candidates);
+  EXPECT_GE(boxes.candidate_pairs, ours.candidate_pairs);
   EXPECT_EQ(family_json(cells, arguments)["cells"].size(), 3u);
   EXPECT_NE(family_table(cells).find("i-collide"), std::string::npos);
 }
@@ -353,14 +353,14 @@ TEST(Family, FactorsAreWhatBoxesKeepOverWhatTheMethodKeeps) {
   boxes.frames.push_back({.frame = 0,
                           .pcs_triangles = 40,
                           .object_triangles = 600,
-                          .candidates = 90,
+                          .candidate_pairs = 90,
                           .missed = {},
                           .missed_contacts = {}});
   FamilyCell ours{
       .scene = "a,b", .method = Method::far, .offset = "obb", .device = "", .frames = {}};
   ours.frames.push_back({.frame = 0,
                          .pcs_triangles = 10,
-                         .candidates = 30,
+                         .candidate_pairs = 30,
                          .missed = 2,
                          .missed_contacts = ContactCounts{.touching = 2, .penetrating = 0},
                          .broken = true});

@@ -12,7 +12,6 @@
 #include "core/base/count.h"
 #include "core/base/stage.h"
 #include "experiments/record/output.h"
-#include "experiments/record/plan.h"
 #include "tests/core/scene/scenes.h"
 
 namespace farcull {

@@ -45,8 +45,8 @@ bool asks_library(const PointKey& point) {
 bool reliable(const PointKey& point) {
   return point.method != "voronoi" && !point.method.ends_with(" --widening 0") &&
          !asks_library(point) && point.method.find("cullide") == std::string::npos &&
-         point.radius != "published" && point.method.find("float") == std::string::npos &&
-         point.depth_mode != "fixed";
+         point.radius != kPublishedRadius && point.method.find("float") == std::string::npos &&
+         point.depth_mode != DepthMode::fixed;
 }
 
 // As the method asks for it: "cullide @4px".

@@ -1,4 +1,4 @@
-#include "experiments/studies/fragments.h"
+#include "experiments/studies/run_point.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "core/base/error.h"
-#include "experiments/studies/shard.h"
+#include "experiments/studies/run_studies.h"
 #include "tests/experiments/studies/store_lab.h"
 #include "tests/experiments/system/error_of.h"
 

@@ -25,7 +25,6 @@
 
 #include "core/base/error.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/studies/lemma_point.h"
 #include "experiments/studies/run_point.h"
 #include "experiments/studies/study.h"
 
@@ -172,7 +171,7 @@ inline Table parse(const std::string& text, const std::string& path) {
       continue;
     }
     std::size_t end = 0;  // of the key: before the counts
-    for (std::size_t i = 0; i < (scenes ? 2 : axis_names().size()); ++i) {
+    for (std::size_t i = 0; i < (scenes ? 2 : field_names<PointKey>().size()); ++i) {
       end = line.find(';', i == 0 ? 0 : end + 1);
       if (end == std::string::npos) refuse(line);
     }

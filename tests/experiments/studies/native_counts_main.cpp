@@ -87,9 +87,9 @@ Arguments arguments_of(const std::vector<std::string>& words) {
 // What points share that --first counts as one kind.
 std::string kind_of(const Point& point) {
   const PointKey key = key_of(point);
-  const bool factor = key.radius.find_first_not_of("0123456789.") == std::string::npos;
-  return key.method + ";" + key.offset + ";" + (factor ? "factor" : key.radius) + ";" +
-         key.depth_format + ";" + key.depth_mode;
+  const bool factor = !key.radius || (!key.radius->published && key.radius != kBudgetRadius);
+  return key.method + ";" + key.offset + ";" + (factor ? "factor" : column_text(key.radius)) + ";" +
+         column_text(key.depth_format) + ";" + column_text(key.depth_mode);
 }
 
 std::vector<GridPoint> chosen_points(const Arguments& arguments) {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "experiments/studies/points.h"
+#include "experiments/studies/point.h"
 #include "tests/experiments/studies/native_counts.h"
 
 namespace farcull {

@@ -1,6 +1,6 @@
 // Placements stand apart in every view, collide as they are meant to, and are missed where the ball
 // is far too small.
-#include "experiments/studies/placements.h"
+#include "experiments/studies/run_point.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/studies/points.h"
+#include "experiments/studies/point.h"
 #include "experiments/studies/study.h"
 
 namespace farcull {

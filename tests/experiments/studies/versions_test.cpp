@@ -1,5 +1,5 @@
 // A library that is upgraded between two runs, or between two shards.
-#include "experiments/studies/versions.h"
+#include "experiments/studies/merge.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -10,7 +10,6 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "experiments/studies/merge.h"
 #include "tests/experiments/studies/store_lab.h"
 #include "tests/experiments/system/error_of.h"
 

@@ -6,7 +6,7 @@
 
 #include "experiments/report/chapters/chapter.h"
 #include "experiments/report/chapters/numbers.h"
-#include "experiments/studies/points.h"
+#include "experiments/studies/point.h"
 
 namespace farcull {
 namespace {

@@ -47,9 +47,9 @@ PointKey lemma_point(const std::string& generator, const std::string& radius,
   return {.scene = LemmaScene{generator, 100}.name(),
           .method = method,
           .offset = "obb",
-          .radius = radius,
+          .radius = column_of<RadiusRule>(radius),
           .depth_format = {},
-          .depth_mode = mode,
+          .depth_mode = column_of<DepthMode>(mode),
           .resolution = 0,
           .views = {},
           .frame = -1,
@@ -74,9 +74,9 @@ PointKey far_point(const std::string& radius) {
   return {.scene = "degenerate",
           .method = "far",
           .offset = "obb",
-          .radius = radius,
+          .radius = column_of<RadiusRule>(radius),
           .depth_format = {},
-          .depth_mode = "fragment",
+          .depth_mode = DepthMode::fragment,
           .resolution = 64,
           .views = {},
           .frame = -1,
@@ -231,7 +231,7 @@ TEST(RadiusChapter, DoesNotShoutOfFixedFunctionDepth) {
 PointKey precision_point(const std::string& radius, const std::string& mode,
                          const std::string& format) {
   PointKey out = lemma_point("almost flat", radius, mode);
-  out.depth_format = format;
+  out.depth_format = column_of<DepthFormat>(format);
   out.resolution = 508;
   return out;
 }
@@ -274,7 +274,7 @@ PointKey stability_point(const std::string& scene, const std::string& method, lo
   return {.scene = scene,
           .method = method,
           .offset = method == "far" ? "obb" : "",
-          .radius = method == "far" ? "budget" : "",
+          .radius = column_of<RadiusRule>(method == "far" ? "budget" : ""),
           .depth_format = {},
           .depth_mode = {},
           .resolution = 0,

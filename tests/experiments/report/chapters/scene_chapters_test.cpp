@@ -42,7 +42,7 @@ PointKey point_of(const std::string& scene, const std::string& method, int resol
   out.scene = scene;
   out.method = method;
   out.offset = method == "far" ? "obb" : "";
-  out.radius = method == "far" ? "budget" : "";
+  if (method == "far") out.radius = kBudgetRadius;
   out.resolution = resolution;
   out.views = views;
   out.frame = frame;

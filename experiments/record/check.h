@@ -1,14 +1,16 @@
-// The outcome of `farcull check`, as text for people and as JSON.
+// `farcull check`: what it does with one scene, and the outcome as text for people and as JSON.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "verify/certificate/certificate.h"
+#include "verify/certificate/distance_certificate.h"
 #include "verify/certificate/pair_list.h"
 
 namespace farcull {
@@ -61,5 +63,30 @@ class FrameVerdicts {
   std::array<std::optional<long>, 3> first_{};  // by Verdict
   std::uint64_t listed_ = 0;
 };
+
+/// Checks what is given: a certificate, a list of pairs, or both. clearance: that is asked about;
+/// file: the name of the certificate, as it is printed, "" for none; rows: of the list, those that
+/// are about this scene. With a list the verdict is about both: a list alone is proved or refuted.
+/// Throws Error where the list names objects or triangles that the scene has not.
+/// Precondition: certificate or list is there.
+SceneCheck check_scene_with(double clearance, const std::string& file,
+                            const std::optional<Certificate>& certificate, const Scene& scene,
+                            const GivenList* list, std::span<const ListedPair> rows);
+
+/// A certificate of distances with what its check found.
+struct CheckedDistances {
+  std::string file;
+  DistanceCertificate certificate;
+  DistanceCheck result;
+};
+
+/// "these 3 pairs of objects are at exactly these distances, ...": what is proved where everything
+/// is.
+std::string proved_text(const CheckedDistances& check);
+/// The verdict with its reason, and the pair that it is about.
+std::string verdict_text(const Scene& scene, const CheckedDistances& check);
+/// The verdict and everything else.
+std::string check_text(const Scene& scene, const CheckedDistances& check);
+nlohmann::ordered_json check_json(const Scene& scene, const CheckedDistances& check);
 
 }  // namespace farcull

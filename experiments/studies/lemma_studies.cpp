@@ -1,18 +1,73 @@
-// The study "radius": the lemmas and the misses against the radius, and how often the published one
-// misses a pair of patches that are placed at random.
+// The studies "precision" and "radius": the lemmas and the misses against the format of the depth
+// buffer, the way in which depth is made, and the radius; and how often the published radius misses
+// a pair of patches that are placed at random.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
+#include "core/base/stopwatch.h"
 #include "experiments/lemma/lemma.h"
-#include "experiments/studies/lemma_point.h"
-#include "experiments/studies/placements.h"
-#include "experiments/studies/points.h"
+#include "experiments/studies/point.h"
 #include "experiments/studies/run_point.h"
 #include "experiments/studies/study.h"
+#include "offsets/obb.h"
+#include "verify/worst_canvas.h"
 
 namespace farcull {
 namespace {
+
+LemmaSettings settings_of(const LemmaPoint& point) {
+  LemmaSettings settings;
+  settings.points = point.points * lemma_generators().size();
+  settings.generator = point.generator;
+  settings.seed = point.seed;
+  settings.displace = point.worst;
+  settings.stored = point.depth_mode == DepthMode::fixed || point.depth_format.has_value();
+  settings.side = point.side;
+  settings.depth = point.depth / 2;
+  return settings;
+}
+
+// Generators whose depth varies inside a pixel; the triangles of the others are too small for it.
+constexpr const char* kGenerators[] = {
+    "random triangles", "edges at 45 degrees", "parallel to the view",  "almost flat",
+    "needles",          "segments and points", "steep at pixel corners"};
+
+std::vector<Point> precision_grid(const GridChoice& choice) {
+  const std::uint64_t points = choice.quick ? 500 : 4000;
+  // Each with its border makes a viewport of a power of two; the depth reaches what a window may
+  // have (core/view/view.h, fit_window).
+  const std::vector<int> sides =
+      choice.quick ? std::vector{508, 1020} : std::vector{508, 2044, 4092};
+  const std::vector<double> depths =
+      choice.quick ? std::vector{0x1p8, 0x1p20} : std::vector{0x1p8, 0x1p12, 0x1p16, 0x1p20};
+  std::vector<Point> out;
+  for (const char* generator : kGenerators) {
+    for (const double depth : depths) {
+      LemmaPoint point{
+          .generator = generator, .points = points, .depth = depth, .seed = choice.seed};
+      for (const int side : sides) {
+        point.side = side;
+        for (const DepthMode mode : {DepthMode::fragment, DepthMode::fixed}) {
+          point.depth_mode = mode;
+          for (const DepthFormat format : {DepthFormat::float32, DepthFormat::fixed24}) {
+            point.depth_format = format;
+            for (const RadiusRule& radius : {kPublishedRadius, kBudgetRadius}) {
+              point.radius = radius;
+              out.push_back(point);
+            }
+          }
+        }
+      }
+    }
+  }
+  return out;
+}
+
+PointResult measure_precision(const Point& point, Lab& lab) {
+  return measure_lemma(std::get<LemmaPoint>(point), lab);
+}
 
 // Factors on the budget radius, 1 among them.
 std::vector<double> factors(bool quick) {
@@ -88,7 +143,7 @@ std::vector<PlacementPoint> placements(const GridChoice& choice) {
   return out;
 }
 
-std::vector<Point> grid(const GridChoice& choice) {
+std::vector<Point> radius_grid(const GridChoice& choice) {
   const std::vector<RadiusRule> rules = radii(choice.quick);
   std::vector<Point> out;
   for (const std::string& generator : lemma_generators()) {
@@ -139,7 +194,7 @@ std::vector<Point> grid(const GridChoice& choice) {
   return out;
 }
 
-PointResult measure(const Point& point, Lab& lab) {
+PointResult measure_radius(const Point& point, Lab& lab) {
   if (const auto* lemma = std::get_if<LemmaPoint>(&point)) return measure_lemma(*lemma, lab);
   if (const auto* placed = std::get_if<PlacementPoint>(&point))
     return measure_placements(*placed, lab);
@@ -148,6 +203,68 @@ PointResult measure(const Point& point, Lab& lab) {
 
 }  // namespace
 
+PointResult measure_lemma(const LemmaPoint& point, Lab& lab) {
+  const bool fixed = point.depth_mode == DepthMode::fixed;
+  const Fattener fattener = fixed ? obb_surface_fattener() : obb_fattener();
+  const bool bits24 = point.depth_format == DepthFormat::fixed24;
+  PointResult out;
+  LemmaCounts counts;
+  // The rule of promises() in method/run.h for runs of FAR.
+  counts.promises = !fixed && !point.radius.published && point.radius.factor >= 1;
+  std::unique_ptr<WorstCanvas> worst;
+  Canvas* canvas = nullptr;
+  if (point.worst) {
+    worst = std::make_unique<WorstCanvas>(fattener.solid,
+                                          WorstCanvasOptions{.depth_bits = bits24 ? 24 : 32});
+    canvas = worst.get();
+    out.device = "cpu";
+  } else {
+    const bool native = lab.session().canvas_device().native;
+    if (counts.promises && !native && !lab.session().verdict(Reliance::drawing).holds)
+      counts.revoked = true;
+    canvas = &lab.session().canvas(
+        fattener, {.depth_format = bits24 ? DepthFormat::fixed24 : DepthFormat::float32,
+                   .query = bits24 ? QueryMode::occlusion : QueryMode::flags});
+    out.device = native ? "native" : lab.session().context().info().renderer;
+  }
+  if (point.side > canvas->limits().max_resolution) {
+    out.left_out = fmt::format("{} px are beyond the device's {}", point.side,
+                               canvas->limits().max_resolution);
+    return out;
+  }
+
+  LemmaSettings settings = settings_of(point);
+  settings.radius = [&](const Budget& budget, double step) {
+    counts.step_px = step;
+    counts.budget_px = budget.radius();
+    counts.radius_px = lemma_radius(point.radius, budget, step);
+    return counts.radius_px;
+  };
+  const Stopwatch watch;
+  const LemmaRow row = lemma_experiment(*canvas, fattener, settings, lab.progress()).front();
+  out.times.total = watch.ms();
+  counts.points = row.points;
+  counts.violations = row.violations();
+  counts.no_sample = row.no_sample;
+  counts.not_bounding = row.not_bounding;
+  counts.rounded = row.rounded;
+  counts.largest_px = row.largest_px;
+  counts.largest_steps = row.largest_steps;
+  out.counts = counts;
+  return out;
+}
+
+Study precision_study() {
+  return {.name = "precision",
+          .title = "Bounds on depth, as depth buffers hold them",
+          .question =
+              "Do samples bound the depth of every point, in a buffer of 24 bits and of 32, "
+              "when the rasterizer interpolates depth and when a fragment program computes "
+              "it, at any resolution and depth of the scene?",
+          .grid = precision_grid,
+          .measure = measure_precision};
+}
+
 Study radius_study() {
   return {.name = "radius",
           .title = "Violations and misses against the radius",
@@ -155,8 +272,8 @@ Study radius_study() {
               "How large must the ball be that fattens a primitive, so that no pixel lacks "
               "a sample or a bound, what happens below that, and how often does the published "
               "radius miss a pair?",
-          .grid = grid,
-          .measure = measure};
+          .grid = radius_grid,
+          .measure = measure_radius};
 }
 
 }  // namespace farcull

@@ -1,12 +1,18 @@
-// Turns what the checker of verify/certificate found into text and JSON.
-#include "experiments/record/check_result.h"
+// Checks a certificate, a list of pairs, or both against a scene, and turns what the checkers of
+// verify/certificate found, of pairs and of distances, into text and JSON.
+#include "experiments/record/check.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
 
 #include "core/base/floating_point.h"
+#include "core/base/stopwatch.h"
+#include "core/scene/ignored.h"
+#include "experiments/record/fields.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"
@@ -16,38 +22,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Place {
-  std::uint32_t object, triangle;  // the triangle within its object
-};
-
-Place place_of(const Scene& scene, std::uint32_t triangle) {
-  const auto after = std::upper_bound(
-      scene.objects.begin(), scene.objects.end(), triangle,
-      [](std::uint32_t t, const Object& object) { return t < object.first_triangle; });
-  // An object without triangles starts where the next one does: the last that starts there owns it.
-  const auto owner = static_cast<std::uint32_t>(after - scene.objects.begin() - 1);
-  return {owner, triangle - scene.objects[owner].first_triangle};
-}
-
-Json place_json(const Scene& scene, std::uint32_t triangle) {
-  const Place place = place_of(scene, triangle);
-  return {{"object", place.object},
-          {"name", scene.objects[place.object].name},
-          {"triangle", place.triangle},
-          {"face", scene.source_face[triangle]}};
-}
-
 Json claims_json(const Certificate::Claims& claims) {
   return {{"box_pairs", claims.box_pairs},   {"kept", claims.kept},
           {"culled", claims.culled},         {"separated", claims.separated},
           {"neighbours", claims.neighbours}, {"meeting", claims.meeting}};
 }
 
+Json checked_scene_json(const Scene& scene) {
+  return {
+      {"name", scene.name}, {"hash", scene_hash(scene)}, {"self_not_asked", not_asked_json(scene)}};
+}
+
 Json list_json(const Scene& scene, const SceneCheck& check) {
-  const auto text = [](const std::string& of) { return of.empty() ? Json(nullptr) : Json(of); };
-  Json out = {{"claimed_sha256", text(check.claimed_sha256)},
-              {"found_sha256", text(check.result.list_sha256)},
-              {"given", text(check.list)},
+  Json out = {{"claimed_sha256", text_json(check.claimed_sha256)},
+              {"found_sha256", text_json(check.result.list_sha256)},
+              {"given", text_json(check.list)},
               {"given_is_found", nullptr}};
   if (!check.differences) return out;
   const ListDifferences& differ = *check.differences;
@@ -55,7 +44,7 @@ Json list_json(const Scene& scene, const SceneCheck& check) {
   out["lines"] = differ.listed;
   out["wrong"] = {{"lines", differ.wrong},
                   {"first", differ.wrong > 0 ? Json(differ.wrong_line) : Json(nullptr)},
-                  {"reason", text(differ.wrong_reason)},
+                  {"reason", text_json(differ.wrong_reason)},
                   {"pair", pair_json(scene, differ.wrong_pair)}};
   out["missing"] = {{"pairs", differ.missing}, {"first", pair_json(scene, differ.missing_pair)}};
   out["columns_not_looked_at"] = check.not_looked_at;
@@ -89,19 +78,69 @@ std::string list_text(const Scene& scene, const SceneCheck& check) {
   return out;
 }
 
+std::string differences_text(const ListDifferences& differ) {
+  return differ.wrong > 0 ? fmt::format("line {}: {}", differ.wrong_line, differ.wrong_reason)
+                          : "a pair is missing";
+}
+
+// The evidence for a list is made here. The checker trusts it no more than any other.
+CheckResult check_list(const Scene& scene, const std::string& name,
+                       std::span<const ListedPair> rows, double clearance) {
+  const Stopwatch start;
+  std::vector<TrianglePair> listed;
+  for (const ListedPair& row : rows) {
+    const TrianglePair pair = pair_of(scene, name, row);
+    if (pair.a != pair.b) listed.push_back(pair);
+  }
+  CheckResult result =
+      check_certificate(certificate_of_list(scene, std::move(listed), clearance), scene);
+  result.unattested.clear();  // there is no run
+  result.ms = start.ms();
+  return result;
+}
+
+// Takes the list into account: the verdict is about both.
+void compare_list(const Scene& scene, const GivenList& list, std::span<const ListedPair> rows,
+                  SceneCheck& check) {
+  CheckResult& result = check.result;
+  check.list = list.name;
+  check.not_looked_at = list.not_looked_at;
+  if (result.list_sha256.empty()) return;  // nothing was decided
+  check.differences = find_differences(scene, list.name, rows, result.meeting, check.clearance);
+  const ListDifferences& differ = *check.differences;
+  const bool alone = check.certificate.empty();
+  if (differ.none()) {
+    if (alone && result.verdict != Verdict::proved)
+      throw std::logic_error("check: the evidence for a right list proves nothing: " +
+                             result.reason);
+    return;
+  }
+  if (!alone && result.verdict != Verdict::proved) return;
+  result.verdict = alone ? Verdict::refuted : Verdict::not_proved;
+  result.reason =
+      fmt::format("{} is {}: {}", list.name, alone ? "not the list of the pairs" : "another list",
+                  differences_text(differ));
+  result.pair = differ.wrong > 0 ? differ.wrong_pair : differ.missing_pair;
+}
+
+using Pairs = DistanceCertificate::Pairs;
+
+// A fraction may have thousands of digits.
+std::string shortened(const std::string& fraction) {
+  constexpr std::size_t kMost = 120;
+  if (fraction.size() <= kMost) return fraction;
+  return fraction.substr(0, kMost) + "... (whole with --json)";
+}
+
 }  // namespace
 
 Json pair_json(const Scene& scene, const std::optional<TrianglePair>& pair) {
   if (!pair) return nullptr;
-  return {{"a", place_json(scene, pair->a)}, {"b", place_json(scene, pair->b)}};
+  return pair_json(scene, *pair);
 }
 
 std::string pair_text(const Scene& scene, const TrianglePair& pair) {
-  const auto place = [&](std::uint32_t triangle) {
-    const Place at = place_of(scene, triangle);
-    return fmt::format("{} triangle {}", scene.objects[at.object].name, at.triangle);
-  };
-  return place(pair.a) + " and " + place(pair.b);
+  return place_text(scene, pair.a) + " and " + place_text(scene, pair.b);
 }
 
 // A proof is about the scene, not about the run.
@@ -173,16 +212,13 @@ std::string unattested_text(const SceneCheck& check) {
 
 nlohmann::ordered_json check_json(const Scene& scene, const SceneCheck& check) {
   const CheckResult& result = check.result;
-  return {{"certificate", check.certificate.empty() ? Json(nullptr) : Json(check.certificate)},
-          {"scene",
-           {{"name", scene.name},
-            {"hash", scene_hash(scene)},
-            {"self_not_asked", not_asked_json(scene)}}},
+  return {{"certificate", text_json(check.certificate)},
+          {"scene", checked_scene_json(scene)},
           {"clearance", check.clearance},
           {"verdict", to_string(result.verdict)},
           {"proves",
            result.verdict == Verdict::proved ? Json(proved_text(scene, check)) : Json(nullptr)},
-          {"reason", result.reason.empty() ? Json(nullptr) : Json(result.reason)},
+          {"reason", text_json(result.reason)},
           {"pair", pair_json(scene, result.pair)},
           {"list", list_json(scene, check)},
           {"claimed", check.certificate.empty() ? Json(nullptr) : claims_json(check.claimed)},
@@ -234,6 +270,108 @@ std::string FrameVerdicts::text(const std::string& proved) const {
   if (verdict == Verdict::refuted && of(Verdict::not_proved) > 0)
     out += fmt::format("; {} not proved", grouped(of(Verdict::not_proved)));
   return out + "\n";
+}
+
+SceneCheck check_scene_with(double clearance, const std::string& file,
+                            const std::optional<Certificate>& certificate, const Scene& scene,
+                            const GivenList* list, std::span<const ListedPair> rows) {
+  require_nothing_ignored(scene, "a check");
+  SceneCheck out;
+  out.clearance = clearance;
+  if (certificate) {
+    out.certificate = file;
+    out.claimed_sha256 = certificate->list_sha256;
+    out.claimed = certificate->claims;
+    if (out.clearance == certificate->clearance) {
+      out.result = check_certificate(*certificate, scene);
+    } else {
+      out.result.reason = fmt::format("the certificate is of another clearance: {}, not {}",
+                                      certificate->clearance, out.clearance);
+    }
+  } else {
+    out.result = check_list(scene, list->name, rows, out.clearance);
+  }
+  if (list) compare_list(scene, *list, rows, out);
+  return out;
+}
+
+std::string proved_text(const CheckedDistances& check) {
+  const DistanceCertificate& c = check.certificate;
+  const std::size_t count = c.distances.size();
+  const bool all = c.pairs == Pairs::all;
+  const std::string what = all ? "triangles" : "objects";
+  const std::string within =
+      std::isfinite(c.within) ? fmt::format("at distance {} or less", c.within) : "";
+  if (count == 0) {
+    return "no two " + what + (within.empty() ? " have a distance" : " are " + within);
+  }
+  const std::string these = count == 1
+                                ? fmt::format("this pair of {} is", what)
+                                : fmt::format("these {} pairs of {} are", grouped(count), what);
+  const std::string others = count == 1 ? "no other" : "no others";
+  std::string out = these + " at exactly " + (count == 1 ? "this distance" : "these distances");
+  if (c.pairs == Pairs::nearest) {
+    return out + fmt::format(", and {} each object's {}nearest{}, and {}",
+                             count == 1 ? "it is" : "they are", c.k == 1 ? "" : grouped(c.k) + " ",
+                             within.empty() ? "" : " " + within, others);
+  }
+  if (within.empty()) return out + ", and there " + (count == 1 ? "is " : "are ") + others;
+  return out + ", and " + others + (count == 1 ? " is " : " are ") + within;
+}
+
+std::string verdict_text(const Scene& scene, const CheckedDistances& check) {
+  const DistanceCheck& result = check.result;
+  const bool proved = result.verdict == Verdict::proved;
+  std::string out =
+      to_string(result.verdict) + ": " + (proved ? proved_text(check) : result.reason) + "\n";
+  if (!result.pair) return out;
+  return out + fmt::format("  pair: {}\n  the exact square of its distance: {}, so about {}\n",
+                           pair_text(scene, *result.pair), shortened(result.squared),
+                           result.distance);
+}
+
+std::string check_text(const Scene& scene, const CheckedDistances& check) {
+  const DistanceCheck& result = check.result;
+  const bool all = check.certificate.pairs == Pairs::all;
+  std::string out = verdict_text(scene, check);
+  if (all) out += not_asked_line(scene);
+  if (result.decided > 0 || result.verdict == Verdict::proved) {
+    out += fmt::format("decided    {} in integers; boxes prove the others far enough apart\n",
+                       counted(result.decided, "pair of triangles", "pairs of triangles"));
+  }
+  if (result.neighbours > 0) {
+    out += fmt::format("neighbours {} near each other, which do not count\n",
+                       counted(result.neighbours, "pair", "pairs"));
+  }
+  if (callers_floating_point() != kProved) {
+    out += fmt::format("arithmetic {}; the caller {}\n", to_string(floating_point()),
+                       to_string(callers_floating_point()));
+  }
+  return out + fmt::format("time       {:.1f} ms\n", result.ms);
+}
+
+Json check_json(const Scene& scene, const CheckedDistances& check) {
+  const DistanceCertificate& c = check.certificate;
+  const DistanceCheck& result = check.result;
+  const bool proved = result.verdict == Verdict::proved;
+  return {{"certificate", check.file},
+          {"scene", checked_scene_json(scene)},
+          {"query",
+           {{"pairs", to_string(c.pairs)},
+            {"k", c.pairs == Pairs::nearest ? Json(c.k) : Json(nullptr)},
+            {"within", std::isfinite(c.within) ? Json(c.within) : Json(nullptr)}}},
+          {"verdict", to_string(result.verdict)},
+          {"proves", proved ? Json(proved_text(check)) : Json(nullptr)},
+          {"reason", text_json(result.reason)},
+          {"pair", pair_json(scene, result.pair)},
+          {"squared", text_json(result.squared)},
+          {"distance",
+           result.pair && std::isfinite(result.distance) ? Json(result.distance) : Json(nullptr)},
+          {"listed", c.distances.size()},
+          {"decided", result.decided},
+          {"neighbours", result.neighbours},
+          {"floating_point", floating_point_json(callers_floating_point(), floating_point())},
+          {"ms", result.ms}};
 }
 
 }  // namespace farcull

@@ -1,0 +1,63 @@
+// The fields of a struct: its members with their names. Whatever writes, adds up or compares the
+// struct member by member reads them from here, so that a new member is one word more.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+/// Inside a struct: these members, by these names and in this order, are its fields.
+///   struct Sizes { int width = 0, height = 0; FARCULL_FIELDS(width, height) };
+/// Then sizes.fields(visit) calls visit("width", sizes.width), visit("height", sizes.height).
+#define FARCULL_FIELDS(...)                                                                     \
+  static constexpr std::string_view kFieldNames = #__VA_ARGS__;                                 \
+  auto members() const { return std::tie(__VA_ARGS__); }                                        \
+  auto members() { return std::tie(__VA_ARGS__); }                                              \
+  template <class Visit>                                                                        \
+  void fields(Visit&& visit) const {                                                            \
+    std::string_view rest = kFieldNames;                                                        \
+    std::apply(                                                                                 \
+        [&](const auto&... member) { (visit(::farcull::take_field_name(rest), member), ...); }, \
+        members());                                                                             \
+  }
+
+namespace farcull {
+
+/// The first name of "a, b, c", which is taken away from the list.
+constexpr std::string_view take_field_name(std::string_view& names) {
+  const std::size_t end = names.find(',');
+  const std::string_view name = names.substr(0, end);
+  names.remove_prefix(end == std::string_view::npos ? names.size() : end + 1);
+  names.remove_prefix(names.starts_with(' ') ? 1 : 0);
+  return name;
+}
+
+/// The names of all fields of a struct.
+template <class T>
+std::vector<std::string> field_names() {
+  std::vector<std::string> out;
+  for (std::string_view rest = T::kFieldNames; !rest.empty();)
+    out.emplace_back(take_field_name(rest));
+  return out;
+}
+
+template <class T>
+concept HasFields = requires(const T& value) {
+  value.fields([](std::string_view, const auto&) {});
+};
+
+/// Adds each field of `more` to that of `sum`.
+template <HasFields T>
+void add_fields(const T& more, T& sum) {
+  const auto from = more.members();
+  const auto to = sum.members();
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    ((std::get<I>(to) += std::get<I>(from)), ...);
+  }
+  (std::make_index_sequence<std::tuple_size_v<decltype(from)>>{});
+}
+
+}  // namespace farcull

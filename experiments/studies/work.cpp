@@ -1,0 +1,218 @@
+// The studies "culling", "efficiency" and "scaling": how much methods leave to exact predicates, at
+// rest and in motion, and how their time grows.
+//
+// FAR against I-COLLIDE: Govindaraju, Lin and Manocha, Fast and Reliable Collision Culling using
+// Graphics Hardware, TVCG 2006, section 6. Quick-CULLIDE against CULLIDE: IEEE VR 2005. Time
+// against objects, polygons and resolution: figures of CULLIDE, Graphics Hardware 2003.
+#include <fmt/format.h>
+
+#include <set>
+#include <utility>
+#include <variant>
+
+#include "experiments/studies/point.h"
+#include "experiments/studies/run_point.h"
+#include "experiments/studies/study.h"
+
+namespace farcull {
+namespace {
+
+using enum Method;
+
+constexpr const char* kBoxes = "cgal-boxes";  // triangles whose boxes meet
+constexpr const char* kOriented = "fcl-obb";  // leaves of FCL's trees whose oriented boxes meet
+
+// Scans and models, smooth bodies, thin triangles, cloth.
+std::vector<PointScene> culled_scenes(bool quick) {
+  if (quick) {
+    return {
+        NamedScene{"two-bunnies"}, NamedScene{"two-spheres"},   NamedScene{"crowd:60"},
+        NamedScene{"needles:60"},  NamedScene{"random-soup"},   NamedScene{"slivers:100"},
+        NamedScene{"fans:2000"},   NamedScene{"crumpled:2000"}, MotionFrame{"cloth:450", 40, 100}};
+  }
+  return {NamedScene{"two-bunnies"},        NamedScene{"armadillo-elephant"},
+          NamedScene{"dragon-bunny"},       NamedScene{"mannequin-devil"},
+          NamedScene{"two-tori"},           NamedScene{"crowd:400"},
+          NamedScene{"spheres:20000"},      NamedScene{"needles:400"},
+          NamedScene{"needles-crossed"},    NamedScene{"random-soup"},
+          NamedScene{"fans:8000"},          NamedScene{"crumpled:20000"},
+          MotionFrame{"cloth:800", 80, 100}};
+}
+
+std::vector<Point> culling_grid(const GridChoice& choice) {
+  const std::vector<int> resolutions =
+      choice.quick ? std::vector{64, 256, 1024} : std::vector{64, 128, 256, 512, 1024, 2048};
+  std::vector<Point> out;
+  for (const PointScene& scene : culled_scenes(choice.quick)) {
+    out.emplace_back(PeerPoint{scene, kBoxes});
+    out.emplace_back(PeerPoint{scene, kOriented});
+    out.emplace_back(plain_point(scene, Method::far_pairs));
+    for (const char* views : {"z", "x,y,z"}) {
+      for (const int resolution : resolutions) {
+        RunPoint point = plain_point(scene, Method::far_pairs, resolution);
+        point.views = views;
+        out.emplace_back(point);
+      }
+    }
+  }
+  return out;
+}
+
+// Libraries leave neighbours out. far-pairs hands them to the predicates, so that they are counted
+// here, for the candidates without them.
+PointResult measure_culling(const Point& point, Lab& lab) {
+  if (const auto* peer = std::get_if<PeerPoint>(&point)) return measure_peer(*peer, lab, 1);
+  Record record;
+  PointResult out = measure_run(std::get<RunPoint>(point), lab, &record);
+  std::get<RunCounts>(out.counts).neighbours =
+      NeighbourCounts{record.collisions.neighbours, record.collisions.neighbour_pairs.size()};
+  return out;
+}
+
+struct MovingCase {
+  const char* scene;
+  bool self = false;  // its objects are tested against themselves as well, by few methods
+};
+
+// All scenes that move, no larger than the methods that draw can take on a software device.
+const std::vector<MovingCase>& moving_cases(bool quick) {
+  static const std::vector<MovingCase> full = {
+      {"two-spheres"},     {"needles:60"},  {"crowd:60"},           {"field:4000"},
+      {"cylinders:30"},    {"torii:800"},   {"tree-leaves:60"},     {"shells:6"},
+      {"cloth:800", true}, {"two-bunnies"}, {"bunny-dragon:19994"}, {"breaking-dragon:19994"}};
+  static const std::vector<MovingCase> few = {{"crowd:30"}, {"cylinders:12"}, {"tree-leaves:20"}};
+  return quick ? few : full;
+}
+
+constexpr int kFrameResolution = 256;
+
+void add_methods(std::vector<Point>& out, const MovingCase& moving, const MotionFrame& frame) {
+  out.push_back(plain_point(frame, i_collide));
+  if (!moving.self) {
+    for (const char* offset : {"obb", "exact"})
+      out.push_back(far_point(frame, offset, kBudgetRadius, kFrameResolution));
+    for (const Method method : {cullide, quick_cullide})
+      out.push_back(cullide_point(frame, method, kFrameResolution));
+  }
+  out.push_back(plain_point(frame, far_pairs));
+}
+
+// A scene of one of the plots. A scene may serve in several, where it is measured once.
+struct Case {
+  std::string scene;
+  int resolution;  // of the methods that draw
+  bool drawn;      // whether they take part: they are far slower on a software device
+};
+
+std::vector<Case> cases(bool quick) {
+  constexpr int kUsual = 256;
+  std::vector<Case> out;
+  const auto add = [&out](std::string scene, int resolution, bool drawn) {
+    out.push_back({std::move(scene), resolution, drawn});
+  };
+  // At least six sizes of each, so that a fitted exponent has an interval.
+  // Objects: of about the same size, in a box that grows with their number.
+  for (const int n :
+       quick ? std::vector{5, 10, 20, 40, 80, 160} : std::vector{25, 50, 100, 200, 400, 800}) {
+    add(fmt::format("crowd:{}", n), kUsual, true);
+  }
+  if (!quick) {
+    for (const int n : {1600, 3200, 6400}) add(fmt::format("crowd:{}", n), kUsual, false);
+  }
+  // Density: the same objects closer together. What collides grows with it.
+  const int objects = quick ? 20 : 100;
+  for (const double density : {0.05, 0.1, 0.2, 0.4, 0.8, 1.6}) {
+    add(fmt::format("crowd:{}:{}", objects, density), kUsual, true);
+  }
+  // Polygons: six tori, ever finer.
+  for (const int n :
+       quick ? std::vector{72, 128, 200, 320, 500, 800} : std::vector{72, 200, 400, 800, 1600}) {
+    add(fmt::format("torii:{}", n), kUsual, true);
+  }
+  if (!quick) {
+    for (const int n : {5000, 20000, 80000}) add(fmt::format("torii:{}", n), kUsual, n <= 5000);
+  }
+  // Pixels.
+  for (const int pixels : quick ? std::vector{32, 64, 128, 256, 512, 1024}
+                                : std::vector{64, 128, 256, 512, 1024, 2048}) {
+    add("two-spheres", pixels, true);
+  }
+  return out;
+}
+
+// Times vary by a third on a shared machine. Nine runs are the fewest odd number whose bootstrap
+// interval contains the median with 95 % (docs/experiments.md, "Statistics").
+constexpr int kRepeat = 9;
+
+std::vector<RunPoint> points_of(const Case& c) {
+  const NamedScene scene{c.scene};
+  std::vector<RunPoint> out;
+  if (c.drawn) {
+    out = {far_point(scene, "obb", kBudgetRadius, c.resolution),
+           cullide_point(scene, cullide, c.resolution)};
+  }
+  for (const Method method : {far_pairs, i_collide, exact}) {
+    // Alone of these far-pairs has pixels; where the plot is of pixels it takes those.
+    const bool pixels = method == far_pairs && c.scene == "two-spheres";
+    out.push_back(plain_point(scene, method, pixels ? c.resolution : 0));
+  }
+  for (RunPoint& point : out) point.repeat = kRepeat;
+  return out;
+}
+
+}  // namespace
+
+Study culling_study() {
+  return {.name = "culling",
+          .title = "What far-pairs culls",
+          .question =
+              "How many pairs do boxes, oriented boxes, and far-pairs without views, in one view "
+              "and in three leave to exact predicates, for each pair that collides?",
+          .grid = culling_grid,
+          .measure = measure_culling,
+          .library = library_of_peer};
+}
+
+Study efficiency_study() {
+  Study study;
+  study.name = "efficiency";
+  study.title = "Culling efficiency in motion";
+  study.question =
+      "How much smaller than what I-COLLIDE leaves is what FAR leaves to exact tests, and how much "
+      "does Quick-CULLIDE draw and ask less than CULLIDE, frame by frame over scenes that move?";
+  study.grid = [](const GridChoice& choice) {
+    std::vector<Point> out;
+    // Six frames at least: the range of fewer does not contain the median with 95 %.
+    const long frames = choice.quick ? 6 : 12;
+    for (const MovingCase& moving : moving_cases(choice.quick)) {
+      for (long frame = 0; frame < frames; ++frame)
+        add_methods(out, moving, {moving.scene, frame, frames});
+    }
+    return out;
+  };
+  study.measure = measure_run_point;
+  return study;
+}
+
+Study scaling_study() {
+  Study study;
+  study.name = "scaling";
+  study.title = "Time against size";
+  study.question =
+      "How does the time from triangles to exact pairs grow with the number of objects, of "
+      "triangles, of pixels, with density, and with the pairs that collide?";
+  study.grid = [](const GridChoice& choice) {
+    std::vector<Point> out;
+    std::set<PointKey> had;
+    for (const Case& c : cases(choice.quick)) {
+      for (RunPoint& point : points_of(c)) {
+        if (had.insert(key_of(point)).second) out.push_back(std::move(point));
+      }
+    }
+    return out;
+  };
+  study.measure = measure_run_point;
+  return study;
+}
+
+}  // namespace farcull
