@@ -58,7 +58,7 @@ TEST_P(EveryStudy, HasEveryMethodWhereQuickToo) {
     std::set<std::tuple<std::string, std::string, std::string>> out;
     for (const PointKey& point : keys_of(study().grid({.quick = quick}))) {
       if (!point.method.starts_with("s-cullide"))
-        out.insert({point.method, point.offset, point.depth_mode});
+        out.insert({point.method, point.offset, column_text(point.depth_mode)});
     }
     return out;
   };
@@ -108,7 +108,7 @@ TEST(Accuracy, ComparesEveryMethodFrom64To4096) {
   for (const bool quick : {false, true}) {
     std::map<std::string, std::set<int>> resolutions;
     for (const PointKey& point : keys_of(study_named("accuracy").grid({.quick = quick}))) {
-      if (point.radius != "published") {
+      if (point.radius != kPublishedRadius) {
         resolutions[point.method + " " + point.offset].insert(point.resolution);
       }
     }
