@@ -32,13 +32,13 @@ Vec3 arm(RandomDraws& draws, double bits) {
 }
 
 /// Moves b by a unit one time in three, and brings coordinates below 1 in size.
-DrawnPair finished(RandomDraws& draws, double bits, const Corners& a, Corners b) {
+MadePair finished(RandomDraws& draws, double bits, const Corners& a, Corners b) {
   if (draws.chance(3)) {
     const Vec3 step = draws.whole_point(1);
     for (Vec3& p : b) p += step;
   }
   const double unit = std::ldexp(1, -static_cast<int>(bits));
-  DrawnPair out{a, b};
+  MadePair out{{a, b}};
   for (Corners* t : {&out.a, &out.b}) {
     for (Vec3& p : *t) p *= unit;
   }
@@ -48,7 +48,7 @@ DrawnPair finished(RandomDraws& draws, double bits, const Corners& a, Corners b)
 /// Three times in four b keeps to one side of a; else it leaves the point to any side.
 bool keeps_aside(RandomDraws& draws) { return !draws.chance(4); }
 
-DrawnPair vertex_vertex(RandomDraws& draws, double bits) {
+MadePair vertex_vertex(RandomDraws& draws, double bits) {
   const Corners a = first_triangle(draws, bits);
   Vec3 u = arm(draws, bits);
   Vec3 v = arm(draws, bits);
@@ -61,7 +61,7 @@ DrawnPair vertex_vertex(RandomDraws& draws, double bits) {
 }
 
 /// A corner of b at `at`, a point of a.
-DrawnPair corner_at(RandomDraws& draws, double bits, const Corners& a, const Vec3& at) {
+MadePair corner_at(RandomDraws& draws, double bits, const Corners& a, const Vec3& at) {
   Vec3 u = arm(draws, bits);
   Vec3 v = arm(draws, bits);
   if (keeps_aside(draws)) {
@@ -72,19 +72,19 @@ DrawnPair corner_at(RandomDraws& draws, double bits, const Corners& a, const Vec
   return finished(draws, bits, a, {at, at + u, at + v});
 }
 
-DrawnPair vertex_edge(RandomDraws& draws, double bits) {
+MadePair vertex_edge(RandomDraws& draws, double bits) {
   const Corners a = first_triangle(draws, bits);
   const double weight = draws.whole(1, 3);
   return corner_at(draws, bits, a, (weight * a[0] + (4 - weight) * a[1]) / 4);
 }
 
-DrawnPair vertex_face(RandomDraws& draws, double bits) {
+MadePair vertex_face(RandomDraws& draws, double bits) {
   const Corners a = first_triangle(draws, bits);
   return corner_at(draws, bits, a, (2 * a[0] + a[1] + a[2]) / 4);
 }
 
 /// An edge of b along a line in the plane of a: inside it, or the edge of a itself.
-DrawnPair edge_face(RandomDraws& draws, double bits) {
+MadePair edge_face(RandomDraws& draws, double bits) {
   const Corners a = first_triangle(draws, bits);
   const Vec3 quarter = (a[1] - a[0]) / 4;
   const bool hinge = draws.chance(4);
@@ -95,7 +95,7 @@ DrawnPair edge_face(RandomDraws& draws, double bits) {
   return finished(draws, bits, a, {at, to, at + v});
 }
 
-DrawnPair edge_edge(RandomDraws& draws, double bits) {
+MadePair edge_edge(RandomDraws& draws, double bits) {
   const Corners a = first_triangle(draws, bits);
   const double weight = draws.whole(1, 3);
   const Vec3 at = (weight * a[0] + (4 - weight) * a[1]) / 4;
@@ -110,7 +110,7 @@ DrawnPair edge_edge(RandomDraws& draws, double bits) {
 }
 
 /// Corners on a grid of two whole vectors.
-DrawnPair coplanar(RandomDraws& draws, double bits) {
+MadePair coplanar(RandomDraws& draws, double bits) {
   const double extent = std::ldexp(1, static_cast<int>(bits) - 5);
   const Vec3 u = draws.whole_point(extent);
   const Vec3 v = draws.whole_point(extent);
@@ -143,7 +143,7 @@ DrawnPair coplanar(RandomDraws& draws, double bits) {
 
 /// Two triangles of one plane, then b moved by so many of the shortest steps: out of the plane, or
 /// in it over the edge at which both touch.
-DrawnPair coplanar_step(RandomDraws& draws, double steps) {
+MadePair coplanar_step(RandomDraws& draws, double steps) {
   const bool leaning = draws.chance(2);
   const Frame frame = leaning ? leaning_frame(draws) : straight_frame(draws);
   constexpr double kExtent = 0x1p44;
@@ -158,7 +158,7 @@ DrawnPair coplanar_step(RandomDraws& draws, double steps) {
   const double out = in_plane ? 0 : steps * draws.sign();
   const auto at = [&](double x, double y, double z) { return Vec3(origin + frame.at(x, y, z)); };
   const double shift = drawn() / 2;
-  DrawnPair pair;
+  MadePair pair;
   pair.a = {at(0, 0, 0), at(length, 0, 0), at(drawn(), -depth, 0)};
   // Out of the plane b lies above a, so that the triangles would overlap.
   const double top = in_plane ? height : -height;
@@ -172,9 +172,9 @@ DrawnPair coplanar_step(RandomDraws& draws, double steps) {
 }
 
 /// A copy of a triangle, moved along one axis of the coordinates.
-DrawnPair duplicates(RandomDraws& draws, double units) {
+MadePair duplicates(RandomDraws& draws, double units) {
   constexpr double kExtent = 0x1p50;
-  DrawnPair out;
+  MadePair out;
   for (Vec3& p : out.a) p = draws.whole_point(kExtent);
   const bool level = draws.chance(3);  // parallel to a plane of the coordinates
   const int axis = draws.below(3);

@@ -32,8 +32,8 @@ Frame frame_of(RandomDraws& draws) {
   return draws.chance(2) ? straight_frame(draws) : leaning_frame(draws);
 }
 
-DrawnPair mapped(const Frame& frame, const Corners& a, const Corners& b) {
-  DrawnPair out;
+MadePair mapped(const Frame& frame, const Corners& a, const Corners& b) {
+  MadePair out;
   for (int i = 0; i < 3; ++i) {
     out.a[i] = frame.at(a[i]);
     out.b[i] = frame.at(b[i]);
@@ -42,7 +42,7 @@ DrawnPair mapped(const Frame& frame, const Corners& a, const Corners& b) {
 }
 
 /// A corner of b above the inside of a, by the gap; below it where the gap is negative.
-DrawnPair gap_face(RandomDraws& draws, double gap) {
+MadePair gap_face(RandomDraws& draws, double gap) {
   const Corners a = {Vec3(draws.coarse(-1, 0), -1, 0), Vec3(1, draws.coarse(-0.5, 0.5), 0),
                      Vec3(draws.coarse(-1, 0), 1, 0)};
   const double x = draws.coarse(0, 0.25);
@@ -58,7 +58,7 @@ DrawnPair gap_face(RandomDraws& draws, double gap) {
 }
 
 /// An edge of b across an edge of a, above it by the gap; below it where the gap is negative.
-DrawnPair gap_edge(RandomDraws& draws, double gap) {
+MadePair gap_edge(RandomDraws& draws, double gap) {
   const double left = -draws.coarse(0.25, 1);
   const double right = draws.coarse(0.25, 1);
   const double depth = -draws.coarse(0.25, 1);
@@ -74,7 +74,7 @@ DrawnPair gap_edge(RandomDraws& draws, double gap) {
 }
 
 /// Two triangles of about the size 1 that may meet in any way.
-DrawnPair near_pair(RandomDraws& draws) {
+MadePair near_pair(RandomDraws& draws) {
   const double side = draws.sign();
   const double gap = std::ldexp(side, -draws.below(12));
   switch (draws.below(3)) {
@@ -83,7 +83,7 @@ DrawnPair near_pair(RandomDraws& draws) {
     case 1:
       return gap_edge(draws, gap);
     default: {
-      DrawnPair out;
+      MadePair out;
       const Vec3 centre = draws.point() / 2;
       for (Vec3& p : out.a) p = draws.point();
       for (Vec3& p : out.b) p = centre + draws.point();
@@ -93,7 +93,7 @@ DrawnPair near_pair(RandomDraws& draws) {
 }
 
 template <class Function>
-DrawnPair each_corner(DrawnPair pair, const Function& function) {
+MadePair each_corner(MadePair pair, const Function& function) {
   for (Corners* t : {&pair.a, &pair.b}) {
     for (Vec3& p : *t) p = function(p);
   }
@@ -101,16 +101,16 @@ DrawnPair each_corner(DrawnPair pair, const Function& function) {
 }
 
 /// Moved away from the origin, so that coordinates lose their last bits.
-DrawnPair far_away(RandomDraws& draws, double distance) {
-  const DrawnPair pair = near_pair(draws);
+MadePair far_away(RandomDraws& draws, double distance) {
+  const MadePair pair = near_pair(draws);
   Vec3 to = draws.point();
   to[draws.below(3)] = draws.sign();
   return each_corner(pair, [&](const Vec3& p) { return Vec3(p + distance * to); });
 }
 
 /// Scaled, half of the time by a power of two, which keeps contact exact.
-DrawnPair scales(RandomDraws& draws, double scale) {
-  const DrawnPair pair = draws.chance(3) ? gap_face(draws, 0) : near_pair(draws);
+MadePair scales(RandomDraws& draws, double scale) {
+  const MadePair pair = draws.chance(3) ? gap_face(draws, 0) : near_pair(draws);
   if (draws.chance(2)) {
     int exponent = 0;
     std::frexp(scale, &exponent);
@@ -120,7 +120,7 @@ DrawnPair scales(RandomDraws& draws, double scale) {
 }
 
 /// A triangle and one that is so many times smaller, at its corner, edge or face.
-DrawnPair mixed_scales(RandomDraws& draws, double ratio) {
+MadePair mixed_scales(RandomDraws& draws, double ratio) {
   const Frame frame = frame_of(draws);
   const auto drawn = [&] {
     const double x = draws.coarse(-1, 1);
@@ -141,8 +141,8 @@ DrawnPair mixed_scales(RandomDraws& draws, double ratio) {
   return mapped(frame, a, b);
 }
 
-DrawnPair random_pair(RandomDraws& draws, double) {
-  DrawnPair out;
+MadePair random_pair(RandomDraws& draws, double) {
+  MadePair out;
   for (Vec3& p : out.a) p = draws.point();
   for (Vec3& p : out.b) p = draws.point();
   return out;
@@ -157,17 +157,17 @@ Corners sliver(RandomDraws& draws, const Vec3& centre, double aspect) {
 }
 
 /// Two slivers whose long edges pass each other at about their width.
-DrawnPair slivers(RandomDraws& draws, double aspect) {
+MadePair slivers(RandomDraws& draws, double aspect) {
   const Vec3 centre = draws.point();
   const Corners a = sliver(draws, centre, aspect);
   const bool contact = draws.chance(4);
   const Vec3 beside = contact ? Vec3::Zero() : Vec3(draws.point() / (2 * aspect));
-  return {a, sliver(draws, centre + beside, aspect)};
+  return {{a, sliver(draws, centre + beside, aspect)}};
 }
 
 const std::vector<double> kBits = {8, 16, 24, 32, 40, 50};
 
-DrawnPair in_units(DrawnPair pair, double bits) {
+MadePair in_units(MadePair pair, double bits) {
   for (Corners* t : {&pair.a, &pair.b}) {
     for (Vec3& p : *t) p *= std::ldexp(1, -static_cast<int>(bits));
   }
@@ -208,15 +208,15 @@ Vec3 step_aside(RandomDraws& draws) {
   return draws.whole_point(1);
 }
 
-DrawnPair points(RandomDraws& draws, double bits) {
+MadePair points(RandomDraws& draws, double bits) {
   const double extent = std::ldexp(1, static_cast<int>(bits) - 3);
   const Vec3 at = draws.whole_point(extent);
   const Corners a = {at, at, at};
   const Vec3 step = step_aside(draws);
-  return in_units({a, shape_with(draws, draws.below(3), at + step, extent)}, bits);
+  return in_units({{a, shape_with(draws, draws.below(3), at + step, extent)}}, bits);
 }
 
-DrawnPair segments(RandomDraws& draws, double bits) {
+MadePair segments(RandomDraws& draws, double bits) {
   const double extent = std::ldexp(1, static_cast<int>(bits) - 3);
   const Vec3 at = draws.whole_point(extent);
   const Corners a = shape_with(draws, 1, at, extent);
@@ -228,19 +228,19 @@ DrawnPair segments(RandomDraws& draws, double bits) {
     b = {at + i * u, at + i * u, a[1]};
     if (draws.chance(2)) b[2] = b[0];
   }
-  return in_units({a, b}, bits);
+  return in_units({{a, b}}, bits);
 }
 
 /// Neighbours by their coordinates along the axes of a frame.
-DrawnPair fold(RandomDraws& draws, const Corners& a, const Corners& b) {
-  DrawnPair out = mapped(frame_of(draws), a, b);
+MadePair fold(RandomDraws& draws, const Corners& a, const Corners& b) {
+  MadePair out = mapped(frame_of(draws), a, b);
   out.neighbours = true;
   return out;
 }
 
 /// Both have the edge from 0 to 1 on the x axis; a lies in the plane z = 0, and b's third corner is
 /// above it by the height, on the side of a or on the other.
-DrawnPair fold_edge(RandomDraws& draws, double height) {
+MadePair fold_edge(RandomDraws& draws, double height) {
   const double x = draws.coarse(0.25, 1);
   const double y = draws.coarse(0.25, 1);
   const double u = draws.coarse(-0.5, 1.5);
@@ -253,7 +253,7 @@ DrawnPair fold_edge(RandomDraws& draws, double height) {
 
 /// Both have the corner 0; a lies in the plane z = 0. b has a corner above the inside of a by the
 /// height, or below it where that is negative, and one far above.
-DrawnPair fold_vertex(RandomDraws& draws, double height) {
+MadePair fold_vertex(RandomDraws& draws, double height) {
   const double x = draws.coarse(0.5, 1);
   const double y = draws.coarse(0.5, 1);
   const bool outside = draws.chance(4);

@@ -7,11 +7,6 @@
 namespace farcull {
 namespace {
 
-void shuffle(RandomDraws& draws, std::array<Vec3, 3>& t) {
-  std::swap(t[0], t[draws.below(3)]);
-  std::swap(t[1], t[1 + draws.below(2)]);
-}
-
 /// The rotation of the quaternion w + xi + yj + zk times its squared length.
 Frame scaled_rotation(double w, double x, double y, double z) {
   const Vec3 first(w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y));
@@ -22,11 +17,12 @@ Frame scaled_rotation(double w, double x, double y, double z) {
 
 }  // namespace
 
-DrawnPair shuffled(RandomDraws& draws, DrawnPair pair) {
-  shuffle(draws, pair.a);
-  shuffle(draws, pair.b);
+void shuffle(RandomDraws& draws, DrawnPair& pair) {
+  for (std::array<Vec3, 3>* t : {&pair.a, &pair.b}) {
+    std::swap((*t)[0], (*t)[draws.below(3)]);
+    std::swap((*t)[1], (*t)[1 + draws.below(2)]);
+  }
   if (draws.chance(2)) std::swap(pair.a, pair.b);
-  return pair;
 }
 
 Frame straight_frame(RandomDraws& draws) {

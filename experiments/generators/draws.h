@@ -46,10 +46,9 @@ class RandomDraws : public RandomNumbers {
 /// Two triangles with finite coordinates; either may be degenerate. Nothing is decided about them.
 struct DrawnPair {
   std::array<Vec3, 3> a, b;
-  bool neighbours = false;  // corners at equal positions are one vertex of a mesh
 };
-/// The same pair with corners in any order, and in any order itself: predicates branch on both.
-DrawnPair shuffled(RandomDraws& draws, DrawnPair pair);
+/// Brings the corners of each into any order, and a and b: predicates branch on both.
+void shuffle(RandomDraws& draws, DrawnPair& pair);
 
 /// Three axes at right angles and of equal length.
 struct Frame {

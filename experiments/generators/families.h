@@ -12,12 +12,16 @@
 
 namespace farcull {
 
+struct MadePair : DrawnPair {
+  bool neighbours = false;  // corners at equal positions are one vertex of a mesh
+};
+
 struct PairFamily {
   std::string name;
   std::string description;     // one line
   std::string parameter;       // the meaning of its number; "" for none
   std::vector<double> values;  // of the number; pair i has the i-th, and they come again and again
-  DrawnPair (*make)(RandomDraws& draws, double parameter);
+  MadePair (*make)(RandomDraws& draws, double parameter);
 };
 
 /// In the order of the files.

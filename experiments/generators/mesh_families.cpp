@@ -332,8 +332,10 @@ void join_vertices(SuiteObject& object) {
   object.vertices = std::move(kept);
 }
 
-std::vector<MeshFamily> make_families() {
-  const auto number = [](const char* text) { return std::strtod(text, nullptr); };
+double number(const char* text) { return std::strtod(text, nullptr); }
+
+/// Families of two or three objects.
+std::vector<MeshFamily> surface_families() {
   return {
       {"scans",
        "two bumpy surfaces with noise",
@@ -391,6 +393,12 @@ std::vector<MeshFamily> make_families() {
        sheets,
        {{0x1p-20, 40}, {0x1p-50, 40}},
        false},
+  };
+}
+
+/// Families of one object that is tested against itself.
+std::vector<MeshFamily> self_families() {
+  return {
       {"cloth",
        "a cloth in four layers",
        "the gap between layers, in cells",
@@ -448,7 +456,8 @@ std::vector<MeshFamily> make_families() {
 
 const std::vector<MeshFamily>& mesh_families() {
   static const std::vector<MeshFamily> families = [] {
-    std::vector<MeshFamily> out = make_families();
+    std::vector<MeshFamily> out = surface_families();
+    for (MeshFamily& family : self_families()) out.push_back(std::move(family));
     std::sort(out.begin(), out.end(),
               [](const MeshFamily& x, const MeshFamily& y) { return x.name < y.name; });
     return out;

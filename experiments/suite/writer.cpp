@@ -180,7 +180,8 @@ SuitePair make_suite_pair(const PairFamily& family, std::uint64_t seed, std::uin
   SuitePair out;
   out.id = id;
   out.parameter = family.values[id % family.values.size()];
-  const DrawnPair made = shuffled(draws, family.make(draws, out.parameter));
+  MadePair made = family.make(draws, out.parameter);
+  shuffle(draws, made);
   out.a = made.a;
   out.b = made.b;
   if (made.neighbours) out.shared = equal_corners(out.a, out.b);
