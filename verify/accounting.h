@@ -12,7 +12,6 @@
 #include <span>
 #include <vector>
 
-#include "core/scene/object_pair.h"
 #include "core/scene/scene.h"
 #include "verify/exact.h"
 #include "verify/pair_set.h"

@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/gl/pairs_finder.h"
-#include "core/pairs/cpu.h"
+#include "core/pairs/backend.h"
 
 namespace farcull {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/gl/objects.h"
-#include "core/view/clip.h"
+#include "core/view/view.h"
 #include "embedded/picture_frag.h"
 #include "embedded/picture_vert.h"
 

@@ -14,7 +14,7 @@
 #include "core/base/error.h"
 #include "core/gl/echo.h"
 #include "core/gl/objects.h"
-#include "core/proximity/voronoi_bounds.h"
+#include "core/voronoi/grid.h"
 #include "embedded/echo_glsl.h"
 #include "embedded/voronoi_bounds_glsl.h"
 #include "embedded/voronoi_frag.h"

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/scene/ignored.h"
+#include "core/scene/scene.h"
 #include "experiments/command/frame_checks.h"
 #include "experiments/command/options.h"
 #include "experiments/record/check_result.h"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commit.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 #include "experiments/measure/bench.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 #include "core/view/view.h"
 #include "experiments/measure/harness.h"
 #include "experiments/record/output.h"

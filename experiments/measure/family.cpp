@@ -9,7 +9,7 @@
 
 #include "commit.h"
 #include "core/base/error.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 #include "experiments/measure/harness.h"
 #include "experiments/measure/statistics.h"
 #include "experiments/record/tables.h"

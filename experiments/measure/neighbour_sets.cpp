@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/proximity/near_pairs.h"
-#include "core/proximity/voronoi_device.h"
+#include "core/voronoi/voronoi.h"
 
 namespace farcull {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/proximity/voronoi.h"
 #include "core/scene/scene.h"
+#include "core/voronoi/voronoi.h"
 #include "experiments/measure/neighbours.h"
 
 namespace farcull {
@@ -19,7 +19,7 @@ class VoronoiDevice;
 
 /// boxes: one box for each object (object_boxes()). trees: what `farcull distance --pairs nearest`
 /// hands to exact arithmetic (core/proximity/near_pairs.h). voronoi, voronoi_reliable: the discrete
-/// Voronoi diagram as published, and the form of it that loses nothing (core/proximity/voronoi.h).
+/// Voronoi diagram as published, and the form of it that loses nothing (core/voronoi/voronoi.h).
 enum class NeighbourMethod : std::uint8_t { boxes, trees, voronoi, voronoi_reliable };
 std::string to_string(NeighbourMethod method);
 /// True of the two that have a resolution.

@@ -10,8 +10,8 @@
 
 #include "core/base/progress.h"
 #include "core/gl/context.h"
-#include "core/proximity/voronoi.h"
 #include "core/scene/scene.h"
+#include "core/voronoi/voronoi.h"
 
 namespace farcull {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/stopwatch.h"
-#include "core/scene/ignored.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 namespace {

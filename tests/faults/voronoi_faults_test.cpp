@@ -9,7 +9,7 @@
 #include "core/gl/driver_fault.h"
 #include "core/gl/entry_point.h"
 #include "core/gl/voronoi.h"
-#include "tests/core/proximity/voronoi_slices_lab.h"
+#include "tests/core/voronoi/voronoi_slices_lab.h"
 #include "tests/faults/other_shader_text.h"
 #include "tests/faults/outcomes.h"
 
