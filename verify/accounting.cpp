@@ -234,7 +234,7 @@ class Tree {
   std::uint32_t root_ = kNone;
 };
 
-/// Pairs of objects that are ignored. Written anew here: what culled uses core/scene/ignored.
+/// Pairs of objects that are ignored. Written anew here: what culled uses core/scene/scene.
 class Ignored {
  public:
   Ignored(const Scene& scene, std::span<const ObjectPair> pairs)

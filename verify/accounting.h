@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "core/base/fields.h"
-#include "core/scene/object_pair.h"
 #include "core/scene/scene.h"
 #include "verify/exact.h"
 #include "verify/pair_set.h"

@@ -297,7 +297,7 @@ Collisions FrameDecider::decide(const Scene& scene, std::span<const TrianglePair
       std::ranges::adjacent_find(candidates, std::ranges::greater_equal()) == candidates.end();
   if (known) {
     known = mostly_unmoved(scene, moved_, candidates);
-    patience_.tell(known);
+    patience_.notify(known);
   }
   std::vector<PairAnswer> answers = known && sorted ? answers_with_kept(scene, candidates, question)
                                                     : answers_about(scene, candidates, question);

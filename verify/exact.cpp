@@ -26,7 +26,7 @@
 
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
-#include "core/scene/ignored.h"
+#include "core/scene/scene.h"
 #include "verify/disjoint_distance.h"
 #include "verify/within.h"
 

@@ -29,7 +29,6 @@
 #include <vector>
 
 #include "core/scene/moved.h"
-#include "core/scene/object_pair.h"
 #include "core/scene/scene.h"
 #include "verify/answers.h"
 
@@ -108,7 +107,7 @@ class FrameDecider {
                                             const ExactQuestion& question);
 
   MovedCorners moved_;
-  Patience patience_;
+  BackoffCounter patience_;
   bool complete_ = false;
   double clearance_ = 0;
   bool neighbours_ = true;

@@ -19,7 +19,7 @@ std::string verb_of(StageKind kind) {
   switch (kind) {
     case StageKind::boxes:
       return "boxes";
-    case StageKind::runs:
+    case StageKind::blocks:
       return "runs";
     case StageKind::choose:
       return "choose";
@@ -113,11 +113,11 @@ std::string reason_of(const Stage& stage) {
       return "pairs of objects whose boxes overlap: too many to list, so all objects take part "
              "whole; objects tested against themselves: " +
              m;
-    case Reason::run_pairs:
+    case Reason::block_pairs:
       return "pairs of runs (of at most 16 triangles) whose boxes overlap: " + n +
              (stage.detail.empty() ? "" : ", of which something moved in " + stage.detail) +
              "; pairs of objects, and objects with themselves: " + m;
-    case Reason::only_runs:
+    case Reason::only_blocks:
       return "boxes of runs decide: no view is needed";
     case Reason::no_boxes_overlap:
       return "no two objects' boxes overlap" + apart + ", none is tested against itself";
@@ -203,7 +203,7 @@ std::string reason_of(const Stage& stage) {
     case Reason::join_uneven:
       return "triangles lie unevenly, most of them in a small part of their object's box: pairs by "
              "a tree over the boxes of all triangles";
-    case Reason::join_many_runs:
+    case Reason::join_many_blocks:
       return "boxes of more than " + n +
              " pairs of runs overlap: pairs by a tree over the boxes of all triangles";
     case Reason::join_many_tests:

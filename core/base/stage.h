@@ -10,7 +10,7 @@ namespace farcull {
 
 enum class StageKind : std::uint8_t {
   boxes,           // which triangles can take part, by boxes
-  runs,            // objects that are compared without a view, by boxes of runs of triangles
+  blocks,          // objects that are compared without a view, by boxes of blocks of triangles
   choose,          // directions and resolutions of views
   setup,           // the device: context, shaders, threads
   draw,            // all drawing; a stage of its own only where nothing is drawn
@@ -40,14 +40,14 @@ enum class Unit : std::uint8_t { none, triangles, pairs, views };
 /// Why a stage runs, was left out, or how it went. n and m are numbers of Stage.
 enum class Reason : std::uint8_t {
   none,
-  full,              // --full: nothing is left out
-  regions,           // n pairs of objects' boxes overlap
-  meetings,          // n such pairs, m objects are tested against themselves
-  crowded,           // too many such pairs to list; m as above
-  run_pairs,         // boxes of n pairs of runs overlap, of m pairs of objects (or one and itself);
-                     // `detail` were compared, since a corner moved; empty: all
-  only_runs,         // nothing else can meet: no view is needed
-  no_boxes_overlap,  // no two objects' boxes overlap (and none is tested against itself)
+  full,         // --full: nothing is left out
+  regions,      // n pairs of objects' boxes overlap
+  meetings,     // n such pairs, m objects are tested against themselves
+  crowded,      // too many such pairs to list; m as above
+  block_pairs,  // boxes of n pairs of blocks overlap, of m pairs of objects (or one and itself);
+                // `detail` were compared, since a corner moved; empty: all
+  only_blocks,  // nothing else can meet: no view is needed
+  no_boxes_overlap,    // no two objects' boxes overlap (and none is tested against itself)
   no_triangle_meets,   // no triangle meets the box of another object
   nothing_to_look_at,  // the boxes decide: no device is needed
   device,              // `detail` answered
@@ -83,8 +83,8 @@ enum class Reason : std::uint8_t {
   join_patches,        // boxes of what is kept in different patches, and of all in one patch
   join_all,            // boxes of all triangles
   join_unresolvable,   // no view can resolve the scene
-  join_uneven,         // triangles lie too unevenly for runs and views; a tree of boxes decides
-  join_many_runs,      // boxes of more than n pairs of runs overlap: as above
+  join_uneven,         // triangles lie too unevenly for blocks and views; a tree of boxes decides
+  join_many_blocks,    // boxes of more than n pairs of blocks overlap: as above
   join_many_tests,     // the view `detail` is more work than n pairs of intervals: as above
   predicates,          // exact predicates on the candidates
   no_candidates,       // there is no candidate to decide

@@ -10,7 +10,6 @@
 
 #include "core/base/uninitialized.h"
 #include "core/canvas/work.h"
-#include "core/view/raster.h"
 #include "core/view/view.h"
 
 namespace farcull {

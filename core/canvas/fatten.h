@@ -7,7 +7,7 @@
 
 #include "core/canvas/canvas.h"
 #include "core/scene/scene.h"
-#include "core/view/clip.h"
+#include "core/view/view.h"
 
 namespace farcull {
 

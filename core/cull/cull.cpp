@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 namespace {

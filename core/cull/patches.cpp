@@ -5,9 +5,9 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "core/boxes/join.h"
 #include "core/cull/clusters.h"
 #include "core/cull/pass.h"
-#include "core/scene/box_join.h"
 
 namespace farcull {
 namespace {

@@ -11,7 +11,6 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/native/triangles.h"
 
 namespace farcull {
 namespace {

@@ -2,9 +2,9 @@
 // pass, in order, on its rows of the window, so any number of threads gives the same bits; so does
 // every instruction set (core/native/lanes.h), since each operation is rounded once on all of them.
 //
-// Of proxies it promises more than OpenGL does (docs/budget.md, "The canvas on the CPU"): samples
+// For proxies it promises more than OpenGL does (docs/budget.md, "The canvas on the CPU"): samples
 // lie at pixel centres, nothing is snapped, and the arithmetic is IEEE 754. Raw triangles follow
-// OpenGL's rules (core/native/triangles.h) and promise nothing.
+// OpenGL's rules (core/native/job.h) and promise nothing.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,12 @@ namespace farcull {
 
 struct NativeCanvasOptions {
   int depth_bits = 32;  // 32: float; 24: rounded to the nearest multiple of 1 / (2^24 - 1)
-  /// Of raw triangles: every pixel that one touches has a fragment (core/native/triangles.h).
+  /// For raw triangles: every pixel that one touches has a fragment (core/native/job.h).
   bool conservative = false;
   unsigned threads = 0;  // 0: as many as there are cores
 };
 
-/// What the budget needs to know of this canvas.
+/// The limits of this canvas, for the budget.
 RasterLimits native_limits(int depth_bits = 32);
 
 class NativeCanvas final : public Canvas {

@@ -9,8 +9,8 @@
 #endif
 
 #include "core/canvas/fatten.h"
-#include "core/native/wide-inl.h"
-#include "core/view/rounding.h"
+#include "core/native/glsl_lanes-inl.h"
+#include "core/view/view.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace farcull::HWY_NAMESPACE {

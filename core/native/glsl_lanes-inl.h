@@ -16,59 +16,67 @@ HWY_BEFORE_NAMESPACE();
 namespace farcull::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+
+/// A truth value for each lane of the tag D.
+template <class D>
+struct BoolOf {
+  BoolOf() = default;
+  HWY_INLINE explicit BoolOf(bool all)
+      : mask(all ? hn::Eq(hn::Zero(D()), hn::Zero(D())) : hn::Ne(hn::Zero(D()), hn::Zero(D()))) {}
+  HWY_INLINE explicit BoolOf(hn::Mask<D> m) : mask(m) {}
+  hn::Mask<D> mask;
+
+  friend HWY_INLINE BoolOf operator&&(BoolOf a, BoolOf b) {
+    return BoolOf(hn::And(a.mask, b.mask));
+  }
+  friend HWY_INLINE BoolOf operator||(BoolOf a, BoolOf b) { return BoolOf(hn::Or(a.mask, b.mask)); }
+  friend HWY_INLINE BoolOf operator!(BoolOf a) { return BoolOf(hn::Not(a.mask)); }
+};
+
+/// A number for each lane of the tag D.
+template <class D>
+struct LaneOf {
+  LaneOf() = default;
+  HWY_INLINE LaneOf(hn::TFromD<D> x) : v(hn::Set(D(), x)) {}  // NOLINT: kernels mix in literals
+  HWY_INLINE explicit LaneOf(hn::Vec<D> x) : v(x) {}
+  hn::Vec<D> v;
+
+  friend HWY_INLINE LaneOf operator-(LaneOf a) { return LaneOf(hn::Neg(a.v)); }
+  friend HWY_INLINE LaneOf operator+(LaneOf a, LaneOf b) { return LaneOf(hn::Add(a.v, b.v)); }
+  friend HWY_INLINE LaneOf operator-(LaneOf a, LaneOf b) { return LaneOf(hn::Sub(a.v, b.v)); }
+  friend HWY_INLINE LaneOf operator*(LaneOf a, LaneOf b) { return LaneOf(hn::Mul(a.v, b.v)); }
+  friend HWY_INLINE LaneOf operator/(LaneOf a, LaneOf b) { return LaneOf(hn::Div(a.v, b.v)); }
+  friend HWY_INLINE BoolOf<D> operator<(LaneOf a, LaneOf b) { return BoolOf<D>(hn::Lt(a.v, b.v)); }
+  friend HWY_INLINE BoolOf<D> operator>(LaneOf a, LaneOf b) { return BoolOf<D>(hn::Gt(a.v, b.v)); }
+  friend HWY_INLINE BoolOf<D> operator<=(LaneOf a, LaneOf b) { return BoolOf<D>(hn::Le(a.v, b.v)); }
+  friend HWY_INLINE BoolOf<D> operator>=(LaneOf a, LaneOf b) { return BoolOf<D>(hn::Ge(a.v, b.v)); }
+  // b < a ? b : a and a < b ? b : a, zeros and NaNs included: on x86 that is one instruction with
+  // the operands exchanged.
+  friend HWY_INLINE LaneOf min(LaneOf a, LaneOf b) {
+#if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+    return LaneOf(hn::Min(b.v, a.v));
+#else
+    return LaneOf(hn::IfThenElse((b < a).mask, b.v, a.v));
+#endif
+  }
+  friend HWY_INLINE LaneOf max(LaneOf a, LaneOf b) {
+#if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+    return LaneOf(hn::Max(b.v, a.v));
+#else
+    return LaneOf(hn::IfThenElse((a < b).mask, b.v, a.v));
+#endif
+  }
+  friend HWY_INLINE LaneOf abs(LaneOf a) { return LaneOf(hn::Abs(a.v)); }
+  friend HWY_INLINE LaneOf sqrt(LaneOf a) { return LaneOf(hn::Sqrt(a.v)); }
+};
+
 using Plain = float;  // where `float` stands for Lane
 using LaneTag = hn::CappedTag<float, 16>;
 using LaneVector = hn::Vec<LaneTag>;
-using LaneMask = hn::Mask<LaneTag>;
-
-/// A truth value for each lane.
-struct Bool {
-  Bool() = default;
-  HWY_INLINE explicit Bool(bool all)
-      : mask(all ? hn::Eq(hn::Zero(LaneTag()), hn::Zero(LaneTag()))
-                 : hn::Ne(hn::Zero(LaneTag()), hn::Zero(LaneTag()))) {}
-  HWY_INLINE explicit Bool(LaneMask m) : mask(m) {}
-  LaneMask mask;
-};
-HWY_INLINE Bool operator&&(Bool a, Bool b) { return Bool(hn::And(a.mask, b.mask)); }
-HWY_INLINE Bool operator||(Bool a, Bool b) { return Bool(hn::Or(a.mask, b.mask)); }
-HWY_INLINE Bool operator!(Bool a) { return Bool(hn::Not(a.mask)); }
-
-struct Lane {
-  Lane() = default;
-  HWY_INLINE Lane(Plain x) : v(hn::Set(LaneTag(), x)) {}  // NOLINT: kernels mix in literals
-  HWY_INLINE explicit Lane(LaneVector x) : v(x) {}
-  LaneVector v;
-};
-HWY_INLINE Lane operator-(Lane a) { return Lane(hn::Neg(a.v)); }
-HWY_INLINE Lane operator+(Lane a, Lane b) { return Lane(hn::Add(a.v, b.v)); }
-HWY_INLINE Lane operator-(Lane a, Lane b) { return Lane(hn::Sub(a.v, b.v)); }
-HWY_INLINE Lane operator*(Lane a, Lane b) { return Lane(hn::Mul(a.v, b.v)); }
-HWY_INLINE Lane operator/(Lane a, Lane b) { return Lane(hn::Div(a.v, b.v)); }
-HWY_INLINE Bool operator<(Lane a, Lane b) { return Bool(hn::Lt(a.v, b.v)); }
-HWY_INLINE Bool operator>(Lane a, Lane b) { return Bool(hn::Gt(a.v, b.v)); }
-HWY_INLINE Bool operator<=(Lane a, Lane b) { return Bool(hn::Le(a.v, b.v)); }
-HWY_INLINE Bool operator>=(Lane a, Lane b) { return Bool(hn::Ge(a.v, b.v)); }
+using Lane = LaneOf<LaneTag>;
+using Bool = BoolOf<LaneTag>;
 HWY_INLINE Lane select(Bool c, Lane a, Lane b) { return Lane(hn::IfThenElse(c.mask, a.v, b.v)); }
-// b < a ? b : a and a < b ? b : a, zeros and NaNs included: on x86 that is one instruction with the
-// operands exchanged.
-HWY_INLINE Lane min(Lane a, Lane b) {
-#if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
-  return Lane(hn::Min(b.v, a.v));
-#else
-  return select(b < a, b, a);
-#endif
-}
-HWY_INLINE Lane max(Lane a, Lane b) {
-#if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
-  return Lane(hn::Max(b.v, a.v));
-#else
-  return select(a < b, b, a);
-#endif
-}
-HWY_INLINE Lane abs(Lane a) { return Lane(hn::Abs(a.v)); }
-HWY_INLINE Lane sqrt(Lane a) { return Lane(hn::Sqrt(a.v)); }
-/// The answer of the first lane, for what is the same in all of them.
+/// The answer of the first lane, for values that are the same in all of them.
 HWY_INLINE bool of_all(Bool c) { return hn::AllTrue(LaneTag(), c.mask); }
 
 struct vec2 {
@@ -78,10 +86,31 @@ struct vec4 {
   Lane x, y, z, w;
 };
 
+// Lanes of doubles, for texts in doubles: `double` stands for WideLane, and each lane is a triangle
+// of its own.
+using PlainDouble = double;  // where `double` stands for WideLane
+using WideTag = hn::CappedTag<double, 8>;
+using NarrowTag = hn::Rebind<float, WideTag>;
+using Wide = hn::Vec<WideTag>;
+using WideLane = LaneOf<WideTag>;
+using WideBool = BoolOf<WideTag>;
+constexpr int kWide = static_cast<int>(hn::MaxLanes(WideTag()));
+HWY_INLINE WideLane select(WideBool c, WideLane a, WideLane b) {
+  return WideLane(hn::IfThenElse(c.mask, a.v, b.v));
+}
+/// Rounded to float.
+HWY_INLINE WideLane nearest(WideLane a) {
+  return WideLane(hn::PromoteTo(WideTag(), hn::DemoteTo(NarrowTag(), a.v)));
+}
+
+struct dvec3 {
+  WideLane x, y, z;
+};
+
 }  // namespace farcull::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-// What kernels write, for lanes; core/base/glsl_shim.h has the same names for scalars.
+// Macros that kernels use, for lanes; core/base/glsl_shim.h has the same names for scalars.
 #undef FAR_OUT
 #undef FAR_INOUT
 #undef FAR_PRECISE

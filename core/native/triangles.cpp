@@ -2,7 +2,7 @@
 // pixel centre is inside, outside or on an edge without doubt, and so is whether a pixel's square
 // meets a triangle (by the axes of the pixel and the normals of the edges, which separate them if
 // anything does).
-#include "core/native/triangles.h"
+#include "core/native/job.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,7 @@
 #define HWY_TARGET_INCLUDE "core/native/triangles.cpp"
 #include <hwy/foreach_target.h>
 
-#include "core/native/block-inl.h"
-#include "core/native/wide-inl.h"
+#include "core/native/proxies-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace farcull::HWY_NAMESPACE {
@@ -66,20 +65,31 @@ HWY_INLINE bool take_row(const NativeJob& job, Verb verb, Wide place, hn::Mask<W
   return false;
 }
 
+/// Draws an element in the rows of the job; kTouched: with a fragment in every pixel that the
+/// triangle touches. True: asked, and seen.
+template <bool kTouched>
 HWY_INLINE bool draw_triangle(const NativeJob& job, std::uint32_t element, Verb verb) {
   const PixelRange& range = job.ranges[element];
   const int y0 = std::max<int>(range.y0, job.y0), y1 = std::min<int>(range.y1, job.y1);
   if (y0 >= y1) return false;
   const SnappedTriangle t(job, job.triangles[element]);
-  if (t.area == 0) return false;
+  if (!kTouched && t.area == 0) return false;
+  constexpr double kHalf = kTouched ? kSubpixels / 2 : 0;  // of a pixel's side
+  const auto [left, right] = std::minmax({t.x[0], t.x[1], t.x[2]});
+  const auto [bottom, top] = std::minmax({t.y[0], t.y[1], t.y[2]});
+  const auto [nearest, farthest] = std::minmax({t.place[0], t.place[1], t.place[2]});
   const WideTag wide;
-  const Wide over = hn::Set(wide, 1 / t.area);
-  const Wide end = hn::Set(wide, range.x1 * kSubpixels);
+  const Wide over = hn::Set(wide, t.area > 0 ? 1 / t.area : 0);
   for (int y = y0; y < y1; ++y) {
     const double py = (y + 0.5) * kSubpixels;
+    if (kTouched && (py + kHalf < bottom || py - kHalf > top)) continue;
     for (int x = range.x0; x < range.x1; x += kWide) {
       const Wide px = hn::Add(hn::Set(wide, (x + 0.5) * kSubpixels), columns());
-      auto covered = hn::Lt(px, end);
+      auto covered = hn::Lt(px, hn::Set(wide, range.x1 * kSubpixels));
+      if (kTouched) {
+        covered = hn::And(covered, hn::Ge(px, hn::Set(wide, left - kHalf)));
+        covered = hn::And(covered, hn::Le(px, hn::Set(wide, right + kHalf)));
+      }
       Wide place = hn::Zero(wide);
       for (int i = 0; i < 3; ++i) {
         // Edge i is opposite to corner i.
@@ -87,55 +97,19 @@ HWY_INLINE bool draw_triangle(const NativeJob& job, std::uint32_t element, Verb 
         const double dx = t.x[b] - t.x[a], dy = t.y[b] - t.y[a];
         const Wide side = hn::Sub(hn::Set(wide, dx * (py - t.y[a])),
                                   hn::Mul(hn::Set(wide, dy), hn::Sub(px, hn::Set(wide, t.x[a]))));
-        const bool owns = dy < 0 || (dy == 0 && dx < 0);  // its points: a left or a top edge
-        const Wide zero = hn::Zero(wide);
-        covered = hn::And(covered, owns ? hn::Ge(side, zero) : hn::Gt(side, zero));
-        place = hn::Add(place, hn::Mul(hn::Mul(side, over), hn::Set(wide, t.place[i])));
-      }
-      if (hn::AllFalse(wide, covered)) continue;
-      if (take_row(job, verb, place, covered,
-                   job.depth + static_cast<std::ptrdiff_t>(y) * job.stride + x))
-        return true;
-    }
-  }
-  return false;
-}
-
-/// The same with a fragment in every pixel that the triangle touches.
-HWY_INLINE bool draw_touched(const NativeJob& job, std::uint32_t element, Verb verb) {
-  const PixelRange& range = job.ranges[element];
-  const int y0 = std::max<int>(range.y0, job.y0), y1 = std::min<int>(range.y1, job.y1);
-  if (y0 >= y1) return false;
-  const SnappedTriangle t(job, job.triangles[element]);
-  constexpr double kHalf = kSubpixels / 2;  // of a pixel's side
-  const auto [left, right] = std::minmax({t.x[0], t.x[1], t.x[2]});
-  const auto [bottom, top] = std::minmax({t.y[0], t.y[1], t.y[2]});
-  const auto [nearest, farthest] = std::minmax({t.place[0], t.place[1], t.place[2]});
-  const WideTag wide;
-  const Wide middle = hn::Set(wide, 0.5 * (nearest + farthest));
-  const Wide over = hn::Set(wide, t.area > 0 ? 1 / t.area : 0);
-  for (int y = y0; y < y1; ++y) {
-    const double py = (y + 0.5) * kSubpixels;
-    if (py + kHalf < bottom || py - kHalf > top) continue;
-    for (int x = range.x0; x < range.x1; x += kWide) {
-      const Wide px = hn::Add(hn::Set(wide, (x + 0.5) * kSubpixels), columns());
-      auto covered = hn::Lt(px, hn::Set(wide, range.x1 * kSubpixels));
-      covered = hn::And(covered, hn::Ge(px, hn::Set(wide, left - kHalf)));
-      covered = hn::And(covered, hn::Le(px, hn::Set(wide, right + kHalf)));
-      Wide place = hn::Zero(wide);
-      for (int i = 0; i < 3; ++i) {
-        const int a = (i + 1) % 3, b = (i + 2) % 3;
-        const double dx = t.x[b] - t.x[a], dy = t.y[b] - t.y[a];
-        const Wide side = hn::Sub(hn::Set(wide, dx * (py - t.y[a])),
-                                  hn::Mul(hn::Set(wide, dy), hn::Sub(px, hn::Set(wide, t.x[a]))));
-        // Of the pixel's corners the one that is farthest inside.
+        // For the corner of the pixel that is farthest inside.
         const double reach = (std::abs(dx) + std::abs(dy)) * kHalf;
-        covered = hn::And(covered, hn::Ge(side, hn::Set(wide, -reach)));
+        const Wide least = hn::Set(wide, -reach);
+        const bool owns = dy < 0 || (dy == 0 && dx < 0);  // its points: a left or a top edge
+        covered = hn::And(covered, kTouched || owns ? hn::Ge(side, least) : hn::Gt(side, least));
         place = hn::Add(place, hn::Mul(hn::Mul(side, over), hn::Set(wide, t.place[i])));
       }
       if (hn::AllFalse(wide, covered)) continue;
-      place = t.area > 0 ? hn::Min(hn::Max(place, hn::Set(wide, nearest)), hn::Set(wide, farthest))
-                         : middle;
+      if (kTouched) {
+        place = t.area > 0
+                    ? hn::Min(hn::Max(place, hn::Set(wide, nearest)), hn::Set(wide, farthest))
+                    : hn::Set(wide, 0.5 * (nearest + farthest));
+      }
       if (take_row(job, verb, place, covered,
                    job.depth + static_cast<std::ptrdiff_t>(y) * job.stride + x))
         return true;
@@ -146,7 +120,8 @@ HWY_INLINE bool draw_touched(const NativeJob& job, std::uint32_t element, Verb v
 
 void draw_triangles(const NativeJob& job) {
   for_draws(job, [&job](std::uint32_t element, Verb verb) {
-    return job.conservative ? draw_touched(job, element, verb) : draw_triangle(job, element, verb);
+    return job.conservative ? draw_triangle<true>(job, element, verb)
+                            : draw_triangle<false>(job, element, verb);
   });
 }
 

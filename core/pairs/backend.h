@@ -1,6 +1,6 @@
 // FAR pairs asks a device for the raw pairs of one view. Two implementations from one kernel
-// text (core/pairs/interval.glsl): threads of the CPU (core/pairs/cpu.h) and GL compute shaders
-// (core/gl/pairs/pairs.h).
+// text (core/pairs/interval.glsl): threads of the CPU, which compile it as C++, and GL compute
+// shaders (core/gl/pairs/pairs.h).
 #pragma once
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -59,8 +60,8 @@ struct PairTask {
   /// Work after which the answer is given up: pairs of intervals compared, pixels of triangles and
   /// entries of their lists, and large triangles times active ones.
   std::uint64_t most_tests = UINT64_MAX;
-  /// Takes away pairs of which the caller knows that they are none, so that lists that fill up stay
-  /// short; null: it knows none. Called by several threads at once.
+  /// Takes away pairs that the caller knows to be apart, so that lists that fill up stay short;
+  /// null: it knows of no such pair. Called by several threads at once.
   std::function<void(std::vector<TrianglePair>&)> narrow = {};
   glsl::vec4 widening{};  // px per axis: every point of a triangle is within this of the
                           // triangle of its PixelVertex corners, up to float rounding
@@ -97,5 +98,20 @@ class PairBackend {
   /// Throws Error unless every command is known to have run (A7).
   virtual std::vector<TrianglePair> raw_pairs(const PairTask& task, PairCounts& counts) = 0;
 };
+
+/// Pixels on a side of a window that this back end takes.
+constexpr int kMostCpuPixels = 32767;
+
+/// threads: 0 for as many as there are cores. memory: bytes, about, that the masks and lists of one
+/// part of the window may take in each thread; more entries split the window further, down to
+/// single pixels, which take what they need. An eighth of it on top holds which pairs were settled,
+/// and an eighth of it for all threads together pairs that may repeat; beyond that as many pairs
+/// are held as are distinct (core/scene/pair_sort.h). The answer depends on neither.
+std::unique_ptr<PairBackend> cpu_pair_backend(unsigned threads = 0,
+                                              std::size_t memory = std::size_t{256} << 20);
+
+/// The same in one thread for tasks whose active triangles are some of `count`: large ones are
+/// those that are large among all of these.
+std::unique_ptr<PairBackend> cpu_sample_backend(std::size_t count);
 
 }  // namespace farcull

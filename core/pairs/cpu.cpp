@@ -1,5 +1,5 @@
 // Triangles are sorted into bands of rows, which the threads take in turn; each band is a tile.
-#include "core/pairs/cpu.h"
+#include "core/pairs/backend.h"
 
 #include <algorithm>
 #include <atomic>

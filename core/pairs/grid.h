@@ -1,4 +1,5 @@
-// The triangles of a task on the CPU: their bounds, their pixels and their slices.
+// The triangles of a task on the CPU: their bounds, their pixels and slices, and their intervals
+// over rows of pixels.
 #pragma once
 
 #include <algorithm>
@@ -6,14 +7,22 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/base/glsl_shim.h"
 #include "core/pairs/backend.h"
-#include "core/pairs/interval.h"
+
+// The kernel of devices compiled as C++.
+namespace farcull::interval {
+
+using namespace farcull::glsl;
+#include "core/pairs/interval.glsl"
+
+}  // namespace farcull::interval
 
 namespace farcull {
 
-/// What far_slice takes, for a window between two depths (px): steps of a power of two, at most 2^9
-/// a px (a window that is so thin that 64 slices need finer ones gains nothing by slices) and at
-/// most 2^14 in all, shared evenly by at most kSlices slices.
+/// Arguments of far_slice for a window between two depths (px): steps of a power of two, at most
+/// 2^9 a px (a window that is so thin that 64 slices need finer ones gains nothing by slices) and
+/// at most 2^14 in all, shared evenly by at most kSlices slices.
 struct DepthSlices {
   float steps_per_px;
   std::int32_t first_step;
@@ -116,5 +125,38 @@ inline PairItem PairGrid::item(std::uint32_t triangle, const PairBounds& b) cons
 
 inline PairGrid::PairGrid(const PairTask& task)
     : task_(task), slices_(depth_slices(task.near_px, task.far_px)) {}
+
+/// The strip of one triangle over rows of pixels or sub-pixels, and its intervals in them.
+class PairRows {
+ public:
+  PairRows(const PairGrid& grid, std::uint32_t triangle, const PairBounds& bounds)
+      : bounds_(bounds),
+        a_(grid.corner(triangle, 0)),
+        b_(grid.corner(triangle, 1)),
+        c_(grid.corner(triangle, 2)) {
+    const PairBounds real = grid.real_bounds(triangle);
+    margin_ = interval::far_margin(real.lo, real.hi, grid.task().widening);
+  }
+  /// The range along x of the real triangle between the rows' borders; false: none.
+  bool row(float y0, float y1, float& lo, float& hi) {
+    interval::far_strip(a_, b_, c_, y0 - margin_.y, y1 + margin_.y, strip_);
+    lo = std::max(strip_.lo - margin_.x, bounds_.lo.x);
+    hi = std::min(strip_.hi + margin_.x, bounds_.hi.x);
+    return lo <= hi;
+  }
+  /// The interval over a rectangle of the row; false: none.
+  bool depths(float x0, float x1, float& near, float& far) {
+    if (!interval::far_depths(strip_, x0 - margin_.x, x1 + margin_.x, near, far)) return false;
+    near = std::max(near - margin_.z, bounds_.lo.z);
+    far = std::min(far + margin_.z, bounds_.hi.z);
+    return near <= far;
+  }
+
+ private:
+  PairBounds bounds_;
+  interval::vec4 a_, b_, c_;
+  interval::vec4 margin_;
+  interval::FarStrip strip_;
+};
 
 }  // namespace farcull

@@ -1,4 +1,4 @@
-// Boxes of runs give their pairs; each view takes candidates away from the ones before it.
+// Boxes of blocks give their pairs; each view takes candidates away from the ones before it.
 #include "core/pairs/pairs.h"
 
 #include <algorithm>
@@ -8,11 +8,8 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
-#include "core/pairs/grown_box.h"
-#include "core/pairs/ordered_pairs.h"
-#include "core/pairs/plan.h"
-#include "core/scene/box_join.h"
-#include "core/scene/members.h"
+#include "core/boxes/join.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 namespace {
@@ -32,7 +29,7 @@ std::vector<TrianglePair> pairs_of_few(const Scene& scene, const PairRegions& re
     const Box box = grown_box(scene, t, clearance);
     const bool one = std::binary_search(few.begin(), few.end(), t);
     for (std::size_t k = 0; k < few.size(); ++k) {
-      // Of two of them the pair is found once, from the larger one.
+      // A pair of two of the few is found once, from the larger one.
       if (owner[t] == owner[few[k]] || (one && t < few[k]) || !overlap(box, boxes[k])) continue;
       pairs.push_back({std::min(t, few[k]), std::max(t, few[k])});
     }
@@ -41,8 +38,17 @@ std::vector<TrianglePair> pairs_of_few(const Scene& scene, const PairRegions& re
   return pairs;
 }
 
+// Whether a pair counts although its triangles may be neighbours. owners: of the triangles; empty
+// if neighbours count.
+bool neighbours_count(const Scene& scene, std::span<const std::uint32_t> owners,
+                      const TrianglePair& pair) {
+  return owners.empty() || owners[pair.a] != owners[pair.b] ||
+         !share_index(scene.triangles[pair.a], scene.triangles[pair.b]);
+}
+
 // Pairs whose grown boxes overlap, of the whole scene, by a tree over them, which finds them in
-// order: what `keeps` leaves out is never listed.
+// order: pairs that `keeps` leaves out are never listed. Portions are joined at the end, each freed
+// then, since a list that grows would take twice the memory.
 template <class Keeps>
 std::vector<TrianglePair> pairs_by_tree(const Scene& scene, const PairSettings& settings,
                                         unsigned threads, const Keeps& keeps,
@@ -51,15 +57,23 @@ std::vector<TrianglePair> pairs_by_tree(const Scene& scene, const PairSettings& 
   OrderedPairs tree(scene, settings.clearance, settings.ignored, threads);
   const std::vector<std::uint32_t> owner =
       settings.neighbours ? std::vector<std::uint32_t>() : owners(scene);
-  std::vector<TrianglePair> pairs, some;
+  std::vector<std::vector<TrianglePair>> portions;
+  std::size_t count = 0;
+  std::vector<TrianglePair> some;
   while (!tree.at_end()) {
     tree.next(kAtOnce, some);
-    std::ranges::copy_if(some, std::back_inserter(pairs), [&](const TrianglePair& pair) {
-      return keeps(pair) && (owner.empty() || owner[pair.a] != owner[pair.b] ||
-                             !share_index(scene.triangles[pair.a], scene.triangles[pair.b]));
+    std::erase_if(some, [&](const TrianglePair& pair) {
+      return !keeps(pair) || !neighbours_count(scene, owner, pair);
     });
+    count += portions.emplace_back(some).size();
   }
   if (compared) *compared = tree.compared();
+  std::vector<TrianglePair> pairs;
+  pairs.reserve(count);
+  for (std::vector<TrianglePair>& portion : portions) {
+    pairs.insert(pairs.end(), portion.begin(), portion.end());
+    std::vector<TrianglePair>().swap(portion);  // `= {}` would keep its memory
+  }
   return pairs;
 }
 
@@ -79,8 +93,7 @@ std::vector<TrianglePair> pairs_by_boxes(const Scene& scene, const PairRegions& 
 // Pairs whose second corners are fetched ahead; the first ones are mostly those of the pair before.
 constexpr std::size_t kAhead = 8;
 
-// Those whose boxes overlap, in order; without neighbours where they are not asked for.
-// `owners`, of the triangles, is empty where neighbours stay.
+// Keeps the pairs whose boxes overlap, in order. owners: as neighbours_count() takes them.
 void keep_overlapping(const Scene& scene, std::span<const std::uint32_t> owners, double clearance,
                       unsigned threads, std::vector<TrianglePair>& pairs) {
   const double half = half_of(clearance);
@@ -91,9 +104,7 @@ void keep_overlapping(const Scene& scene, std::span<const std::uint32_t> owners,
     for (std::size_t k = begin; k < end; ++k) {
       prefetch(scene, pairs[std::min(k + kAhead, end - 1)].b);
       pairs[to] = pairs[k];
-      to += boxes_meet(scene, pairs[k], half) &&
-            (owners.empty() || owners[pairs[k].a] != owners[pairs[k].b] ||
-             !share_index(scene.triangles[pairs[k].a], scene.triangles[pairs[k].b]));
+      to += boxes_meet(scene, pairs[k], half) && neighbours_count(scene, owners, pairs[k]);
     }
     kept[chunk] = to - begin;
   });
@@ -133,7 +144,7 @@ class Finding {
         progress_(progress) {}
 
   PairResult result() {
-    compare_runs();
+    compare_blocks();
     for (std::size_t k = 0; k < plan_.choices.size() && !given_up_; ++k) {
       const PairChoice& choice = plan_.choices[k];
       if (asks_whether_to_go_on() && stops_before(choice)) break;
@@ -143,33 +154,33 @@ class Finding {
     if (first_) join_boxes();
     if (plan_.remembers) remember();
     if (out_.candidates.empty()) {
-      out_.candidates = std::move(of_runs_);
-    } else if (!of_runs_.empty()) {
-      out_.candidates = merged(out_.candidates, of_runs_);
+      out_.candidates = std::move(of_blocks_);
+    } else if (!of_blocks_.empty()) {
+      out_.candidates = merged(out_.candidates, of_blocks_);
     }
     return std::move(out_);
   }
 
  private:
-  void compare_runs() {
-    if (plan_.runs.empty()) return;
+  void compare_blocks() {
+    if (plan_.blocks.empty()) return;
     const Stopwatch start;
     const PairSettings& settings = plan_.settings;
-    of_runs_ =
-        pairs_of_runs(scene_, plan_.runs, settings.clearance, settings.neighbours, plan_.threads);
-    Stage stage = stage_of_runs(plan_);
+    of_blocks_ = pairs_of_blocks(scene_, plan_.blocks, settings.clearance, settings.neighbours,
+                                 plan_.threads);
+    Stage stage = stage_of_blocks(plan_);
     stage.ms = start.ms();
-    stage.out = of_runs_.size();
+    stage.out = of_blocks_.size();
     out_.stages.push_back(stage);
   }
 
   // Views tell nothing about the next frame.
   void remember() {
     memory_.complete = plan_.regions.triangles.empty();
-    memory_.pairs = memory_.complete ? of_runs_ : std::vector<TrianglePair>();
-    memory_.overlaps = plan_.runs.overlaps;
-    memory_.meetings = plan_.runs.meetings;
-    memory_.triangles = plan_.runs.triangles;
+    memory_.pairs = memory_.complete ? of_blocks_ : std::vector<TrianglePair>();
+    memory_.overlaps = plan_.blocks.overlaps;
+    memory_.meetings = plan_.blocks.meetings;
+    memory_.triangles = plan_.blocks.triangles;
     memory_.object_pairs = plan_.regions.pairs;
     memory_.self = plan_.regions.self;
   }
@@ -317,7 +328,7 @@ class Finding {
   PairMemory& memory_;
   const Progress& progress_;
   PairResult out_;
-  std::vector<TrianglePair> of_runs_;
+  std::vector<TrianglePair> of_blocks_;
   bool first_ = true;  // no view has said anything yet
   bool skipped_ = false;
   std::optional<std::string> given_up_ = {};  // the view that took too much work

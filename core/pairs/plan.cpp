@@ -1,5 +1,5 @@
-// A plan is made of boxes, runs and views.
-#include "core/pairs/plan.h"
+// A plan is made of boxes, blocks and views.
+#include "core/pairs/pairs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,8 @@
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
-#include "core/pairs/cpu.h"
-#include "core/pairs/grown_box.h"
-#include "core/scene/box_join.h"
-#include "core/scene/members.h"
+#include "core/boxes/join.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 
@@ -63,15 +61,15 @@ Stage stage_of_join(Reason reason, std::uint64_t n, const std::string& detail) {
           .unit = Unit::pairs};
 }
 
-Stage stage_of_runs(const PairPlan& plan) {
-  const std::size_t compared = plan.runs.between.size() + plan.runs.inside.size();
-  return {.kind = StageKind::runs,
+Stage stage_of_blocks(const PairPlan& plan) {
+  const std::size_t compared = plan.blocks.between.size() + plan.blocks.inside.size();
+  return {.kind = StageKind::blocks,
           .ran = true,
-          .reason = Reason::run_pairs,
-          .detail = compared < plan.runs.overlaps ? std::to_string(compared) : "",
-          .n = plan.runs.overlaps,
-          .m = plan.runs.meetings,
-          .in = plan.runs.triangles,
+          .reason = Reason::block_pairs,
+          .detail = compared < plan.blocks.overlaps ? std::to_string(compared) : "",
+          .n = plan.blocks.overlaps,
+          .m = plan.blocks.meetings,
+          .in = plan.blocks.triangles,
           .unit = Unit::pairs};
 }
 
@@ -157,30 +155,30 @@ void try_views(const Scene& scene, unsigned threads, const PairSettings& setting
   std::vector<PairChoice> views = choose_pair_views(scene, regions, 0);
   if (kept_by(scene, regions, views.front(), settings.clearance, estimate.sample) > kKeptByView)
     return;
-  parts = {.runs = {}, .rest = std::move(regions)};
+  parts = {.blocks = {}, .rest = std::move(regions)};
   choices = std::move(views);
 }
 
-// Triangles that take part in what runs decide, or views, or both.
+// Triangles that take part in what blocks decide, or views, or both.
 std::uint64_t taking_part(const Scene& scene, const PairPlan& plan) {
-  if (plan.runs.empty()) return plan.regions.triangles.size();
-  if (plan.regions.triangles.empty()) return plan.runs.triangles;
+  if (plan.blocks.empty()) return plan.regions.triangles.size();
+  if (plan.regions.triangles.empty()) return plan.blocks.triangles;
   std::vector<std::uint8_t> takes_part(scene.triangles.size(), 0);
   for (const std::uint32_t t : plan.regions.triangles) takes_part[t] = 1;
   const auto mark = [&](std::uint32_t index) {
-    const Run& run = plan.runs.of->runs[index];
-    for (std::uint32_t k = 0; k < run.count; ++k) {
-      takes_part[plan.runs.of->triangle(run.first + k)] = 1;
+    const TriangleBlock& block = plan.blocks.of->ranges[index];
+    for (std::uint32_t k = 0; k < block.count; ++k) {
+      takes_part[plan.blocks.of->triangle(block.first + k)] = 1;
     }
   };
-  for (const RunPair& pair : plan.runs.between) mark(pair.a), mark(pair.b);
-  for (const RunPair& pair : plan.runs.inside) mark(pair.a), mark(pair.b);
+  for (const BlockPair& pair : plan.blocks.between) mark(pair.a), mark(pair.b);
+  for (const BlockPair& pair : plan.blocks.inside) mark(pair.a), mark(pair.b);
   return static_cast<std::uint64_t>(std::ranges::count(takes_part, 1));
 }
 
 enum class LastFrame : std::uint8_t { unknown, known, ignored };
 
-// What the memory knows of the scene's last frame; unless that is ignored, it becomes this one.
+// Whether the memory knows the scene's last frame; unless that is ignored, it becomes this one.
 LastFrame last_frame(const Scene& scene, const PairSettings& settings, PairMemory& memory) {
   const bool complete = std::exchange(memory.complete, false);  // until this frame is found
   if (memory.patience.waits()) {
@@ -192,23 +190,49 @@ LastFrame last_frame(const Scene& scene, const PairSettings& settings, PairMemor
                      memory.neighbours == settings.neighbours && memory.ignored == settings.ignored;
   if (known) {
     const bool worth_while = mostly_unmoved(scene, memory.moved, memory.pairs);
-    memory.patience.tell(worth_while);
+    memory.patience.notify(worth_while);
     if (worth_while) return LastFrame::known;
   }
   memory.clearance = settings.clearance;
   memory.neighbours = settings.neighbours;
   memory.ignored = settings.ignored;
-  memory.runs.reset();
+  memory.blocks.reset();
   return LastFrame::unknown;
 }
 
-// What a stage of boxes leaves out.
+// The words for pairs that a stage of boxes leaves out.
 std::string apart(const PairSettings& settings) {
   return settings.ignored.empty() ? "" : "ignored ones";
 }
 
-// Splits the meetings of a scene into those that boxes of runs decide and those that views do, and
-// chooses the views.
+Stage stage_of_boxes(const Scene& scene, const PairPlan& plan, double ms, std::uint64_t out) {
+  const bool full = plan.settings.full;
+  return {.kind = StageKind::boxes,
+          .ran = true,
+          .reason = full                   ? Reason::full
+                    : plan.regions.crowded ? Reason::crowded
+                                           : Reason::meetings,
+          .detail = full ? "" : apart(plan.settings),
+          .n = full ? 0 : plan.regions.pairs,
+          .m = full ? 0 : plan.regions.self,
+          .ms = ms,
+          .in = scene.triangles.size(),
+          .out = out,
+          .unit = Unit::triangles};
+}
+
+Stage stage_of_choice(Reason reason, double ms, std::size_t in, std::size_t out) {
+  return {.kind = StageKind::choose,
+          .ran = true,
+          .reason = reason,
+          .ms = ms,
+          .in = in,
+          .out = out,
+          .unit = Unit::views};
+}
+
+// Splits the meetings of a scene into those that boxes of blocks decide and those that views do,
+// and chooses the views.
 void split_and_choose(const Scene& scene, unsigned threads, PairMemory* memory, PairPlan& plan) {
   const PairSettings& settings = plan.settings;
   const Stopwatch planning;
@@ -226,69 +250,43 @@ void split_and_choose(const Scene& scene, unsigned threads, PairMemory* memory, 
     try_views(scene, threads, settings, parts, plan.choices);
   } else if (parts.join == Reason::none && !parts.rest.triangles.empty()) {
     plan.choices = choose_pair_views(scene, parts.rest, 0);
-    // Where triangles lie on each other no view parts them, and boxes are found faster.
+    // No view parts triangles that lie on each other, and boxes are found faster.
     if (!parts.sample.empty() && kept_by(scene, parts.rest, plan.choices.front(),
                                          settings.clearance, parts.sample) > kKeptByView) {
-      PairParts by_runs = split(true);
-      if (by_runs.rest.triangles.empty() || by_runs.join != Reason::none) {
+      PairParts by_blocks = split(true);
+      if (by_blocks.rest.triangles.empty() || by_blocks.join != Reason::none) {
         plan.choices.clear();
-        parts = std::move(by_runs);
+        parts = std::move(by_blocks);
       }
     }
   }
   plan.join = parts.join;
   plan.join_n = parts.join_n;
-  plan.runs = std::move(parts.runs);
+  plan.blocks = std::move(parts.blocks);
   plan.regions = std::move(parts.rest);
-  plan.trace.push_back({.kind = StageKind::boxes,
-                        .ran = true,
-                        .reason = plan.regions.crowded ? Reason::crowded : Reason::meetings,
-                        .detail = apart(settings),
-                        .n = plan.regions.pairs,
-                        .m = plan.regions.self,
-                        .ms = split_ms,
-                        .in = scene.triangles.size(),
-                        .out = taking_part(scene, plan),
-                        .unit = Unit::triangles});
-  if (plan.choices.empty()) {
-    const bool joined = plan.join != Reason::none, none = !joined && plan.runs.empty();
-    plan.trace.push_back({.kind = StageKind::views,
-                          .reason = joined ? plan.join
-                                    : none ? Reason::no_boxes_overlap
-                                           : Reason::only_runs,
-                          .detail = none ? apart(settings) : "",
-                          .n = plan.join_n,
-                          .ms = choosing.ms(),
-                          .unit = Unit::pairs});
+  plan.trace.push_back(stage_of_boxes(scene, plan, split_ms, taking_part(scene, plan)));
+  if (!plan.choices.empty()) {
+    plan.trace.push_back(
+        stage_of_choice(Reason::views_chosen, choosing.ms(), plan.choices.size(), 1));
     return;
   }
-  plan.trace.push_back({.kind = StageKind::choose,
-                        .ran = true,
-                        .reason = Reason::views_chosen,
+  const bool joined = plan.join != Reason::none, apart_all = !joined && plan.blocks.empty();
+  plan.trace.push_back({.kind = StageKind::views,
+                        .reason = joined      ? plan.join
+                                  : apart_all ? Reason::no_boxes_overlap
+                                              : Reason::only_blocks,
+                        .detail = apart_all ? apart(settings) : "",
+                        .n = plan.join_n,
                         .ms = choosing.ms(),
-                        .in = plan.choices.size(),
-                        .out = 1,
-                        .unit = Unit::views});
+                        .unit = Unit::pairs});
 }
 
-// Everything is left to views, because the caller wants views, or a resolution, or nothing left
-// out.
+// Leaves everything to views, because the caller wants views, or a resolution, or nothing left out.
 void leave_to_views(const Scene& scene, unsigned threads, PairPlan& plan) {
   const PairSettings& settings = plan.settings;
   const Stopwatch planning;
   plan.regions = pair_regions(scene, settings.clearance, settings.full, threads, settings.ignored);
-  plan.trace.push_back({.kind = StageKind::boxes,
-                        .ran = true,
-                        .reason = settings.full          ? Reason::full
-                                  : plan.regions.crowded ? Reason::crowded
-                                                         : Reason::meetings,
-                        .detail = settings.full ? "" : apart(settings),
-                        .n = settings.full ? 0 : plan.regions.pairs,
-                        .m = settings.full ? 0 : plan.regions.self,
-                        .ms = planning.ms(),
-                        .in = scene.triangles.size(),
-                        .out = plan.regions.triangles.size(),
-                        .unit = Unit::triangles});
+  plan.trace.push_back(stage_of_boxes(scene, plan, planning.ms(), plan.regions.triangles.size()));
   if (plan.regions.triangles.empty()) {
     plan.trace.push_back({.kind = StageKind::views,
                           .reason = Reason::no_boxes_overlap,
@@ -300,13 +298,9 @@ void leave_to_views(const Scene& scene, unsigned threads, PairPlan& plan) {
   const bool chosen = settings.views.empty();
   plan.choices = chosen ? choose_pair_views(scene, plan.regions, settings.resolution)
                         : given_choices(scene, plan.regions, settings);
-  plan.trace.push_back({.kind = StageKind::choose,
-                        .ran = true,
-                        .reason = chosen ? Reason::views_chosen : Reason::views_given,
-                        .ms = choosing.ms(),
-                        .in = plan.choices.size(),
-                        .out = chosen ? 1 : plan.choices.size(),
-                        .unit = Unit::views});
+  plan.trace.push_back(stage_of_choice(chosen ? Reason::views_chosen : Reason::views_given,
+                                       choosing.ms(), plan.choices.size(),
+                                       chosen ? 1 : plan.choices.size()));
 }
 
 }  // namespace
@@ -322,7 +316,7 @@ PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned t
   PairPlan plan;
   plan.settings = settings;
   plan.threads = threads;
-  if (settings.runs && settings.views.empty() && settings.resolution == 0 && !settings.full) {
+  if (settings.blocks && settings.views.empty() && settings.resolution == 0 && !settings.full) {
     split_and_choose(scene, threads, memory, plan);
   } else {
     if (memory) memory->complete = false;
@@ -340,7 +334,7 @@ PairPlan plan_pairs(const Scene& scene, const PairSettings& settings, unsigned t
 
 std::vector<Stage> planned_stages(const PairPlan& plan) {
   std::vector<Stage> stages;
-  if (!plan.runs.empty()) stages.push_back(stage_of_runs(plan));
+  if (!plan.blocks.empty()) stages.push_back(stage_of_blocks(plan));
   if (plan.join != Reason::none) stages.push_back(stage_of_join(plan.join, plan.join_n));
   const bool chosen = plan.settings.views.empty();
   std::size_t looked = 0;

@@ -1,50 +1,51 @@
-// Boxes of objects are joined, then those of the runs of objects that meet.
+// Boxes of objects are joined, then those of the blocks of objects that meet.
 #include "core/pairs/regions.h"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <numeric>
+#include <optional>
 
 #include "core/base/parallel.h"
-#include "core/pairs/run_triangles.h"
-#include "core/scene/box_join.h"
+#include "core/boxes/join.h"
 
 namespace farcull {
 namespace {
 
-// Two objects whose boxes overlap, or one that collides with itself (a == b). a has no more runs
+// Two objects whose boxes overlap, or one that collides with itself (a == b). a has no more blocks
 // than b.
 struct Meeting {
   std::uint32_t a, b;
 };
 
-// What the boxes of both have in common.
-Box common_of(const Runs& runs, const Meeting& meeting) {
-  return intersection(runs.objects[meeting.a], runs.objects[meeting.b]);
+// The common part of the boxes of both.
+Box common_of(const TriangleBlocks& blocks, const Meeting& meeting) {
+  return intersection(blocks.objects[meeting.a], blocks.objects[meeting.b]);
 }
 
 bool collides_with_itself(const Object& object) { return object.self && object.triangle_count > 1; }
 
-// All meetings of a scene; or, where those of two objects would be more than kMeetingsPerRun for
-// each run, none but `crowded`, since to list them would take more memory than the scene, and time
-// that grows with the square of the objects.
+// All meetings of a scene. If those of two objects are more than kMeetingsPerBlock for each block,
+// the list is empty and `crowded` is set, since to list them would take more memory than the scene,
+// and time that grows with the square of the objects.
 struct Meetings {
   std::vector<Meeting> all;
   bool crowded = false;
 };
-constexpr std::size_t kMeetingsPerRun = 8;
+constexpr std::size_t kMeetingsPerBlock = 8;
 
-Meetings meetings_of(const Scene& scene, const Runs& runs, std::span<const ObjectPair> ignored) {
-  std::vector<std::uint32_t> objects(runs.objects.size());
+Meetings meetings_of(const Scene& scene, const TriangleBlocks& blocks,
+                     std::span<const ObjectPair> ignored) {
+  std::vector<std::uint32_t> objects(blocks.objects.size());
   std::iota(objects.begin(), objects.end(), 0u);
-  const std::size_t most = kMeetingsPerRun * runs.runs.size();
+  const std::size_t most = kMeetingsPerBlock * blocks.ranges.size();
   Meetings out;
-  const std::vector<TrianglePair> pairs = box_join(runs.objects, objects, objects, most);
+  const std::vector<TrianglePair> pairs = box_join(blocks.objects, objects, objects, most);
   if (pairs.size() > most) return {.all = {}, .crowded = true};
   for (const auto& [a, b] : pairs) {
     if (std::ranges::binary_search(ignored, ObjectPair{std::min(a, b), std::max(a, b)})) continue;
-    const bool ordered = runs.count(a) <= runs.count(b);
+    const bool ordered = blocks.count(a) <= blocks.count(b);
     out.all.push_back({ordered ? a : b, ordered ? b : a});
   }
   for (const std::uint32_t o : objects) {
@@ -54,56 +55,55 @@ Meetings meetings_of(const Scene& scene, const Runs& runs, std::span<const Objec
 }
 
 // Whether a stretched object can meet another one or itself.
-bool is_uneven(const Runs& runs, const Meetings& meetings) {
-  if (runs.stretched.empty()) return false;
+bool is_uneven(const TriangleBlocks& blocks, const Meetings& meetings) {
+  if (blocks.stretched.empty()) return false;
   return meetings.crowded || std::ranges::any_of(meetings.all, [&](const Meeting& meeting) {
-           return runs.stretched[meeting.a] || runs.stretched[meeting.b];
+           return blocks.is_stretched(meeting.a) || blocks.is_stretched(meeting.b);
          });
 }
 
-void append_triangles(const Runs& runs, std::uint32_t object, const Box& box,
+void append_triangles(const TriangleBlocks& blocks, std::uint32_t object, const Box& box,
                       std::vector<std::uint32_t>& out) {
-  if (runs.is_gathered(object)) {
-    const FloatBox region = relative(box, runs.origin);
-    for (std::uint32_t k = 0; k < runs.count(object); ++k) {
-      const RunBlock& block = runs.blocks[runs.gathered[object].first + k];
-      for (std::uint32_t t = 0; t < runs.runs[runs.first[object] + k].count; ++t) {
+  if (blocks.is_gathered(object)) {
+    const FloatBox region = relative(box, blocks.origin);
+    for (std::uint32_t k = 0; k < blocks.count(object); ++k) {
+      const BlockLanes& block = blocks.lanes[blocks.gathered[object].first + k];
+      for (std::uint32_t t = 0; t < blocks.ranges[blocks.first[object] + k].count; ++t) {
         if (overlap(block.boxes.get(t), region)) out.push_back(block.triangles[t]);
       }
     }
     return;
   }
-  for (std::uint32_t k = runs.first[object]; k < runs.first[object + 1]; ++k) {
-    const Box& own = runs.boxes[k];
-    if ((own.lo.array() > box.hi.array()).any() || (box.lo.array() > own.hi.array()).any())
-      continue;
-    for (std::uint32_t t = 0; t < runs.runs[k].count; ++t) {
-      out.push_back(runs.triangle(runs.runs[k].first + t));
+  for (std::uint32_t k = blocks.first[object]; k < blocks.first[object + 1]; ++k) {
+    if (!overlap(blocks.boxes[k], box)) continue;
+    for (std::uint32_t t = 0; t < blocks.ranges[k].count; ++t) {
+      out.push_back(blocks.triangle(blocks.ranges[k].first + t));
     }
   }
 }
 
-// Per object where it can meet another one or itself; empty where it cannot.
-std::vector<Box> boxes_of_meetings(const Runs& runs, std::span<const Meeting> meetings) {
-  std::vector<Box> out(runs.objects.size(), Box::empty());
+// Per object the box in which it can meet another one or itself; empty if it cannot.
+std::vector<Box> boxes_of_meetings(const TriangleBlocks& blocks,
+                                   std::span<const Meeting> meetings) {
+  std::vector<Box> out(blocks.objects.size(), Box::empty());
   for (const Meeting& meeting : meetings) {
-    const Box common = common_of(runs, meeting);
+    const Box common = common_of(blocks, meeting);
     out[meeting.a].add(common);
     out[meeting.b].add(common);
   }
   return out;
 }
 
-// Of meetings in these boxes.
-PairRegions regions_in(const Runs& runs, std::vector<Box> boxes) {
+// The regions of meetings in these boxes.
+PairRegions regions_in(const TriangleBlocks& blocks, std::vector<Box> boxes) {
   PairRegions out;
   out.objects = std::move(boxes);
   for (std::uint32_t o = 0; o < out.objects.size(); ++o) {
     if (out.objects[o].is_empty()) continue;
-    out.reach.add(runs.objects[o]);
-    append_triangles(runs, o, out.objects[o], out.triangles);
+    out.reach.add(blocks.objects[o]);
+    append_triangles(blocks, o, out.objects[o], out.triangles);
   }
-  if (!runs.order.empty()) std::sort(out.triangles.begin(), out.triangles.end());
+  if (!blocks.order.empty()) std::sort(out.triangles.begin(), out.triangles.end());
   return out;
 }
 
@@ -113,40 +113,41 @@ void count_meetings(const Scene& scene, const Meetings& meetings, PairRegions& o
   out.pairs = meetings.crowded ? 0 : meetings.all.size() - out.self;
 }
 
-// A part of a meeting: some runs of the object a, and what they meet.
-struct Part {
+// A part of a meeting: some blocks of the object a, and what they meet.
+struct MeetingPart {
   std::uint32_t meeting;
   std::uint32_t from, to;
-  std::vector<RunPair> pairs = {};
+  std::vector<BlockPair> pairs = {};
 };
-constexpr std::uint32_t kRunsOfPart = 256;
+constexpr std::uint32_t kBlocksOfPart = 256;
 
-// More pairs of runs than this of a meeting are more than kPairsPerRun for each run that overlaps
+// The most pairs of blocks of a meeting: kPairsPerBlock for each block, whether or not it overlaps
 // any.
-std::size_t most_pairs(const Runs& runs, const Meeting& meeting) {
-  const std::size_t b = meeting.a == meeting.b ? 0 : runs.count(meeting.b);
-  return kPairsPerRun * (runs.count(meeting.a) + b);
+std::size_t most_pairs(const TriangleBlocks& blocks, const Meeting& meeting) {
+  const std::size_t b = meeting.a == meeting.b ? 0 : blocks.count(meeting.b);
+  return kPairsPerBlock * (blocks.count(meeting.a) + b);
 }
 
-std::vector<Part> parts_of(const Runs& runs, const std::vector<Meeting>& meetings) {
-  std::vector<Part> parts;
+std::vector<MeetingPart> parts_of(const TriangleBlocks& blocks,
+                                  const std::vector<Meeting>& meetings) {
+  std::vector<MeetingPart> parts;
   for (std::uint32_t k = 0; k < meetings.size(); ++k) {
-    const std::uint32_t a = meetings[k].a, end = runs.first[a] + runs.count(a);
-    for (std::uint32_t from = runs.first[a]; from < end; from += kRunsOfPart) {
-      parts.push_back({.meeting = k, .from = from, .to = std::min(from + kRunsOfPart, end)});
+    const std::uint32_t a = meetings[k].a, end = blocks.first[a] + blocks.count(a);
+    for (std::uint32_t from = blocks.first[a]; from < end; from += kBlocksOfPart) {
+      parts.push_back({.meeting = k, .from = from, .to = std::min(from + kBlocksOfPart, end)});
     }
   }
   return parts;
 }
 
-// Counts different runs.
-class RunCounter {
+// Counts different blocks.
+class BlockCounter {
  public:
-  explicit RunCounter(std::size_t runs) : seen_(runs, 0) {}
+  explicit BlockCounter(std::size_t blocks) : seen_(blocks, 0) {}
   void start() { ++round_, count_ = 0; }
-  void add(std::uint32_t run) {
-    count_ += seen_[run] != round_;
-    seen_[run] = round_;
+  void add(std::uint32_t block) {
+    count_ += seen_[block] != round_;
+    seen_[block] = round_;
   }
   std::size_t count() const { return count_; }
 
@@ -156,20 +157,21 @@ class RunCounter {
   std::size_t count_ = 0;
 };
 
-constexpr std::size_t kSampled = 64;  // pairs of runs, or runs
+constexpr std::size_t kSampled = 64;  // pairs of blocks, or blocks
 
 // Appends at most `count` of the pairs, evenly.
-void append_evenly(const std::vector<RunPair>& from, std::size_t count, std::vector<RunPair>& to) {
+void append_evenly(const std::vector<BlockPair>& from, std::size_t count,
+                   std::vector<BlockPair>& to) {
   count = std::min(count, from.size());
   for (std::size_t k = 0; k < count; ++k) to.push_back(from[from.size() * k / count]);
 }
 
 // Puts the pairs of each meeting where they belong; returns those that are left to views.
-std::vector<Meeting> sort_in(const std::vector<Meeting>& all, std::span<Part> parts,
+std::vector<Meeting> sort_in(const std::vector<Meeting>& all, std::span<MeetingPart> parts,
                              const std::vector<std::uint8_t>& complete, bool none_left,
-                             RunMeetings& out) {
+                             BlockMeetings& out) {
   std::vector<Meeting> left;
-  RunCounter counter(out.of->runs.size());
+  BlockCounter counter(out.of->ranges.size());
   for (std::size_t begin = 0, end = 0; begin < parts.size(); begin = end) {
     const std::uint32_t own = parts[begin].meeting;
     const Meeting& meeting = all[own];
@@ -177,41 +179,38 @@ std::vector<Meeting> sort_in(const std::vector<Meeting>& all, std::span<Part> pa
     counter.start();
     for (; end < parts.size() && parts[end].meeting == own; ++end) {
       pairs += parts[end].pairs.size();
-      for (const RunPair& pair : parts[end].pairs) counter.add(pair.a), counter.add(pair.b);
+      for (const BlockPair& pair : parts[end].pairs) counter.add(pair.a), counter.add(pair.b);
     }
-    if (!complete[own] || (!none_left && pairs > kPairsPerRun * counter.count())) {
+    if (!complete[own] || (!none_left && pairs > kPairsPerBlock * counter.count())) {
       left.push_back(meeting);
       continue;
     }
-    std::vector<RunPair>& to = meeting.a == meeting.b ? out.inside : out.between;
+    std::vector<BlockPair>& to = meeting.a == meeting.b ? out.inside : out.between;
     for (std::size_t k = begin; k < end; ++k) {
       to.insert(to.end(), parts[k].pairs.begin(), parts[k].pairs.end());
-      std::vector<RunPair>().swap(parts[k].pairs);  // to make room, which `= {}` would keep
+      std::vector<BlockPair>().swap(parts[k].pairs);  // to make room, which `= {}` would keep
     }
     ++out.meetings;
   }
-  for (const std::uint32_t run : runs_of(out.between, out.inside, out.of->runs.size())) {
-    out.triangles += out.of->runs[run].count;
-  }
-  out.overlaps = out.between.size() + out.inside.size();
+  for (const std::uint32_t block : blocks_in(out, out.of->ranges.size()))
+    out.triangles += out.of->ranges[block].count;
+  out.overlaps = out.size();
   return left;
 }
 
-// Some pairs of runs of some meetings: of runs that are evenly chosen.
-struct RunSample {
-  std::vector<RunPair> between, inside;
-};
-RunSample sample_of(const Runs& runs, const RunTrees& trees, std::span<const Meeting> meetings) {
-  RunSample out;
+// Some pairs of blocks of some meetings; the blocks are evenly chosen.
+BlockPairs sample_of(const TriangleBlocks& blocks, const BlockTrees& trees,
+                     std::span<const Meeting> meetings) {
+  BlockPairs out;
   const std::size_t from = std::min(kSampled, meetings.size());
   for (std::size_t m = 0; m < from; ++m) {
     const Meeting& meeting = meetings[meetings.size() * m / from];
-    const std::uint32_t first = runs.first[meeting.a], count = runs.count(meeting.a);
+    const std::uint32_t first = blocks.first[meeting.a], count = blocks.count(meeting.a);
     const std::size_t chosen = std::min<std::size_t>(count, (kSampled + from - 1) / from);
     for (std::size_t k = 0; k < chosen; ++k) {
-      const auto run = first + static_cast<std::uint32_t>(std::uint64_t{count} * k / chosen);
-      std::vector<RunPair> found;
-      pair_runs(trees, meeting.a, meeting.b, run, run + 1, SIZE_MAX, found);
+      const auto block = first + static_cast<std::uint32_t>(std::uint64_t{count} * k / chosen);
+      std::vector<BlockPair> found;
+      pair_blocks(trees, meeting.a, meeting.b, block, block + 1, SIZE_MAX, found);
       append_evenly(found, (2 * kSampled + chosen * from - 1) / (chosen * from),
                     meeting.a == meeting.b ? out.inside : out.between);
     }
@@ -219,30 +218,33 @@ RunSample sample_of(const Runs& runs, const RunTrees& trees, std::span<const Mee
   return out;
 }
 
-// Pairs of runs of a whole scene, of which no more are listed.
-std::size_t most_pairs(const Runs& runs) { return kMostPairsPerRun * runs.runs.size(); }
+// No more pairs of blocks of a whole scene are listed.
+std::size_t most_pairs(const TriangleBlocks& blocks) {
+  return kMostPairsPerBlock * blocks.ranges.size();
+}
 
-// Looks for the pairs of runs of each part. Of a meeting with more than most_pairs() it gives up,
-// unless `all`; returns per meeting whether it did not; nothing where there are more pairs of the
-// whole scene. Meetings that are given up count as one pair more than they may have, so that the
-// answer does not depend on threads.
-std::vector<std::uint8_t> find_runs(const Runs& runs, const RunTrees& trees,
-                                    const std::vector<Meeting>& meetings, bool all,
-                                    unsigned threads, std::vector<Part>& parts) {
+// Looks for the pairs of blocks of each part, and gives a meeting with more than most_pairs() up
+// unless `all`. Returns per meeting whether it was not given up; nothing if there are more pairs of
+// the whole scene. Meetings that are given up count as one pair more than they may have, so that
+// the answer does not depend on threads.
+std::vector<std::uint8_t> find_blocks(const TriangleBlocks& blocks, const BlockTrees& trees,
+                                      const std::vector<Meeting>& meetings, bool all,
+                                      unsigned threads, std::vector<MeetingPart>& parts) {
   std::vector<std::atomic<std::size_t>> found(meetings.size());
   std::atomic<std::size_t> sum = 0;
-  const std::size_t most_of_all = most_pairs(runs);
+  const std::size_t most_of_all = most_pairs(blocks);
   const std::size_t chunks = chunks_for(parts.size(), 1, threads);
   std::atomic<std::size_t> next = 0;
   for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
     for (std::size_t k = next++; k < parts.size(); k = next++) {
-      Part& part = parts[k];
+      MeetingPart& part = parts[k];
       const Meeting& meeting = meetings[part.meeting];
       std::atomic<std::size_t>& of_meeting = found[part.meeting];
-      const std::size_t most = all ? most_of_all : std::min(most_pairs(runs, meeting), most_of_all);
+      const std::size_t most =
+          all ? most_of_all : std::min(most_pairs(blocks, meeting), most_of_all);
       if (sum > most_of_all) return;
       if (of_meeting > most) continue;
-      pair_runs(trees, meeting.a, meeting.b, part.from, part.to, most, part.pairs);
+      pair_blocks(trees, meeting.a, meeting.b, part.from, part.to, most, part.pairs);
       const std::size_t pairs = part.pairs.size(), before = of_meeting.fetch_add(pairs);
       sum += std::min(before + pairs, most + 1) - std::min(before, most + 1);
       if (before + pairs > most) part.pairs = {};
@@ -251,26 +253,29 @@ std::vector<std::uint8_t> find_runs(const Runs& runs, const RunTrees& trees,
   if (sum > most_of_all) return {};
   std::vector<std::uint8_t> complete(meetings.size());
   for (std::size_t k = 0; k < meetings.size(); ++k) {
-    complete[k] = all || found[k] <= most_pairs(runs, meetings[k]);
+    complete[k] = all || found[k] <= most_pairs(blocks, meetings[k]);
   }
   return complete;
 }
 
+// Some of the pairs, at most about `count`, evenly.
+BlockPairs some_of(const BlockPairs& pairs, std::size_t count) {
+  const std::size_t all = pairs.size();
+  BlockPairs out;
+  append_evenly(pairs.between, (count * pairs.between.size() + all - 1) / all, out.between);
+  append_evenly(pairs.inside, (count * pairs.inside.size() + all - 1) / all, out.inside);
+  return out;
+}
+
 // Whether boxes of triangles overlap so often that views are worth while, by a sample of the pairs,
-// which is returned in `sample` then.
-bool overlaps_often(const Scene& scene, const RunMeetings& meetings, double clearance,
-                    RunSample& sample) {
-  const std::size_t all = meetings.between.size() + meetings.inside.size();
-  if (all == 0) return false;
-  RunSample some;
-  append_evenly(meetings.between, (kSampled * meetings.between.size() + all - 1) / all,
-                some.between);
-  append_evenly(meetings.inside, (kSampled * meetings.inside.size() + all - 1) / all, some.inside);
-  const std::size_t found =
-      pairs_of_some(scene, meetings, some.between, some.inside, clearance, false, 1).size();
-  const double each =
-      static_cast<double>(found) / static_cast<double>(some.between.size() + some.inside.size());
-  if (each * static_cast<double>(all) <=
+// which is then returned in `sample`.
+bool overlaps_often(const Scene& scene, const BlockMeetings& meetings, double clearance,
+                    BlockPairs& sample) {
+  if (meetings.size() == 0) return false;
+  BlockPairs some = some_of(meetings, kSampled);
+  const std::size_t found = pairs_of_some(scene, *meetings.of, some, clearance, false, 1).size();
+  const double each = static_cast<double>(found) / static_cast<double>(some.size());
+  if (each * static_cast<double>(meetings.size()) <=
       static_cast<double>(kOverlapsPerTriangle * meetings.triangles)) {
     return false;
   }
@@ -278,16 +283,15 @@ bool overlaps_often(const Scene& scene, const RunMeetings& meetings, double clea
   return true;
 }
 
-// The pairs of triangles of a sample; none where pairs of runs give fewer than one each, since then
-// there are many more pairs of runs than pairs of triangles.
-std::vector<TrianglePair> pairs_of_sample(const Scene& scene, const RunMeetings& meetings,
-                                          const RunSample& from, double clearance) {
-  RunSample some;
+// The pairs of triangles of a sample; empty if pairs of blocks give fewer than one each, since then
+// there are many more pairs of blocks than pairs of triangles.
+std::vector<TrianglePair> pairs_of_sample(const Scene& scene, const TriangleBlocks& blocks,
+                                          const BlockPairs& from, double clearance) {
+  BlockPairs some;
   append_evenly(from.between, 2 * kSampled, some.between);
   append_evenly(from.inside, 2 * kSampled, some.inside);
-  std::vector<TrianglePair> pairs =
-      pairs_of_some(scene, meetings, some.between, some.inside, clearance, false, 1);
-  if (pairs.size() < some.between.size() + some.inside.size()) pairs.clear();
+  std::vector<TrianglePair> pairs = pairs_of_some(scene, blocks, some, clearance, false, 1);
+  if (pairs.size() < some.size()) pairs.clear();
   return pairs;
 }
 
@@ -295,24 +299,24 @@ std::vector<TrianglePair> pairs_of_sample(const Scene& scene, const RunMeetings&
 
 PairRegions pair_regions(const Scene& scene, double clearance, bool full, unsigned threads,
                          std::span<const ObjectPair> ignored) {
-  const Runs runs = make_runs(scene, clearance, threads);
-  const Meetings meetings = meetings_of(scene, runs, ignored);
+  const TriangleBlocks blocks = make_blocks(scene, clearance, threads);
+  const Meetings meetings = meetings_of(scene, blocks, ignored);
   PairRegions out = regions_in(
-      runs, full || meetings.crowded ? runs.objects : boxes_of_meetings(runs, meetings.all));
+      blocks, full || meetings.crowded ? blocks.objects : boxes_of_meetings(blocks, meetings.all));
   count_meetings(scene, meetings, out);
   return out;
 }
 
 namespace {
 
-// Nothing is left to runs and views.
-PairParts joined(const Scene& scene, const Runs& runs, const Meetings& meetings, Reason reason,
-                 std::uint64_t n) {
+// Nothing is left to blocks and views.
+PairParts joined(const Scene& scene, const TriangleBlocks& blocks, const Meetings& meetings,
+                 Reason reason, std::uint64_t n) {
   PairParts out;
   out.join = reason;
   out.join_n = n;
-  out.rest.objects = runs.objects;
-  for (const Box& box : runs.objects) {
+  out.rest.objects = blocks.objects;
+  for (const Box& box : blocks.objects) {
     if (!box.is_empty()) out.rest.reach.add(box);
   }
   out.rest.triangles.resize(scene.triangles.size());
@@ -321,48 +325,90 @@ PairParts joined(const Scene& scene, const Runs& runs, const Meetings& meetings,
   return out;
 }
 
-// The meetings of a scene whose runs have their boxes or blocks. regions: where its objects meet.
+// The meetings of a scene whose blocks have their boxes or lanes. regions: where its objects meet.
 PairParts split(const Scene& scene, const Meetings& meetings, const std::vector<Box>& regions,
-                double clearance, unsigned threads, bool all, std::shared_ptr<const Runs> of) {
-  const Runs& runs = *of;
+                double clearance, unsigned threads, bool all,
+                std::shared_ptr<const TriangleBlocks> of) {
+  const TriangleBlocks& blocks = *of;
   PairParts out;
-  out.runs.of = std::move(of);
-  const RunTrees trees(runs, regions);
-  std::vector<Part> parts = parts_of(runs, meetings.all);
+  out.blocks.of = std::move(of);
+  const BlockTrees trees(blocks, regions);
+  std::vector<MeetingPart> parts = parts_of(blocks, meetings.all);
   const std::vector<std::uint8_t> complete =
-      find_runs(runs, trees, meetings.all, all, threads, parts);
+      find_blocks(blocks, trees, meetings.all, all, threads, parts);
   if (complete.size() < meetings.all.size()) {
-    return joined(scene, runs, meetings, Reason::join_many_runs, most_pairs(runs));
+    return joined(scene, blocks, meetings, Reason::join_many_blocks, most_pairs(blocks));
   }
-  std::vector<Meeting> left = sort_in(meetings.all, parts, complete, all, out.runs);
-  RunSample sample;
-  if (!all && !out.runs.empty() && overlaps_often(scene, out.runs, clearance, sample)) {
+  std::vector<Meeting> left = sort_in(meetings.all, parts, complete, all, out.blocks);
+  BlockPairs sample;
+  if (!all && !out.blocks.empty() && overlaps_often(scene, out.blocks, clearance, sample)) {
     left = meetings.all;
   } else if (!left.empty()) {
-    sample = sample_of(runs, trees, left);
+    sample = sample_of(blocks, trees, left);
   }
-  if (!left.empty()) out.sample = pairs_of_sample(scene, out.runs, sample, clearance);
-  out.rest = regions_in(runs, boxes_of_meetings(runs, left));
+  if (!left.empty()) out.sample = pairs_of_sample(scene, blocks, sample, clearance);
+  out.rest = regions_in(blocks, boxes_of_meetings(blocks, left));
   count_meetings(scene, meetings, out.rest);
-  if (left.size() == meetings.all.size()) out.runs = {};
+  if (left.size() == meetings.all.size()) out.blocks = {};
   return out;
 }
 
-// Leaves out pairs of runs of which neither moved, and keeps the pairs that they gave before.
+// Leaves out pairs of blocks of which neither moved, and keeps the pairs that they gave before.
 void keep_unmoved(const Scene& scene, std::span<const std::uint8_t> moved,
-                  const std::vector<TrianglePair>& before, RunMeetings& out) {
-  const auto rests = [&](const RunPair& pair) { return !moved[pair.a] && !moved[pair.b]; };
+                  const std::vector<TrianglePair>& before, BlockMeetings& out) {
+  const auto rests = [&](const BlockPair& pair) { return !moved[pair.a] && !moved[pair.b]; };
   std::erase_if(out.between, rests);
   std::erase_if(out.inside, rests);
   std::vector<std::uint8_t> of_moved(scene.triangles.size(), 0);
   for (std::size_t k = 0; k < moved.size(); ++k) {
     if (!moved[k]) continue;
-    const Run& run = out.of->runs[k];
-    for (std::uint32_t i = 0; i < run.count; ++i) of_moved[out.of->triangle(run.first + i)] = 1;
+    const TriangleBlock& range = out.of->ranges[k];
+    for (std::uint32_t i = 0; i < range.count; ++i) of_moved[out.of->triangle(range.first + i)] = 1;
   }
   std::ranges::copy_if(before, std::back_inserter(out.kept), [&](const TrianglePair& pair) {
     return !of_moved[pair.a] && !of_moved[pair.b];
   });
+}
+
+// Per block whether a corner of its triangles moved.
+std::vector<std::uint8_t> moved_blocks(const Scene& scene, const MovedCorners& moved,
+                                       const TriangleBlocks& blocks, unsigned threads) {
+  const std::size_t n = blocks.ranges.size();
+  std::vector<std::uint8_t> out(n, 0);
+  for_chunks(n, chunks_for(n, 256, threads), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const TriangleBlock& range = blocks.ranges[k];
+      std::uint8_t any = 0;
+      for (std::uint32_t i = 0; i < range.count; ++i)
+        any |= moved.triangle(scene, blocks.triangle(range.first + i));
+      out[k] = any;
+    }
+  });
+  return out;
+}
+
+// The parts of a scene in which every object is left to the tree of all boxes, or to views; empty:
+// blocks decide.
+std::optional<PairParts> parts_without_blocks(const Scene& scene, const TriangleBlocks& blocks,
+                                              const Meetings& meetings, double clearance,
+                                              unsigned threads,
+                                              std::span<const ObjectPair> ignored) {
+  if (is_uneven(blocks, meetings)) return joined(scene, blocks, meetings, Reason::join_uneven, 0);
+  if (!meetings.crowded) return std::nullopt;
+  return PairParts{.blocks = {}, .rest = pair_regions(scene, clearance, false, threads, ignored)};
+}
+
+// The parts of a frame in which nothing moved: everything is as before.
+PairParts unmoved_parts(const Scene& scene, const PairMemory& memory) {
+  PairParts out;
+  out.rest.objects.assign(scene.objects.size(), Box::empty());
+  out.rest.pairs = memory.object_pairs;
+  out.rest.self = memory.self;
+  out.blocks.kept = memory.pairs;
+  out.blocks.overlaps = memory.overlaps;
+  out.blocks.meetings = memory.meetings;
+  out.blocks.triangles = memory.triangles;
+  return out;
 }
 
 }  // namespace
@@ -370,78 +416,38 @@ void keep_unmoved(const Scene& scene, std::span<const std::uint8_t> moved,
 PairParts split_meetings(const Scene& scene, double clearance, unsigned threads, bool all,
                          std::span<const ObjectPair> ignored) {
   ScatteredBoxes scattered;
-  const auto runs = std::make_shared<Runs>(make_runs(scene, clearance, threads, &scattered));
-  const Meetings meetings = meetings_of(scene, *runs, ignored);
-  if (is_uneven(*runs, meetings)) return joined(scene, *runs, meetings, Reason::join_uneven, 0);
-  if (meetings.crowded)
-    return {.runs = {}, .rest = pair_regions(scene, clearance, false, threads, ignored)};
-  const std::vector<Box> regions = boxes_of_meetings(*runs, meetings.all);
-  gather_scattered(scene, clearance, regions, threads, scattered, *runs);
+  const auto blocks =
+      std::make_shared<TriangleBlocks>(make_blocks(scene, clearance, threads, &scattered));
+  const Meetings meetings = meetings_of(scene, *blocks, ignored);
+  if (auto parts = parts_without_blocks(scene, *blocks, meetings, clearance, threads, ignored))
+    return *std::move(parts);
+  const std::vector<Box> regions = boxes_of_meetings(*blocks, meetings.all);
+  gather_scattered(scene, clearance, regions, threads, scattered, *blocks);
   scattered = {};  // to make room
-  return split(scene, meetings, regions, clearance, threads, all, runs);
+  return split(scene, meetings, regions, clearance, threads, all, blocks);
 }
-
-namespace {
-
-// Of a frame in which nothing moved: everything is as before.
-PairParts unmoved_parts(const Scene& scene, const PairMemory& memory) {
-  PairParts out;
-  out.rest.objects.assign(scene.objects.size(), Box::empty());
-  out.rest.pairs = memory.object_pairs;
-  out.rest.self = memory.self;
-  out.runs.kept = memory.pairs;
-  out.runs.overlaps = memory.overlaps;
-  out.runs.meetings = memory.meetings;
-  out.runs.triangles = memory.triangles;
-  return out;
-}
-
-}  // namespace
 
 PairParts split_next_frame(const Scene& scene, unsigned threads, bool all, PairMemory& memory) {
   const double clearance = memory.clearance;
   if (!memory.moved.any()) return unmoved_parts(scene, memory);
-  const bool ordered = memory.runs != nullptr;
+  const bool ordered = memory.blocks != nullptr;
   if (!ordered) {
-    memory.runs = std::make_shared<Runs>(make_ordered_runs(scene, clearance, threads));
-  } else if (memory.runs.use_count() > 1) {  // somebody has the last frame's plan
-    memory.runs = std::make_shared<Runs>(*memory.runs);
+    memory.blocks =
+        std::make_shared<TriangleBlocks>(make_ordered_blocks(scene, clearance, threads));
+  } else if (memory.blocks.use_count() > 1) {  // somebody has the last frame's plan
+    memory.blocks = std::make_shared<TriangleBlocks>(*memory.blocks);
   }
-  Runs& runs = *memory.runs;
-  const std::size_t n = runs.runs.size();
-  std::vector<std::uint8_t> moved(n, 0);
-  for_chunks(n, chunks_for(n, 256, threads), [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const Run& run = runs.runs[k];
-      std::uint8_t any = 0;
-      for (std::uint32_t i = 0; i < run.count; ++i) {
-        any |= memory.moved.triangle(scene, runs.triangle(run.first + i));
-      }
-      moved[k] = any;
-    }
-  });
-  if (ordered) update_boxes(scene, clearance, moved, threads, runs);
-  const Meetings meetings = meetings_of(scene, runs, memory.ignored);
-  if (is_uneven(runs, meetings)) return joined(scene, runs, meetings, Reason::join_uneven, 0);
-  if (meetings.crowded)
-    return {.runs = {}, .rest = pair_regions(scene, clearance, false, threads, memory.ignored)};
-  PairParts out = split(scene, meetings, boxes_of_meetings(runs, meetings.all), clearance, threads,
-                        all, memory.runs);
-  if (out.rest.triangles.empty() && !out.runs.empty()) {
-    keep_unmoved(scene, moved, memory.pairs, out.runs);
-  }
-  return out;
-}
-
-std::vector<TrianglePair> pairs_of_runs(const Scene& scene, const RunMeetings& meetings,
-                                        double clearance, bool neighbours, unsigned threads) {
-  if (meetings.between.empty() && meetings.inside.empty()) return meetings.kept;
-  std::vector<TrianglePair> found = pairs_of_some(scene, meetings, meetings.between,
-                                                  meetings.inside, clearance, neighbours, threads);
-  if (meetings.kept.empty()) return found;
-  std::vector<TrianglePair> out;
-  out.reserve(found.size() + meetings.kept.size());
-  std::ranges::merge(found, meetings.kept, std::back_inserter(out));
+  TriangleBlocks& blocks = *memory.blocks;
+  const std::vector<std::uint8_t> moved = moved_blocks(scene, memory.moved, blocks, threads);
+  if (ordered) update_boxes(scene, clearance, moved, threads, blocks);
+  const Meetings meetings = meetings_of(scene, blocks, memory.ignored);
+  if (auto parts =
+          parts_without_blocks(scene, blocks, meetings, clearance, threads, memory.ignored))
+    return *std::move(parts);
+  PairParts out = split(scene, meetings, boxes_of_meetings(blocks, meetings.all), clearance,
+                        threads, all, memory.blocks);
+  if (out.rest.triangles.empty() && !out.blocks.empty())
+    keep_unmoved(scene, moved, memory.pairs, out.blocks);
   return out;
 }
 

@@ -1,20 +1,20 @@
-// Where the objects of a scene can meet, by boxes alone: of objects, and of runs of their
-// triangles.
+// Regions in which the objects of a scene can meet, by boxes alone: of objects, and of blocks of
+// their triangles.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "core/base/stage.h"
-#include "core/pairs/memory.h"
-#include "core/pairs/run_triangles.h"
-#include "core/pairs/runs.h"
+#include "core/boxes/block_join.h"
+#include "core/scene/moved.h"
 #include "core/scene/scene.h"
 
 namespace farcull {
 
-/// Where the objects of a scene can meet.
+/// The regions in which the objects of a scene can meet.
 struct PairRegions {
   std::vector<Box>
       objects;  // per object: contains all its points that can belong to a pair; empty: none
@@ -32,36 +32,60 @@ struct PairRegions {
 PairRegions pair_regions(const Scene& scene, double clearance, bool full = false,
                          unsigned threads = 0, std::span<const ObjectPair> ignored = {});
 
-/// What boxes say about a scene: pairs of runs for the meetings that are cheapest so, and the
-/// regions of all others. Their `pairs` and `self` count all meetings of the scene.
+/// Pairs of blocks for the meetings that are cheapest so, and the regions of all others. Their
+/// `pairs` and `self` count all meetings of the scene.
 struct PairParts {
-  RunMeetings runs;
+  BlockMeetings blocks;
   PairRegions rest;
-  /// Set where neither runs nor views decide, but a tree of all boxes, with the number that it
-  /// speaks of: join_uneven, or join_many_runs. `rest` has all triangles then.
+  /// Set if neither blocks nor views decide, but a tree of all boxes, with the number that it
+  /// speaks of: join_uneven, or join_many_blocks. `rest` has all triangles then.
   Reason join = Reason::none;
   std::uint64_t join_n = 0;
-  std::vector<TrianglePair> sample = {};  // of the others: some pairs whose boxes overlap
+  std::vector<TrianglePair> sample = {};  // some pairs of the others whose boxes overlap
 };
 /// Decides for each meeting (two objects whose boxes overlap, or an object that is tested against
-/// itself) whether boxes of runs find its candidates, or views. Runs do where few of their boxes
-/// overlap, since no view is as cheap then: see kPairsPerRun and kOverlapsPerTriangle below.
+/// itself) whether boxes of blocks find its candidates, or views. Blocks do where few of their boxes
+/// overlap, since no view is as cheap then: see kPairsPerBlock and kOverlapsPerTriangle below.
 /// all: nothing is left to views, unless the scene is `crowded`. threads: 0 for as many as there
-/// are cores. ignored: as pair_regions(); the runs of two such objects are never a pair.
+/// are cores. ignored: as pair_regions(); the blocks of two such objects are never a pair.
 PairParts split_meetings(const Scene& scene, double clearance, unsigned threads = 0,
                          bool all = false, std::span<const ObjectPair> ignored = {});
-/// The same for the frame that comes after the one in `memory`. Preconditions: memory.moved says
-/// what moved since that frame; it was complete; its clearance, neighbours and ignored objects are
-/// those of now.
+
+/// The memory of FAR pairs about a scene for its next frame, so that triangles that did not move
+/// cost little: kept between plan_pairs() and find_pairs() of one frame and those of the next. A
+/// frame that does not come to its end leaves nothing behind for the next one.
+///
+/// Whether the boxes of two triangles overlap depends on their corners alone. So the pairs of two
+/// blocks in which no corner moved are those of the last frame, and only pairs of blocks of which
+/// one moved are compared. The order of scattered triangles is kept too: any order is right, and
+/// one that was good remains so for a while.
+struct PairMemory {
+  MovedCorners moved;
+  BackoffCounter patience;
+  double clearance = 0;
+  bool neighbours = true;
+  std::vector<ObjectPair> ignored;
+  bool complete = false;  // the frame was planned and found, and blocks decided all of it
+  /// Blocks of the last frame, with all triangles of scattered objects in order; null: not made
+  /// yet. Its plan has it too, until it is destroyed.
+  std::shared_ptr<TriangleBlocks> blocks;
+  std::vector<TrianglePair> pairs;  // that the blocks of the last frame gave
+  /// Counts of that frame: of BlockMeetings and PairRegions.
+  std::uint64_t overlaps = 0, meetings = 0, triangles = 0, object_pairs = 0, self = 0;
+};
+
+/// split_meetings() for the frame that comes after the one in `memory`. Preconditions: memory.moved
+/// says what moved since that frame; it was complete; its clearance, neighbours and ignored objects
+/// are those of now.
 PairParts split_next_frame(const Scene& scene, unsigned threads, bool all, PairMemory& memory);
-/// Boxes of runs decide a meeting if at most so many pairs of them overlap for each run that
+/// Boxes of blocks decide a meeting if at most so many pairs of them overlap for each block that
 /// overlaps any.
-constexpr std::size_t kPairsPerRun = 32;
+constexpr std::size_t kPairsPerBlock = 32;
 /// But views decide the whole scene if, in a sample, the boxes of more pairs of triangles overlap
 /// than this for each triangle, neighbours apart: a view then removes many of these pairs.
 constexpr std::size_t kOverlapsPerTriangle = 16;
-/// Where boxes of more pairs of runs overlap than this for each run, or an object is stretched
-/// (core/pairs/runs.h), neither runs nor views decide: PairParts::join.
-constexpr std::size_t kMostPairsPerRun = 1024;
+/// If boxes of more pairs of blocks overlap than this for each block, or an object is stretched
+/// (core/boxes/triangle_blocks.h), neither blocks nor views decide: PairParts::join.
+constexpr std::size_t kMostPairsPerBlock = 1024;
 
 }  // namespace farcull

@@ -60,7 +60,7 @@ class SweepColumns {
 /// The longest vector, in entries.
 constexpr std::size_t kSweepPadding = 16;
 
-/// Where a sweep stands.
+/// The state of a sweep.
 struct Sweep {
   const SweepColumns* columns;
   bool sorted;              // ascending by near: an entry ends where the others begin behind it

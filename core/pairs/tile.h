@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstdint>
 #include <span>
@@ -14,13 +15,27 @@
 #include "core/pairs/backend.h"
 #include "core/pairs/grid.h"
 #include "core/pairs/lists.h"
-#include "core/pairs/rows.h"
-#include "core/pairs/settled.h"
 #include "core/pairs/sweep.h"
-#include "core/pairs/work_limit.h"
 #include "core/scene/pair_sort.h"
 
 namespace farcull {
+
+/// Counts work of several threads. Whether all of it is beyond the limit does not depend on their
+/// order, and each of them sees it soon.
+class WorkLimit {
+ public:
+  explicit WorkLimit(std::uint64_t most = UINT64_MAX) : most_(most) {}
+  void add(std::uint64_t work) { done_.fetch_add(work, std::memory_order_relaxed); }
+  bool exceeded() const { return done_.load(std::memory_order_relaxed) > most_; }
+  std::uint64_t left() const {
+    const std::uint64_t done = done_.load(std::memory_order_relaxed);
+    return done > most_ ? 0 : most_ - done;
+  }
+
+ private:
+  std::uint64_t most_;
+  std::atomic<std::uint64_t> done_ = 0;
+};
 
 /// The rules by which a pair is passed over. Tests put others in their place, by which pairs are
 /// lost.
@@ -59,7 +74,7 @@ class TileWorker {
   // The part of a worker's memory that the table may take.
   static constexpr std::size_t kSettledPart = 8;
 
-  /// Where the pairs of a list are reported.
+  /// The place at which the pairs of a list are reported.
   struct Place {
     bool pixel;  // a whole pixel, and no crowded one
     int i, j;
@@ -96,7 +111,7 @@ class TileWorker {
   bool some_crowded_ = false;           // pixels of the tile
   SweepColumns columns_;
   std::vector<TrianglePair> found_;
-  // Of one list: the number of each entry, the entry of each number, and numbers of those to come.
+  // For one list: the number of each entry, the entry of each number, and the numbers to come.
   std::vector<std::uint32_t> numbers_, places_;
   std::vector<std::uint64_t> to_come_;
 };

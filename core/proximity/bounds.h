@@ -59,7 +59,7 @@ inline double square_limit(double limit) {
   return square < kMostSquare ? square : kMostSquare;
 }
 
-/// What lies farther apart than this along a direction is farther apart than `limit`.
+/// Points farther apart than this along a direction are farther apart than `limit`.
 /// squared: of the direction's length; doubt: kGap |d|.X.
 inline double gap_limit(double limit, double squared, double doubt) {
   // The root is off by less than 3 u of itself.

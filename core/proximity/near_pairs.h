@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/scene/object_pair.h"
 #include "core/scene/scene.h"
 
 namespace farcull {
@@ -29,7 +28,7 @@ struct NearHint {
   TrianglePair triangles;
 };
 
-/// What can be nearest of two objects, or of one twice: of its own triangles, neighbours left out.
+/// The triangles of two objects that can be nearest; or of one twice: its own, without neighbours.
 struct NearPairs {
   ObjectPair objects;
   /// Some pair of triangles of these objects is at most this far apart (world units); infinite
@@ -91,7 +90,7 @@ class ProximityTrees {
   std::vector<TrianglePair> pairs_within(double within, std::size_t most,
                                          const Progress& progress = {}) const;
 
-  /// Of all calls so far.
+  /// Sums over all calls so far.
   ProximityCounts counts() const;
 
  private:

@@ -1,20 +1,266 @@
-// ProximityTrees of near_pairs.h, in a file of its own because what it is built from includes that
-// header. Each question is a search (core/proximity/search.h). Searches go on side by side; one
-// that takes long is divided.
+// ProximityTrees of near_pairs.h, in a file of this name because search.h includes that header.
+// Each question is a search (core/proximity/search.h). Searches go on side by side; one that takes
+// long is divided. For the nearest objects, each object asks about the others in the order of the
+// gaps of their boxes, and stops at a gap above the k-th least upper bound so far. For all pairs
+// within a distance, each object is searched with those that follow it, by searches whose bound
+// stays the limit and that stop often, to count the pairs of all of them.
 #include "core/proximity/near_pairs.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
+#include <queue>
 #include <stdexcept>
+#include <string>
 
-#include "core/proximity/nearest.h"
-#include "core/proximity/pairs_within.h"
+#include "core/base/error.h"
+#include "core/base/shared_work.h"
+#include "core/proximity/bounds.h"
 #include "core/proximity/scene_trees.h"
 #include "core/proximity/search.h"
-#include "core/proximity/split.h"
 
 namespace farcull {
+namespace {
+
+double square_of_gap(const Box& a, const Box& b) {
+  return (a.lo - b.hi).cwiseMax(b.lo - a.hi).cwiseMax(0).squaredNorm();
+}
+
+// Objects in the order of their boxes' gaps from a box; of those with the same gap the lower one
+// first. All is scaled.
+class Approach {
+ public:
+  Approach(const SceneTrees& trees, const Box& box) : trees_(trees), box_(box) {
+    const BoxTree<double>& tree = trees.objects();
+    if (tree.levels > 0) queue_.push({0, tree.levels, 0});
+  }
+  // False where none is left, or the squared gap is above the limit.
+  bool next(double square_limit, std::uint32_t& object) {
+    while (!queue_.empty() && queue_.top().square <= square_limit) {
+      const Node at = queue_.top();
+      queue_.pop();
+      if (at.height == 0) {
+        object = at.k;
+        return true;
+      }
+      const auto below = static_cast<std::size_t>(at.height - 1);
+      const WideBoxes<double>& block = trees_.blocks()[trees_.objects().first[below] + at.k];
+      for (std::uint32_t lane = 0; lane < kWide; ++lane) {
+        const double square = square_of_gap(block.get(lane), box_);
+        if (!(square <= square_limit)) continue;
+        const std::uint32_t child = kWide * at.k + lane;
+        queue_.push({square, at.height - 1, at.height > 1 ? child : trees_.object(child)});
+      }
+    }
+    return false;
+  }
+
+ private:
+  struct Node {
+    double square;
+    int height;
+    std::uint32_t k;                           // of height 0: the object
+    bool operator<(const Node& other) const {  // the nearest one is the top
+      if (square != other.square) return square > other.square;
+      return height != other.height ? height < other.height : k > other.k;
+    }
+  };
+  const SceneTrees& trees_;
+  Box box_;
+  std::priority_queue<Node> queue_;
+};
+
+// Bounds of the distance of one other object.
+struct Found {
+  double lower = 0;  // scaled, of the distance
+  double upper = 0;
+  double limit = 0;  // of the search
+  NearPairs near;
+};
+
+// The searches that hints begin, sorted by objects.
+std::vector<Search> begun_by_hints(const SceneTrees& trees, std::span<const NearHint> hints,
+                                   double limit, SearchMemory& memory) {
+  std::vector<Search> out;
+  out.reserve(hints.size());
+  for (const NearHint& hint : hints)
+    out.push_back(begin_search(trees, hint.objects, limit, &hint.triangles, memory));
+  return out;
+}
+
+// The k-th least bound: k other objects are at most so far.
+double kth_least_upper(std::span<const Search> searches, std::size_t k) {
+  if (searches.size() < k) return std::numeric_limits<double>::infinity();
+  std::vector<double> upper;
+  for (const Search& search : searches) upper.push_back(search.upper);
+  const auto kth = upper.begin() + static_cast<std::ptrdiff_t>(k - 1);
+  std::ranges::nth_element(upper, kth);
+  return *kth;
+}
+
+// The others that may be among the k nearest of an object. hints: those that name it,
+// sorted. all: also those that are as near and have higher numbers.
+std::vector<Found> found_by(const SceneTrees& trees, std::uint32_t object, std::size_t k,
+                            double limit, std::span<const NearHint> hints, bool all,
+                            SearchMemory& memory, ProximityCounts& counts) {
+  std::vector<Found> out;
+  std::vector<Search> begun = begun_by_hints(trees, hints, limit, memory);
+  for (const Search& search : begun) counts.triangle_pairs += search.counts.triangle_pairs;
+  limit = std::min(limit, kth_least_upper(begun, k));
+  std::vector<double> least;  // the k least upper bounds, as a heap
+  const auto bound = [&] { return least.size() < k ? limit : std::min(limit, least.front()); };
+  Approach approach(trees, trees.box(object));
+  std::uint32_t other = 0;
+  std::size_t meeting = 0;
+  while (approach.next(near::square_limit(bound()), other)) {
+    if (other == object) continue;
+    const ObjectPair objects = {std::min(object, other), std::max(object, other)};
+    const double most = bound();
+    const auto hinted = std::ranges::lower_bound(begun, objects, {}, &Search::objects);
+    Search search;
+    if (hinted != begun.end() && hinted->objects == objects) {
+      search = std::move(*hinted);
+      search.limit = most;
+      search.counts = {};  // they were added
+    } else {
+      search = begin_search(trees, objects, most, nullptr, memory);
+    }
+    while (!search.open.empty()) {
+      go_on(trees, kLeafPairsAtOnce, search, memory);
+      require_room(trees, search);
+    }
+    Found found = {.limit = most, .near = answer(trees, search)};
+    counts.box_pairs += search.counts.box_pairs;
+    counts.triangle_pairs += search.counts.triangle_pairs;
+    if (search.kept.empty()) continue;
+    found.lower = std::ranges::min_element(search.kept, {}, &KeptPair::lower)->lower;
+    found.upper = std::ranges::min_element(search.kept, {}, &KeptPair::upper)->upper;
+    least.push_back(found.upper);
+    std::ranges::push_heap(least);
+    if (least.size() > k) {
+      std::ranges::pop_heap(least);
+      least.pop_back();
+    }
+    // Others that overlap come in the order of their numbers. Once k of them meet this object,
+    // those that follow are not nearer, and have higher numbers.
+    meeting += found.upper == 0;
+    out.push_back(std::move(found));
+    if (!all && meeting == k) break;
+  }
+  std::erase_if(out, [most = bound()](const Found& f) { return f.lower > most; });
+  return out;
+}
+
+// ProximityTrees::nearest_objects(). limit: scaled; hints: triangles of the objects that they name,
+// sorted by objects, for two objects at most one; all: also others that are as near and have higher
+// numbers. Adds to counts.
+std::vector<NearPairs> nearest_objects(const SceneTrees& trees, std::size_t k, double limit,
+                                       std::span<const NearHint> hints, bool all, unsigned threads,
+                                       ProximityCounts& counts) {
+  if (k == 0) return {};
+  const std::size_t objects = trees.scene().objects.size();
+  std::vector<std::vector<NearHint>> hints_of(objects);
+  for (const NearHint& hint : hints) {
+    hints_of[hint.objects.a].push_back(hint);
+    hints_of[hint.objects.b].push_back(hint);
+  }
+  std::vector<std::vector<Found>> found(objects);
+  std::vector<ProximityCounts> parts(objects);
+  for_each_with_memory<SearchMemory>(objects, threads, [&](std::size_t o, SearchMemory& memory) {
+    const auto object = static_cast<std::uint32_t>(o);
+    if (trees.tree(object).levels == 0) return;
+    found[o] = found_by(trees, object, k, limit, hints_of[o], all, memory, parts[o]);
+  });
+  std::vector<Found> founds;
+  for (std::size_t o = 0; o < objects; ++o) {
+    counts.box_pairs += parts[o].box_pairs;
+    counts.triangle_pairs += parts[o].triangle_pairs;
+    std::ranges::move(found[o], std::back_inserter(founds));
+  }
+  // Two objects may both have found each other. An answer holds all nearest pairs only where they
+  // are within its limit, which is so for one of them at least: so for that of the larger limit.
+  std::ranges::stable_sort(founds, [](const Found& x, const Found& y) {
+    if (x.near.objects != y.near.objects) return x.near.objects < y.near.objects;
+    return x.limit > y.limit;
+  });
+  std::vector<NearPairs> out;
+  for (Found& f : founds) {
+    if (!out.empty() && out.back().objects == f.near.objects) continue;
+    counts.kept += f.near.pairs.size();
+    out.push_back(std::move(f.near));
+  }
+  return out;
+}
+
+// Pairs of leaves between two counts: at most 16,384 pairs of triangles.
+constexpr std::size_t kBetweenCounts = 64;
+
+// Counts the pairs of all threads. Throws if they are too many.
+class Count {
+ public:
+  explicit Count(std::size_t most) : most_(most) {}
+  void add(std::size_t pairs) {
+    if (found_.fetch_add(pairs) + pairs <= most_) return;
+    throw Error(
+        "within",
+        "has more than " + std::to_string(most_) +
+            " pairs of triangles, which are too many to list",
+        "give a smaller distance, or ask for the pairs without their distances: farcull run "
+        "--clearance");
+  }
+
+ private:
+  std::size_t most_;
+  std::atomic<std::size_t> found_ = 0;
+};
+
+void add_pairs(const SceneTrees& trees, const ObjectPair& objects, double limit, Count& count,
+               SearchMemory& memory, ProximityCounts& counts, std::vector<TrianglePair>& out) {
+  Search search = begin_search(trees, objects, limit, nullptr, memory);
+  search.everything = true;
+  while (!search.open.empty()) {
+    go_on(trees, kBetweenCounts, search, memory);
+    count.add(search.kept.size());
+    for (const KeptPair& kept : search.kept) out.push_back(kept.pair);
+    counts.kept += search.kept.size();
+    search.kept.clear();
+  }
+  counts.box_pairs += search.counts.box_pairs;
+  counts.triangle_pairs += search.counts.triangle_pairs;
+}
+
+// ProximityTrees::pairs_within(). limit: scaled. Adds to counts.
+std::vector<TrianglePair> pairs_within(const SceneTrees& trees, double limit, std::size_t most,
+                                       unsigned threads, ProximityCounts& counts) {
+  const Scene& scene = trees.scene();
+  const std::size_t objects = scene.objects.size();
+  Count count(most);
+  std::vector<std::vector<TrianglePair>> found(objects);
+  std::vector<ProximityCounts> parts(objects);
+  for_each_with_memory<SearchMemory>(objects, threads, [&](std::size_t o, SearchMemory& memory) {
+    const auto object = static_cast<std::uint32_t>(o);
+    if (trees.tree(object).levels == 0) return;
+    Approach approach(trees, trees.box(object));
+    std::uint32_t other = 0;
+    while (approach.next(near::square_limit(limit), other)) {
+      if (other < object || (other == object && !scene.objects[o].self)) continue;
+      add_pairs(trees, {object, other}, limit, count, memory, parts[o], found[o]);
+    }
+    std::ranges::sort(found[o]);
+  });
+  std::vector<TrianglePair> out;
+  for (std::size_t o = 0; o < objects; ++o) {
+    out.insert(out.end(), found[o].begin(), found[o].end());
+    found[o] = {};
+    counts.box_pairs += parts[o].box_pairs;
+    counts.triangle_pairs += parts[o].triangle_pairs;
+    counts.kept += parts[o].kept;
+  }
+  return out;
+}
+
+}  // namespace
 
 struct ProximityTrees::State {
   State(const Scene& scene, unsigned thread_count)
@@ -81,7 +327,7 @@ std::vector<NearPairs> ProximityTrees::near_pairs(
         const TrianglePair* hint = hints.empty() || !hints[k] ? nullptr : &*hints[k];
         if (hint != nullptr && !fits(trees.scene(), objects, *hint)) hint = nullptr;
         Search search = begin_search(trees, objects, limit, hint, memory);
-        go_on(trees, kRunPairsAtOnce, search, memory);
+        go_on(trees, kLeafPairsAtOnce, search, memory);
         if (search.open.empty()) {
           out[k] = answer(trees, search);
           state_->add(search.counts);

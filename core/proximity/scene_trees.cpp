@@ -1,5 +1,5 @@
-// Runs come from core/pairs/runs.h; those of an object are put in an order of their own, so that
-// sixteen that follow one another lie together as well.
+// Blocks come from core/boxes/triangle_blocks.h; those of an object are put in an order of their
+// own, so that sixteen that follow one another lie together as well.
 #include "core/proximity/scene_trees.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace farcull {
 
 SceneTrees::SceneTrees(const Scene& scene, unsigned threads)
-    : scene_(&scene), runs_(make_ordered_runs(scene, 0, threads)) {
+    : scene_(&scene), of_(make_ordered_blocks(scene, 0, threads)) {
   choose_scale();
   make_trees(threads);
   make_object_tree();
@@ -18,7 +18,7 @@ SceneTrees::SceneTrees(const Scene& scene, unsigned threads)
 
 void SceneTrees::choose_scale() {
   double most = 0;
-  for (const Box& box : runs_.objects) {
+  for (const Box& box : of_.objects) {
     if (box.is_empty()) continue;
     most = std::max({most, box.lo.cwiseAbs().maxCoeff(), box.hi.cwiseAbs().maxCoeff()});
   }
@@ -31,22 +31,22 @@ void SceneTrees::make_trees(unsigned threads) {
   std::size_t blocks = 0;
   for (std::size_t o = 0; o < objects; ++o) {
     first[o] = blocks;
-    blocks += blocks_of_tree(run_count(static_cast<std::uint32_t>(o)));
+    blocks += blocks_of_tree(of_.count(static_cast<std::uint32_t>(o)));
   }
   blocks_.resize(blocks + blocks_of_tree(objects));
   least_.resize(blocks);
   trees_.resize(objects);
-  place_.resize(runs_.runs.size());
+  place_.resize(of_.ranges.size());
   const auto make = [&](std::size_t o) {
-    const std::uint32_t from = runs_.first[o], n = run_count(static_cast<std::uint32_t>(o));
+    const std::uint32_t from = of_.first[o], n = of_.count(static_cast<std::uint32_t>(o));
     const auto place = std::span(place_).subspan(from, n);
-    spatial_order(std::span(runs_.boxes).subspan(from, n), place);
+    spatial_order(std::span(of_.boxes).subspan(from, n), place);
     std::vector<Box> leaves(n);
     for (std::size_t k = 0; k < n; ++k) {
-      const Box& box = runs_.boxes[place[k] += from];
+      const Box& box = of_.boxes[place[k] += from];
       leaves[k] = {box.lo * scale_, box.hi * scale_};
     }
-    trees_[o] = make_tree(leaves, blocks_, first[o]);
+    trees_[o] = make_tree<double>(leaves, blocks_, first[o]);
     find_least(static_cast<std::uint32_t>(o));
   };
   for_chunks(objects, chunks_for(objects, 1, threads),
@@ -56,12 +56,11 @@ void SceneTrees::make_trees(unsigned threads) {
 }
 
 void SceneTrees::find_least(std::uint32_t object) {
-  const BoxTree& tree = trees_[object];
-  std::vector<std::uint32_t> least(run_count(object), UINT32_MAX);
-  for (std::uint32_t leaf = 0; leaf < least.size(); ++leaf) {
-    const std::uint32_t at = run(object, leaf);
-    for (std::uint32_t k = 0; k < count(at); ++k)
-      least[leaf] = std::min(least[leaf], triangle(at, k));
+  const BoxTree<double>& tree = trees_[object];
+  std::vector<std::uint32_t> least(tree.leaves, UINT32_MAX);
+  for (std::uint32_t n = 0; n < least.size(); ++n) {
+    const std::uint32_t at = leaf(object, n);
+    for (std::uint32_t k = 0; k < count(at); ++k) least[n] = std::min(least[n], triangle(at, k));
   }
   for (std::size_t height = 0; height < static_cast<std::size_t>(tree.levels); ++height) {
     const std::size_t n = (least.size() + kWide - 1) / kWide;
@@ -93,7 +92,55 @@ void SceneTrees::make_object_tree() {
     leaves[k] = boxes[order[k]];
     object_of_leaf_[k] = objects[order[k]];
   }
-  objects_ = make_tree(leaves, blocks_, blocks_.size() - blocks_of_tree(scene_->objects.size()));
+  objects_ =
+      make_tree<double>(leaves, blocks_, blocks_.size() - blocks_of_tree(scene_->objects.size()));
+}
+
+namespace {
+
+// Into the cache, for a use that follows soon.
+void fetch([[maybe_unused]] const void* at) {
+#ifdef __GNUC__
+  __builtin_prefetch(at);
+#endif
+}
+
+}  // namespace
+
+void load_leaf(const SceneTrees& trees, std::uint32_t leaf, BlockCorners& out) {
+  const Scene& scene = trees.scene();
+  out.leaf = leaf;
+  out.count = trees.count(leaf);
+  out.direction = 0;
+  // Triangles and their corners may lie anywhere in memory.
+  for (std::uint32_t k = 0; k < kWide; ++k) {
+    out.triangle[k] = trees.triangle(leaf, std::min(k, out.count - 1));
+    fetch(&scene.triangles[out.triangle[k]]);
+  }
+  for (const std::uint32_t triangle : out.triangle) prefetch(scene, triangle);
+  out.boxes.clear();
+  for (std::uint32_t k = 0; k < kWide; ++k) {
+    Box box = Box::empty();
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const Vec3 p = trees.corner(out.triangle[k], corner);
+      box.add(p);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        out.corner[3 * corner + axis][k] = p[static_cast<Eigen::Index>(axis)];
+      }
+    }
+    if (k < out.count) out.boxes.set(k, box);
+  }
+}
+
+bool share_position(const Scene& scene, std::uint32_t a, std::uint32_t b) {
+  const auto &own = scene.triangles[a], &other = scene.triangles[b];
+  if (share_index(own, other)) return true;
+  for (const std::uint32_t v : own) {
+    for (const std::uint32_t w : other) {
+      if (scene.vertices[v] == scene.vertices[w]) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace farcull

@@ -1,14 +1,13 @@
-// Trees over the triangles of each object, and one over the objects. The leaves are runs of at most
-// sixteen triangles that lie together.
+// Trees over the triangles of each object, and one over the objects. The leaves are blocks of at
+// most sixteen triangles that lie together.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/base/uninitialized.h"
-#include "core/pairs/box_tree.h"
-#include "core/pairs/runs.h"
+#include "core/boxes/triangle_blocks.h"
 #include "core/scene/scene.h"
 
 namespace farcull {
@@ -24,19 +23,15 @@ class SceneTrees {
 
   const Scene& scene() const { return *scene_; }
   double scale() const { return scale_; }
-  const WideBoxes* blocks() const { return blocks_.data(); }
-  /// Its leaves are the runs of the object, counted from 0.
-  const BoxTree& tree(std::uint32_t object) const { return trees_[object]; }
-  std::uint32_t run_count(std::uint32_t object) const {
-    return runs_.first[object + 1] - runs_.first[object];
-  }
+  const WideBoxes<double>* blocks() const { return blocks_.data(); }
+  /// Its leaves are the blocks of the object, counted from 0.
+  const BoxTree<double>& tree(std::uint32_t object) const { return trees_[object]; }
   /// The number of a leaf among those of all objects.
-  std::uint32_t run(std::uint32_t object, std::uint32_t leaf) const {
-    return runs_.first[object] + leaf;
-  }
-  std::uint32_t count(std::uint32_t run) const { return runs_.runs[place_[run]].count; }
-  std::uint32_t triangle(std::uint32_t run, std::uint32_t k) const {
-    return runs_.triangle(runs_.runs[place_[run]].first + k);
+  std::uint32_t leaf(std::uint32_t object, std::uint32_t k) const { return of_.first[object] + k; }
+  /// Triangles of a leaf.
+  std::uint32_t count(std::uint32_t leaf) const { return of_.ranges[place_[leaf]].count; }
+  std::uint32_t triangle(std::uint32_t leaf, std::uint32_t k) const {
+    return of_.triangle(of_.ranges[place_[leaf]].first + k);
   }
   Vec3 corner(std::uint32_t triangle, std::size_t k) const {
     return scene_->vertices[scene_->triangles[triangle][k]] * scale_;
@@ -44,14 +39,14 @@ class SceneTrees {
   Box box(std::uint32_t object) const { return trees_[object].box; }
   /// The least triangle below a node of an object's tree.
   std::uint32_t least(std::uint32_t object, std::size_t height, std::uint32_t k) const {
-    const BoxTree& tree = trees_[object];
+    const BoxTree<double>& tree = trees_[object];
     if (height == static_cast<std::size_t>(tree.levels))
       return scene_->objects[object].first_triangle;
     return least_[tree.first[height] + k / kWide][k % kWide];
   }
 
   /// The tree over the objects that have triangles, and which object each leaf is.
-  const BoxTree& objects() const { return objects_; }
+  const BoxTree<double>& objects() const { return objects_; }
   std::uint32_t object(std::uint32_t leaf) const { return object_of_leaf_[leaf]; }
 
  private:
@@ -62,13 +57,51 @@ class SceneTrees {
 
   const Scene* scene_;
   double scale_ = 1;
-  Runs runs_;
-  std::vector<std::uint32_t> place_;  // of each run, in the order of leaves, into runs_.runs
-  std::vector<BoxTree> trees_;
-  BoxTree objects_;
+  TriangleBlocks of_;
+  std::vector<std::uint32_t> place_;  // of each leaf, into of_.ranges
+  std::vector<BoxTree<double>> trees_;
+  BoxTree<double> objects_;
   std::vector<std::uint32_t> object_of_leaf_;
-  UninitializedVector<WideBoxes> blocks_;
+  UninitializedVector<WideBoxes<double>> blocks_;
   std::vector<std::array<std::uint32_t, kWide>> least_;  // of each box of blocks_
 };
+
+/// The corners of sixteen scaled triangles as columns: 3 corner + axis.
+using CornerColumns = std::array<std::array<double, kWide>, 9>;
+
+/// Pairs of scaled triangles.
+struct alignas(64) PairBatch {
+  CornerColumns a{}, b{};
+  std::array<TrianglePair, kWide> pairs{};
+  std::size_t count = 0;  // of pairs; the columns behind them hold any finite numbers
+};
+
+/// The distance of the exact triangles is at least `lower` and at most `upper`, in scaled units. It
+/// is certain that they meet where upper is 0.
+/// direction: from about the closest point of a to that of b.
+struct alignas(64) BatchBounds {
+  std::array<double, kWide> lower, upper;
+  std::array<std::array<double, kWide>, 3> direction;
+};
+
+/// The triangles of a leaf, ready for lanes.
+struct alignas(64) BlockCorners {
+  CornerColumns corner;
+  WideBoxes<double> boxes;  // of the triangles
+  std::array<std::uint32_t, kWide> triangle;
+  alignas(64) std::array<double, kWide> extreme;  // along a direction: the most of a triangle of a,
+                                                  // the least of one of b
+  double most_extreme = 0;
+  std::uint64_t direction = 0;  // which one: a number of the search's memory
+  std::uint32_t leaf = UINT32_MAX;
+  std::uint32_t count = 0;
+};
+
+/// Loads a leaf of all objects' (SceneTrees::leaf()). Columns behind its last triangle repeat that
+/// one, but have no box.
+void load_leaf(const SceneTrees& trees, std::uint32_t leaf, BlockCorners& out);
+
+/// Whether the triangles have a corner at the same position.
+bool share_position(const Scene& scene, std::uint32_t a, std::uint32_t b);
 
 }  // namespace farcull

@@ -1,5 +1,7 @@
 // Branch and bound on the lanes of this processor. Every instruction set rounds alike, so all find
-// the same in the same order.
+// the same in the same order. A long search is divided into a fixed number of parts, which begin
+// with the same bound and take nothing from each other; after a while they are joined, and the rest
+// is divided again.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/proximity/search.cpp"
 #include <hwy/foreach_target.h>
@@ -7,14 +9,25 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
 
-#include "core/proximity/box_gaps-inl.h"
+#include "core/base/error.h"
+#include "core/base/shared_work.h"
+#include "core/boxes/lanes-inl.h"
+#include "core/proximity/bounds.h"
 #include "core/proximity/search.h"
 #include "core/proximity/triangle_pairs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace farcull::HWY_NAMESPACE {
 namespace proximity {
+
+using boxes::Gaps;
+using boxes::near_boxes;
+using boxes::next_bit;
+using OneBox = boxes::OneBox<double>;
 
 class Searcher {
  public:
@@ -54,7 +67,7 @@ class Searcher {
       search_.open.pop_back();
       if (at.square > square_limit_ || is_behind(at)) continue;
       if (at.a_height == 0 && at.b_height == 0) {
-        compare_runs(at);
+        compare_leaves(at);
         ++looked_at;
       } else {
         children_.clear();
@@ -70,8 +83,8 @@ class Searcher {
   }
 
  private:
-  // Of nodes as near, those with the lower triangles come first: where the objects meet, the first
-  // pair is the answer.
+  // Nodes with lower triangles come first among nodes as near: if the objects meet, the first pair
+  // is the answer.
   bool comes_first(const NodePair& x, const NodePair& y) const {
     const TrianglePair p = least(x), q = least(y);
     if (p != q) return p < q;
@@ -85,11 +98,11 @@ class Searcher {
   bool is_behind(const NodePair& at) const {
     if (search_.first.a == UINT32_MAX) return false;
     const TrianglePair lowest = least(at);
-    // Of one object either node may hold the lower triangle.
+    // If the objects are one, either node may hold the lower triangle.
     return self_ ? search_.is_behind({std::min(lowest.a, lowest.b), 0}) : search_.is_behind(lowest);
   }
 
-  // Down to the pair of runs that seems nearest, and from their nearest corners to a first bound.
+  // Down to the pair of leaves that seems nearest, and from their nearest corners to a first bound.
   void descend() {
     NodePair at = search_.open.back();
     while (at.a_height > 0 || at.b_height > 0) {
@@ -97,8 +110,8 @@ class Searcher {
       expand(at, near::kMostSquare, children_);
       at = *std::ranges::min_element(children_, {}, &NodePair::square);
     }
-    const RunCorners& a = load(memory_.a, trees_.run(search_.objects.a, at.a));
-    const RunCorners& b = load(memory_.b, trees_.run(search_.objects.b, at.b));
+    const BlockCorners& a = load(memory_.a, trees_.leaf(search_.objects.a, at.a));
+    const BlockCorners& b = load(memory_.b, trees_.leaf(search_.objects.b, at.b));
     double least = std::numeric_limits<double>::infinity();
     std::size_t best_i = 0, best_j = 0;
     for (std::size_t i = 0; i < a.count; ++i) {
@@ -124,27 +137,22 @@ class Searcher {
     alignas(64) Gaps squares;
     const auto a_height = static_cast<std::uint8_t>(at.a_height - (at.a_height >= at.b_height));
     const auto b_height = static_cast<std::uint8_t>(at.b_height - (at.b_height >= at.a_height));
-    if (at.a_height < at.b_height) {
-      const OneBox box = box_of(a_, at.a_height, at.a);
-      std::uint32_t bits = near_boxes(children(b_, at.b_height, at.b), box, limit, squares);
+    if (at.a_height != at.b_height) {
+      const bool a = at.a_height > at.b_height;  // the one that is divided
+      const WideBoxes<double>& own =
+          a ? children(a_, at.a_height, at.a) : children(b_, at.b_height, at.b);
+      const OneBox box = a ? box_of(b_, at.b_height, at.b) : box_of(a_, at.a_height, at.a);
+      std::uint32_t bits = near_boxes(own, box, limit, squares);
       while (bits != 0) {
-        const std::size_t j = next_bit(bits);
-        out.push_back({squares[j], at.a, child(at.b, j), a_height, b_height});
+        const std::uint32_t k = next_bit(bits);
+        out.push_back(
+            {squares[k], a ? child(at.a, k) : at.a, a ? at.b : child(at.b, k), a_height, b_height});
       }
       count_boxes(1);
       return;
     }
-    const WideBoxes& own = children(a_, at.a_height, at.a);
-    if (at.a_height > at.b_height) {
-      std::uint32_t bits = near_boxes(own, box_of(b_, at.b_height, at.b), limit, squares);
-      while (bits != 0) {
-        const std::size_t i = next_bit(bits);
-        out.push_back({squares[i], child(at.a, i), at.b, a_height, b_height});
-      }
-      count_boxes(1);
-      return;
-    }
-    const WideBoxes& other = children(b_, at.b_height, at.b);
+    const WideBoxes<double>& own = children(a_, at.a_height, at.a);
+    const WideBoxes<double>& other = children(b_, at.b_height, at.b);
     std::uint32_t columns = near_boxes(other, box_of(a_, at.a_height, at.a), limit, squares);
     count_boxes(1 + static_cast<std::size_t>(std::popcount(columns)));
     while (columns != 0) {
@@ -160,19 +168,20 @@ class Searcher {
   static std::uint32_t child(std::uint32_t node, std::size_t k) {
     return kWide * node + static_cast<std::uint32_t>(k);
   }
-  const WideBoxes& children(const BoxTree& tree, std::size_t height, std::uint32_t k) const {
+  const WideBoxes<double>& children(const BoxTree<double>& tree, std::size_t height,
+                                    std::uint32_t k) const {
     return trees_.blocks()[tree.first[height - 1] + k];
   }
-  HWY_INLINE OneBox box_of(const BoxTree& tree, std::size_t height, std::uint32_t k) const {
+  HWY_INLINE OneBox box_of(const BoxTree<double>& tree, std::size_t height, std::uint32_t k) const {
     if (height == static_cast<std::size_t>(tree.levels)) return OneBox(tree.box);
     return OneBox(trees_.blocks()[tree.first[height] + k / kWide], k % kWide);
   }
   void count_boxes(std::size_t blocks) { search_.counts.box_pairs += kWide * blocks; }
 
-  // The pairs of triangles of two runs that may be near go into the batch.
-  HWY_INLINE void compare_runs(const NodePair& at) {
-    RunCorners& a = load(memory_.a, trees_.run(search_.objects.a, at.a));
-    RunCorners& b = load(memory_.b, trees_.run(search_.objects.b, at.b));
+  // The pairs of triangles of two leaves that may be near go into the batch.
+  HWY_INLINE void compare_leaves(const NodePair& at) {
+    BlockCorners& a = load(memory_.a, trees_.leaf(search_.objects.a, at.a));
+    BlockCorners& b = load(memory_.b, trees_.leaf(search_.objects.b, at.b));
     // The batch may change the direction while the rows are compared.
     const bool directed = direction_ != 0;
     const double gap_limit = gap_limit_;
@@ -197,50 +206,48 @@ class Searcher {
   }
 
   // Bits of the triangles that begin at most gap_limit behind `place` along the direction.
-  HWY_INLINE std::uint32_t before(const std::array<double, kBatch>& extreme, double place,
+  HWY_INLINE std::uint32_t before(const std::array<double, kWide>& extreme, double place,
                                   double gap_limit) const {
     const Numbers n;
     std::uint32_t out = 0;
-    for (std::size_t from = 0; from < kBatch; from += kLanes) {
-      std::uint8_t bytes[8] = {};
+    for (std::size_t from = 0; from < kWide; from += kLanes) {
       const Number gap = hn::Sub(hn::Load(n, &extreme[from]), number(place));
-      hn::StoreMaskBits(n, hn::Le(gap, number(gap_limit)), bytes);
-      out |= static_cast<std::uint32_t>(bytes[0]) << from;
+      out |= boxes::bits_of(n, hn::Le(gap, number(gap_limit))) << from;
     }
     return out;
   }
 
-  // Where the triangles of a run end along the direction.
-  HWY_INLINE void project(RunCorners& run, bool most) const {
+  // The places at which the triangles of a leaf end along the direction.
+  HWY_INLINE void project(BlockCorners& leaf, bool most) const {
     const Numbers n;
     const Vec3& d = search_.direction;
     const Point direction = {number(d[0]), number(d[1]), number(d[2])};
     const Point origin = {number(origin_[0]), number(origin_[1]), number(origin_[2])};
-    for (std::size_t from = 0; from < kBatch; from += kLanes) {
+    for (std::size_t from = 0; from < kWide; from += kLanes) {
       const auto place = [&](std::size_t corner) {
-        return dot(LaneTriangle::load(run.corner, corner, from) - origin, direction);
+        return dot(LaneTriangle::load(leaf.corner, corner, from) - origin, direction);
       };
       const Number p = place(0), q = place(1), r = place(2);
       hn::Store(most ? hn::Max(hn::Max(p, q), r) : hn::Min(hn::Min(p, q), r), n,
-                &run.extreme[from]);
+                &leaf.extreme[from]);
     }
-    const auto end = run.extreme.begin() + run.count;
-    run.most_extreme = most ? *std::max_element(run.extreme.begin(), end)
-                            : *std::min_element(run.extreme.begin(), end);
-    run.direction = direction_;
+    const auto end = leaf.extreme.begin() + leaf.count;
+    leaf.most_extreme = most ? *std::max_element(leaf.extreme.begin(), end)
+                             : *std::min_element(leaf.extreme.begin(), end);
+    leaf.direction = direction_;
   }
 
-  // The run from the cache; it is loaded first where it is missing.
-  RunCorners& load(std::vector<RunCorners>& memory, std::uint32_t run) const {
-    RunCorners& out = memory[run % SearchMemory::kRuns];
-    if (out.run != run) load_run(trees_, run, out);
+  // The leaf from the cache; a missing one is loaded first.
+  BlockCorners& load(std::vector<BlockCorners>& memory, std::uint32_t leaf) const {
+    BlockCorners& out = memory[leaf % SearchMemory::kLeaves];
+    if (out.leaf != leaf) load_leaf(trees_, leaf, out);
     return out;
   }
 
   bool counts(std::uint32_t a, std::uint32_t b) const {
     return !self_ || !share_position(trees_.scene(), a, b);
   }
-  void add(const RunCorners& a, std::size_t i, const RunCorners& b, std::size_t j) {
+  void add(const BlockCorners& a, std::size_t i, const BlockCorners& b, std::size_t j) {
     const std::uint32_t first = a.triangle[i], second = b.triangle[j];
     // The bounds of two triangles depend on their order in the last digits.
     if (first > second) return add(b, j, a, i);
@@ -251,7 +258,7 @@ class Searcher {
       batch.b[k][batch.count] = b.corner[k][j];
     }
     batch.pairs[batch.count] = {first, second};
-    if (++batch.count == kBatch) flush();
+    if (++batch.count == kWide) flush();
   }
   void add_hint(const TrianglePair& hint) {
     PairBatch& batch = memory_.batch;
@@ -275,16 +282,16 @@ class Searcher {
     find_common_corners(bounds);
     search_.counts.triangle_pairs += batch.count;
     const double before = search_.upper;
-    std::size_t best = kBatch;
+    std::size_t best = kWide;
     for (std::size_t k = 0; k < batch.count; ++k) {
       if (bounds.upper[k] == 0) search_.first = std::min(search_.first, batch.pairs[k]);
       if (!(bounds.upper[k] < search_.upper)) continue;
       search_.upper = bounds.upper[k];
       best = k;
     }
-    if (best < kBatch) {
+    if (best < kWide) {
       new_bound();
-      // Where many pairs are as near, the bound sinks by roundings; then the direction stays.
+      // If many pairs are as near, the bound sinks by roundings; then the direction stays.
       if (direction_ == 0 || search_.upper < before * (1 - 0x1p-20)) {
         search_.direction = {bounds.direction[0][best], bounds.direction[1][best],
                              bounds.direction[2][best]};
@@ -336,8 +343,8 @@ class Searcher {
   const SceneTrees& trees_;
   Search& search_;
   SearchMemory& memory_;
-  const BoxTree& a_;
-  const BoxTree& b_;
+  const BoxTree<double>& a_;
+  const BoxTree<double>& b_;
   bool self_;
   Vec3 origin_, extent_;
   double square_limit_ = 0, gap_limit_ = 0;
@@ -383,6 +390,89 @@ void Search::filter() {
   std::erase_if(kept, [this, most = bound()](const KeptPair& k) {
     return k.lower > most || is_behind(k.pair);
   });
+}
+
+namespace {
+
+constexpr std::size_t kParts = 32;
+
+// Deals the open pairs to searches of their own, which begin with the bound of this one.
+std::vector<Search> divide(Search& search) {
+  std::vector<Search> out(std::min(kParts, search.open.size()));
+  for (Search& part : out) {
+    part.objects = search.objects;
+    part.limit = search.limit;
+    part.upper = search.upper;
+    part.first = search.first;
+    part.direction = search.direction;
+  }
+  // The last one is looked at first, in each part as well.
+  const std::size_t n = search.open.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    out[(n - 1 - k) % out.size()].open.push_back(search.open[k]);
+  }
+  search.open.clear();
+  return out;
+}
+
+// Adds the pairs that a part found or left open to the search that it came from.
+void join(Search& part, Search& search) {
+  if (part.upper < search.upper) {
+    search.upper = part.upper;
+    search.direction = part.direction;
+  }
+  search.first = std::min(search.first, part.first);
+  search.open.insert(search.open.end(), part.open.begin(), part.open.end());
+  search.kept.insert(search.kept.end(), part.kept.begin(), part.kept.end());
+  search.counts.box_pairs += part.counts.box_pairs;
+  search.counts.triangle_pairs += part.counts.triangle_pairs;
+  part = Search();
+}
+
+}  // namespace
+
+double scaled_limit(const SceneTrees& trees, double within) {
+  // A product that is subnormal is rounded; and the next number is not below the exact one.
+  return std::nextafter(within * trees.scale(), std::numeric_limits<double>::infinity());
+}
+
+void require_room(const SceneTrees& trees, const Search& search, std::size_t most) {
+  if (search.kept.size() <= most) return;
+  throw Error(trees.scene().name,
+              "more than " + std::to_string(most) + " pairs of triangles of the objects " +
+                  std::to_string(search.objects.a) + " and " + std::to_string(search.objects.b) +
+                  " may be nearest",
+              "leave one of the objects out, or drop triangles that are there twice");
+}
+
+void go_on_divided(const SceneTrees& trees, unsigned threads, Search& search, std::size_t most) {
+  while (!search.open.empty()) {
+    std::vector<Search> parts = divide(search);
+    for_each_with_memory<SearchMemory>(parts.size(), threads,
+                                       [&](std::size_t k, SearchMemory& memory) {
+                                         go_on(trees, kLeafPairsAtOnce, parts[k], memory);
+                                       });
+    for (Search& part : parts) join(part, search);
+    search.filter();
+    require_room(trees, search, most);
+  }
+}
+
+NearPairs answer(const SceneTrees& trees, Search& search) {
+  search.filter();
+  search.counts.kept = search.kept.size();
+  NearPairs out;
+  out.objects = search.objects;
+  double upper = std::numeric_limits<double>::infinity();
+  out.pairs.reserve(search.kept.size());
+  for (const KeptPair& k : search.kept) {
+    out.pairs.push_back(k.pair);
+    upper = std::min(upper, k.upper);
+  }
+  std::ranges::sort(out.pairs);
+  // A quotient that is subnormal is rounded.
+  out.upper = std::nextafter(upper / trees.scale(), std::numeric_limits<double>::infinity());
+  return out;
 }
 
 }  // namespace farcull

@@ -12,7 +12,7 @@
 #include <hwy/highway.h>
 
 #include "core/proximity/bounds.h"
-#include "core/proximity/triangle_pairs.h"
+#include "core/proximity/scene_trees.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace farcull::HWY_NAMESPACE::proximity {
@@ -22,7 +22,7 @@ using Numbers = hn::CappedTag<double, 8>;
 using Number = hn::Vec<Numbers>;
 using Mask = hn::Mask<Numbers>;
 constexpr std::size_t kLanes = hn::MaxLanes(Numbers());
-static_assert(kBatch % kLanes == 0);
+static_assert(kWide % kLanes == 0);
 
 HWY_INLINE Number number(double x) { return hn::Set(Numbers(), x); }
 HWY_INLINE Number clamped(Number x) { return hn::Max(number(0), hn::Min(x, number(1))); }
@@ -56,9 +56,9 @@ HWY_INLINE Point cross(const Point& a, const Point& b) {
 struct Weights {
   Number one, two;
 };
-/// Of the corner k.
+/// The weights of the corner k.
 HWY_INLINE Weights at_corner(int k) { return {number(k == 1), number(k == 2)}; }
-/// Of the point at t, in [0, 1], from corner k to the next.
+/// The weights of the point at t, in [0, 1], from corner k to the next.
 HWY_INLINE Weights on_edge(int k, Number t) {
   const Number rest = hn::Sub(number(1), t);
   if (k == 0) return {t, number(0)};
@@ -75,11 +75,10 @@ struct LaneTriangle {
   // For coordinates in the plane, along edge 0 and from corner 0 to corner 2.
   Number ee, ef, ff, determinant;
 
-  HWY_INLINE LaneTriangle(const PairBatch::Columns& columns, std::size_t from, const Point& origin)
+  HWY_INLINE LaneTriangle(const CornerColumns& columns, std::size_t from, const Point& origin)
       : LaneTriangle(load(columns, 0, from) - origin, load(columns, 1, from) - origin,
                      load(columns, 2, from) - origin) {}
-  HWY_INLINE static Point load(const PairBatch::Columns& columns, std::size_t corner,
-                               std::size_t from) {
+  HWY_INLINE static Point load(const CornerColumns& columns, std::size_t corner, std::size_t from) {
     const Numbers n;
     return {hn::Load(n, &columns[3 * corner][from]), hn::Load(n, &columns[3 * corner + 1][from]),
             hn::Load(n, &columns[3 * corner + 2][from])};
@@ -157,7 +156,7 @@ class Guess {
     const Point difference = w - times(face.edge[0], foot.one) + times(face.edge[2], foot.two);
     offer(difference, inside, corner, foot, own_best, other_best);
   }
-  // Where an edge crosses the plane of the face, within it.
+  // The point at which an edge crosses the plane of the face, if it lies within the face.
   HWY_INLINE void offer_piercing(const LaneTriangle& own, int k, const LaneTriangle& face,
                                  Weights& own_best, Weights& other_best) {
     const Point normal = cross(face.edge[2], face.edge[0]);
@@ -189,7 +188,7 @@ class Guess {
   Weights on_a_, on_b_;
 };
 
-/// What the difference of the points proves, as core/proximity/bounds.h derives it.
+/// Bounds that the difference of the points proves, as core/proximity/bounds.h derives them.
 class Proof {
  public:
   HWY_INLINE Proof(const LaneTriangle& a, const LaneTriangle& b) : a_(a), b_(b) {
@@ -248,7 +247,7 @@ HWY_INLINE Sign sign_of_determinant(const Point& a, const Point& b, const Point&
   return {hn::Gt(value, doubt), hn::Lt(value, hn::Neg(doubt))};
 }
 
-/// Where an edge of one triangle passes through the other one for certain.
+/// Lanes in which an edge of one triangle passes through the other one for certain.
 HWY_INLINE Mask meet_for_certain(const PairBatch& batch, std::size_t from) {
   Point a[3], b[3];
   for (std::size_t k = 0; k < 3; ++k) {

@@ -7,7 +7,7 @@
 namespace farcull {
 
 bool MovedCorners::update(const Scene& scene) {
-  // Where an allocation fails, the copy is not whole.
+  // If an allocation below throws, the copy is partial, so it is invalidated first.
   const bool known = std::exchange(known_, false);
   std::vector<Part> objects;
   objects.reserve(scene.objects.size());

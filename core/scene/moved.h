@@ -41,12 +41,12 @@ class MovedCorners {
   std::vector<std::uint8_t> moved_;  // per vertex: bits changed
 };
 
-/// Whether it is worth while to look at what moved: not for a while after frames in which most did.
-class Patience {
+/// Whether it is worth while to compare frames: not for a while after frames in which most moved.
+class BackoffCounter {
  public:
   /// To be asked once a frame.
   bool waits() { return frames_left_ > 0 && frames_left_-- > 0; }
-  void tell(bool worth_while) {
+  void notify(bool worth_while) {
     frames_left_ = worth_while ? 0 : next_;
     next_ = worth_while ? 1 : std::min(2 * next_, kMostFrames);
   }
@@ -56,8 +56,8 @@ class Patience {
   int frames_left_ = 0, next_ = 1;
 };
 
-/// Whether less than half of some of the pairs, evenly chosen, have a triangle that moved. Where
-/// there is no pair: whether nothing moved.
+/// Whether less than half of some of the pairs, evenly chosen, have a triangle that moved. Without
+/// a pair: whether nothing moved.
 bool mostly_unmoved(const Scene& scene, const MovedCorners& moved,
                     std::span<const TrianglePair> pairs);
 

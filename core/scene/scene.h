@@ -4,12 +4,11 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
-
-#include "core/scene/object_pair.h"
 
 namespace farcull {
 
@@ -30,6 +29,13 @@ struct Box {
 bool overlap(const Box& a, const Box& b);
 /// The common part of two boxes; empty where they do not overlap.
 Box intersection(const Box& a, const Box& b);
+
+/// Two objects as indices, a < b; or one object twice.
+struct ObjectPair {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  auto operator<=>(const ObjectPair&) const = default;
+};
 
 struct Object {
   std::string name;
@@ -57,7 +63,7 @@ struct Scene {
       source_face;  // per triangle: 0-based face of its file before triangulation
   std::vector<Object> objects;
   std::vector<ObjectPair> ignored = {};  // objects that are not tested against each other; as
-                                         // in_order() of core/scene/ignored.h gives them
+                                         // in_order() gives them
   std::vector<FoldedFace> folded = {};   // polygons to warn of; sorted
 
   std::array<Vec3, 3> corners(std::uint32_t triangle) const;
@@ -105,5 +111,45 @@ std::vector<std::uint32_t> owners(const Scene& scene);
 /// the coordinates of all triangles, in order. Names do not count, nor do the ignored objects,
 /// which a record tells of by itself.
 std::string scene_hash(const Scene& scene);
+
+/// Triangles in at least one of the pairs; ascending, each once. triangles: number of triangles of
+/// the scene.
+std::vector<std::uint32_t> members_of(std::span<const TrianglePair> pairs, std::size_t triangles);
+
+/// Objects that have one of these triangles (ascending).
+std::uint64_t count_objects(const Scene& scene, std::span<const std::uint32_t> triangles);
+
+/// Whether an object of the scene is tested against itself.
+bool has_self(const Scene& scene);
+
+/// Pairs of two different objects with a < b in each, sorted, each once.
+std::vector<ObjectPair> in_order(std::vector<ObjectPair> pairs);
+
+/// Removes the pairs of triangles whose objects are an ignored pair (nobody asks about their
+/// triangles or their distance); the others stay in their order. Returns how many were removed.
+/// ignored: as in_order() gives them. Time O(pairs). Throws std::logic_error if it names an object
+/// that the scene does not have.
+std::uint64_t remove_ignored(const Scene& scene, std::span<const ObjectPair> ignored,
+                             std::vector<TrianglePair>& pairs);
+
+/// Throws Error if objects of the scene are ignored. who: it answers about all objects, as in
+/// "farcull distance".
+void require_nothing_ignored(const Scene& scene, const std::string& who);
+
+/// Tells of one pair of triangles after the other whether its objects are ignored.
+class IgnoredObjects {
+ public:
+  /// As remove_ignored(). The scene is not kept.
+  IgnoredObjects(const Scene& scene, std::span<const ObjectPair> ignored);
+  bool any() const { return !others_.empty(); }
+  bool operator()(const TrianglePair& pair) const;
+
+ private:
+  std::vector<std::uint32_t> owner_;  // per triangle
+  // Per object b the objects a < b that are ignored with it: others_[first_[b]] to
+  // others_[first_[b + 1]], ascending. Most objects have a short list or an empty one.
+  std::vector<std::size_t> first_;
+  std::vector<std::uint32_t> others_;
+};
 
 }  // namespace farcull

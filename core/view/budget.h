@@ -6,7 +6,7 @@
 #include <array>
 #include <string>
 
-#include "core/view/raster.h"
+#include "core/view/view.h"
 
 namespace farcull {
 

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "core/base/parallel.h"
-#include "core/scene/box_join.h"
+#include "core/boxes/join.h"
 
 namespace farcull {
 

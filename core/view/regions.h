@@ -1,4 +1,4 @@
-// Where a scene's objects can meet, by boxes alone, and which triangles can take part.
+// Places in which a scene's objects can meet, by boxes alone, and the triangles that can take part.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +33,8 @@ struct RegionRules {
 };
 
 /// With `self` the box of a marked object of two triangles or more is a place of its own, and all
-/// of its triangles take part. With `full` the places are the same, or the box of the scene where
-/// there are none, so that the views are, and every triangle takes part.
+/// of its triangles take part. With `full` the places are the same, or the box of the scene if
+/// there is no such place, so that the views are the same, and every triangle takes part.
 Regions find_regions(const Scene& scene, const RegionRules& rules = {});
 
 }  // namespace farcull

@@ -1,9 +1,12 @@
 // Orthographic views and pixel space. Pixel space has all three axes in pixels, x and y centred on
 // the window, z the depth (smaller is nearer). A view is an affine map computed in double; its
-// rounding error is bounded here, per point.
+// rounding error is bounded here, per point. Triangles are clipped conservatively to a window's
+// region, in pixel space and in double.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <bit>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +15,27 @@
 #include "core/scene/scene.h"
 
 namespace farcull {
+
+/// Limits of a rasterizer, for the budget.
+struct RasterLimits {
+  int subpixel_bits =
+      0;  // GL_SUBPIXEL_BITS: window coordinates snap by at most 2^-subpixel_bits px per axis (A2)
+  int depth_bits = 0;      // 24 fixed point, 32 float
+  int max_resolution = 0;  // largest Window::width and height
+  /// Samples lie at pixel centres, corners are not moved, and floats are those of IEEE 754
+  /// (core/native/canvas.h).
+  bool exact_samples = false;
+};
+
+/// Pixels of the render target around the window on each side; its corner holds the control items
+/// (canvas.h).
+constexpr int kBorder = 2;
+
+/// The viewport side that serves a window side of `window` px: the window, its border, and the next
+/// power of two, so that the scale to normalized device coordinates is exact.
+inline int viewport_side(int window) {
+  return static_cast<int>(std::bit_ceil(static_cast<unsigned>(window + 2 * kBorder)));
+}
 
 /// A direction to look along. rows: image x, image y, depth; unit length, mutually orthogonal up to
 /// rounding.
@@ -56,6 +80,14 @@ double pixel_error(const Window& window, const Box& box);
 /// Contains the image of the box in the window's pixel space.
 Box pixel_box(const Window& window, const Box& box);
 
+/// Errors of doubles on the way of a point from the world to the window. docs/budget.md, "double",
+/// derives the constants; tests/proofs proves them.
+/// Error of a mapped coordinate, relative to the computed sum of the magnitudes of its three terms.
+constexpr double kMapRounding = 8 * 0x1p-53;
+/// Added for products that underflow (px).
+constexpr double kMapUnderflow = 0x1p-1000;
+/// Error that a cut adds along each axis, relative to the largest |coordinate| before clipping.
+constexpr double kCutRounding = 16 * 0x1p-53;
 /// The largest rounding error (px) that a drawable primitive may carry from double arithmetic.
 constexpr double kMaxDoubleError = 0x1p-10;
 
@@ -66,5 +98,25 @@ constexpr double kMaxDoubleError = 0x1p-10;
 /// corner's image is not finite, or its error is beyond kMaxDoubleError; nothing may be culled in
 /// such a view.
 std::optional<Window> fit_window(const View& view, std::span<const Box> regions, int resolution);
+
+/// A polygon in pixel space, so that no large coordinate ever reaches the rasterizer (GL clips in
+/// float32, before snapping: edges would move by many pixels): a triangle clipped by up to six
+/// planes, convex and flat up to rounding. For every point of the exact triangle's image in the
+/// region without its margin of one pixel, a triangle of the fan about the first corner has a point
+/// within `error` px in each axis (docs/budget.md, "Clipping and the fan").
+struct Patch {
+  std::array<Vec3, 9> corners;
+  int count = 0;     // 0: the triangle has no point in the region
+  int cuts = 0;      // planes that cut it
+  double error = 0;  // px; beyond kMaxDoubleError (or not finite) the patch is undrawable and
+                     // `corners` mean nothing
+
+  bool drawable() const { return error <= kMaxDoubleError; }
+  std::span<const Vec3> points() const { return {corners.data(), static_cast<std::size_t>(count)}; }
+};
+
+/// The image of the world triangle `corners` clipped to window.lo .. window.hi. Ask drawable()
+/// before count: where it is false, an empty polygon is no proof that the triangle stays outside.
+Patch clip_to_region(const Window& window, const std::array<Vec3, 3>& corners);
 
 }  // namespace farcull

@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/scene/ignored.h"
+#include "core/scene/scene.h"
 #include "experiments/command/commands.h"
 #include "experiments/command/options.h"
 #include "experiments/measure/bench.h"

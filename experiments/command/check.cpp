@@ -17,7 +17,7 @@
 
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
-#include "core/scene/ignored.h"
+#include "core/scene/scene.h"
 #include "experiments/measure/frames.h"
 #include "experiments/record/check.h"
 #include "experiments/scenes/builtin/scenes.h"

@@ -11,7 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/scene/ignored.h"
+#include "core/scene/scene.h"
 #include "experiments/measure/frames.h"
 #include "experiments/record/distances.h"
 #include "experiments/record/fields.h"

@@ -8,7 +8,7 @@
 #include "core/base/count.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/scene/ignored.h"
+#include "core/scene/scene.h"
 #include "experiments/method/distances.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"

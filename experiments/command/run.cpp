@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/scene/ignored.h"
+#include "core/scene/scene.h"
 #include "experiments/measure/frames.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/scene/object_pair.h"
+#include "core/scene/scene.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/options.h"
 #include "verify/contact_kind.h"

@@ -4,7 +4,7 @@
 #include <thread>
 #include <utility>
 
-#include "core/pairs/ordered_pairs.h"
+#include "core/boxes/join.h"
 #include "experiments/library/answers.h"
 #include "experiments/library/farcull.h"
 #include "experiments/library/input.h"

@@ -10,7 +10,7 @@
 
 #include "commit.h"
 #include "core/base/stopwatch.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 #include "experiments/measure/harness.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"

@@ -10,7 +10,7 @@
 
 #include "commit.h"
 #include "core/base/error.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 #include "core/view/view.h"
 #include "experiments/measure/harness.h"
 #include "experiments/record/output.h"

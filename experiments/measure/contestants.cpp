@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 #include "experiments/measure/bench.h"
 #include "experiments/method/run.h"
 #include "experiments/peers/parts.h"

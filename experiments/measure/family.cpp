@@ -8,7 +8,7 @@
 
 #include "commit.h"
 #include "core/base/error.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 #include "experiments/measure/harness.h"
 #include "experiments/record/fields.h"
 #include "experiments/record/tables.h"

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/base/stopwatch.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 #include "experiments/method/run.h"
 #include "experiments/record/fields.h"
 #include "experiments/record/output.h"

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/pairs/cpu.h"
-#include "core/pairs/interval.h"
+#include "core/pairs/backend.h"
+#include "core/pairs/grid.h"
 #include "core/pairs/pairs.h"
 #include "experiments/peers/peer.h"
 #include "experiments/scenes/builtin/scenes.h"

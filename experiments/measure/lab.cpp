@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 #include "experiments/scenes/scene_file.h"
 #include "verify/exact.h"
 

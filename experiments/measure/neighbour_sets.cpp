@@ -12,7 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/proximity/near_pairs.h"
-#include "core/proximity/voronoi_device.h"
+#include "core/voronoi/voronoi.h"
 #include "verify/closest.h"
 
 namespace farcull {

@@ -10,8 +10,8 @@
 
 #include "core/base/fields.h"
 #include "core/base/progress.h"
-#include "core/proximity/voronoi.h"
 #include "core/scene/scene.h"
+#include "core/voronoi/voronoi.h"
 
 namespace farcull {
 
@@ -30,7 +30,7 @@ class VoronoiDevice;
 
 /// boxes: one box for each object (object_boxes()). trees: what `farcull distance --pairs nearest`
 /// hands to exact arithmetic (core/proximity/near_pairs.h). voronoi, voronoi_reliable: the discrete
-/// Voronoi diagram as published, and the form of it that loses nothing (core/proximity/voronoi.h).
+/// Voronoi diagram as published, and the form of it that loses nothing (core/voronoi/voronoi.h).
 enum class NeighbourMethod : std::uint8_t { boxes, trees, voronoi, voronoi_reliable };
 std::string to_string(NeighbourMethod method);
 /// True of the two that have a resolution.

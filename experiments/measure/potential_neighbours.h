@@ -11,7 +11,7 @@
 #include "core/base/fields.h"
 #include "core/base/progress.h"
 #include "core/gl/base/context.h"
-#include "core/proximity/voronoi.h"
+#include "core/voronoi/voronoi.h"
 #include "core/scene/scene.h"
 
 namespace farcull {

@@ -7,9 +7,9 @@
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
+#include "core/boxes/join.h"
 #include "core/native/lanes.h"
-#include "core/scene/box_join.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 #include "offsets/minkowski.h"
 #include "offsets/obb.h"
 // The header of a new offset goes here.

@@ -3,7 +3,7 @@
 #include "experiments/method/far_pairs.h"
 
 #include "core/base/stopwatch.h"
-#include "core/pairs/cpu.h"
+#include "core/pairs/backend.h"
 
 namespace farcull {
 
@@ -14,7 +14,7 @@ void plan_far_pairs(const Scene& scene, unsigned threads, const Progress&, Plan&
                         .clearance = options.clearance,
                         .full = options.full,
                         // Who names a GL device wants it to look.
-                        .runs = options.device.empty() || is_cpu(options.device),
+                        .blocks = options.device.empty() || is_cpu(options.device),
                         .neighbours = options.neighbours,
                         .ignored = options.ignored};
   if (!views_of(options).empty()) settings.views = parse_views(views_of(options));

@@ -3,7 +3,7 @@
 
 #include "core/base/count.h"
 #include "core/base/stopwatch.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/cull/cull.h"
 #include "core/gl/canvas/canvas.h"
-#include "core/scene/object_pair.h"
+#include "core/scene/scene.h"
 #include "experiments/method/method.h"
 
 namespace farcull {

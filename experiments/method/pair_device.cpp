@@ -2,7 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/gl/pairs/pairs.h"
-#include "core/pairs/cpu.h"
+#include "core/pairs/backend.h"
 #include "experiments/method/options.h"
 
 namespace farcull {

@@ -7,8 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
-#include "core/scene/ignored.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 

@@ -1,7 +1,7 @@
 // The one pipeline. Command line, library, benchmark, studies and pictures call it.
 #include "experiments/method/run.h"
 
-#include "core/scene/ignored.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "core/base/stopwatch.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 

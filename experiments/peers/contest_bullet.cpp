@@ -11,7 +11,7 @@
 
 #include <memory>
 
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 #include "experiments/peers/contestant.h"
 #include "experiments/peers/parts.h"
 

@@ -9,9 +9,9 @@
 #include <cmath>
 
 #include "core/canvas/canvas.h"
-#include "core/pairs/interval.h"
+#include "core/pairs/grid.h"
 #include "core/view/budget.h"
-#include "core/view/clip.h"
+#include "core/view/view.h"
 #include "offsets/fit.h"
 #include "offsets/minkowski.h"
 #include "offsets/obb.h"

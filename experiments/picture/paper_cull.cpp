@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/cull/cull.h"
 #include "core/native/canvas.h"
-#include "core/view/clip.h"
+#include "core/view/view.h"
 #include "experiments/picture/paper.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/shapes.h"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/scene/ignored.h"
+#include "core/scene/scene.h"
 #include "experiments/command/run_options.h"
 #include "experiments/measure/lab.h"
 #include "experiments/picture/picture.h"

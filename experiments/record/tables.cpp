@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "core/gl/base/context.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 #include "experiments/system/text_table.h"
 #include "verify/certificate/not_asked.h"
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/scene/ignored.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 namespace {

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/object_pair.h"
 #include "core/scene/scene.h"
 
 namespace farcull {

@@ -16,7 +16,7 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/scene/ignored.h"
+#include "core/scene/scene.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/ignore.h"
 #include "experiments/scenes/mesh/load.h"

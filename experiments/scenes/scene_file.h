@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/scene/object_pair.h"
 #include "core/scene/scene.h"
 #include "experiments/scenes/mesh/load.h"
 

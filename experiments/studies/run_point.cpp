@@ -14,7 +14,7 @@
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 #include "core/view/regions.h"
 #include "experiments/measure/harness.h"
 #include "experiments/record/tables.h"

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/pairs/grown_box.h"
+#include "core/boxes/block.h"
 #include "core/scene/scene.h"
 
 namespace farcull {
@@ -39,7 +39,7 @@ inline bool meets(const Slab& slab, const Box& box) {
 }
 
 /// Whether the pair belongs to the tile: where the later one of the two triangles' boxes begins,
-/// each grown by half the clearance (core/pairs/grown_box.h).
+/// each grown by half the clearance (core/boxes/block.h).
 inline bool owns(const Slab& slab, const Scene& scene, const TrianglePair& pair, double clearance) {
   return holds(slab, std::max(grown_box(scene, pair.a, clearance).lo[slab.axis],
                               grown_box(scene, pair.b, clearance).lo[slab.axis]));

@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/gl/base/driver_fault.h"
 #include "core/gl/voronoi/voronoi.h"
-#include "tests/core/proximity/voronoi_slices_lab.h"
+#include "tests/core/voronoi/voronoi_slices_lab.h"
 #include "tests/faults/other_shader_text.h"
 #include "tests/faults/outcomes.h"
 

@@ -60,7 +60,7 @@ std::vector<ByHand> proved_by_hand() {
        "[budget.md](budget.md), \"Interval pairs\"",
        "`interval.strip`, `interval.depth`, then `interval.depth_margin`"},
       {"The bounds that the margin is computed from reach the largest |coordinate| plus `widen`",
-       "they are those before the limits cut them: `core/pairs/rows.h`, "
+       "they are those before the limits cut them: `core/pairs/grid.h`, "
        "`core/gl/pairs/pair_source.glsl`",
        "`interval.depth_margin`, `interval.image_margin`: it pays for the rounding of `widen`"},
       {"The part of a pixel is exact below and above the pixel too",

@@ -6,7 +6,6 @@
 #include "core/canvas/asked_depth.h"
 #include "core/canvas/canvas.h"
 #include "core/view/budget.h"
-#include "core/view/rounding.h"
 #include "core/view/view.h"
 #include "tests/proofs/bounds.h"
 #include "tests/proofs/number.h"
@@ -204,7 +203,7 @@ std::string asked_behind(double steps) {
 }  // namespace
 
 std::vector<Bound> map_bounds() {
-  const std::string rounding = "core/view/rounding.h", budget = "core/view/budget.cpp";
+  const std::string rounding = "core/view/view.h", budget = "core/view/budget.cpp";
   return {
       {"map.point", "a point mapped to pixels is within its bound", "kMapRounding", rounding,
        kMapRounding, "u", [](double x) { return map_to_pixels(x, kMapUnderflow); }},

@@ -9,7 +9,7 @@
 #include <functional>
 #include <limits>
 
-#include "core/pairs/interval.h"
+#include "core/pairs/grid.h"
 #include "offsets/minkowski.h"
 #include "offsets/obb.h"
 

@@ -14,7 +14,7 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/gl/pairs/finder.h"
-#include "core/pairs/cpu.h"
+#include "core/pairs/backend.h"
 #include "core/pairs/grid.h"
 
 namespace farcull {

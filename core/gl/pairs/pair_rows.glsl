@@ -1,4 +1,4 @@
-// The strips of one item over rows of pixels or of parts of a pixel: PairRows of core/pairs/rows.h.
+// The strips of one item over rows of pixels or of parts of a pixel: PairRows of core/pairs/grid.h.
 struct FarRows {
   vec4 a;
   vec4 b;

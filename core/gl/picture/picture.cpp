@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/gl/base/objects.h"
-#include "core/view/clip.h"
+#include "core/view/view.h"
 #include "embedded/picture_glsl.h"
 
 namespace farcull {

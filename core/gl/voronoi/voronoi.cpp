@@ -13,7 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/gl/base/objects.h"
-#include "core/proximity/voronoi_bounds.h"
+#include "core/voronoi/grid.h"
 #include "embedded/echo_glsl.h"
 #include "embedded/voronoi_bounds_glsl.h"
 #include "embedded/voronoi_frag.h"

@@ -1,4 +1,4 @@
-// The discrete Voronoi diagram rasterized on an OpenGL device (core/proximity/voronoi_device.h):
+// The discrete Voronoi diagram rasterized on an OpenGL device (core/voronoi/voronoi.h):
 // for each slice of the grid every triangle of a brick is drawn as a rectangle over the brick's
 // cells, a pixel a cell, and the depth of a fragment is the distance of the triangle from the
 // cell's centre. The depth test keeps the nearest.
@@ -13,7 +13,7 @@
 #include <memory>
 
 #include "core/gl/base/context.h"
-#include "core/proximity/voronoi_device.h"
+#include "core/voronoi/voronoi.h"
 
 namespace farcull {
 

@@ -13,7 +13,6 @@
 
 #include "core/canvas/fatten.h"
 #include "core/view/budget.h"
-#include "core/view/clip.h"
 #include "core/view/view.h"
 
 namespace farcull::lab {

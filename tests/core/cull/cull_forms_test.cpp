@@ -6,7 +6,7 @@
 #include <cfloat>
 #include <iterator>
 
-#include "core/scene/box_join.h"
+#include "core/boxes/join.h"
 #include "tests/core/cull/cull_lab.h"
 #include "verify/accounting.h"
 

@@ -13,7 +13,7 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/scene/box_join.h"
+#include "core/boxes/join.h"
 #include "offsets/obb.h"
 #include "tests/core/base/rational.h"
 #include "tests/core/canvas/ideal_canvas.h"

@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
+#include "core/boxes/join.h"
 #include "core/cull/cull.h"
-#include "core/scene/box_join.h"
 #include "core/view/regions.h"
 #include "experiments/scenes/scene_file.h"
 #include "offsets/minkowski.h"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "core/boxes/join.h"
 #include "core/cull/cull.h"
-#include "core/scene/box_join.h"
 #include "core/view/regions.h"
 #include "experiments/method/run.h"
 #include "experiments/scenes/builtin/scenes.h"

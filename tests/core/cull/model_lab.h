@@ -9,7 +9,7 @@
 
 #include "core/cull/cull.h"
 #include "core/cull/patches.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 #include "tests/core/canvas/lab.h"
 #include "tests/core/cull/model.h"
 

@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "tests/core/gl/gl_lab.h"
-#include "tests/core/proximity/voronoi_slices_lab.h"
+#include "tests/core/voronoi/voronoi_slices_lab.h"
 
 namespace farcull {
 namespace {

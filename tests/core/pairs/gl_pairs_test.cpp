@@ -10,7 +10,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/pairs/cpu.h"
+#include "core/pairs/backend.h"
 #include "core/pairs/pairs.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/core/cull/far_properties.h"
@@ -136,7 +136,7 @@ TEST(GlPairs, LeaveOutNeighboursLikeTheCpu) {
   const auto cpu = cpu_pair_backend(2);
   const Scene scene = with_self(make_builtin_scene("two-spheres"));
   for (const bool neighbours : {true, false}) {
-    const PairSettings settings{.runs = false, .neighbours = neighbours};
+    const PairSettings settings{.blocks = false, .neighbours = neighbours};
     const PairResult by_cpu = find_pairs(scene, settings, *cpu);
     ASSERT_FALSE(by_cpu.views.empty());
     const std::vector<TrianglePair>& expected = by_cpu.candidates;
@@ -424,9 +424,9 @@ TEST(GlPairs, SendOnlyWhatChanged) {
 
 TEST(GlPairs, GiveTheSameFromRunToRun) {
   const Scene scene = with_self(make_builtin_scene("random-soup"));
-  const auto first = find_pairs(scene, {.runs = false}, shared()).candidates;
+  const auto first = find_pairs(scene, {.blocks = false}, shared()).candidates;
   for (int run = 0; run < 5; ++run)
-    EXPECT_EQ(find_pairs(scene, {.runs = false}, shared()).candidates, first);
+    EXPECT_EQ(find_pairs(scene, {.blocks = false}, shared()).candidates, first);
 }
 
 TEST(GlPairs, FindNothingWhereNothingIs) {
@@ -461,12 +461,13 @@ TEST(GlPairs, GiveUpAViewThatTakesTooMuchWork) {
         result.stages, [](const Stage& stage) { return stage.reason == Reason::join_many_tests; });
   };
   const Scene strays = lab::stray_scene(0, 8000, {.outliers = 3, .surface = true, .exponent = 6});
-  const PairResult on_gl = find_pairs(strays, {.runs = false}, shared());
+  const PairResult on_gl = find_pairs(strays, {.blocks = false}, shared());
   EXPECT_TRUE(gives_up(on_gl));
-  EXPECT_EQ(on_gl.candidates, find_pairs(strays, {.runs = false}, *cpu_pair_backend(2)).candidates);
+  EXPECT_EQ(on_gl.candidates,
+            find_pairs(strays, {.blocks = false}, *cpu_pair_backend(2)).candidates);
 
   const Scene needles = make_builtin_scene("needles");
-  PairPlan plan = plan_pairs(needles, {.runs = false});
+  PairPlan plan = plan_pairs(needles, {.blocks = false});
   PairWorkspace workspace;
   plan.most_tests = UINT64_MAX;
   const std::uint64_t tests =

@@ -1,6 +1,6 @@
 // The kernel of FAR pairs (core/pairs/interval.glsl) against exact arithmetic: the real triangle,
 // anywhere its float corners and the widening allow, clipped to a pixel with rationals.
-#include "core/pairs/interval.h"
+#include "core/pairs/grid.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/canvas/kernel_case.h"
-#include "core/pairs/grid.h"
 #include "tests/core/base/chance.h"
 #include "tests/core/base/rational.h"
 #include "tests/core/base/seed.h"

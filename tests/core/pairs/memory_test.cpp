@@ -1,12 +1,11 @@
 // Frames of a scene one after the other: what is kept from the last one changes no answer, whatever
 // moved, and whatever happened in between. Each property has a twin that must fail.
-#include "core/pairs/memory.h"
+#include "core/pairs/regions.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "core/pairs/regions.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/core/base/trials.h"
 #include "tests/core/pairs/pairs_lab.h"
@@ -94,7 +93,7 @@ struct Film {
     const PairPlan plan = plan_pairs(scene, settings, 2, &workspace.memory);
     const std::vector<TrianglePair> found = find_pairs(scene, plan, *backend, workspace).candidates;
     const PairResult fresh = find_pairs(scene, settings, *backend);
-    kept += plan.runs.kept.size();
+    kept += plan.blocks.kept.size();
     const bool by_runs = plan.choices.empty() && fresh.views.empty();
     if (by_runs) {
       ASSERT_EQ(found, fresh.candidates);
@@ -165,7 +164,7 @@ TEST(PairMemory, IsNotMisledByWhatHappenedBetweenTwoFrames) {
     }
     PairSettings settings{.clearance = random.below(3) == 0 ? 0.02 : 0.0,
                           .neighbours = random.below(3) != 0};
-    if (random.below(6) == 0) settings.runs = false;
+    if (random.below(6) == 0) settings.blocks = false;
     film.show(scene, settings);
     if (testing::Test::HasFatalFailure()) return;
   }
@@ -182,7 +181,7 @@ TEST(PairMemory, OfAFrameInWhichNothingMovedComparesAndDecidesNothing) {
     const auto found = find_pairs(scene, plan, *backend, workspace).candidates;
     decider.decide(scene, found);
     ASSERT_GT(found.size(), 1000u);
-    EXPECT_EQ(plan.runs.between.size() + plan.runs.inside.size() > 0, frame == 0);
+    EXPECT_EQ(plan.blocks.between.size() + plan.blocks.inside.size() > 0, frame == 0);
     EXPECT_EQ(decider.decided(), frame == 0 ? found.size() : 0);
   }
 }

@@ -135,7 +135,7 @@ TEST(PairsEdges, LargeTrianglesWithinAClearance) {
     }
     const Scene scene = scene_of(objects);
     const PairSettings settings{
-        .views = parse_views("z"), .resolution = 1024, .clearance = 1, .runs = false};
+        .views = parse_views("z"), .resolution = 1024, .clearance = 1, .blocks = false};
     ASSERT_EQ(truth_of(scene, 1).size(), 40u);
     EXPECT_EQ(missed(scene, settings, *backend), 0u) << slope;
     EXPECT_EQ(find_pairs(scene, settings, *backend).views[0].counts.large, 1u);

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/pairs/cpu.h"
+#include "core/pairs/backend.h"
 #include "core/pairs/pairs.h"
 #include "tests/core/scene/scenes.h"
 #include "verify/exact.h"

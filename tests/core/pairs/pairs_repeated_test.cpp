@@ -6,8 +6,8 @@
 #include <set>
 #include <string>
 
-#include "core/pairs/cpu.h"
-#include "core/pairs/settled.h"
+#include "core/pairs/backend.h"
+#include "core/pairs/lists.h"
 #include "core/pairs/tile.h"
 #include "core/scene/pair_sort.h"
 #include "tests/core/pairs/pairs_lab.h"

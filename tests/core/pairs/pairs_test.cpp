@@ -1,7 +1,7 @@
 // FAR pairs on the CPU: no intersecting pair is ever missed, and the answer depends on nothing that
 // it should not depend on. Each property has a twin that must fail.
 #include "core/pairs/pairs.h"
-#include "core/pairs/grown_box.h"
+#include "core/boxes/block.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,8 @@
 #include <memory>
 #include <set>
 
-#include "core/pairs/cpu.h"
-#include "core/pairs/view.h"
-#include "core/scene/box_join.h"
+#include "core/boxes/join.h"
+#include "core/pairs/backend.h"
 #include "core/scene/pair_sort.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/core/base/seed.h"
@@ -30,7 +29,7 @@ using lab::with_self;
 
 std::vector<PairSettings> all_settings() {
   std::vector<PairSettings> out(1);  // all chosen by the scene
-  out.push_back({.runs = false});    // and decided by views
+  out.push_back({.blocks = false});  // and decided by views
   for (const char* views : {"x", "1:1:0.5", "x,y,z", "z,1:-2:0.5,0:1:1"}) {
     for (const int resolution : {32, 200, 1024}) {
       out.push_back({.views = parse_views(views), .resolution = resolution});
@@ -215,9 +214,9 @@ TEST(Pairs, LeaveOutNeighboursByIndexOnly) {
   const auto backend = cpu_pair_backend(2);
   const std::vector<std::uint32_t> owner = owners(scene);
   for (const bool runs : {true, false}) {
-    const PairResult all = find_pairs(scene, {.runs = runs}, *backend);
+    const PairResult all = find_pairs(scene, {.blocks = runs}, *backend);
     EXPECT_EQ(all.views.empty(), runs);
-    const PairResult fewer = find_pairs(scene, {.runs = runs, .neighbours = false}, *backend);
+    const PairResult fewer = find_pairs(scene, {.blocks = runs, .neighbours = false}, *backend);
     std::vector<TrianglePair> expected = all.candidates;
     std::erase_if(expected, [&](const TrianglePair& pair) {
       if (owner[pair.a] != owner[pair.b]) return false;
@@ -270,15 +269,15 @@ TEST(Pairs, OfRunsAndOfViewsAreFoundTogether) {
   const Scene scene = joined(bundles(random), make_builtin_scene("two-spheres"), Vec3(50, 0, 0));
   const auto backend = cpu_pair_backend(2);
   const PairPlan plan = plan_pairs(scene, {}, 2);
-  ASSERT_FALSE(plan.runs.empty());
+  ASSERT_FALSE(plan.blocks.empty());
   ASSERT_FALSE(plan.regions.triangles.empty());
   PairWorkspace workspace;
   const std::vector<TrianglePair> truth = lab::truth_of(scene);
   EXPECT_EQ(lab::missed(truth, find_pairs(scene, plan, *backend, workspace).candidates), 0u);
-  EXPECT_EQ(plan.trace.front().out, plan.runs.triangles + plan.regions.triangles.size());
+  EXPECT_EQ(plan.trace.front().out, plan.blocks.triangles + plan.regions.triangles.size());
   // Twins: without either half pairs are lost.
   PairPlan views = plan, runs = plan;
-  views.runs = {};
+  views.blocks = {};
   runs.choices.clear();
   runs.regions.triangles.clear();
   EXPECT_GT(lab::missed(truth, find_pairs(scene, views, *backend, workspace).candidates), 0u);
@@ -303,11 +302,11 @@ TEST(Pairs, OfManyObjectsThatAllOverlapAreFound) {
   const Scene scene = lab::scene_of(objects);
   const PairPlan plan = plan_pairs(scene, {}, 2);
   EXPECT_TRUE(plan.regions.crowded);
-  EXPECT_TRUE(plan.runs.empty());
+  EXPECT_TRUE(plan.blocks.empty());
   const auto backend = cpu_pair_backend(2);
   for (const bool runs : {true, false}) {
-    EXPECT_EQ(lab::missed(scene, {.runs = runs}, *backend), 0u);
-    EXPECT_EQ(lab::missed(with_self(scene), {.runs = runs}, *backend), 0u);
+    EXPECT_EQ(lab::missed(scene, {.blocks = runs}, *backend), 0u);
+    EXPECT_EQ(lab::missed(with_self(scene), {.blocks = runs}, *backend), 0u);
   }
   EXPECT_GT(lab::truth_of(scene).size(), 1000u);
 }

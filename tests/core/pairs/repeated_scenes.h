@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/pairs/view.h"
+#include "core/pairs/pairs.h"
 #include "tests/core/scene/scenes.h"
 
 namespace farcull::lab {

@@ -104,7 +104,7 @@ inline PairWork work_of(const PairResult& result) {
   PairWork out;
   for (const Stage& stage : result.stages) {
     const auto n = static_cast<double>(stage.n), m = static_cast<double>(stage.m);
-    if (stage.kind == StageKind::runs) {
+    if (stage.kind == StageKind::blocks) {
       out.tests += 256 * n;
       out.lists = std::max(out.lists, n);
     }

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/pairs/grown_box.h"
-#include "core/pairs/ordered_pairs.h"
+#include "core/boxes/block.h"
+#include "core/boxes/join.h"
 #include "core/proximity/near_pairs.h"
 #include "core/scene/pair_sort.h"
 #include "experiments/scenes/builtin/scenes.h"
@@ -63,11 +63,11 @@ TEST(Strays, TakeNoMoreWorkThanExactAndMissNothing) {
     const Strays strays = random_strays(seed);
     const Scene scene = stray_scene(seed, kTriangles, strays);
     SCOPED_TRACE(seed);
-    const PairResult by_scene = found(scene, {}, 2), by_views = found(scene, {.runs = false}, 2);
+    const PairResult by_scene = found(scene, {}, 2), by_views = found(scene, {.blocks = false}, 2);
     EXPECT_EQ(wrong(scene, by_scene), "");
     EXPECT_EQ(wrong(scene, by_views), "");
     uneven += has_stage(by_scene, Reason::join_uneven);
-    others += has_stage(by_scene, Reason::run_pairs);
+    others += has_stage(by_scene, Reason::block_pairs);
     given_up += has_stage(by_views, Reason::join_many_tests);
   }
   EXPECT_GT(uneven, 0u);
@@ -78,8 +78,9 @@ TEST(Strays, TakeNoMoreWorkThanExactAndMissNothing) {
 // A view that is never given up.
 TEST(StraysTwin, WithoutALimitTakeTooMuchWork) {
   const Scene scene = stray_scene(0, kTriangles, {.outliers = 3, .surface = true, .exponent = 7});
-  EXPECT_EQ(wrong(scene, found(scene, {.runs = false}, 2)), "");
-  EXPECT_TRUE(wrong(scene, found(scene, {.runs = false}, 2, false)).starts_with("too many tests"));
+  EXPECT_EQ(wrong(scene, found(scene, {.blocks = false}, 2)), "");
+  EXPECT_TRUE(
+      wrong(scene, found(scene, {.blocks = false}, 2, false)).starts_with("too many tests"));
 }
 
 // The scenes in which a stray vertex took half a minute, smaller.
@@ -125,7 +126,7 @@ TEST(Strays, KeepTheQuestion) {
 TEST(Strays, AViewIsGivenUpAtTheSameWorkWhateverTheThreads) {
   for (const char* name : {"needles", "fans:2000"}) {
     const Scene scene = make_builtin_scene(name);
-    PairPlan plan = plan_pairs(scene, {.runs = false});
+    PairPlan plan = plan_pairs(scene, {.blocks = false});
     PairWorkspace workspace;
     const auto given_up = [&](std::uint64_t most, unsigned threads) {
       plan.most_tests = most;

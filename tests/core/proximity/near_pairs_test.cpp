@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/native/lanes.h"
-#include "core/proximity/split.h"
+#include "core/proximity/search.h"
 #include "tests/core/base/rational.h"
 #include "tests/core/base/trials.h"
 #include "tests/core/proximity/near_lab.h"
@@ -135,7 +135,7 @@ TEST(NearPairs, HoldsEveryNearestPairOfManyRuns) {
 TEST(NearPairs, HoldsEveryNearestPairOfRunsBeyondTheMemory) {
   Random random(8);
   for (int k = 0; k < trials(6, 2); ++k) {
-    const int many = 16 * 16 * static_cast<int>(SearchMemory::kRuns);
+    const int many = 16 * 16 * static_cast<int>(SearchMemory::kLeaves);
     GridScene grid;
     add_object(grid, near_lab::random_triangles(random, k % 2 == 0 ? many : 60, 28, {-30, 0, 0}));
     add_object(grid, near_lab::random_triangles(random, k % 2 == 0 ? 60 : many, 28, {34, 0, 0}));

@@ -1,5 +1,5 @@
 // Pairs of triangles of ignored objects, against a search through the list.
-#include "core/scene/ignored.h"
+#include "core/scene/scene.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 #include <utility>
-#include "core/scene/box_join.h"
+#include "core/boxes/join.h"
 #include "core/sweep/sweep_prune.h"
 #include "tests/core/base/rational.h"
 

@@ -10,7 +10,7 @@
 #include <iostream>
 #include <optional>
 
-#include "core/view/clip.h"
+#include "core/view/view.h"
 #include "tests/core/base/seed.h"
 #include "tests/core/view/clip_cases.h"
 
@@ -29,7 +29,7 @@ struct Corner {
 
 Q largest(const Q3& v) { return std::max({Q(abs(v[0])), Q(abs(v[1])), Q(abs(v[2]))}); }
 
-// core/view/clip.cpp with the exact point beside each corner: a cut at the parameter t, computed,
+// core/view/view.cpp with the exact point beside each corner: a cut at the parameter t, computed,
 // of an edge whose ends are p and p' has its exact point at the parameter that the plane has
 // between p and p', exactly, of the edge between q and q'.
 std::vector<Corner> replay(const Window& window, const Triangle& corners) {
@@ -132,7 +132,7 @@ Tally tally(std::uint64_t seed, int windows, int margin) {
       const Q error(patch.error);
       for (int i = 0; i < patch.count; ++i) {
         EXPECT_EQ(polygon[i].p, patch.corners[i])
-            << "the replay is not what core/view/clip.cpp does";
+            << "the replay is not what core/view/view.cpp does";
         const Q off = largest(minus(exact(polygon[i].p), polygon[i].q));
         out.corner = std::max(out.corner, Q(off / error).get_d());
         EXPECT_LE(off, error);

@@ -1,7 +1,7 @@
-// The claim of core/view/clip.h, decided with rationals: for each triangle the exact image is
+// The claim of core/view/view.h, decided with rationals: for each triangle the exact image is
 // clipped exactly to the region without its margin, and each corner of that (hence its hull) must
 // lie within `error` per axis of the patch's hull.
-#include "core/view/clip.h"
+#include "core/view/view.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include <cfloat>
 #include <cmath>
 
-#include "core/view/rounding.h"
 #include "tests/core/view/clip_cases.h"
 
 namespace farcull {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/proximity/voronoi_lab.h"
+#include "tests/core/voronoi/voronoi_lab.h"
 #include "tests/experiments/system/error_of.h"
 
 namespace farcull {

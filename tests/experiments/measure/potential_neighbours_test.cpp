@@ -8,7 +8,7 @@
 #include <set>
 
 #include "tests/core/base/trials.h"
-#include "tests/core/proximity/voronoi_lab.h"
+#include "tests/core/voronoi/voronoi_lab.h"
 
 namespace farcull {
 namespace {

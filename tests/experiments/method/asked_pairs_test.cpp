@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/scene/ignored.h"
+#include "core/scene/scene.h"
 #include "experiments/method/run.h"
 #include "experiments/record/check.h"
 #include "experiments/record/output.h"

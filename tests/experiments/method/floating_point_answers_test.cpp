@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/pairs/cpu.h"
+#include "core/pairs/backend.h"
 #include "experiments/lemma/oracles.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/scene/ignored.h"
+#include "core/scene/scene.h"
 #include "tests/experiments/system/error_of.h"
 
 namespace farcull {

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "experiments/generators/families.h"
-#include "experiments/generators/families.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
 #include "experiments/suite/label.h"

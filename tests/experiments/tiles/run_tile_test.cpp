@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/scene/ignored.h"
+#include "core/scene/scene.h"
 #include "experiments/scenes/scene_file.h"
 #include "tests/experiments/tiles/tile_lab.h"
 

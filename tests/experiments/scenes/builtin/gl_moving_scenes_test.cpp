@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/gl/pairs/pairs.h"
-#include "core/scene/members.h"
+#include "core/scene/scene.h"
 #include "experiments/measure/frames.h"
 #include "experiments/method/run.h"
 #include "tests/core/gl/gl_lab.h"
@@ -84,13 +84,13 @@ TEST(GlMovingScenes, ChangedTopologyIsSeen) {
   lab::Reconnected reconnected;
   for (long frame = 0; frame < 15; ++frame) {
     const Scene& scene = reconnected.at(frame);
-    EXPECT_EQ(lab::missed(scene, {.runs = false}, gl), 0u) << frame;
-    EXPECT_EQ(find_pairs(scene, {.runs = false}, gl).candidates,
-              find_pairs(scene, {.runs = false}, *cpu_pair_backend(2)).candidates);
+    EXPECT_EQ(lab::missed(scene, {.blocks = false}, gl), 0u) << frame;
+    EXPECT_EQ(find_pairs(scene, {.blocks = false}, gl).candidates,
+              find_pairs(scene, {.blocks = false}, *cpu_pair_backend(2)).candidates);
   }
   MovingScene dragon("breaking-dragon:19994", kFrames);
   for (const long frame : {1L, 2L, 7L, 3L, 0L, 4L})
-    EXPECT_EQ(lab::missed(dragon.at(frame), {.runs = false}, gl), 0u) << frame;
+    EXPECT_EQ(lab::missed(dragon.at(frame), {.blocks = false}, gl), 0u) << frame;
 }
 
 // The twin.
@@ -98,9 +98,9 @@ TEST(GlMovingScenes, StaleTopologyIsCaught) {
   GlPairs gl(lab::context());
   lab::Stale stale(gl);
   lab::Reconnected reconnected;
-  EXPECT_EQ(lab::missed(reconnected.at(0), {.runs = false}, stale), 0u);
+  EXPECT_EQ(lab::missed(reconnected.at(0), {.blocks = false}, stale), 0u);
   for (long frame = 1; frame < 6; ++frame)
-    EXPECT_GT(lab::missed(reconnected.at(frame), {.runs = false}, stale), 0u) << frame;
+    EXPECT_GT(lab::missed(reconnected.at(frame), {.blocks = false}, stale), 0u) << frame;
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <set>
 
-#include "core/pairs/cpu.h"
+#include "core/pairs/backend.h"
 #include "core/pairs/pairs.h"
 #include "core/view/view.h"
 #include "experiments/measure/frames.h"
@@ -406,7 +406,7 @@ TEST(MovingScenes, StaleTopologyIsCaught) {
   lab::Reconnected reconnected;
   const auto cpu = cpu_pair_backend(2);
   lab::Stale stale(*cpu);
-  const PairSettings views{.runs = false};
+  const PairSettings views{.blocks = false};
   EXPECT_EQ(lab::missed(reconnected.at(0), views, stale), 0u);
   for (long frame = 1; frame < 10; ++frame)
     EXPECT_GT(lab::missed(reconnected.at(frame), views, stale), 0u) << frame;
@@ -417,7 +417,7 @@ TEST(PackagedScenes, StaleTopologyOfABreakingDragonIsCaught) {
   lab::Stale stale(*cpu);
   std::size_t missed = 0;
   for (long frame = 1; frame < kFrames; ++frame) {
-    missed += lab::missed(moving.at(frame), {.runs = false}, stale);
+    missed += lab::missed(moving.at(frame), {.blocks = false}, stale);
   }
   EXPECT_GT(missed, 100u);
 }

@@ -1,0 +1,156 @@
+// One box against the sixteen of a block, and against those of a tree, on the lanes of this
+// processor. Compiled once for each instruction set (hwy/foreach_target.h).
+#if defined(FARCULL_BOXES_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FARCULL_BOXES_LANES_INL_H_
+#undef FARCULL_BOXES_LANES_INL_H_
+#else
+#define FARCULL_BOXES_LANES_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <array>
+#include <bit>
+
+#include "core/boxes/block.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace farcull::HWY_NAMESPACE::boxes {
+
+namespace hn = hwy::HWY_NAMESPACE;
+template <class Number>
+using Tag = hn::CappedTag<Number, kWide>;
+template <class Number>
+using Vector = hn::Vec<Tag<Number>>;
+template <class Number>
+constexpr std::size_t kLanes = hn::MaxLanes(Tag<Number>());
+
+/// A box in all lanes.
+template <class Number>
+struct OneBox {
+  Vector<Number> x0, y0, z0, x1, y1, z1;
+
+  HWY_INLINE OneBox(const WideBoxes<Number>& block, std::size_t lane)
+      : OneBox(block.column[0][lane], block.column[1][lane], block.column[2][lane],
+               block.column[3][lane], block.column[4][lane], block.column[5][lane]) {}
+  HWY_INLINE explicit OneBox(const BoxOf<Number>& box)
+      : OneBox(box.lo[0], box.lo[1], box.lo[2], box.hi[0], box.hi[1], box.hi[2]) {}
+
+ private:
+  HWY_INLINE OneBox(Number ax, Number ay, Number az, Number bx, Number by, Number bz)
+      : x0(hn::Set(Tag<Number>(), ax)),
+        y0(hn::Set(Tag<Number>(), ay)),
+        z0(hn::Set(Tag<Number>(), az)),
+        x1(hn::Set(Tag<Number>(), bx)),
+        y1(hn::Set(Tag<Number>(), by)),
+        z1(hn::Set(Tag<Number>(), bz)) {}
+};
+
+template <class Number>
+HWY_INLINE Vector<Number> column(const WideBoxes<Number>& block, std::size_t k, std::size_t from) {
+  return hn::Load(Tag<Number>(), &block.column[k][from]);
+}
+
+/// Boxes of the block, from lane `from` on, that overlap the box; touching counts.
+template <class Number>
+HWY_INLINE hn::Mask<Tag<Number>> overlapping(const WideBoxes<Number>& block, std::size_t from,
+                                             const OneBox<Number>& box) {
+  const auto x =
+      hn::And(hn::Le(column(block, 0, from), box.x1), hn::Ge(column(block, 3, from), box.x0));
+  const auto y =
+      hn::And(hn::Le(column(block, 1, from), box.y1), hn::Ge(column(block, 4, from), box.y0));
+  const auto z =
+      hn::And(hn::Le(column(block, 2, from), box.z1), hn::Ge(column(block, 5, from), box.z0));
+  return hn::And(hn::And(x, y), z);
+}
+
+/// The lanes as bits.
+template <class D>
+HWY_INLINE std::uint32_t bits_of(D tag, hn::Mask<D> mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(tag, mask, bytes);
+  return static_cast<std::uint32_t>(bytes[0] | bytes[1] << 8);
+}
+
+/// All sixteen as bits.
+template <class Number>
+HWY_INLINE std::uint32_t overlapping_bits(const WideBoxes<Number>& block,
+                                          const OneBox<Number>& box) {
+  std::uint32_t out = 0;
+  for (std::size_t from = 0; from < kWide; from += kLanes<Number>)
+    out |= bits_of(Tag<Number>(), overlapping(block, from, box)) << from;
+  return out;
+}
+
+using Gaps = std::array<double, kWide>;
+
+/// The squared gaps from a box to those of a block; returns which are at most `square_limit`, as
+/// bits.
+HWY_INLINE std::uint32_t near_boxes(const WideBoxes<double>& block, const OneBox<double>& box,
+                                    double square_limit, Gaps& squares) {
+  const Tag<double> n;
+  const auto zero = hn::Set(n, 0), most = hn::Set(n, square_limit);
+  const auto gap = [&](std::size_t axis, std::size_t from, Vector<double> lo, Vector<double> hi) {
+    const auto g = hn::Max(
+        hn::Max(hn::Sub(column(block, axis, from), hi), hn::Sub(lo, column(block, axis + 3, from))),
+        zero);
+    return hn::Mul(g, g);
+  };
+  std::uint32_t out = 0;
+  for (std::size_t from = 0; from < kWide; from += kLanes<double>) {
+    const auto square = hn::Add(hn::Add(gap(0, from, box.x0, box.x1), gap(1, from, box.y0, box.y1)),
+                                gap(2, from, box.z0, box.z1));
+    hn::Store(square, n, &squares[from]);
+    out |= bits_of(n, hn::Le(square, most)) << from;
+  }
+  return out;
+}
+
+/// The lowest bit, which is taken away. Precondition: there is one.
+HWY_INLINE std::uint32_t next_bit(std::uint32_t& bits) {
+  const auto bit = static_cast<std::uint32_t>(std::countr_zero(bits));
+  bits &= bits - 1;
+  return bit;
+}
+
+/// Calls visit(leaf) for each leaf from `least` on whose box overlaps, in an order that the tree
+/// fixes. Returns how many blocks were compared.
+template <class Number, class Visit>
+HWY_INLINE std::uint64_t for_overlapping_leaves(const BoxTree<Number>& tree,
+                                                const WideBoxes<Number>* blocks,
+                                                const OneBox<Number>& box, std::uint32_t least,
+                                                const Visit& visit) {
+  struct Node {
+    int height;
+    std::uint32_t number;
+  };
+  // A node leaves at most 15 others behind for each level below it.
+  Node stack[(kWide - 1) * kMostLevels + 1];
+  int size = 0;
+  if (tree.levels > 0) stack[size++] = {tree.levels, 0};
+  std::uint64_t compared = 0;
+  for (; size > 0; ++compared) {
+    const Node at = stack[--size];
+    const int below = at.height - 1;
+    std::uint32_t bits =
+        overlapping_bits(blocks[tree.first[static_cast<std::size_t>(below)] + at.number], box);
+    while (bits != 0) {
+      const std::uint32_t child = kWide * at.number + next_bit(bits);
+      const std::uint64_t begin = std::uint64_t{child} << (4 * below);
+      const std::uint64_t end = (std::uint64_t{child} + 1) << (4 * below);
+      // Missing boxes of a block overlap an infinite one.
+      if (end <= least || begin >= tree.leaves) continue;
+      if (below == 0) {
+        visit(child);
+      } else {
+        stack[size++] = {below, child};
+      }
+    }
+  }
+  return compared;
+}
+
+}  // namespace farcull::HWY_NAMESPACE::boxes
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard that Highway toggles

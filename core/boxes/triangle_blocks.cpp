@@ -1,0 +1,465 @@
+// Blocks are judged by the length of their boxes; the triangles of scattered objects are sorted
+// along a Morton curve, those of stretched objects by spatial_order().
+#include "core/boxes/triangle_blocks.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
+
+#include "core/base/parallel.h"
+
+namespace farcull {
+namespace {
+
+// Triangles whose corners are fetched ahead.
+constexpr std::size_t kAhead = 16;
+
+double length(const Box& box) { return (box.hi - box.lo).sum(); }
+
+// Whether boxes of blocks are much longer than those of compact parts of a surface would be. mean:
+// of their lengths.
+bool are_scattered(double mean, std::uint32_t blocks, const Box& object) {
+  return mean * std::sqrt(blocks) > kScattered * length(object);
+}
+
+bool is_scattered(const TriangleBlocks& blocks, std::uint32_t object) {
+  const std::uint32_t first = blocks.first[object], count = blocks.first[object + 1] - first;
+  double sum = 0;
+  for (std::uint32_t k = 0; k < count; ++k) sum += length(blocks.boxes[first + k]);
+  return count > 0 && are_scattered(sum / count, count, blocks.objects[object]);
+}
+
+// The place of item k of a sample, in [0, 1): multiples of the golden ratio are as even as a grid,
+// without its period, since surfaces often have one.
+double sampled_place(std::size_t k) {
+  const double at = 0.6180339887498949 * static_cast<double>(k);
+  return at - std::floor(at);
+}
+constexpr std::uint32_t kSampledBlocks = 64;
+// A sample of fewer blocks than this would cost as much as all of them.
+constexpr std::uint32_t kJudgedBlocks = 4 * kSampledBlocks;
+
+// The mean length of some blocks of an object if it has many and the mean says that they are
+// scattered; else 0. `box` becomes the box of the sample.
+double sampled_length(const Scene& scene, const TriangleBlocks& blocks, std::uint32_t object,
+                      Box& box) {
+  const std::uint32_t count = blocks.first[object + 1] - blocks.first[object];
+  if (count < kJudgedBlocks) return 0;
+  double sum = 0;
+  for (std::uint32_t k = 0; k < kSampledBlocks; ++k) {
+    const auto position = static_cast<std::uint32_t>(sampled_place(k) * count);
+    const TriangleBlock& range =
+        blocks.ranges[blocks.first[object] + std::min(position, count - 1)];
+    const Box own = box_of(scene, range.first, range.first + range.count);
+    sum += length(own);
+    box.add(own);
+  }
+  const double mean = sum / kSampledBlocks;
+  return are_scattered(mean, count, box) ? mean : 0;
+}
+
+// Whether most triangles of an object lie in a small part of its box, which is grown by `half`.
+bool is_stretched(const Scene& scene, const Object& object, const Box& box, double half) {
+  constexpr std::size_t kSample = 64, kEnd = kSample / 8;
+  if (object.triangle_count < kJudgedBlocks * kWide) return false;
+  double side = 0, whole = 0;  // sums of half sides: whole ones may be infinite
+  std::array<double, kSample> at;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    for (std::size_t k = 0; k < kSample; ++k) {
+      const auto t = static_cast<std::uint32_t>(sampled_place(k) * (object.triangle_count - 1));
+      at[k] = scene.vertices[scene.triangles[object.first_triangle + t][0]][axis];
+    }
+    std::ranges::sort(at);
+    side += 0.5 * at[kSample - 1 - kEnd] - 0.5 * at[kEnd] + half;
+    whole += 0.5 * box.hi[axis] - 0.5 * box.lo[axis];
+  }
+  return whole > kStretched * side;
+}
+
+void mark_stretched(const Scene& scene, double half, TriangleBlocks& blocks) {
+  blocks.stretched.clear();
+  for (std::size_t o = 0; o < blocks.objects.size(); ++o) {
+    if (!is_stretched(scene, scene.objects[o], blocks.objects[o], half)) continue;
+    blocks.stretched.resize(blocks.objects.size(), 0);
+    blocks.stretched[o] = 1;
+  }
+}
+
+// The boxes of an object's triangles, grown, relative to the origin; returns the box of all, not
+// grown.
+Box fill_boxes(const Scene& scene, const Object& object, double half, const Vec3& origin,
+               unsigned threads, FloatBox* out) {
+  const std::size_t n = object.triangle_count, chunks = chunks_for(n, 4096, threads);
+  std::vector<Box> parts(chunks, Box::empty());
+  for_chunks(n, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    const std::uint32_t first = object.first_triangle;
+    parts[chunk] =
+        relative_boxes(scene, first + static_cast<std::uint32_t>(begin),
+                       first + static_cast<std::uint32_t>(end), half, origin, out + begin);
+  });
+  Box all = Box::empty();
+  for (const Box& part : parts) all.add(part);
+  return all;
+}
+
+// Calls work(k, threads) for k in 0 .. count - 1: one after the other with all threads if there are
+// few, else side by side with one thread each.
+template <class Work>
+void for_each_of(std::size_t count, unsigned threads, const Work& work) {
+  const std::size_t cores = chunks_for(SIZE_MAX, 1, threads);
+  const std::size_t chunks = count < cores ? 1 : cores;
+  std::atomic<std::size_t> next = 0;
+  for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
+    for (std::size_t k = next++; k < count; k = next++) work(k, chunks > 1 ? 1 : threads);
+  });
+}
+
+// The middle of a box; finite even if the box is not.
+Vec3 middle(const Box& box) {
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  if (box.is_empty()) return Vec3::Zero();
+  return 0.5 * box.lo.cwiseMax(-kLargest) + 0.5 * box.hi.cwiseMin(kLargest);
+}
+
+Box block_box(const Scene& scene, const TriangleBlock& range, double half) {
+  return grow(box_of(scene, range.first, range.first + range.count), half);
+}
+
+// Calls work(block) for each block of an object.
+template <class Work>
+void for_blocks_of(const TriangleBlocks& blocks, std::uint32_t object, unsigned threads,
+                   const Work& work) {
+  const std::uint32_t first = blocks.first[object], n = blocks.first[object + 1] - first;
+  for_chunks(n, chunks_for(n, 256, threads), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t k = first + begin; k < first + end; ++k) work(k);
+  });
+}
+
+// The boxes of the objects, from those of their blocks.
+void add_boxes(TriangleBlocks& blocks, std::uint32_t object) {
+  blocks.objects[object] = Box::empty();
+  for (std::uint32_t k = blocks.first[object]; k < blocks.first[object + 1]; ++k)
+    blocks.objects[object].add(blocks.boxes[k]);
+}
+
+// Drops the objects for which `keeps` is false.
+template <class Keeps>
+void keep_objects(ScatteredBoxes& scattered, const Keeps& keeps) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < scattered.objects.size(); ++k) {
+    if (!keeps(scattered.objects[k])) continue;
+    scattered.objects[kept] = scattered.objects[k];
+    scattered.first[kept++] = scattered.first[k];
+  }
+  scattered.objects.resize(kept);
+  scattered.first.resize(kept);
+}
+
+// Fills in the boxes of the triangles of all its objects, and the boxes of these in `objects`.
+void fill_scattered(const Scene& scene, double half, unsigned threads, ScatteredBoxes& scattered,
+                    std::span<Box> objects) {
+  std::size_t size = 0;
+  scattered.first.clear();
+  for (const std::uint32_t o : scattered.objects) {
+    scattered.first.push_back(size);
+    size += scene.objects[o].triangle_count;
+  }
+  scattered.boxes.resize(size);
+  for_each_of(scattered.objects.size(), threads, [&](std::size_t k, unsigned own_threads) {
+    const std::uint32_t o = scattered.objects[k];
+    objects[o] = grow(fill_boxes(scene, scene.objects[o], half, scattered.origin, own_threads,
+                                 &scattered.boxes[scattered.first[k]]),
+                      half);
+  });
+}
+
+}  // namespace
+
+TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned threads,
+                           ScatteredBoxes* scattered) {
+  TriangleBlocks out;
+  const auto objects = static_cast<std::uint32_t>(scene.objects.size());
+  out.first.resize(objects + 1, 0);
+  for (std::size_t o = 0; o < objects; ++o) {
+    const Object& object = scene.objects[o];
+    for (std::uint32_t t = 0; t < object.triangle_count; t += kWide)
+      out.ranges.push_back({object.first_triangle + t, std::min(kWide, object.triangle_count - t)});
+    out.first[o + 1] = static_cast<std::uint32_t>(out.ranges.size());
+  }
+  out.objects.assign(objects, Box::empty());
+  const double half = half_of(clearance);
+  std::vector<double> seems(objects, 0);  // the mean length of its blocks if it seems scattered
+  if (scattered) {
+    Box sampled = Box::empty();
+    for (std::uint32_t o = 0; o < objects; ++o) {
+      Box box = Box::empty();
+      seems[o] = sampled_length(scene, out, o, box);
+      if (seems[o] > 0) sampled.add(box);
+    }
+    scattered->origin = middle(sampled);
+  }
+  const std::size_t n = out.ranges.size();
+  out.boxes.resize(n);
+  for_chunks(n, chunks_for(n, 256, threads), [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::size_t o = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      while (out.first[o + 1] <= k) ++o;
+      if (seems[o] > 0) {
+        k = std::min<std::size_t>(out.first[o + 1], end) - 1;
+      } else {
+        out.boxes[k] = block_box(scene, out.ranges[k], half);
+      }
+    }
+  });
+  for (std::uint32_t o = 0; o < objects; ++o) {
+    if (seems[o] == 0) add_boxes(out, o);
+  }
+  if (!scattered) return out;
+  for (std::uint32_t o = 0; o < objects; ++o) {
+    if (seems[o] > 0 || is_scattered(out, o)) scattered->objects.push_back(o);
+  }
+  fill_scattered(scene, half, threads, *scattered, out.objects);
+  // A sample sees less than the whole box.
+  keep_objects(*scattered, [&](std::uint32_t o) {
+    const std::uint32_t count = out.first[o + 1] - out.first[o];
+    if (seems[o] == 0 || are_scattered(seems[o], count, out.objects[o])) return true;
+    for_blocks_of(out, o, threads,
+                  [&](std::size_t k) { out.boxes[k] = block_box(scene, out.ranges[k], half); });
+    return false;
+  });
+  mark_stretched(scene, half, out);
+  return out;
+}
+
+namespace {
+
+// The lower 10 bits of x, two zeros before each.
+std::uint32_t spread(std::uint32_t x) {
+  x = (x | x << 16) & 0x030000ff;
+  x = (x | x << 8) & 0x0300f00f;
+  x = (x | x << 4) & 0x030c30c3;
+  return (x | x << 2) & 0x09249249;
+}
+
+struct Coded {
+  std::uint32_t code, triangle;
+};
+
+// Sorts by the codes' lower `bits` bits; equal codes stay in their order.
+void sort_by_code(UninitializedVector<Coded>& all, int bits) {
+  constexpr int kDigit = 12;
+  UninitializedVector<Coded> other(all.size());
+  for (int shift = 0; shift < bits; shift += kDigit) {
+    std::array<std::uint32_t, (1 << kDigit) + 1> first{};
+    const auto digit = [&](const Coded& c) { return c.code >> shift & ((1 << kDigit) - 1); };
+    for (const Coded& c : all) ++first[digit(c) + 1];
+    for (std::size_t k = 0; k + 1 < first.size(); ++k) first[k + 1] += first[k];
+    for (const Coded& c : all) other[first[digit(c)]++] = c;
+    all.swap(other);
+  }
+}
+
+// The cells of a grid over a box, and their places on a Morton curve.
+class MortonGrid {
+ public:
+  // Cells half as wide as a block of a surface of so many triangles, about.
+  MortonGrid(const FloatBox& box, std::uint32_t triangles)
+      : bits_(
+            std::clamp(static_cast<int>(std::ceil(0.5 * std::log2(triangles / 16.0))) + 1, 4, 10)),
+        most_(static_cast<float>((1 << bits_) - 1)),
+        lo_(box.lo) {
+    float size = 0x1p-100f;
+    for (std::size_t k = 0; k < 3; ++k) size = std::max(size, 0.5f * box.hi[k] - 0.5f * box.lo[k]);
+    scale_ = most_ / size;
+  }
+  int bits() const { return 3 * bits_; }
+  // The code of the cell with the box's lower corner.
+  std::uint32_t code(const FloatBox& box) const {
+    const auto cell = [&](std::size_t axis) {
+      // By halves, which cannot be infinite.
+      const float at = (0.5f * box.lo[axis] - 0.5f * lo_[axis]) * scale_;
+      return spread(static_cast<std::uint32_t>(std::min(std::max(at, 0.0f), most_)));
+    };
+    return cell(0) | cell(1) << 1 | cell(2) << 2;
+  }
+
+ private:
+  int bits_;
+  float most_;
+  std::array<float, 4> lo_;
+  float scale_;
+};
+
+// Puts the triangles of an object that meet the region in Morton order, then the others; returns
+// how many meet it.
+std::uint32_t order_object(std::span<const FloatBox> boxes, const FloatBox& region,
+                           std::uint32_t first_triangle, unsigned threads,
+                           std::span<std::uint32_t> order) {
+  const std::size_t n = boxes.size(), chunks = chunks_for(n, 8192, threads);
+  const MortonGrid grid(region, static_cast<std::uint32_t>(n));
+  std::vector<UninitializedVector<Coded>> inside(chunks);
+  std::vector<UninitializedVector<std::uint32_t>> outside(chunks);
+  for_chunks(n, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    // No branch: write to both, advance one; a branch would be mispredicted.
+    UninitializedVector<Coded> in(end - begin);
+    UninitializedVector<std::uint32_t> out(end - begin);
+    std::size_t ins = 0, outs = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t triangle = first_triangle + static_cast<std::uint32_t>(k);
+      in[ins] = {grid.code(boxes[k]), triangle};
+      out[outs] = triangle;
+      const bool meets = overlap(boxes[k], region);
+      ins += meets;
+      outs += !meets;
+    }
+    in.resize(ins);
+    out.resize(outs);
+    inside[chunk] = std::move(in);
+    outside[chunk] = std::move(out);
+  });
+  for (std::size_t k = 1; k < chunks; ++k) {
+    inside[0].insert(inside[0].end(), inside[k].begin(), inside[k].end());
+  }
+  sort_by_code(inside[0], grid.bits());
+  std::uint32_t* next = order.data();
+  for (const Coded& coded : inside[0]) *next++ = coded.triangle;
+  for (const auto& part : outside) next = std::copy(part.begin(), part.end(), next);
+  return static_cast<std::uint32_t>(inside[0].size());
+}
+
+// The same for all triangles of a stretched object.
+std::uint32_t order_stretched(const Scene& scene, const Object& object,
+                              std::span<std::uint32_t> order) {
+  std::vector<Box> boxes(object.triangle_count);
+  for (std::uint32_t t = 0; t < object.triangle_count; ++t)
+    boxes[t] = grown_box(scene, object.first_triangle + t, 0);
+  spatial_order(boxes, order);
+  for (std::uint32_t& t : order) t += object.first_triangle;
+  return object.triangle_count;
+}
+
+// Whether floats relative to `from` are nearly as fine as those relative to the middle of a box.
+bool is_near(const Vec3& from, const Box& box) {
+  return (from - middle(box)).cwiseAbs().maxCoeff() <= 4 * (box.hi - box.lo).maxCoeff();
+}
+
+}  // namespace
+
+void gather_scattered(const Scene& scene, double clearance, std::span<const Box> regions,
+                      unsigned threads, ScatteredBoxes& scattered, TriangleBlocks& blocks) {
+  Box all = Box::empty();
+  for (std::size_t o = 0; o < regions.size(); ++o) {
+    if (!regions[o].is_empty()) all.add(blocks.objects[o]);
+  }
+  keep_objects(scattered, [&](std::uint32_t o) { return !regions[o].is_empty(); });
+  blocks.origin = middle(all);
+  if (scattered.objects.empty()) return;
+  if (is_near(scattered.origin, all)) {
+    blocks.origin = scattered.origin;
+  } else {
+    scattered.origin = blocks.origin;
+    fill_scattered(scene, half_of(clearance), threads, scattered, blocks.objects);
+  }
+  blocks.order.resize(scene.triangles.size());
+  std::iota(blocks.order.begin(), blocks.order.end(), 0u);
+  blocks.gathered.resize(scene.objects.size());
+  std::vector<std::uint32_t> inside(scattered.objects.size());
+  const auto boxes_of = [&](std::size_t k) {
+    return std::span<const FloatBox>(scattered.boxes)
+        .subspan(scattered.first[k], scene.objects[scattered.objects[k]].triangle_count);
+  };
+  for_each_of(inside.size(), threads, [&](std::size_t k, unsigned own_threads) {
+    const std::uint32_t o = scattered.objects[k];
+    const Object& object = scene.objects[o];
+    const auto order =
+        std::span(blocks.order).subspan(object.first_triangle, object.triangle_count);
+    inside[k] = blocks.is_stretched(o)
+                    ? order_stretched(scene, object, order)
+                    : order_object(boxes_of(k), relative(regions[o], blocks.origin),
+                                   object.first_triangle, own_threads, order);
+  });
+  std::uint32_t lanes = 0;
+  for (std::size_t k = 0; k < inside.size(); ++k) {
+    const auto count = (inside[k] + kWide - 1) / kWide;
+    blocks.gathered[scattered.objects[k]] = {.first = lanes, .count = count, .any = true};
+    lanes += count;
+  }
+  blocks.lanes.resize(lanes);
+  for_each_of(inside.size(), threads, [&](std::size_t k, unsigned own_threads) {
+    const std::uint32_t o = scattered.objects[k], first = scene.objects[o].first_triangle;
+    const std::span<const FloatBox> boxes = boxes_of(k);
+    const auto order = std::span<const std::uint32_t>(blocks.order).subspan(first, inside[k]);
+    const std::size_t n = blocks.gathered[o].count;
+    for_chunks(
+        n, chunks_for(n, 256, own_threads), [&](std::size_t, std::size_t begin, std::size_t end) {
+          for (std::size_t block = begin; block < end; ++block) {
+            const std::size_t from = block * kWide;
+            const auto own = order.subspan(from, std::min<std::size_t>(kWide, order.size() - from));
+            fill_lanes(own, boxes.data(), first, blocks.lanes[blocks.gathered[o].first + block]);
+          }
+        });
+  });
+}
+
+TriangleBlocks make_ordered_blocks(const Scene& scene, double clearance, unsigned threads) {
+  ScatteredBoxes scattered;
+  TriangleBlocks blocks = make_blocks(scene, clearance, threads, &scattered);
+  if (!blocks.stretched.empty()) {
+    std::vector<std::uint32_t> both;
+    for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+      if (blocks.is_stretched(o) || std::ranges::binary_search(scattered.objects, o))
+        both.push_back(o);
+    }
+    scattered.objects = std::move(both);
+    fill_scattered(scene, half_of(clearance), threads, scattered, blocks.objects);
+  }
+  const std::vector<Box> regions = blocks.objects;
+  gather_scattered(scene, clearance, regions, threads, scattered, blocks);
+  update_boxes(scene, clearance, std::vector<std::uint8_t>(blocks.ranges.size(), 1), threads,
+               blocks);
+  return blocks;
+}
+
+void update_boxes(const Scene& scene, double clearance, std::span<const std::uint8_t> moved,
+                  unsigned threads, TriangleBlocks& blocks) {
+  const double half = half_of(clearance);
+  const auto objects = static_cast<std::uint32_t>(blocks.objects.size());
+  const std::span<const std::uint32_t> order(blocks.order);
+  const auto update_block = [&](std::uint32_t object, std::size_t k) {
+    const TriangleBlock& range = blocks.ranges[k];
+    if (!blocks.is_gathered(object)) {
+      blocks.boxes[k] = block_box(scene, range, half);
+      return;
+    }
+    for (std::uint32_t i = 0; i < range.count; ++i)
+      prefetch(scene, order[std::min<std::size_t>(range.first + kAhead + i, order.size() - 1)]);
+    BlockLanes& lanes = blocks.lanes[blocks.gathered[object].first + k - blocks.first[object]];
+    blocks.boxes[k] =
+        grow(fill_lanes(scene, order.subspan(range.first, range.count), half, blocks.origin, lanes),
+             half);
+  };
+  const auto update = [&](std::span<const std::uint8_t> which) {
+    for_each_of(objects, threads, [&](std::size_t o, unsigned own_threads) {
+      const auto object = static_cast<std::uint32_t>(o);
+      for_blocks_of(blocks, object, own_threads, [&](std::size_t k) {
+        if (which.empty() || which[k]) update_block(object, k);
+      });
+    });
+  };
+  update(moved);
+  Box all = Box::empty();
+  for (std::uint32_t o = 0; o < objects; ++o) {
+    add_boxes(blocks, o);
+    all.add(blocks.objects[o]);
+  }
+  mark_stretched(scene, half, blocks);
+  if (is_near(blocks.origin, all)) return;
+  blocks.origin = middle(all);
+  if (!blocks.lanes.empty()) update({});
+}
+
+}  // namespace farcull

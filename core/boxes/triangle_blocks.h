@@ -1,0 +1,96 @@
+// Blocks of triangles: those that stand together in a file mostly lie together, so the box of a
+// block speaks for all of them, and most are never touched one by one. Triangles that are scattered
+// are put in an order in which they lie together.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/uninitialized.h"
+#include "core/boxes/block.h"
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+/// At most kWide consecutive triangles of one object, in the order of TriangleBlocks.
+struct TriangleBlock {
+  std::uint32_t first, count;
+};
+
+/// The blocks of all objects of a scene, and their boxes, grown by half the clearance.
+struct TriangleBlocks {
+  std::vector<TriangleBlock> ranges;
+  std::vector<Box> boxes;            // per block; of a gathered object only if all blocks have one
+  std::vector<std::uint32_t> first;  // per object, and one behind the last: its first block
+  std::vector<Box> objects;          // empty if an object has no triangle
+  std::vector<std::uint32_t> order;  // triangles in the order of the blocks; empty: as in the file
+  Vec3 origin = Vec3::Zero();        // of boxes as floats; finite
+
+  /// A gathered object: its triangles were put in an order of their own.
+  struct Gathered {
+    std::uint32_t first = 0;  // into lanes: its first block
+    std::uint32_t count = 0;  // blocks with lanes; the triangles of the others meet nothing
+    bool any = false;
+  };
+  std::vector<Gathered> gathered;         // per object; empty: no object was gathered
+  std::vector<std::uint8_t> stretched;    // per object; empty: no object is stretched
+  UninitializedVector<BlockLanes> lanes;  // of the blocks of gathered objects
+
+  bool is_gathered(std::uint32_t object) const { return !gathered.empty() && gathered[object].any; }
+  bool is_stretched(std::uint32_t object) const {
+    return !stretched.empty() && stretched[object] != 0;
+  }
+  /// Blocks of an object that can meet anything.
+  std::uint32_t count(std::uint32_t object) const {
+    return is_gathered(object) ? gathered[object].count : first[object + 1] - first[object];
+  }
+  /// The box of block k of an object, relative to the origin. Precondition: k < count(object).
+  FloatBox bound(std::uint32_t object, std::uint32_t k) const {
+    return is_gathered(object) ? lanes[gathered[object].first + k].bound
+                               : relative(boxes[first[object] + k], origin);
+  }
+  /// The triangle at a position, TriangleBlock::first + k.
+  std::uint32_t triangle(std::uint32_t position) const {
+    return order.empty() ? position : order[position];
+  }
+};
+
+/// The boxes of all triangles of some objects, one object after the other.
+struct ScatteredBoxes {
+  Vec3 origin = Vec3::Zero();
+  std::vector<std::uint32_t> objects;  // ascending
+  std::vector<std::size_t> first;      // per object of the list, into boxes
+  UninitializedVector<FloatBox> boxes;
+};
+
+/// An object's blocks are scattered if they are more than kScattered times as long as those of a
+/// smooth surface.
+constexpr double kScattered = 3;
+/// An object is stretched if its box is more than kStretched times as long as the one around most
+/// of its triangles, by a sample: grids over its box, and boxes of blocks as floats, are of no use
+/// then. Objects of a few blocks are not judged.
+constexpr double kStretched = 8;
+
+/// Blocks in the order of the file. threads: 0 for as many as there are cores. scattered: if it is
+/// not null, scattered objects are put there and have no boxes of blocks (large ones are judged by
+/// a sample), and stretched objects are marked.
+TriangleBlocks make_blocks(const Scene& scene, double clearance, unsigned threads,
+                           ScatteredBoxes* scattered = nullptr);
+/// Chooses the origin, and puts the triangles of scattered objects that meet the object's region in
+/// Morton order, as blocks with lanes.
+/// regions: per object, contains the boxes of all its triangles, grown, that can meet anything; an
+/// empty one if no triangle can.
+void gather_scattered(const Scene& scene, double clearance, std::span<const Box> regions,
+                      unsigned threads, ScatteredBoxes& scattered, TriangleBlocks& blocks);
+
+/// Blocks in the order of the file; of scattered objects all triangles in Morton order, with lanes
+/// and a box for each block; of stretched objects in the order of spatial_order().
+TriangleBlocks make_ordered_blocks(const Scene& scene, double clearance, unsigned threads);
+/// Makes the boxes and lanes of such blocks again for triangles with corners that moved, and the
+/// boxes of the objects. moved: per block.
+void update_boxes(const Scene& scene, double clearance, std::span<const std::uint8_t> moved,
+                  unsigned threads, TriangleBlocks& blocks);
+
+}  // namespace farcull

@@ -1,0 +1,222 @@
+// The walk down the blocks of cells, level by level: each block has the triangles that can matter
+// to a cell in it, and passes on to its parts those that still can. A level reads what the levels
+// above it found, and nothing of itself, so the answer does not depend on the number of threads.
+// For the two forms of the diagram (voronoi.h) alone.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/voronoi/voronoi.h"
+
+namespace farcull::voronoi {
+
+inline constexpr float kInfinite = std::numeric_limits<float>::infinity();
+inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+// Cells from .. to - 1 along each axis, and where its triangles lie in the list of its level.
+struct Block {
+  std::array<int, 3> from, to;
+  std::size_t first, count;
+
+  bool is_cell() const { return fits(1); }
+  // True if no side is longer than `side`.
+  bool fits(int side) const {
+    return to[0] - from[0] <= side && to[1] - from[1] <= side && to[2] - from[2] <= side;
+  }
+};
+
+// Sides of the bricks that a device is given: so many slices are in memory at a time.
+inline constexpr int kBrick = 8;
+
+struct Level {
+  std::vector<Block> blocks;
+  std::vector<std::uint32_t> triangles;
+
+  void append(const Level& other) {
+    for (Block block : other.blocks) {
+      block.first += triangles.size();
+      blocks.push_back(block);
+    }
+    triangles.insert(triangles.end(), other.triangles.begin(), other.triangles.end());
+  }
+};
+
+// Half the diagonal of a block whose sides are as much shorter, rounded up.
+inline float half_diagonal(const Block& block, int shorter) {
+  float square = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto side = static_cast<float>(block.to[k] - block.from[k] - shorter);
+    square += side * side;
+  }
+  return 0.5f * std::sqrt(square) * (1 + 0x1p-20f);
+}
+inline GridPoint centre_of(const Block& block) {
+  GridPoint out;
+  for (std::size_t k = 0; k < 3; ++k)
+    out[k] = 0.5f * static_cast<float>(block.from[k] + block.to[k]);
+  return out;
+}
+
+// Adds the halves of the block along each axis that has any. All have the triangles `kept`.
+inline void add_parts(const Block& block, std::span<const std::uint32_t> kept, Level& below) {
+  std::array<std::vector<std::pair<int, int>>, 3> parts;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int from = block.from[k], to = block.to[k], middle = from + (to - from) / 2;
+    if (to - from > 1)
+      parts[k] = {{from, middle}, {middle, to}};
+    else
+      parts[k] = {{from, to}};
+  }
+  const std::size_t first = below.triangles.size();
+  below.triangles.insert(below.triangles.end(), kept.begin(), kept.end());
+  for (const auto& x : parts[0]) {
+    for (const auto& y : parts[1]) {
+      for (const auto& z : parts[2]) {
+        below.blocks.push_back(
+            {{x.first, y.first, z.first}, {x.second, y.second, z.second}, first, kept.size()});
+      }
+    }
+  }
+}
+
+// An object near a point: the least bounds of its triangles, and its least computed distance.
+struct Near {
+  std::uint32_t object;
+  float computed, lower, upper;
+};
+
+// The distances of a point from triangles that are sorted by object.
+class Distances {
+ public:
+  void compute(const GridPoint& point, std::span<const std::uint32_t> ids,
+               const std::vector<GridTriangle>& triangles, float error) {
+    of_.clear();
+    objects_.clear();
+    for (const std::uint32_t id : ids) {
+      const GridTriangle& triangle = triangles[id];
+      const GridDistance d = distance_of(point, triangle, error);
+      of_.push_back(d);
+      if (objects_.empty() || objects_.back().object != triangle.object) {
+        objects_.push_back({triangle.object, d.computed, d.lower, d.upper});
+      } else {
+        Near& near = objects_.back();
+        near.computed = std::min(near.computed, d.computed);
+        near.lower = std::min(near.lower, d.lower);
+        near.upper = std::min(near.upper, d.upper);
+      }
+    }
+  }
+  const std::vector<GridDistance>& of() const { return of_; }  // in the order of the triangles
+  const std::vector<Near>& objects() const { return objects_; }
+  // The K least upper bounds with their objects, ascending.
+  template <std::size_t K>
+  std::array<std::pair<float, std::uint32_t>, K> least_upper() const {
+    std::array<std::pair<float, std::uint32_t>, K> out;
+    out.fill({kInfinite, kNone});
+    for (const Near& near : objects_) {
+      std::pair<float, std::uint32_t> carried{near.upper, near.object};
+      for (auto& kept : out) {
+        if (carried.first < kept.first) std::swap(carried, kept);
+      }
+    }
+    return out;
+  }
+
+ private:
+  std::vector<GridDistance> of_;
+  std::vector<Near> objects_;
+};
+
+/// Throws Error naming the option that is out of range.
+inline void require(const VoronoiOptions& options) {
+  if (options.resolution < 1 || options.resolution > kVoronoiLargest) {
+    throw Error("resolution", "is " + std::to_string(options.resolution),
+                "give 1 to " + std::to_string(kVoronoiLargest));
+  }
+  if (!(options.widening >= 0 && options.widening <= 1)) {
+    throw Error("widening", "is not in 0 to 1", "leave it at 1, which the proof asks for");
+  }
+}
+
+/// Distances of cells and triangles that a device computes for a slice.
+inline std::uint64_t distances_in(int slice, const VoronoiBricks& bricks) {
+  std::uint64_t out = 0;
+  for (const VoronoiBrick& brick : bricks.bricks) {
+    if (slice < brick.from[2] || slice >= brick.to[2]) continue;
+    out += static_cast<std::uint64_t>(brick.to[0] - brick.from[0]) *
+           static_cast<std::uint64_t>(brick.to[1] - brick.from[1]) * brick.count;
+  }
+  return out;
+}
+
+/// Sorts them and leaves each once.
+inline void sort_each_once(std::vector<ObjectPair>& pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+}
+
+inline ObjectPair pair_of(std::uint32_t a, std::uint32_t b) {
+  return {std::min(a, b), std::max(a, b)};
+}
+
+/// Calls form.look() for each block that matters of `whole`, which has all triangles, level by
+/// level, and form.add() with what the chunks of a level found, in order, before it looks at the
+/// next level. Form::Found: what a chunk finds.
+template <class Form>
+void descend(Form& form, const Block& whole, std::size_t triangles, const VoronoiOptions& options,
+             const Progress& progress, VoronoiCounts& counts) {
+  Level level;
+  level.blocks.push_back(whole);
+  for (std::uint32_t t = 0; t < triangles; ++t) level.triangles.push_back(t);
+  while (!level.blocks.empty()) {
+    if (progress) progress("voronoi: " + std::to_string(level.blocks.size()) + " blocks");
+    const std::size_t chunks = chunks_for(level.blocks.size(), 16, options.threads);
+    std::vector<Level> below(chunks);
+    std::vector<typename Form::Found> found(chunks, form.nothing());
+    for_chunks(level.blocks.size(), chunks, [&](std::size_t k, std::size_t begin, std::size_t end) {
+      Distances distances;
+      for (std::size_t i = begin; i < end; ++i) {
+        const Block& block = level.blocks[i];
+        form.look(block, std::span(level.triangles).subspan(block.first, block.count), distances,
+                  found[k], below[k]);
+      }
+    });
+    for (const Block& block : level.blocks) counts.distances += block.count;
+    counts.blocks += level.blocks.size();
+    level = {};
+    for (std::size_t k = 0; k < chunks; ++k) {
+      form.add(found[k]);
+      level.append(below[k]);
+    }
+  }
+}
+
+/// The same for the whole grid.
+template <class Form>
+void descend(Form& form, const VoronoiGrid& grid, std::size_t triangles,
+             const VoronoiOptions& options, const Progress& progress, VoronoiCounts& counts) {
+  counts.cells = grid.cells;
+  descend(form, Block{{0, 0, 0}, grid.cells, 0, triangles}, triangles, options, progress, counts);
+}
+
+/// slab(whole block, first slice, slice after the last one) for the slabs of the grid, kBrick
+/// slices each, in order.
+template <class Slab>
+void for_slabs(const VoronoiGrid& grid, std::size_t triangles, const Slab& slab) {
+  for (int z = 0; z < grid.cells[2]; z += kBrick) {
+    const int end = std::min(z + kBrick, grid.cells[2]);
+    slab(Block{{0, 0, z}, {grid.cells[0], grid.cells[1], end}, 0, triangles}, z, end);
+  }
+}
+
+}  // namespace farcull::voronoi

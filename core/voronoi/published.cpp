@@ -1,0 +1,337 @@
+// The published form: each cell names its two nearest objects. A block is left out where every two
+// objects that its cells may name have been named by others.
+#include <algorithm>
+#include <cmath>
+
+#include "core/voronoi/blocks.h"
+
+namespace farcull {
+namespace voronoi {
+namespace {
+
+// Whether one object is nearer than another one to every point of a block: a test that is sharp
+// where both are far away, as distances from the middle of the block are not.
+//
+// Let v be a corner of one object, T a triangle of the other one, and c a point of the block. The
+// square of the distance from v is less than that from T everywhere if one of two bounds of their
+// difference is below 0.
+//
+// Box: if [lo, hi] is the box of T, the difference is at most a sum over the axes of
+// (c - v)^2 - |c - [lo, hi]|^2. Each term is convex in c: its slope is 2 (lo - v) up to lo, then
+// grows to 2 (hi - v), and stays. So its largest value is at an end of the block (Emrich, Kriegel,
+// Kroger, Renz, Zufle: Boosting Spatial Pruning: On Optimal Pruning of MBRs, SIGMOD 2010).
+//
+// Corners: for a point p of T with weights l_i of its corners p_i,
+//   |c - v|^2 - |c - p|^2 = sum l_i (|c - v|^2 - |c - p_i|^2) + sum_{i<j} l_i l_j |p_i - p_j|^2.
+// The second sum is at most a third of the square of the longest side. Each bracket of the first
+// one is linear in c, so it is largest at a corner of the block.
+using Exactly = std::array<double, 3>;  // a point or a step, in units of the grid
+
+// The points that |x - centre| <= half along each axis.
+struct BlockBox {
+  Exactly centre, half;
+};
+
+namespace domination {
+
+Exactly from(const Exactly& centre, const GridPoint& p) {
+  return {static_cast<double>(p[0]) - centre[0], static_cast<double>(p[1]) - centre[1],
+          static_cast<double>(p[2]) - centre[2]};
+}
+double square(const Exactly& p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2]; }
+
+using Corners = std::array<Exactly, 3>;  // relative to the centre of the block, as v
+
+double by_box(const Exactly& v, const Corners& t, const Exactly& half) {
+  double most = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto [lo, hi] = std::minmax({t[0][k], t[1][k], t[2][k]});
+    const auto term = [&, lo = lo, hi = hi](double x) {
+      const double to_box = std::max({0.0, lo - x, x - hi});
+      return (x - v[k]) * (x - v[k]) - to_box * to_box;
+    };
+    most += std::max(term(-half[k]), term(half[k]));
+  }
+  return most;
+}
+
+double by_corners(const Exactly& v, const Corners& t, const Exactly& half) {
+  double most = -HUGE_VAL, longest = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    double along = square(v) - square(t[i]);
+    Exactly side;
+    for (std::size_t k = 0; k < 3; ++k) {
+      along += 2 * half[k] * std::abs(t[i][k] - v[k]);
+      side[k] = t[i][k] - t[(i + 1) % 3][k];
+    }
+    most = std::max(most, along);
+    longest = std::max(longest, square(side));
+  }
+  return most + longest / 3;
+}
+
+}  // namespace domination
+
+// The corner of the triangles `ids` that is nearest to the centre. Precondition: there are some.
+Exactly nearest_corner(std::span<const std::uint32_t> ids,
+                       const std::vector<GridTriangle>& triangles, const BlockBox& block) {
+  Exactly out{};
+  double least = HUGE_VAL;
+  for (const std::uint32_t id : ids) {
+    for (const GridPoint& corner : triangles[id].corners) {
+      const Exactly relative = domination::from(block.centre, corner);
+      const double square = domination::square(relative);
+      if (square >= least) continue;
+      least = square;
+      out = relative;
+    }
+  }
+  return out;
+}
+
+// True only if at every point of the block the exact and the computed distance from `corner`
+// (nearest_corner() of an object) are less than those from all triangles `ids` of another object.
+// The squares then differ by at least the sum of two distances, each at most 1.74 N, times the
+// errors of both. The double arithmetic here errs by far less.
+bool dominates(const Exactly& corner, std::span<const std::uint32_t> ids,
+               const std::vector<GridTriangle>& triangles, const BlockBox& block, int longest) {
+  const double margin =
+      2 * static_cast<double>(voronoi_error(longest)) * 3.5 * static_cast<double>(longest);
+  return std::all_of(ids.begin(), ids.end(), [&](std::uint32_t id) {
+    const auto& corners = triangles[id].corners;
+    const domination::Corners t = {domination::from(block.centre, corners[0]),
+                                   domination::from(block.centre, corners[1]),
+                                   domination::from(block.centre, corners[2])};
+    return domination::by_corners(corner, t, block.half) < -margin ||
+           domination::by_box(corner, t, block.half) < -margin;
+  });
+}
+
+class Published {
+ public:
+  using Found = std::vector<ObjectPair>;
+  Published(const std::vector<GridTriangle>& triangles, const VoronoiGrid& grid)
+      : triangles_(triangles), longest_(grid.longest()), error_(voronoi_error(grid.longest())) {}
+
+  Found nothing() const { return {}; }
+
+  // Computes the distances of one cell of the block. The bounds for its other cells follow.
+  void look(const Block& block, std::span<const std::uint32_t> ids, Distances& distances,
+            Found& found, Level& below) const {
+    GridPoint centre;
+    float square = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int cell = block.from[k] + (block.to[k] - block.from[k]) / 2;
+      centre[k] = static_cast<float>(cell) + 0.5f;
+      const auto far = static_cast<float>(cell - block.from[k]);  // no other cell is farther
+      square += far * far;
+    }
+    const float reach = std::sqrt(square) * (1 + 0x1p-20f);
+    distances.compute(centre, ids, triangles_, error_);
+    const std::vector<Near>& objects = distances.objects();
+    if (objects.size() < 2) return;
+    add_nearest_two(objects, found);
+    if (block.is_cell()) return;
+    const std::vector<std::uint32_t> candidates =
+        candidates_of(block, ids, distances, 2 * (reach + error_));
+    if (candidates.empty()) return;
+    std::vector<std::uint32_t> kept;
+    const float limit = distances.least_upper<2>()[1].first + 2 * (reach + error_);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      if (distances.of()[i].lower <= limit &&
+          std::binary_search(candidates.begin(), candidates.end(), triangles_[ids[i]].object))
+        kept.push_back(ids[i]);
+    }
+    add_parts(block, kept, below);
+  }
+
+  void add(const Found& found) {
+    pairs_.insert(pairs_.end(), found.begin(), found.end());
+    sort_each_once(pairs_);
+  }
+  std::vector<ObjectPair> take() { return std::move(pairs_); }
+
+ private:
+  static void add_nearest_two(const std::vector<Near>& objects, Found& found) {
+    const Near *first = &objects[0], *second = &objects[1];
+    if (second->computed < first->computed) std::swap(first, second);
+    for (std::size_t i = 2; i < objects.size(); ++i) {
+      const Near& near = objects[i];
+      if (near.computed < first->computed) {
+        second = first;
+        first = &near;
+      } else if (near.computed < second->computed) {
+        second = &near;
+      }
+    }
+    const ObjectPair pair = pair_of(first->object, second->object);
+    if (found.empty() || found.back() != pair) found.push_back(pair);
+  }
+
+  // An object that may be one of the nearest two of a cell.
+  struct Candidate {
+    const Near* near;
+    std::size_t dominators = 0;  // of the others, by how many it is dominated
+    std::size_t by = 0;          // one of them
+  };
+
+  // The objects that may be among the nearest two of a cell of the block, ascending. None where
+  // every two that a cell may name have been named. slack: what a distance may change, from the
+  // cell at the centre to any other, more than another one does.
+  std::vector<std::uint32_t> candidates_of(const Block& block, std::span<const std::uint32_t> ids,
+                                           const Distances& distances, float slack) const {
+    const auto least = distances.least_upper<3>();
+    std::vector<Candidate> candidates;
+    for (const Near& near : distances.objects()) {
+      if (near.lower <= least[1].first + slack) candidates.push_back({.near = &near});
+    }
+    if (candidates.size() <= kMostCompared) count_dominators(block, ids, candidates);
+    bool adds = false;
+    for (std::size_t i = 0; i < candidates.size() && !adds; ++i) {
+      for (std::size_t j = i + 1; j < candidates.size() && !adds; ++j) {
+        const std::uint32_t a = candidates[i].near->object, b = candidates[j].near->object;
+        // Only where both are as near as any third one may be can they be the nearest two.
+        const auto third = std::find_if(least.begin(), least.end(), [&](const auto& upper) {
+          return upper.second != a && upper.second != b;
+        });
+        adds = std::max(candidates[i].near->lower, candidates[j].near->lower) <=
+                   third->first + slack &&
+               only_by(candidates[i], j) && only_by(candidates[j], i) &&
+               !std::binary_search(pairs_.begin(), pairs_.end(), pair_of(a, b));
+      }
+    }
+    std::vector<std::uint32_t> out;
+    for (const Candidate& candidate : candidates) {
+      if (adds && candidate.dominators < 2) out.push_back(candidate.near->object);
+    }
+    return out;
+  }
+
+  // Whether the candidate is dominated by no other one than that.
+  static bool only_by(const Candidate& candidate, std::size_t other) {
+    return candidate.dominators == 0 || (candidate.dominators == 1 && candidate.by == other);
+  }
+
+  void count_dominators(const Block& block, std::span<const std::uint32_t> ids,
+                        std::vector<Candidate>& candidates) const {
+    BlockBox box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.centre[k] = 0.5 * (block.from[k] + block.to[k]);
+      box.half[k] = 0.5 * (block.to[k] - block.from[k] - 1);
+    }
+    std::vector<std::span<const std::uint32_t>> of;
+    std::vector<Exactly> corners;
+    std::size_t at = 0;
+    for (const Candidate& candidate : candidates) {
+      const auto is_of = [&](std::size_t i) {
+        return triangles_[ids[i]].object == candidate.near->object;
+      };
+      while (!is_of(at)) ++at;
+      const std::size_t first = at;
+      while (at < ids.size() && is_of(at)) ++at;
+      of.push_back(ids.subspan(first, at - first));
+      corners.push_back(nearest_corner(of.back(), triangles_, box));
+    }
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      for (std::size_t j = 0; j < candidates.size() && candidates[i].dominators < 2; ++j) {
+        if (i == j || !dominates(corners[j], of[i], triangles_, box, longest_)) continue;
+        ++candidates[i].dominators;
+        candidates[i].by = j;
+      }
+    }
+  }
+
+  static constexpr std::size_t kMostCompared = 64;  // candidates of a block
+
+  const std::vector<GridTriangle>& triangles_;
+  int longest_;
+  float error_;
+  std::vector<ObjectPair> pairs_;  // of the levels above
+};
+
+// Divides a slab into bricks: each has the triangles of the objects that a device may find among
+// the nearest two of a cell. From the centre of a block to that of a cell a distance changes by at
+// most half the diagonal between the outer centres, and the device's distances err by at most
+// voronoi_bounds::error().
+class Candidates {
+ public:
+  using Found = VoronoiBricks;
+  Candidates(const std::vector<GridTriangle>& triangles, const VoronoiGrid& grid)
+      : triangles_(triangles),
+        error_(voronoi_error(grid.longest())),
+        of_device_(voronoi_bounds::error(grid.longest())) {}
+
+  Found nothing() const { return {}; }
+  void look(const Block& block, std::span<const std::uint32_t> ids, Distances& distances,
+            Found& found, Level& below) const {
+    distances.compute(centre_of(block), ids, triangles_, error_);
+    const float slack = 2 * (half_diagonal(block, 1) + of_device_);
+    const float limit = distances.least_upper<2>()[1].first + slack;
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      if (distances.of()[i].lower <= limit) kept.push_back(ids[i]);
+    }
+    if (!block.fits(kBrick)) return add_parts(block, kept, below);
+    found.bricks.push_back({block.from, block.to, found.triangles.size(), kept.size()});
+    found.triangles.insert(found.triangles.end(), kept.begin(), kept.end());
+  }
+  void add(const Found& found) {
+    for (VoronoiBrick brick : found.bricks) {
+      brick.first += all_.triangles.size();
+      all_.bricks.push_back(brick);
+    }
+    all_.triangles.insert(all_.triangles.end(), found.triangles.begin(), found.triangles.end());
+  }
+  const VoronoiBricks& bricks() const { return all_; }
+
+ private:
+  const std::vector<GridTriangle>& triangles_;
+  float error_, of_device_;
+  VoronoiBricks all_;
+};
+
+}  // namespace
+}  // namespace voronoi
+
+VoronoiNeighbours voronoi_neighbours(const Scene& scene, const VoronoiOptions& options,
+                                     const Progress& progress) {
+  voronoi::require(options);
+  const VoronoiGrid grid = voronoi_grid(scene, options.resolution);
+  const std::vector<GridTriangle> triangles = grid_triangles(scene, grid, options.threads);
+  voronoi::Published form(triangles, grid);
+  VoronoiNeighbours out;
+  voronoi::descend(form, grid, triangles.size(), options, progress, out.counts);
+  out.objects = form.take();
+  return out;
+}
+
+VoronoiNeighbours voronoi_neighbours(const Scene& scene, const VoronoiOptions& options,
+                                     VoronoiDevice& device, const Progress& progress) {
+  voronoi::require(options);
+  const VoronoiGrid grid = voronoi_grid(scene, options.resolution);
+  const std::vector<GridTriangle> triangles = grid_triangles(scene, grid, options.threads);
+  VoronoiNeighbours out;
+  out.counts.cells = grid.cells;
+  if (triangles.empty()) return out;
+  device.start(triangles, grid);
+  voronoi::for_slabs(grid, triangles.size(), [&](const voronoi::Block& slab, int from, int to) {
+    voronoi::Candidates candidates(triangles, grid);
+    voronoi::descend(candidates, slab, triangles.size(), options, {}, out.counts);
+    for (int slice = from; slice < to; ++slice) {
+      if (progress) {
+        progress("voronoi: slice " + std::to_string(slice + 1) + " of " +
+                 std::to_string(grid.cells[2]));
+      }
+      out.counts.distances += voronoi::distances_in(slice, candidates.bricks());
+      for (const auto& [a, b] : device.nearest_two(slice, candidates.bricks())) {
+        if (b == VoronoiDevice::kNone) continue;
+        const ObjectPair pair = voronoi::pair_of(a, b);
+        if (out.objects.empty() || out.objects.back() != pair) out.objects.push_back(pair);
+      }
+      voronoi::sort_each_once(out.objects);
+    }
+  });
+  return out;
+}
+
+}  // namespace farcull

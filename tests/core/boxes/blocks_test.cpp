@@ -1,0 +1,549 @@
+// Blocks of triangles and the comparisons on lanes: all boxes that overlap are found, on every
+// instruction set, whatever the order of the triangles. Each property has a twin that must fail.
+#include "core/boxes/triangle_blocks.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <set>
+
+#include "core/boxes/block.h"
+#include "core/boxes/block_join.h"
+#include "core/native/lanes.h"
+#include "core/pairs/regions.h"
+#include "core/pairs/sweep.h"
+#include "core/scene/scene.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/core/pairs/pairs_lab.h"
+
+namespace farcull {
+namespace {
+
+using lab::missed;
+using lab::Random;
+using lab::random_scene;
+using lab::truth_of;
+using lab::with_self;
+
+// Calls `work` on every instruction set.
+void for_each_target(const std::function<void()>& work) {
+  for (const std::string& target : lane_targets()) {
+    SCOPED_TRACE(target);
+    use_lane_target(target);
+    work();
+  }
+  use_lane_target("");
+}
+
+// The triangles of each object in another order.
+Scene shuffled(Scene scene, std::uint64_t seed) {
+  Random random(seed);
+  for (const Object& object : scene.objects) {
+    for (std::uint32_t k = object.triangle_count; k > 1; --k) {
+      std::swap(scene.triangles[object.first_triangle + k - 1],
+                scene.triangles[object.first_triangle +
+                                static_cast<std::uint32_t>(random.below(static_cast<int>(k)))]);
+    }
+  }
+  return scene;
+}
+
+// Pairs that count whose boxes overlap, by comparing all with all.
+std::vector<TrianglePair> overlapping(const Scene& scene, double clearance, bool neighbours) {
+  const std::vector<std::uint32_t> owner = owners(scene);
+  std::vector<TrianglePair> out;
+  for (std::uint32_t a = 0; a < scene.triangles.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < scene.triangles.size(); ++b) {
+      if (owner[a] == owner[b]) {
+        if (!scene.objects[owner[a]].self) continue;
+        const auto& other = scene.triangles[b];
+        const bool shared = std::ranges::any_of(scene.triangles[a], [&](std::uint32_t v) {
+          return std::ranges::find(other, v) != other.end();
+        });
+        if (shared && !neighbours) continue;
+      }
+      if (boxes_meet(scene, {a, b}, half_of(clearance))) out.push_back({a, b});
+    }
+  }
+  return out;
+}
+
+std::vector<Scene> small_scenes() {
+  std::vector<Scene> out;
+  for (const char* name : {"two-spheres", "crowd", "field:1000", "spheres:1000", "rope:2000",
+                           "crumpled:1000", "crowd@far", "degenerate", "degenerate@huge"}) {
+    Scene scene = make_builtin_scene(name);
+    if (scene.triangles.size() > 12'000) continue;
+    out.push_back(shuffled(scene, 1));
+    out.push_back(std::move(scene));
+  }
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    out.push_back(seed % 2 ? with_self(random_scene(seed)) : random_scene(seed));
+  }
+  return out;
+}
+
+// The middle half of each object's box.
+std::vector<Box> middles_of(const TriangleBlocks& blocks) {
+  std::vector<Box> out = blocks.objects;
+  for (Box& box : out) {
+    if (box.is_empty()) continue;
+    const Vec3 size = box.hi - box.lo;
+    box = {box.lo + 0.25 * size, box.hi - 0.25 * size};
+  }
+  return out;
+}
+
+TEST(Blocks, HoldEachTriangleOnceInItsBox) {
+  std::size_t gathered = 0, outside = 0;
+  for (const Scene& scene : small_scenes()) {
+    for (const double clearance : {0.0, 0.01}) {
+      for (const bool all : {true, false}) {
+        ScatteredBoxes scattered;
+        TriangleBlocks blocks = make_blocks(scene, clearance, 2, &scattered);
+        const std::vector<Box> regions = all ? blocks.objects : middles_of(blocks);
+        gather_scattered(scene, clearance, regions, 2, scattered, blocks);
+        std::set<std::uint32_t> seen;
+        for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+          const Object& object = scene.objects[o];
+          gathered += blocks.is_gathered(o);
+          for (std::uint32_t k = 0; k < blocks.first[o + 1] - blocks.first[o]; ++k) {
+            const TriangleBlock& block = blocks.ranges[blocks.first[o] + k];
+            for (std::uint32_t i = 0; i < block.count; ++i) {
+              const std::uint32_t t = blocks.triangle(block.first + i);
+              ASSERT_TRUE(seen.insert(t).second);
+              ASSERT_LT(t - object.first_triangle, object.triangle_count);
+              const Box box = grown_box(scene, t, clearance);
+              const FloatBox own = relative(box, blocks.origin);
+              if (k >= blocks.count(o)) {
+                ++outside;
+                ASSERT_FALSE(overlap(box, regions[o]));
+                continue;
+              }
+              const FloatBox bound = blocks.bound(o, k);
+              const bool holds =
+                  !blocks.is_gathered(o) ||
+                  blocks.lanes[blocks.gathered[o].first + k].boxes.get(i).lo != kNowhere.lo;
+              if (!holds) {  // the last block may go on behind those that meet the region
+                ASSERT_EQ(k + 1, blocks.count(o));
+                ASSERT_FALSE(overlap(box, regions[o]));
+                ++outside;
+                continue;
+              }
+              for (std::size_t axis = 0; axis < 3; ++axis) {
+                ASSERT_LE(bound.lo[axis], own.lo[axis]);
+                ASSERT_GE(bound.hi[axis], own.hi[axis]);
+              }
+              if (!blocks.is_gathered(o)) continue;
+              const BlockLanes& block = blocks.lanes[blocks.gathered[o].first + k];
+              ASSERT_EQ(block.triangles[i], t);
+              ASSERT_EQ(block.boxes.get(i).lo, own.lo);
+              ASSERT_EQ(block.boxes.get(i).hi, own.hi);
+            }
+          }
+        }
+        ASSERT_EQ(seen.size(), scene.triangles.size());
+      }
+    }
+  }
+  EXPECT_GT(gathered, 20u);
+  EXPECT_GT(outside, 1000u);
+}
+
+// Objects whose blocks are scattered, by the boxes of all blocks.
+std::vector<std::uint32_t> scattered_objects(const Scene& scene) {
+  const TriangleBlocks blocks = make_blocks(scene, 0, 2);
+  const auto length = [](const Box& box) { return (box.hi - box.lo).sum(); };
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    double sum = 0;
+    for (std::uint32_t k = blocks.first[o]; k < blocks.first[o + 1]; ++k)
+      sum += length(blocks.boxes[k]);
+    if (sum > kScattered * std::sqrt(blocks.count(o)) * length(blocks.objects[o])) out.push_back(o);
+  }
+  return out;
+}
+
+// Large objects are judged by a sample, which must not follow the period of a surface: the turns of
+// the rope.
+TEST(Blocks, AreGatheredOnlyWhereTheFileScattersThem) {
+  std::size_t gathered = 0, others = 0;
+  for (const char* name :
+       {"rope:40000", "rope:80000", "rope:160000", "crumpled:60000", "spheres:40000"}) {
+    const Scene scene = make_builtin_scene(name);
+    for (const Scene& either : {scene, shuffled(scene, 1)}) {
+      ScatteredBoxes scattered;
+      make_blocks(either, 0, 2, &scattered);
+      EXPECT_EQ(scattered.objects, scattered_objects(either)) << name;
+      gathered += scattered.objects.size();
+      others += scene.objects.size() - scattered.objects.size();
+    }
+  }
+  EXPECT_GT(gathered, 4u);
+  EXPECT_GT(others, 4u);
+}
+
+TEST(Blocks, ThatOverlapAreFoundInTheTrees) {
+  std::size_t found = 0;
+  for (const Scene& scene : small_scenes()) {
+    const TriangleBlocks blocks = make_blocks(scene, 0, 1);
+    const BlockTrees trees(blocks, blocks.objects);
+    const auto objects = static_cast<std::uint32_t>(scene.objects.size());
+    for (std::uint32_t a = 0; a < objects; ++a) {
+      for (std::uint32_t b = a; b < std::min(objects, a + 8); ++b) {
+        std::vector<BlockPair> expected;
+        for (std::uint32_t r = blocks.first[a]; r < blocks.first[a + 1]; ++r) {
+          for (std::uint32_t s = a == b ? r : blocks.first[b]; s < blocks.first[b + 1]; ++s) {
+            if (overlap(blocks.boxes[r], blocks.boxes[s])) expected.push_back({r, s});
+          }
+        }
+        std::vector<BlockPair> first;
+        for_each_target([&] {
+          std::vector<BlockPair> pairs;
+          pair_blocks(trees, a, b, blocks.first[a], blocks.first[a + 1], SIZE_MAX, pairs);
+          if (first.empty()) first = pairs;
+          ASSERT_EQ(pairs, first);
+          std::sort(pairs.begin(), pairs.end());
+          ASSERT_TRUE(std::ranges::includes(pairs, expected));
+          found += pairs.size();
+        });
+      }
+    }
+  }
+  EXPECT_GT(found, 100'000u);
+}
+
+TEST(Blocks, GiveThePairsWhoseBoxesOverlap) {
+  std::size_t pairs = 0, by_blocks = 0;
+  for (const Scene& scene : small_scenes()) {
+    for (const double clearance : {0.0, 0.01}) {
+      for (const bool neighbours : {true, false}) {
+        const PairParts parts = split_meetings(scene, clearance, 2);
+        if (parts.blocks.empty() || !parts.rest.triangles.empty()) continue;
+        ++by_blocks;
+        const std::vector<TrianglePair> expected = overlapping(scene, clearance, neighbours);
+        pairs += expected.size();
+        for_each_target([&] {
+          for (const unsigned threads : {1u, 3u}) {
+            ASSERT_EQ(pairs_of_blocks(scene, parts.blocks, clearance, neighbours, threads),
+                      expected)
+                << scene.name;
+          }
+        });
+      }
+    }
+  }
+  EXPECT_GT(by_blocks, 20u);
+  EXPECT_GT(pairs, 100'000u);
+}
+
+// Ignored objects have no pairs of blocks, and the others lose none.
+TEST(Blocks, OfIgnoredObjectsAreNoPairs) {
+  std::size_t removed = 0;
+  for (const Scene& scene : small_scenes()) {
+    std::vector<ObjectPair> ignored;
+    for (std::uint32_t b = 1; b < scene.objects.size(); ++b) {
+      for (std::uint32_t a = b % 2; a < b; a += 2) ignored.push_back({a, b});
+    }
+    ignored = in_order(std::move(ignored));
+    const PairParts parts = split_meetings(scene, 0, 2, false, ignored);
+    if (parts.blocks.empty() || !parts.rest.triangles.empty()) continue;
+    std::vector<TrianglePair> expected = overlapping(scene, 0, true);
+    removed += remove_ignored(scene, ignored, expected);
+    ASSERT_EQ(pairs_of_blocks(scene, parts.blocks, 0, true, 2), expected) << scene.name;
+  }
+  EXPECT_GT(removed, 100u);
+}
+
+// What is decided by blocks does not depend on threads.
+TEST(Blocks, SplitAlikeWhateverTheThreads) {
+  std::vector<Scene> scenes = small_scenes();
+  scenes.push_back(
+      shuffled(make_builtin_scene("crumpled:60000"), 1));  // ordered in several threads
+  scenes.push_back(make_builtin_scene("needles"));
+  std::size_t ordered = 0, sampled = 0;
+  for (const Scene& scene : scenes) {
+    const PairParts one = split_meetings(scene, 0, 1), five = split_meetings(scene, 0, 5);
+    ASSERT_EQ(one.blocks.between, five.blocks.between);
+    ASSERT_EQ(one.blocks.inside, five.blocks.inside);
+    ASSERT_EQ(one.blocks.of != nullptr, five.blocks.of != nullptr);
+    if (one.blocks.of) {
+      ASSERT_EQ(one.blocks.of->order, five.blocks.of->order);
+      ordered += one.blocks.of->order.size() > 50'000;
+    }
+    ASSERT_EQ(one.rest.triangles, five.rest.triangles);
+    ASSERT_EQ(one.sample, five.sample);
+    sampled += !one.sample.empty();
+  }
+  EXPECT_GT(ordered, 0u);
+  EXPECT_GT(sampled, 0u);
+}
+
+// Two objects of `count` blocks each. Along x, block k of the first reaches from k to k + reach,
+// and block k of the second half a unit further; in y and z all reach from 0 to 1. One triangle of
+// each block is in its middle and large enough to meet those of other blocks.
+Scene ladders(int count, int reach) {
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+  for (std::size_t o = 0; o < 2; ++o) {
+    for (int k = 0; k < count; ++k) {
+      const Vec3 from(k + 0.5 * static_cast<double>(o), 0, 0), size(reach, 1, 1);
+      for (std::uint32_t i = 0; i < kWide; ++i) {
+        const Vec3 at = from + size * (i / (kWide - 1.0));
+        const Vec3 half = i == kWide / 2 ? Vec3(0.3, 0.3, 0.3) : Vec3::Zero();
+        objects[o].push_back({at - half, at, at + half});
+      }
+    }
+  }
+  return lab::scene_of(objects);
+}
+
+// Blocks i and j of the two objects meet iff -reach < i - j <= reach. These are 2 count reach -
+// reach^2 pairs, which is kPairsPerBlock for each block where count is 162 and reach 36.
+TEST(Blocks, AsManyPairsAsAreAllowedAreAllFound) {
+  const Scene scene = ladders(162, 36);
+  for (const unsigned threads : {1u, 2u}) {
+    const PairParts parts = split_meetings(scene, 0, threads);
+    ASSERT_EQ(parts.blocks.between.size(), kPairsPerBlock * 2 * 162);
+    EXPECT_TRUE(parts.rest.triangles.empty());
+    const std::vector<TrianglePair> expected = overlapping(scene, 0, true);
+    EXPECT_GT(expected.size(), 162u);
+    EXPECT_EQ(pairs_of_blocks(scene, parts.blocks, 0, true, threads), expected);
+  }
+  // The twin: beyond it the objects are left to views.
+  const PairParts parts = split_meetings(ladders(162, 37), 0, 1);
+  EXPECT_TRUE(parts.blocks.empty());
+  EXPECT_FALSE(parts.rest.triangles.empty());
+}
+
+// Boxes that touch in one point, edge or face, wherever they lie; or with a gap between them.
+Scene touching(double at, double gap = 0) {
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+  for (int n = 0; n < 40; ++n) {
+    const Vec3 p(at + n, at, at);
+    objects[0].push_back({p, p + Vec3(0.5, 0, 0.5), p + Vec3(0, 0.5, 0.5)});
+    const Vec3 q = p + Vec3(0.5, n % 2 ? 0.5 : 0, (n % 3 ? 0.5 : 0) + gap);
+    objects[1].push_back({q, q + Vec3(0.25, 0, 0.25), q + Vec3(0, 0.25, 0.25)});
+  }
+  return lab::scene_of(objects);
+}
+
+TEST(Blocks, CountBoxesThatTouch) {
+  for (const double at : {0.0, 3.0, -1e3, 1e9, 1e15}) {
+    const Scene scene = touching(at);
+    const PairParts parts = split_meetings(scene, 0, 1);
+    ASSERT_FALSE(parts.blocks.empty());
+    const std::vector<TrianglePair> expected = overlapping(scene, 0, true);
+    ASSERT_GE(expected.size(), 40u);
+    for_each_target(
+        [&] { ASSERT_EQ(pairs_of_blocks(scene, parts.blocks, 0, true, 1), expected) << at; });
+  }
+}
+
+TEST(Blocks, GoBeyondWhatFloatHolds) {
+  for (const double scale : {1e-320, 1e-50, 1e38, 1e60, 1e300}) {
+    Scene scene = make_builtin_scene("two-spheres");
+    for (Vec3& v : scene.vertices) v *= scale;
+    const PairParts parts = split_meetings(scene, 0, 1, true);
+    ASSERT_FALSE(parts.blocks.empty()) << scale;
+    EXPECT_EQ(pairs_of_blocks(scene, parts.blocks, 0, true, 2), overlapping(scene, 0, true))
+        << scale;
+  }
+}
+
+// Boxes that grow beyond the range of doubles are infinite, and still meet.
+TEST(Blocks, GrowBeyondWhatDoubleHolds) {
+  for (const double size : {1e300, 1e308}) {
+    const Scene scene = lab::scene_of(
+        {{{Vec3(-size, 0, 0), Vec3(-size, size, 0), Vec3(-size, 0, size)}},
+         {{Vec3(-0.5 * size, 0, 0), Vec3(-0.5 * size, size, 0), Vec3(-0.5 * size, 0, size)},
+          {Vec3(size, 0, 0), Vec3(size, size, 0), Vec3(size, 0, size)}}});
+    for (const double clearance : {0.7 * size, 1.7e308}) {
+      const PairParts parts = split_meetings(scene, clearance, 1);
+      ASSERT_FALSE(parts.blocks.empty());
+      const auto found = pairs_of_blocks(scene, parts.blocks, clearance, true, 1);
+      EXPECT_EQ(found, overlapping(scene, clearance, true)) << size << " and " << clearance;
+      EXPECT_TRUE(std::ranges::count(found, TrianglePair{0, 1})) << size << " and " << clearance;
+      const auto backend = cpu_pair_backend(1);
+      EXPECT_EQ(lab::missed(scene, {.clearance = clearance}, *backend), 0u);
+    }
+  }
+}
+
+// Twins: what each ingredient is there for.
+// Every triangle of a block lies in the block's box, and in floats in its block's.
+void expect_boxes_hold(const Scene& scene, const TriangleBlocks& blocks, double clearance) {
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    for (std::uint32_t k = 0; k < blocks.count(o); ++k) {
+      const std::uint32_t at = blocks.first[o] + k;
+      const FloatBox bound = blocks.bound(o, k);
+      for (std::uint32_t i = 0; i < blocks.ranges[at].count; ++i) {
+        const Box own = grown_box(scene, blocks.triangle(blocks.ranges[at].first + i), clearance);
+        EXPECT_TRUE((own.lo.array() >= blocks.boxes[at].lo.array()).all());
+        EXPECT_TRUE((own.hi.array() <= blocks.boxes[at].hi.array()).all());
+        const FloatBox floats = relative(own, blocks.origin);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          EXPECT_GE(floats.lo[axis], bound.lo[axis]);
+          EXPECT_LE(floats.hi[axis], bound.hi[axis]);
+        }
+      }
+    }
+  }
+}
+
+TEST(Blocks, FollowWhatMoved) {
+  for (const double by : {0.001, 1.0, 1e6}) {
+    for (const auto& [scattered, step] : {std::pair(false, 2), {true, 2}, {false, 1}, {true, 1}}) {
+      Scene scene = make_builtin_scene("two-tori");
+      if (scattered) scene = shuffled(scene, 7);
+      TriangleBlocks blocks = make_ordered_blocks(scene, 0.01, 1);
+      // Half of the blocks, of which every vertex moves; or all of them.
+      std::vector<std::uint8_t> moved(blocks.ranges.size(), 0);
+      std::set<std::uint32_t> vertices;
+      for (std::size_t r = 0; r < blocks.ranges.size(); r += step) {
+        for (std::uint32_t i = 0; i < blocks.ranges[r].count; ++i) {
+          const auto& corners = scene.triangles[blocks.triangle(blocks.ranges[r].first + i)];
+          vertices.insert(corners.begin(), corners.end());
+        }
+      }
+      for (const std::uint32_t v : vertices) scene.vertices[v].x() += by;
+      for (std::size_t r = 0; r < blocks.ranges.size(); ++r) {
+        for (std::uint32_t i = 0; i < blocks.ranges[r].count; ++i) {
+          for (const std::uint32_t v : scene.triangles[blocks.triangle(blocks.ranges[r].first + i)])
+            moved[r] = moved[r] || vertices.contains(v);
+        }
+      }
+      for (const unsigned threads : {1u, 2u}) {
+        TriangleBlocks updated = blocks;
+        update_boxes(scene, 0.01, moved, threads, updated);
+        expect_boxes_hold(scene, updated, 0.01);
+        // Where all move far, the origin goes with them, and all boxes are relative to it.
+        EXPECT_EQ(updated.origin.x() > 1e5, by > 1e5 && step == 1);
+      }
+    }
+  }
+}
+
+TEST(BlocksTwin, WithoutThePairsThatTouchInFloatsPairsAreLost) {
+  const Scene scene = touching(0);
+  const PairParts parts = split_meetings(scene, 0, 1);
+  std::vector<BlockLanes> lanes(parts.blocks.of->ranges.size());
+  for (std::size_t k = 0; k < lanes.size(); ++k) {
+    std::vector<std::uint32_t> triangles(parts.blocks.of->ranges[k].count);
+    std::iota(triangles.begin(), triangles.end(), parts.blocks.of->ranges[k].first);
+    fill_lanes(scene, triangles, 0, parts.blocks.of->origin, lanes[k]);
+  }
+  std::vector<LanePair> pairs;
+  for (const BlockPair& pair : parts.blocks.between) pairs.push_back({pair.a, pair.b, false});
+  BlockFindings found;
+  compare_blocks({.first = lanes, .second = {}}, {}, pairs, found);
+  std::sort(found.certain.begin(), found.certain.end());
+  EXPECT_GT(missed(overlapping(scene, 0, true), found.certain), 0u);
+}
+
+TEST(BlocksTwin, ADroppedPairOfBlocksMisses) {
+  const Scene scene = make_builtin_scene("two-spheres");
+  PairParts parts = split_meetings(scene, 0, 1);
+  ASSERT_FALSE(parts.blocks.between.empty());
+  const std::vector<TrianglePair> truth = truth_of(scene);
+  const auto without = [&](std::size_t k) {
+    BlockMeetings fewer = parts.blocks;
+    fewer.between.erase(fewer.between.begin() + static_cast<std::ptrdiff_t>(k));
+    return missed(truth, pairs_of_blocks(scene, fewer, 0, true, 1));
+  };
+  std::size_t lost = 0;
+  for (std::size_t k = 0; k < parts.blocks.between.size(); ++k) lost += without(k);
+  EXPECT_GT(lost, 0u);
+}
+
+TEST(BlocksTwin, BlocksThatAreNotGrownMissPairsOfAClearance) {
+  const Scene scene = touching(0, 0.6);
+  constexpr double kClearance = 0.7;
+  const PairParts plain = split_meetings(scene, 0, 1);
+  const PairParts grown = split_meetings(scene, kClearance, 1);
+  const std::vector<TrianglePair> truth = truth_of(scene, kClearance);
+  EXPECT_EQ(missed(truth, pairs_of_blocks(scene, grown.blocks, kClearance, true, 1)), 0u);
+  EXPECT_GT(missed(truth, pairs_of_blocks(scene, plain.blocks, 0, true, 1)), 0u);
+}
+
+// Entries of a pixel: all that the definition names, on every instruction set, in any portions.
+struct SweepCase {
+  std::vector<SweepColumns::Row> rows;
+  bool sorted, drops_neighbours;
+};
+
+SweepCase sweep_case(Random& random) {
+  SweepCase out{
+      .rows = {}, .sorted = random.below(2) == 0, .drops_neighbours = random.below(2) == 0};
+  const int n = random.below(80);
+  for (int k = 0; k < n; ++k) {
+    const auto coordinate = [&] { return static_cast<float>(random.below(12)); };
+    SweepColumns::Row row{};
+    row.x0 = coordinate(), row.y0 = coordinate(), row.near = coordinate();
+    row.x1 = row.x0 + static_cast<float>(random.below(4));
+    row.y1 = row.y0 + static_cast<float>(random.below(4));
+    row.far = row.near + static_cast<float>(random.below(4));
+    row.id = static_cast<std::uint32_t>(3 * k + random.below(3));
+    row.group = static_cast<std::uint32_t>(random.below(5));
+    row.begun = static_cast<std::uint32_t>(random.below(4));
+    row.owner = static_cast<std::uint32_t>(random.below(3));
+    for (std::uint32_t* v : {&row.v0, &row.v1, &row.v2}) {
+      *v = static_cast<std::uint32_t>(random.below(40));
+    }
+    out.rows.push_back(row);
+  }
+  if (out.sorted) std::ranges::stable_sort(out.rows, {}, &SweepColumns::Row::near);
+  return out;
+}
+
+bool makes_pair(const SweepColumns::Row& a, const SweepColumns::Row& b, bool drops_neighbours) {
+  const bool meet = a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1 &&
+                    a.near <= b.far && b.near <= a.far;
+  bool shared = false;
+  for (const std::uint32_t v : {a.v0, a.v1, a.v2}) shared |= v == b.v0 || v == b.v1 || v == b.v2;
+  return meet && a.group != b.group && (a.begun & b.begun) == 0 &&
+         !(drops_neighbours && a.owner == b.owner && shared);
+}
+
+TEST(SweepOnLanes, FindsWhatTheDefinitionSays) {
+  Random random(7);
+  std::size_t found = 0;
+  for (int round = 0; round < 400; ++round) {
+    const SweepCase c = sweep_case(random);
+    const std::size_t n = c.rows.size();
+    std::vector<TrianglePair> expected;
+    std::uint64_t tests = 0;
+    for (std::size_t x = 0; x < n; ++x) {
+      for (std::size_t y = x + 1; y < n; ++y) {
+        const std::uint32_t a = c.rows[x].id, b = c.rows[y].id;
+        if (makes_pair(c.rows[x], c.rows[y], c.drops_neighbours)) {
+          expected.push_back({std::min(a, b), std::max(a, b)});
+        }
+        tests += !c.sorted || c.rows[y].near <= c.rows[x].far;
+      }
+    }
+    found += expected.size();
+    SweepColumns columns;
+    columns.start(n);
+    for (const SweepColumns::Row& row : c.rows) columns.add(row);
+    columns.finish();
+    for_each_target([&] {
+      std::vector<TrianglePair> pairs;
+      std::vector<TrianglePair> room(n + kSweepPadding +
+                                     static_cast<std::size_t>(random.below(200)));
+      Sweep sweep{.columns = &columns, .sorted = c.sorted, .drops_neighbours = c.drops_neighbours};
+      while (sweep.next < n) {
+        const std::size_t count = sweep_on(sweep, room);
+        pairs.insert(pairs.end(), room.begin(), room.begin() + static_cast<std::ptrdiff_t>(count));
+      }
+      ASSERT_EQ(pairs, expected);
+      ASSERT_EQ(sweep.tests, tests);
+    });
+  }
+  EXPECT_GT(found, 4000u);
+}
+
+}  // namespace
+}  // namespace farcull
