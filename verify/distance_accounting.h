@@ -37,8 +37,8 @@ struct DistanceAccounting {
   /// `inside` is not that of their objects, or that are beyond `within`, or not asked for.
   std::uint64_t wrong = 0;
   double ms = 0;
-  FARCULL_FIELDS(pairs_total, answers, objects_meet, farther_by_boxes, farther_by_planes, neighbours,
-                 farther_by_exact, nearer, earlier, wrong)
+  FARCULL_FIELDS(pairs_total, answers, objects_meet, farther_by_boxes, farther_by_planes,
+                 neighbours, farther_by_exact, nearer, earlier, wrong)
   /// True iff the classes sum to pairs_total. Not so by construction: the total is computed.
   bool adds_up() const;
   /// No pair was missed, no answer is wrong or not the first.

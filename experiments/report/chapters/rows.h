@@ -94,7 +94,7 @@ Series series_of(const std::string& name, const Rows& rows, const Value& x, cons
 /// The same over the time from triangles to pairs, in ms, with its intervals.
 Series times_of(const std::string& name, const Rows& rows, const Value& x);
 
-/// The median of the row's runs with its 95 % interval (measure/statistics.h); of a row with one
+/// The median of the row's runs with its 95 % interval (measure/harness.h); of a row with one
 /// run, that run without an interval. Empty where the row has no time.
 std::optional<Estimate> time_estimate(const Row& row);
 /// "3.88 (3.70 to 4.10)"; without an interval where n is below 2, "-" where it is 0.
