@@ -52,8 +52,9 @@ std::vector<std::uint32_t> blocks_in(const BlockPairs& pairs, std::size_t blocks
 /// Pairs of blocks whose boxes overlap. Two triangles that are at most the clearance apart have
 /// grown boxes with a common point, which lies in the boxes of their blocks: so their blocks are a
 /// pair here, or their objects are left to views.
-struct BlockMeetings : BlockPairs {
+struct BlockMeetings {
   std::shared_ptr<const TriangleBlocks> of;
+  BlockPairs pairs;
   std::vector<TrianglePair> kept;  // pairs of the frame before that are right in this one too
   std::uint64_t overlaps = 0;   // pairs of blocks whose boxes overlap, also those in which nothing
                                 // moved, which stand in no list

@@ -62,7 +62,7 @@ Stage stage_of_join(Reason reason, std::uint64_t n, const std::string& detail) {
 }
 
 Stage stage_of_blocks(const PairPlan& plan) {
-  const std::size_t compared = plan.blocks.between.size() + plan.blocks.inside.size();
+  const std::size_t compared = plan.blocks.pairs.size();
   return {.kind = StageKind::blocks,
           .ran = true,
           .reason = Reason::block_pairs,
@@ -171,8 +171,8 @@ std::uint64_t taking_part(const Scene& scene, const PairPlan& plan) {
       takes_part[plan.blocks.of->triangle(block.first + k)] = 1;
     }
   };
-  for (const BlockPair& pair : plan.blocks.between) mark(pair.a), mark(pair.b);
-  for (const BlockPair& pair : plan.blocks.inside) mark(pair.a), mark(pair.b);
+  for (const BlockPair& pair : plan.blocks.pairs.between) mark(pair.a), mark(pair.b);
+  for (const BlockPair& pair : plan.blocks.pairs.inside) mark(pair.a), mark(pair.b);
   return static_cast<std::uint64_t>(std::ranges::count(takes_part, 1));
 }
 

@@ -185,16 +185,16 @@ std::vector<Meeting> sort_in(const std::vector<Meeting>& all, std::span<MeetingP
       left.push_back(meeting);
       continue;
     }
-    std::vector<BlockPair>& to = meeting.a == meeting.b ? out.inside : out.between;
+    std::vector<BlockPair>& to = meeting.a == meeting.b ? out.pairs.inside : out.pairs.between;
     for (std::size_t k = begin; k < end; ++k) {
       to.insert(to.end(), parts[k].pairs.begin(), parts[k].pairs.end());
       std::vector<BlockPair>().swap(parts[k].pairs);  // to make room, which `= {}` would keep
     }
     ++out.meetings;
   }
-  for (const std::uint32_t block : blocks_in(out, out.of->ranges.size()))
+  for (const std::uint32_t block : blocks_in(out.pairs, out.of->ranges.size()))
     out.triangles += out.of->ranges[block].count;
-  out.overlaps = out.size();
+  out.overlaps = out.pairs.size();
   return left;
 }
 
@@ -271,11 +271,12 @@ BlockPairs some_of(const BlockPairs& pairs, std::size_t count) {
 // which is then returned in `sample`.
 bool overlaps_often(const Scene& scene, const BlockMeetings& meetings, double clearance,
                     BlockPairs& sample) {
-  if (meetings.size() == 0) return false;
-  BlockPairs some = some_of(meetings, kSampled);
+  const std::size_t all = meetings.pairs.size();
+  if (all == 0) return false;
+  BlockPairs some = some_of(meetings.pairs, kSampled);
   const std::size_t found = pairs_of_some(scene, *meetings.of, some, clearance, false, 1).size();
   const double each = static_cast<double>(found) / static_cast<double>(some.size());
-  if (each * static_cast<double>(meetings.size()) <=
+  if (each * static_cast<double>(all) <=
       static_cast<double>(kOverlapsPerTriangle * meetings.triangles)) {
     return false;
   }
@@ -357,8 +358,8 @@ PairParts split(const Scene& scene, const Meetings& meetings, const std::vector<
 void keep_unmoved(const Scene& scene, std::span<const std::uint8_t> moved,
                   const std::vector<TrianglePair>& before, BlockMeetings& out) {
   const auto rests = [&](const BlockPair& pair) { return !moved[pair.a] && !moved[pair.b]; };
-  std::erase_if(out.between, rests);
-  std::erase_if(out.inside, rests);
+  std::erase_if(out.pairs.between, rests);
+  std::erase_if(out.pairs.inside, rests);
   std::vector<std::uint8_t> of_moved(scene.triangles.size(), 0);
   for (std::size_t k = 0; k < moved.size(); ++k) {
     if (!moved[k]) continue;

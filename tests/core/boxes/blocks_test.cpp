@@ -267,8 +267,8 @@ TEST(Blocks, SplitAlikeWhateverTheThreads) {
   std::size_t ordered = 0, sampled = 0;
   for (const Scene& scene : scenes) {
     const PairParts one = split_meetings(scene, 0, 1), five = split_meetings(scene, 0, 5);
-    ASSERT_EQ(one.blocks.between, five.blocks.between);
-    ASSERT_EQ(one.blocks.inside, five.blocks.inside);
+    ASSERT_EQ(one.blocks.pairs.between, five.blocks.pairs.between);
+    ASSERT_EQ(one.blocks.pairs.inside, five.blocks.pairs.inside);
     ASSERT_EQ(one.blocks.of != nullptr, five.blocks.of != nullptr);
     if (one.blocks.of) {
       ASSERT_EQ(one.blocks.of->order, five.blocks.of->order);
@@ -306,7 +306,7 @@ TEST(Blocks, AsManyPairsAsAreAllowedAreAllFound) {
   const Scene scene = ladders(162, 36);
   for (const unsigned threads : {1u, 2u}) {
     const PairParts parts = split_meetings(scene, 0, threads);
-    ASSERT_EQ(parts.blocks.between.size(), kPairsPerBlock * 2 * 162);
+    ASSERT_EQ(parts.blocks.pairs.between.size(), kPairsPerBlock * 2 * 162);
     EXPECT_TRUE(parts.rest.triangles.empty());
     const std::vector<TrianglePair> expected = overlapping(scene, 0, true);
     EXPECT_GT(expected.size(), 162u);
@@ -436,7 +436,7 @@ TEST(BlocksTwin, WithoutThePairsThatTouchInFloatsPairsAreLost) {
     fill_lanes(scene, triangles, 0, parts.blocks.of->origin, lanes[k]);
   }
   std::vector<LanePair> pairs;
-  for (const BlockPair& pair : parts.blocks.between) pairs.push_back({pair.a, pair.b, false});
+  for (const BlockPair& pair : parts.blocks.pairs.between) pairs.push_back({pair.a, pair.b, false});
   BlockFindings found;
   compare_blocks({.first = lanes, .second = {}}, {}, pairs, found);
   std::sort(found.certain.begin(), found.certain.end());
@@ -446,15 +446,15 @@ TEST(BlocksTwin, WithoutThePairsThatTouchInFloatsPairsAreLost) {
 TEST(BlocksTwin, ADroppedPairOfBlocksMisses) {
   const Scene scene = make_builtin_scene("two-spheres");
   PairParts parts = split_meetings(scene, 0, 1);
-  ASSERT_FALSE(parts.blocks.between.empty());
+  ASSERT_FALSE(parts.blocks.pairs.between.empty());
   const std::vector<TrianglePair> truth = truth_of(scene);
   const auto without = [&](std::size_t k) {
     BlockMeetings fewer = parts.blocks;
-    fewer.between.erase(fewer.between.begin() + static_cast<std::ptrdiff_t>(k));
+    fewer.pairs.between.erase(fewer.pairs.between.begin() + static_cast<std::ptrdiff_t>(k));
     return missed(truth, pairs_of_blocks(scene, fewer, 0, true, 1));
   };
   std::size_t lost = 0;
-  for (std::size_t k = 0; k < parts.blocks.between.size(); ++k) lost += without(k);
+  for (std::size_t k = 0; k < parts.blocks.pairs.between.size(); ++k) lost += without(k);
   EXPECT_GT(lost, 0u);
 }
 
