@@ -30,10 +30,10 @@ GlCanvas::GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram&
                    const GlCanvasOptions& options)
     : context_(context), mode_(mode), solid_(solid.glsl), options_(options) {
   if (options.query == QueryMode::flags && options.depth_format == DepthFormat::fixed24) {
-    throw Error("--query",
+    throw Error("{query}",
                 "flags cannot be used with a 24-bit depth buffer: a comparison in the shader loses "
                 "equal depths",
-                "use --query occlusion or --depth-format 32f");
+                "use {query} occlusion or {depth_format} 32f");
   }
   if (options.conservative && mode == DepthMode::fragment)
     throw std::logic_error("GlCanvas: proxies are not drawn conservatively");

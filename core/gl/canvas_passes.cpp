@@ -260,7 +260,7 @@ std::vector<float> CanvasState::samples(Verb verb, const std::vector<Draw>& want
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, values, 0);
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     throw Error("GL samples", "the device refuses a float target",
-                "choose a smaller resolution or another --device");
+                "choose a smaller resolution or another {device}");
   }
   const float none[4] = {std::numeric_limits<float>::quiet_NaN(), 0, 0, 0};
   glClearBufferfv(GL_COLOR, 0, none);

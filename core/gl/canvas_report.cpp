@@ -21,7 +21,7 @@ constexpr std::size_t kVec4 = 4 * sizeof(std::uint32_t);
 }  // namespace
 
 void throw_lost(const std::string& stage, const std::string& reason) {
-  throw Error("GL " + stage, reason, "a command was lost: run again, or with another --device");
+  throw Error("GL " + stage, reason, "a command was lost: run again, or with another {device}");
 }
 
 void throw_lost_state(const char* what) {

@@ -10,7 +10,7 @@
 namespace farcull {
 namespace {
 
-constexpr const char* kLost = "a command was lost: run again, or with another --device";
+constexpr const char* kLost = "a command was lost: run again, or with another {device}";
 constexpr const char* kReport = "report this driver's log with the output of `farcull doctor`";
 
 // Shaders write out and inout parameters through these names, so that kernels compile as C++ too
@@ -114,7 +114,7 @@ void gl_wait(const std::string& stage) {
               answer == GL_TIMEOUT_EXPIRED
                   ? "the device did not finish within " + std::to_string(kLongestWait) + " s"
                   : "the device does not say whether it has finished",
-              "choose a smaller resolution, or another --device");
+              "choose a smaller resolution, or another {device}");
 }
 
 GlProgram gl_program(const std::string& name, const std::vector<std::string>& defines,

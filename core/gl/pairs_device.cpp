@@ -205,7 +205,7 @@ PairQueue::PairQueue(const GlContext& context, const GlPairOptions& options)
     throw Error("GL pairs",
                 "the device has " + std::to_string(bindings) +
                     " storage bindings, FAR pairs needs " + std::to_string(kBindings),
-                "use --device cpu or another device");
+                "use {device} cpu or another device");
   }
   // Those that every scene needs.
   for (std::size_t p = 0; p <= static_cast<std::size_t>(PairProgram::tests); ++p) program(p);
@@ -339,7 +339,7 @@ void PairQueue::check_finished(const std::string& stage) {
   counters_.read(0, words_.data(), words * sizeof(std::uint32_t));
   check_gl(stage);
   const auto lost = [&](const std::string& reason) {
-    throw Error("GL " + stage, reason, "a command was lost: run again, or with another --device");
+    throw Error("GL " + stage, reason, "a command was lost: run again, or with another {device}");
   };
   for (const PairTotal place : kSerials) {
     if (words_[place] != serials_[place]) lost("counts were not set to zero, or not read");
@@ -373,7 +373,7 @@ std::array<std::uint32_t, kTotals> PairQueue::read(const std::string& stage) {
   totals[kTotalOverflow] = overflow_;
   if (totals[kTotalSent] != expected_sum_) {
     throw Error("GL " + stage, "the device holds other data than were sent",
-                "a command was lost: run again, or with another --device");
+                "a command was lost: run again, or with another {device}");
   }
   return totals;
 }

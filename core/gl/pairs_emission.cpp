@@ -51,7 +51,7 @@ void PairEmission::read_pairs(std::size_t emitted) {
   reported_ += emitted;
   if (emitted > 0 && read.back().a == kUnread) {
     throw Error("GL pairs", "the pairs were not read",
-                "a command was lost: run again, or with another --device");
+                "a command was lost: run again, or with another {device}");
   }
   found_->shrink_if_full(0);
 }
@@ -259,7 +259,7 @@ bool PairEmission::take_portion(const Portion& portion, const PartMemory& memory
   const std::uint64_t parts = std::max<std::uint64_t>((needed + needed / 16) / most + 1, 2);
   if (parts > kMostPortions / portion.of) {
     throw Error("GL pairs", "one work item has more pairs than fit its memory",
-                "use --device cpu or a larger --resolution");
+                "use {device} cpu or a larger {resolution}");
   }
   for (std::uint32_t k = 0; k < parts; ++k) {
     left_.push_back({portion.k + k * portion.of, static_cast<std::uint32_t>(parts) * portion.of});

@@ -38,7 +38,7 @@ void check_counted_twice(const PairTotalWords& totals, std::size_t levels) {
     same &= totals[of_level(kTotalCrowded, l)] == totals[of_level(kTotalParents, l)];
   if (same) return;
   throw Error("GL pairs", "the same was counted twice with different results",
-              "a compute invocation was lost: run again, or with another --device");
+              "a compute invocation was lost: run again, or with another {device}");
 }
 
 // The same that the device was asked, compared again, and work that nobody foresaw and that was

@@ -61,7 +61,7 @@ bool PairItems::make(PartMemory& memory) {
     if (wholes_ <= whole_capacity && items_ <= capacity) break;
     if (attempt > 0) {
       throw Error("GL pairs", "the same triangles were counted twice with different results",
-                  "a command was lost: run again, or with another --device");
+                  "a command was lost: run again, or with another {device}");
     }
     PartMemory trial = memory;
     if (!trial.take(wholes_ * kVec4) || !trial.take(items_ * kRecord)) return false;

@@ -128,7 +128,7 @@ bool PairLists::make(const PairPart& part, PartMemory& memory) {
     check_lists(totals);
     if (totals[of_level(kTotalParents, l)] != crowded) {
       throw Error("GL pairs", "crowded pixels were counted twice with different results",
-                  "a compute invocation was lost: run again, or with another --device");
+                  "a compute invocation was lost: run again, or with another {device}");
     }
     if (overflow(totals, memory)) return false;
     if (!fill_cut(l, totals[of_level(kTotalEntries, l + 1)], memory)) return false;

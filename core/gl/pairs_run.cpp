@@ -12,7 +12,7 @@ namespace farcull {
 bool PartMemory::take(std::size_t bytes) {
   if (bytes > block && last) {
     throw Error("GL pairs", "one pixel needs a buffer of " + std::to_string(bytes) + " bytes",
-                "use --device cpu or a larger --resolution");
+                "use {device} cpu or a larger {resolution}");
   }
   if (last) return true;
   if (bytes > block || bytes > left) return false;
@@ -78,14 +78,14 @@ void check_lists(const PairTotalWords& totals) {
       "GL pairs",
       std::to_string(totals[kTotalMismatches]) + " lists were not filled as they were counted",
       "a compute invocation was lost, or two programs of this device round differently: run "
-      "again, or with another --device");
+      "again, or with another {device}");
 }
 
 bool overflow(const PairTotalWords& totals, const PartMemory& memory) {
   if (totals[kTotalOverflow] == 0) return false;
   if (memory.last) {
     throw Error("GL pairs", "one pixel has more work than can be counted in 32 bits",
-                "use --device cpu or a larger --resolution");
+                "use {device} cpu or a larger {resolution}");
   }
   return true;
 }

@@ -39,7 +39,7 @@ std::uint32_t bits(float x) { return std::bit_cast<std::uint32_t>(x); }
 [[noreturn]] void lost(const std::string& reason) {
   throw Error("GL Voronoi diagram", reason,
               "a command was lost, or the device computes otherwise than OpenGL promises: run "
-              "again, or with another --device");
+              "again, or with another {device}");
 }
 
 // A texture of the slice's size, nearest filter.
@@ -79,7 +79,7 @@ class GlVoronoi : public VoronoiDevice {
       throw Error("GL Voronoi diagram",
                   "the device has " + std::to_string(blocks) +
                       " storage blocks for vertex programs, the diagram needs 4",
-                  "use another --device, or --device cpu");
+                  "use another {device}, or {device} cpu");
     }
     program_ = gl_program(
         "voronoi", {},
@@ -212,7 +212,7 @@ class GlVoronoi : public VoronoiDevice {
       throw Error("GL Voronoi diagram",
                   std::to_string(triangles.size()) +
                       " triangles are more than a storage block of this device holds",
-                  "use --device cpu, or a smaller scene");
+                  "use {device} cpu, or a smaller scene");
     }
     triangles_.reserve(bytes, block_);
     triangles_.write(0, words.data(), bytes);
@@ -227,7 +227,7 @@ class GlVoronoi : public VoronoiDevice {
       throw Error("resolution",
                   "a slice of " + std::to_string(cells_[0]) + " x " + std::to_string(cells_[1]) +
                       " cells has no room on this device",
-                  "give fewer cells, or use --device cpu");
+                  "give fewer cells, or use {device} cpu");
     }
     report_store_.reserve(bytes, block_);
     report_.resize(bytes / sizeof(std::uint32_t));
@@ -244,7 +244,7 @@ class GlVoronoi : public VoronoiDevice {
     for (const GLenum status : {first, second, bare}) {
       if (status != GL_FRAMEBUFFER_COMPLETE)
         throw Error("GL Voronoi diagram", "the device refuses a target of the slice's size",
-                    "give fewer cells, or use another --device");
+                    "give fewer cells, or use another {device}");
     }
   }
 
@@ -372,7 +372,7 @@ class GlVoronoi : public VoronoiDevice {
                   "a slice has " + std::to_string(listed) +
                       " triangles that may be nearest to its cells, more than a storage block of "
                       "this device holds",
-                  "give more cells, or use --device cpu");
+                  "give more cells, or use {device} cpu");
     }
     list_.reserve(bytes, block_);
   }
