@@ -26,8 +26,6 @@
 namespace farcull {
 namespace {
 
-constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30;  // of a certificate
-
 CheckedDistances checked(const std::string& path, DistanceCertificate certificate,
                          const Scene& scene) {
   require_nothing_ignored(scene, "a check");

@@ -1,12 +1,15 @@
 // `farcull check` of certificates of distances.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "experiments/scenes/frames.h"
 
 namespace farcull {
+
+inline constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30;  // of a certificate or a list
 
 /// Text that a terminal can show, line by line.
 std::string clean_lines(const std::string& text);

@@ -238,37 +238,32 @@ Json place_json(const Scene& scene, const std::vector<std::uint32_t>& owner,
           {"face", scene.source_face[triangle]}};
 }
 
+namespace {
+
+Json value_json(const OptionValue& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag;
+  if (const auto* whole = std::get_if<int>(&value)) return *whole;
+  if (const auto* real = std::get_if<double>(&value)) return *real;
+  return nullptr;
+}
+
+}  // namespace
+
 nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
   const RunOptions& o = record.options;
-  const bool drawn = draws(o.method);
-  Json resolution = nullptr;
-  if (looks(o.method)) resolution = resolution_of(o) > 0 ? Json(resolution_of(o)) : Json("auto");
   Json views = Json::array();
   for (const ViewReport& view : record.found.views()) views.push_back(view_json(view));
   for (const PairView& view : record.found.pair_views()) views.push_back(view_json(view));
   const std::optional<std::uint64_t> swept = record.found.swept_triangles();
-  return {
-      {"scene", scene_json(scene, record.degenerate_triangles, record.scene_hash)},
-      {"method", to_string(o.method)},
-      {"method_reason", method_reason(o)},
-      {"resolution", resolution},
-      {"radius", fattens(o.method) ? Json(radius_text(o.radius)) : Json(nullptr)},
-      {"offset", fattens(o.method) ? Json(o.offset) : Json(nullptr)},
-      {"depth",
-       !drawn ? Json(nullptr) : Json(depth_of(o) == DepthMode::fragment ? "fragment" : "fixed")},
-      {"depth_format",
-       drawn ? Json(o.depth_format == DepthFormat::float32 ? "32f" : "24") : Json(nullptr)},
-      {"query", drawn && !record.found.device.cpu
-                    ? Json(query_of(o) == QueryMode::flags ? "flags" : "occlusion")
-                    : Json(nullptr)},
-      {"rounds", drawn && o.rounds > 0 ? Json(o.rounds) : Json(nullptr)},
-      {"clear", drawn ? Json(o.clear == ClearRule::all ? "all" : "any") : Json(nullptr)},
-      {"level", drawn && !tests_self_alone(o.method)
-                    ? Json(o.objects_alone ? "objects" : "triangles")
-                    : Json(nullptr)},
-      {"conservative", drawn && !fattens(o.method) ? Json(o.conservative) : Json(nullptr)},
-      {"clearance", takes_clearance(o.method) ? Json(o.clearance) : Json(nullptr)},
-      {"full", o.full},
+  Json out = {{"scene", scene_json(scene, record.degenerate_triangles, record.scene_hash)},
+              {"method", to_string(o.method)},
+              {"method_reason", method_reason(o)}};
+  for (const Option& option : run_options()) {
+    if (option.value) out[option.name] = value_json(option.value(o));
+  }
+  if (record.found.device.cpu) out["query"] = nullptr;
+  const Json rest = {
       {"promises", record.promise.holds},
       {"promise_reason", record.promise.reason},
       {"verdict", verdict_json(record)},
@@ -300,6 +295,8 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
         {"contacts", record.ms.contacts}}},
       {"seed", o.seed ? Json(*o.seed) : Json(nullptr)},
       {"commit", FARCULL_COMMIT}};
+  out.update(rest);
+  return out;
 }
 
 std::string pairs_header(const Scene& scene, const PairColumns& columns) {
