@@ -51,7 +51,7 @@ experiments/picture        experiments/measure
 experiments/report/chapters experiments/studies experiments/picture
 experiments/report         experiments/report/chapters
 experiments/command        experiments/report experiments/library experiments/tiles
-experiments/python         experiments/command
+experiments/python         experiments/library experiments/picture
 tests                      *
 '
 

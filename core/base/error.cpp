@@ -1,10 +1,17 @@
 // The text of an error: where, line, reason and remedy in one sentence.
 #include "core/base/error.h"
 
-#include <utility>
+#include "core/base/parameter.h"
 
 namespace farcull {
 namespace {
+
+std::string (*spelling_of_program)(const std::string& name) = nullptr;
+
+bool is_parameter(const std::string& name) {
+  return !name.empty() &&
+         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") == std::string::npos;
+}
 
 std::string sentence(const std::string& where, const std::string& reason, const std::string& remedy,
                      long line) {
@@ -17,11 +24,30 @@ std::string sentence(const std::string& where, const std::string& reason, const 
 
 }  // namespace
 
+void spell_parameters(std::string (*spelling)(const std::string& name)) {
+  spelling_of_program = spelling;
+}
+
+std::string spelled(const std::string& text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text[at] == '{' ? text.find('}', at) : std::string::npos;
+    const std::string name = end == std::string::npos ? "" : text.substr(at + 1, end - at - 1);
+    if (!is_parameter(name)) {
+      out += text[at++];
+      continue;
+    }
+    out += spelling_of_program ? spelling_of_program(name) : name;
+    at = end + 1;
+  }
+  return out;
+}
+
 Error::Error(std::string where_, std::string reason_, std::string remedy_, long line_)
-    : std::runtime_error(sentence(where_, reason_, remedy_, line_)),
-      where(std::move(where_)),
-      reason(std::move(reason_)),
-      remedy(std::move(remedy_)),
+    : std::runtime_error(sentence(spelled(where_), spelled(reason_), spelled(remedy_), line_)),
+      where(spelled(where_)),
+      reason(spelled(reason_)),
+      remedy(spelled(remedy_)),
       line(line_) {}
 
 }  // namespace farcull

@@ -2,6 +2,7 @@
 #include "core/base/stage.h"
 
 #include "core/base/count.h"
+#include "core/base/parameter.h"
 
 namespace farcull {
 namespace {
@@ -103,7 +104,7 @@ std::string reason_of(const Stage& stage) {
     case Reason::none:
       return "";
     case Reason::full:
-      return "--full: nothing is left out";
+      return spelled("{full}: nothing is left out");
     case Reason::regions:
       return counted(stage.n, "pair of objects' boxes overlaps", "pairs of objects' boxes overlap");
     case Reason::meetings:
@@ -156,7 +157,7 @@ std::string reason_of(const Stage& stage) {
     case Reason::few_objects:
       return objects(stage.n) + ", fewer than " + m + ": one seldom hides all of another";
     case Reason::rounds_given:
-      return "--rounds " + n;
+      return spelled("{rounds} " + n);
     case Reason::all_views:
       return "culled is what every view clears";
     case Reason::little_culled:
@@ -165,7 +166,7 @@ std::string reason_of(const Stage& stage) {
     case Reason::owners:
       return "every triangle is an owner";
     case Reason::clusters_given:
-      return "--clusters";
+      return spelled("{clusters}");
     case Reason::clusters_large:
       return "occlusion queries, more than " + triangles(stage.n);
     case Reason::clusters_small:
@@ -216,11 +217,11 @@ std::string reason_of(const Stage& stage) {
     case Reason::every_pair:
       return "every pair; out: those that were missed";
     case Reason::not_asked:
-      return "--no-verify";
+      return spelled("{no_verify}");
     case Reason::near_boxes:
       return counted(stage.n, "pair of objects", "pairs of objects") + "; boxes compared: " + m;
     case Reason::inside_not_asked:
-      return "--inside no";
+      return spelled("{inside} no");
     case Reason::if_more_left:
       return stage.n > 0 ? "if more than " + triangles_left(stage.n) : "if any triangle is left";
     case Reason::if_more_candidates:

@@ -17,7 +17,7 @@ double radius_of(const RadiusRule& rule, const Budget& budget, double step) {
   const double radius = rule.published ? published_radius(step) : rule.factor * budget.radius();
   // Beyond it floats overflow in the kernels, and a fragment would be lost instead of seen.
   if (!(radius >= 0 && radius <= kMaxRadius)) {
-    throw Error("--radius", std::to_string(radius) + " px is beyond the largest ball, 2^20 px",
+    throw Error("{radius}", std::to_string(radius) + " px is beyond the largest ball, 2^20 px",
                 "choose a smaller factor");
   }
   return radius;
@@ -527,7 +527,7 @@ CullResult cull(const Scene& scene, const Regions& regions, const CullSettings& 
 CullResult cull_by(const PassRule& rule, const Scene& scene, const Regions& regions,
                    const CullSettings& settings, Canvas& canvas, const Progress& progress) {
   if (settings.resolution < 1 || settings.resolution > canvas.limits().max_resolution) {
-    throw Error("--resolution",
+    throw Error("{resolution}",
                 std::to_string(settings.resolution) + " is outside 1 .. " +
                     std::to_string(canvas.limits().max_resolution) + ", the limit of this device",
                 "choose a resolution in that range");

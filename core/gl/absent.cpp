@@ -13,9 +13,9 @@ namespace farcull {
 namespace {
 
 [[noreturn]] void refuse(const std::string& device = "") {
-  throw Error(device.empty() ? "OpenGL" : "--device " + device,
+  throw Error(device.empty() ? "OpenGL" : "{device} " + device,
               "this farcull was built without OpenGL",
-              "use --device native, or build it with -DFARCULL_GL=ON (Debian: libepoxy-dev, "
+              "use {device} native, or build it with -DFARCULL_GL=ON (Debian: libepoxy-dev, "
               "libegl-dev)");
 }
 

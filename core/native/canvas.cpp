@@ -62,7 +62,7 @@ NativeCanvas::NativeCanvas(DepthMode mode, const SolidProgram& solid,
   if (options.conservative && mode == DepthMode::fragment)
     throw std::logic_error("NativeCanvas: proxies are not drawn conservatively");
   if (options.depth_bits != 24 && options.depth_bits != 32) {
-    throw Error("--depth-format", std::to_string(options.depth_bits) + " bits are not offered",
+    throw Error("{depth_format}", std::to_string(options.depth_bits) + " bits are not offered",
                 "choose 24 or 32");
   }
 }

@@ -207,7 +207,7 @@ class Count {
         "has more than " + std::to_string(most_) +
             " pairs of triangles, which are too many to list",
         "give a smaller distance, or ask for the pairs without their distances: farcull run "
-        "--clearance");
+        "{clearance}");
   }
 
  private:

@@ -73,7 +73,7 @@ std::vector<std::string> split_list(const std::string& text, char separator) {
 
 View parse_view(const std::string& text) {
   const auto bad = [&text](const std::string& reason) {
-    return Error("--views", "'" + text + "' " + reason,
+    return Error("{views}", "'" + text + "' " + reason,
                  "give axes (x, -x, y, -y, z, -z) or directions like 1:1:0.5, separated by commas");
   };
   const bool negative = text.starts_with('-');
@@ -105,7 +105,7 @@ std::vector<View> parse_views(const std::string& text) {
     views.push_back(parse_view(part));
     const auto same = [&](const View& v) { return v.name == part; };
     if (std::any_of(views.begin(), views.end() - 1, same)) {
-      throw Error("--views", "'" + part + "' is given twice", "name each view once");
+      throw Error("{views}", "'" + part + "' is given twice", "name each view once");
     }
   }
   return views;

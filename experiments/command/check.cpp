@@ -35,8 +35,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30;  // of a certificate or a list
-
 Certificate read_certificate(const std::string& path) {
   return parse_certificate(read_file(path, kMaxBytes), clean_name(path));
 }

@@ -15,6 +15,7 @@
 #include "commit.h"
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
+#include "core/base/parameter.h"
 #include "experiments/command/check.h"
 #include "experiments/command/commands.h"
 #include "experiments/command/compare.h"
@@ -160,6 +161,7 @@ int dispatch(int argc, char** argv) {
 
 int command_line(int argc, char** argv) {
   prepare_output();
+  spell_parameters(option_word);
   // Mesa would print warnings about the devices that it tries. Our own message reports the outcome.
   ::setenv("EGL_LOG_LEVEL", "fatal", 0);
   // llvmpipe's own threads may damage our memory (docs/drivers.md). No thread runs yet, so the

@@ -21,14 +21,8 @@ CLI::App* CompareCommand::add_to(CLI::App& app) {
              "for far, separated by commas: obb, exact;\ndefault obb");
   add_option(*command, "--repeat", arguments_.repeat, "N",
              "runs of each, the one with the median time is shown;\ndefault 1");
-  add_option(*command, "--views", views_, "VIEWS", kViewsHelp);
-  add_option(*command, "--rounds", rounds_, "N", kRoundsHelp);
-  add_option(*command, "--clear", clear_, "any|all", kClearHelp);
-  add_option(*command, "--level", level_, "objects|triangles", kLevelHelp);
-  add_flag(*command, "--conservative", conservative_, kConservativeHelp);
-  add_option(*command, "--device", device_, "DEVICE", device_help_of_methods());
-  add_flag(*command, "--self", arguments_.self, kSelfHelp);
-  add_option(*command, "--clearance", clearance_, "D", kClearanceHelp);
+  options_.add_to(*command, {"views", "rounds", "clear", "level", "conservative", "device", "self",
+                             "clearance"});
   add_option(*command, "--json", outputs_.json, "FILE", kJsonHelp);
   add_footer(*command,
              "Examples:\n"
@@ -43,18 +37,16 @@ CLI::App* CompareCommand::add_to(CLI::App& app) {
 
 int CompareCommand::run() const {
   CompareArguments arguments = arguments_;
-  arguments.options.device = device_of(device_);
-  arguments.options.seed = seed_of(arguments.scene);
-  if (views_) {
-    const bool pairs =
-        !arguments.methods || arguments.methods->find("far-pairs") != std::string::npos;
-    arguments.options.views = parse_views_option(*views_, pairs);
+  RunOptions& options = arguments.options;
+  arguments.self = options_.has("self");
+  options.seed = seed_of(arguments.scene);
+  // Which methods there are decides whether the scene may choose the views.
+  const bool pairs =
+      !arguments.methods || arguments.methods->find("far-pairs") != std::string::npos;
+  options.method = pairs ? Method::far_pairs : Method::far;
+  for (const auto& [name, text] : options_.given()) {
+    if (run_option(name).take) take_option(name, text, options);
   }
-  if (rounds_) arguments.options.rounds = parse_rounds(*rounds_);
-  if (clear_) arguments.options.clear = parse_clear(*clear_);
-  if (level_) arguments.options.objects_alone = parse_level(*level_);
-  arguments.options.conservative = conservative_;
-  if (clearance_) arguments.options.clearance = parse_clearance(*clearance_);
   validate(arguments);
   check_scene(arguments.scene);
   const Outputs outputs = checked(outputs_, scene_files(arguments.scene));

@@ -15,8 +15,7 @@ class CompareCommand {
 
  private:
   CompareArguments arguments_;
-  Text device_, views_, clearance_, rounds_, clear_, level_;
-  bool conservative_ = false;
+  MethodOptions options_;
   Outputs outputs_;
 };
 

@@ -10,7 +10,7 @@
 #include <functional>
 
 #include "core/base/error.h"
-#include "experiments/method/method.h"
+#include "experiments/method/options.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/shell_word.h"
@@ -35,12 +35,6 @@ std::vector<std::string> alternatives(const std::string& type) {
 std::vector<std::string> scene_names() {
   std::vector<std::string> out;
   for (const BuiltinScene& scene : builtin_scenes()) out.push_back(scene.name);
-  return out;
-}
-
-std::vector<std::string> all_method_names() {
-  std::vector<std::string> out;
-  for (const Method method : all_methods()) out.push_back(to_string(method));
   return out;
 }
 
@@ -294,11 +288,9 @@ complete -c farcull -f
 }  // namespace
 
 CompletedValues completed_values(const std::string& type) {
-  if (type == "METHOD") return {.words = all_method_names()};
-  if (type == "RADIUS") return {.words = {"budget", "published"}};
-  if (type == "OFFSET") return {.words = {"obb", "exact"}};
-  if (type == "DEVICE") return {.words = {"native", "cpu", "gl", "software", "hardware"}};
-  if (type == "VIEWS") return {.words = {"auto", "x", "y", "z", "x,y,z"}};
+  for (const Option& option : run_options()) {
+    if (type == option.type && !option.words.empty()) return {.words = option.words};
+  }
   if (type == "AXIS") return {.words = {"x", "y", "z"}};
   if (type == "SHELL") return {.words = {"bash", "zsh", "fish"}};
   if (type == "SCENE") return {.words = scene_names(), .meshes = true};

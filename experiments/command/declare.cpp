@@ -82,7 +82,7 @@ CLI::Option* add_bare_option(CLI::App& command, const char* name, std::vector<st
   return command.add_option(name, values, help)->type_name(type)->expected(0, 1);
 }
 
-void add_flag(CLI::App& command, const char* name, bool& value, const char* help) {
+void add_flag(CLI::App& command, const char* name, bool& value, const std::string& help) {
   command.add_flag(name, value, help)->disable_flag_override();
 }
 

@@ -44,7 +44,7 @@ void add_required(CLI::App& command, const char* name, std::vector<std::string>&
 CLI::Option* add_bare_option(CLI::App& command, const char* name, std::vector<std::string>& values,
                              const char* type, const char* help);
 /// Declares an option without a value.
-void add_flag(CLI::App& command, const char* name, bool& value, const char* help);
+void add_flag(CLI::App& command, const char* name, bool& value, const std::string& help);
 
 /// An option, or an argument where `names` is empty, as the help shows it.
 struct DeclaredOption {

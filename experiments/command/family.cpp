@@ -41,7 +41,7 @@ CLI::App* FamilyCommand::add_to(CLI::App& experiments) {
   add("--views", views_, "VIEWS", "of the methods that draw; default x,y,z");
   add("--query", query_, "flags|occlusion", "how visibility is asked; default flags");
   add("--device", device_, "DEVICE", kDeviceHelp);
-  add_flag(*command, "--self", arguments_.self, kSelfHelp);
+  add_flag(*command, "--self", arguments_.self, help_of_option("self"));
   add_flag(*command, "--no-verify", no_verify_, "leave out the accounting of all pairs");
   add("--csv", outputs_.csv, "FILE",
       "a row a frame, with the factor by which i-collide keeps\nmore, to this file; - for standard "
@@ -63,8 +63,9 @@ int FamilyCommand::run() {
   options.resolution = resolution_option(resolution_);
   options.device = farcull::device_of(device_);
   options.verify = !no_verify_;
-  if (views_) options.views = parse_views_option(*views_, false);
-  if (query_) options.query = parse_query(*query_);
+  options.method = Method::far;  // for all that draw: the scene chooses no views
+  take_given("views", views_, options);
+  take_given("query", query_, options);
   const Outputs outputs = checked(outputs_, scene_files(arguments_.scenes, arguments_.range));
   TerminalProgress terminal;
   const std::vector<FamilyCell> cells = run_family(arguments_, terminal.callback());

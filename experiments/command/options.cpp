@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/parameter.h"
 #include "core/base/terminal.h"
 #include "core/base/text.h"
 #include "experiments/scenes/builtin/scenes.h"
@@ -29,9 +29,33 @@ void add_scene(CLI::App& command, std::vector<std::string>& scene) {
   add_required(command, "SCENE", scene, kSceneHelp);
 }
 
-std::string device_help_of_methods() {
-  return std::string(kDeviceHelp) + ";\nfar-pairs: with a GL device views decide";
+void MethodOptions::add_to(CLI::App& command, const std::vector<std::string>& names) {
+  for (const Option& option : run_options()) {
+    Text& text = texts_[option.name];
+    bool& flag = flags_[option.name];
+    if (!names.empty() && std::ranges::find(names, option.name) == names.end()) continue;
+    const std::string word = option_word(option.name);
+    if (*option.type == 0) {
+      add_flag(command, word.c_str(), flag, spelled(option.help));
+    } else {
+      add_option(command, word.c_str(), text, option.type, spelled(option.help));
+    }
+  }
 }
+
+GivenOptions MethodOptions::given() const {
+  GivenOptions out;
+  for (const Option& option : run_options()) {
+    if (has(option.name)) out[option.name] = text(option.name).value_or("");
+  }
+  return out;
+}
+
+void take_given(const char* name, const Text& text, RunOptions& options) {
+  if (text) take_option(name, *text, options);
+}
+
+std::string help_of_option(const std::string& name) { return spelled(run_option(name).help); }
 
 void complain(const std::string& message) {
   std::fprintf(stderr, "farcull: %s\n", clean_name(message).c_str());
@@ -144,22 +168,9 @@ std::optional<std::uint64_t> seed_of(const std::vector<std::string>& scene) {
 }
 
 double parse_clearance(const std::string& text) {
-  const std::optional<double> value = parse_number<double>(text);
-  if (!value || !std::isfinite(*value) || *value < 0) {
-    throw Error("--clearance", "'" + text + "' is no distance",
-                "give a finite distance in world units, 0 or more");
-  }
-  return *value;
-}
-
-std::string parse_views_option(const std::string& text, bool may_choose) {
-  if (text.empty()) throw Error("--views", "its value is empty", "give directions, as in x,y,z");
-  if (text != "auto") return text;
-  if (!may_choose) {
-    throw Error("--views", "auto has a meaning for far-pairs alone",
-                "give directions, as in x,y,z, or use far-pairs");
-  }
-  return "";
+  RunOptions options;
+  take_option("clearance", text, options);
+  return options.clearance;
 }
 
 void make_self(Scene& scene) {

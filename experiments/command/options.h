@@ -1,6 +1,7 @@
 // Options, outputs and progress that several commands share.
 #pragma once
 
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -73,60 +74,43 @@ void check_scene(const std::vector<std::string>& scene);
 /// The seed of the scene, where it is a random built-in one.
 std::optional<std::uint64_t> seed_of(const std::vector<std::string>& scene);
 
+/// Options of the methods on a command line, as the table has them (experiments/method/options.h).
+class MethodOptions {
+ public:
+  /// Declares options of the table, in its order: those of these names, all where none is named.
+  void add_to(CLI::App& command, const std::vector<std::string>& names = {});
+  /// Those that were given.
+  GivenOptions given() const;
+  /// The value that was given, and whether one was.
+  const Text& text(const std::string& name) const { return texts_.at(name); }
+  bool has(const std::string& name) const { return texts_.at(name) || flags_.at(name); }
+
+ private:
+  // Of every option of the table, at places that do not change.
+  std::map<std::string, Text> texts_;
+  std::map<std::string, bool> flags_;
+};
+/// Reads an option where its text was given.
+void take_given(const char* name, const Text& text, RunOptions& options);
+
 /// A distance in world units. Throws Error naming --clearance.
 double parse_clearance(const std::string& text);
-/// --views as RunOptions takes it: `auto` is "". Throws Error where the value is empty.
-std::string parse_views_option(const std::string& text, bool may_choose);
 /// --self: every object of the scene is tested against itself.
 void make_self(Scene& scene);
 
 /// The guarantee that `record` broke, for complain().
 std::string missed(const Record& record);
 
-/// Empty where none is asked for. Throws Error where the value is empty.
+/// Empty where none is asked for. Throws Error where the value is none.
 std::string device_of(const Text& device);
 
 void write_json(const nlohmann::ordered_json& json, const std::string& path);
 
-inline constexpr const char* kViewsHelp =
-    "axes or directions to look along, by commas, as in\n"
-    "x,-y,1:1:0.5; default x,y,z; for far-pairs auto: the\n"
-    "scene decides whether views are needed, and which";
-inline constexpr const char* kRoundsHelp =
-    "at most N rounds over all views, for methods that draw;\n"
-    "1 is CULLIDE as published; default: until a round\n"
-    "changes nothing, for far until it culls little";
-inline constexpr const char* kClearHelp =
-    "how many views have to clear a triangle before it is\n"
-    "culled, for methods that draw; default any";
-inline constexpr const char* kLevelHelp =
-    "objects: objects are culled as a whole, their triangles\n"
-    "are not; for far, cullide and quick-cullide;\n"
-    "default triangles, which comes after objects";
-inline constexpr const char* kConservativeHelp =
-    "draw every pixel that a triangle touches, for the\n"
-    "CULLIDE family; OpenGL: where the device can";
-inline constexpr const char* kDeviceHelp =
-    "native (alias cpu: the cores of the CPU, no GPU), gl,\n"
-    "software, hardware or a number that `farcull doctor`\n"
-    "lists; default GL where hardware answers and keeps the\n"
-    "assumptions, else native";
-/// kDeviceHelp for commands that take far-pairs, which obeys a GL device that is named.
-std::string device_help_of_methods();
-inline constexpr const char* kSelfHelp =
-    "every object is tested against itself as well\n"
-    "(far, far-pairs, s-cullide, i-collide, exact); collisions\n"
-    "of triangles that share a vertex position are listed apart";
-inline constexpr const char* kFullHelp =
-    "leave nothing out that the scene does not need, to\n"
-    "measure what leaving out saves (see farcull plan);\n"
-    "far-pairs: with this option views decide";
+/// The help of an option of the table.
+std::string help_of_option(const std::string& name);
 inline constexpr const char* kFacesHelp =
     "with --pairs: two more columns, face_a and face_b, the\n"
     "faces of the mesh files (see farcull help pairs)";
-inline constexpr const char* kClearanceHelp =
-    "pairs at this distance or less collide, in world\n"
-    "units (far-pairs, exact); default 0";
 inline constexpr const char* kSceneHelp =
     "mesh files (.obj .off .ply .stl, also .obj.gz and\n"
     "so on), each an object;\n"

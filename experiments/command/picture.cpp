@@ -44,7 +44,7 @@ long parse_frame(const std::string& text) {
 RunOptions parse_panel(const std::string& text, const RunOptions& usual) {
   RunOptions options = usual;
   const std::size_t colon = text.find(':');
-  options.method = parse_method(text.substr(0, colon), "--compare");
+  options.method = parse_method(text.substr(0, colon), "{compare}");
   const bool takes = looks(options.method);
   if (!takes) options.resolution = 0;
   if (colon == std::string::npos) return options;
@@ -103,8 +103,8 @@ void PictureCommand::add_options(CLI::App& app) {
   add("--radius", radius_, "RADIUS", "for far: budget, published, or a factor");
   add("--offset", offset_, "OFFSET", "for far: obb or exact; default obb");
   add("--depth", depth_, "fragment|fixed", "for far; default fragment");
-  add_option(*command, "--device", device_, "DEVICE", device_help_of_methods());
-  add_flag(*command, "--self", self_, kSelfHelp);
+  add_option(*command, "--device", device_, "DEVICE", help_of_option("device"));
+  add_flag(*command, "--self", self_, help_of_option("self"));
   add("--frame", frame_, "F", "of a scene that moves");
   add("--frames", frames_, "N|A:B",
       "of the motion that F is one of; default 30 of a\nbuilt-in scene. With --html and without "
@@ -142,13 +142,9 @@ RunOptions PictureCommand::usual_options() const {
   usual.device = farcull::device_of(device_);
   usual.verify = false;
   if (resolution_) usual.resolution = parse_resolution(*resolution_);
-  if (radius_) usual.radius = parse_radius(*radius_);
-  if (offset_) usual.offset = *offset_;
-  if (depth_) {
-    if (*depth_ != "fragment" && *depth_ != "fixed")
-      throw Error("--depth", "'" + *depth_ + "' is no choice", "give fixed or fragment");
-    usual.depth = *depth_ == "fixed" ? DepthMode::fixed : DepthMode::fragment;
-  }
+  take_given("radius", radius_, usual);
+  take_given("offset", offset_, usual);
+  take_given("depth", depth_, usual);
   return usual;
 }
 

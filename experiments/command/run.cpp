@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -22,24 +21,6 @@
 
 namespace farcull {
 namespace {
-
-template <class Value>
-Value choose(const std::string& option, const std::string& given,
-             const std::map<std::string, Value>& values) {
-  const auto found = values.find(given);
-  if (found != values.end()) return found->second;
-  std::string known;
-  for (const auto& [name, value] : values) known += (known.empty() ? "" : " or ") + name;
-  throw Error(option, "'" + given + "' is no choice", "give " + known);
-}
-
-std::uint64_t parse_limit(const std::string& text) {
-  const std::optional<std::uint64_t> value = parse_number<std::uint64_t>(text);
-  if (!value || *value == 0)
-    throw Error("--limit", "'" + text + "' is no number of pairs",
-                "give a whole number, 1 or more");
-  return *value;
-}
 
 std::vector<ContactKind> parse_kinds(const std::string& list) {
   std::vector<ContactKind> out;
@@ -119,7 +100,7 @@ CLI::App* RunCommand::add_to(CLI::App& app) {
       break;
   }
   add_scene(*command, scene_);
-  add_method_options(*command);
+  options_.add_to(*command);
   if (kind_ != Kind::verify)
     add_flag(*command, "--no-verify", no_verify_, "leave out the accounting of all pairs");
   if (kind_ == Kind::plan) {
@@ -131,52 +112,6 @@ CLI::App* RunCommand::add_to(CLI::App& app) {
     add_outputs(*command);
   }
   return command;
-}
-
-void RunCommand::add_method_options(CLI::App& command) {
-  const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
-    add_option(command, name, text, type, help);
-  };
-  add("--method", method_, "METHOD",
-      "far-pairs, far, cullide, quick-cullide, s-cullide,\ni-collide or exact (see farcull help "
-      "methods); "
-      "default\nfar-pairs");
-  add("--resolution", resolution_, "N|auto",
-      "pixels along the larger side of each view's window;\ndefault 512; for far-pairs auto: "
-      "chosen by the scene;\nfar-pairs: with a number views decide");
-  add("--radius", radius_, "RADIUS",
-      "of the ball that fattens a primitive, for far: budget,\n"
-      "published, or a factor on the budget; default budget");
-  add("--offset", offset_, "OFFSET",
-      "what a primitive is fattened to, for far: obb or\nexact; default obb");
-  add("--depth", depth_, "fragment|fixed",
-      "entry and exit depth by the fragment program\n"
-      "(reliable), or fixed function as published;\n"
-      "default fragment for far, fixed for the others");
-  add("--depth-format", depth_format_, "32f|24", "of the depth buffer; default 32f");
-  add("--query", query_, "flags|occlusion",
-      "how visibility is asked; default flags, but occlusion\n"
-      "with --depth-format 24 and for s-cullide");
-  add("--clusters", clusters_, "LIST|none",
-      "sizes of clusters of triangles that are asked before\n"
-      "single ones, for far, cullide and quick-cullide; default\n"
-      "32 with occlusion queries and more than 32768 triangles");
-  add("--views", views_, "VIEWS", kViewsHelp);
-  add("--rounds", rounds_, "N", kRoundsHelp);
-  add("--clear", clear_, "any|all", kClearHelp);
-  add("--level", level_, "objects|triangles", kLevelHelp);
-  add_flag(command, "--conservative", conservative_, kConservativeHelp);
-  add_option(command, "--device", device_, "DEVICE", device_help_of_methods());
-  add_flag(command, "--self", self_, kSelfHelp);
-  add("--clearance", clearance_, "D", kClearanceHelp);
-  add("--ignore", ignore_, "LIST",
-      "pairs of objects that are not tested against each\n"
-      "other, as in a:b,link*:gripper; * is any text");
-  add("--ignore-file", ignore_file_, "FILE", "the same, a pair a line; # begins a comment");
-  add("--limit", limit_, "N",
-      "only the first N colliding pairs, in the order of\n"
-      "--pairs; the exact tests stop there");
-  add_flag(command, "--full", full_, kFullHelp);
 }
 
 void RunCommand::add_outputs(CLI::App& command) {
@@ -219,85 +154,10 @@ void RunCommand::add_outputs(CLI::App& command) {
 }
 
 RunOptions RunCommand::parse() const {
-  RunOptions out;
-  if (method_) out.method = parse_method(*method_);
-  out.method_is_default = !method_;
-  const bool pairs = chooses_views(out.method);
-  if (resolution_ == "auto") {
-    if (!pairs) {
-      throw Error("--resolution", "auto has no meaning for --method " + to_string(out.method),
-                  "give a number of pixels, or use --method far-pairs");
-    }
-  } else if (resolution_) {
-    out.resolution = parse_resolution(*resolution_);
-  }
-  if (radius_) out.radius = parse_radius(*radius_);
-  if (offset_) out.offset = *offset_;
-  if (depth_) {
-    out.depth = choose<DepthMode>("--depth", *depth_,
-                                  {{"fragment", DepthMode::fragment}, {"fixed", DepthMode::fixed}});
-  }
-  if (depth_format_) {
-    out.depth_format =
-        choose<DepthFormat>("--depth-format", *depth_format_,
-                            {{"32f", DepthFormat::float32}, {"24", DepthFormat::fixed24}});
-  }
-  if (query_) out.query = parse_query(*query_);
-  if (clusters_) out.clusters = parse_clusters(*clusters_);
-  if (rounds_) out.rounds = parse_rounds(*rounds_);
-  if (clear_) out.clear = parse_clear(*clear_);
-  if (level_) out.objects_alone = parse_level(*level_);
-  out.conservative = conservative_;
-  if (views_) out.views = parse_views_option(*views_, pairs);
-  if (clearance_) out.clearance = parse_clearance(*clearance_);
-  if (limit_) out.limit = parse_limit(*limit_);
+  RunOptions out{.verify = !no_verify_, .seed = seed_of(scene_)};
   if (contacts_ || kinds_) out.contacts = ContactDetail::kinds;
   if (segments_) out.contacts = ContactDetail::segments;
-  out.device = device_of(device_);
-  out.verify = !no_verify_;
-  out.full = full_;
-  out.seed = seed_of(scene_);
-  validate(out);
-  refuse_idle(out.method);
-  return out;
-}
-
-// Refuses an option that the method does not use, so that no result lacks what was asked for.
-void RunCommand::refuse_idle(Method chosen) const {
-  const auto refuse = [&](const char* option, bool given, const std::string& methods) {
-    if (!given) return;
-    throw Error(option, "has no meaning for --method " + to_string(chosen),
-                std::string("leave ") + option + " out, or use --method " + methods);
-  };
-  if (!tests_self(chosen))
-    refuse("--self", self_, method_names([](const Traits& t) { return t.tests_self; }));
-  if (!takes_clearance(chosen))
-    refuse("--clearance", clearance_.has_value(),
-           method_names([](const Traits& t) { return t.takes_clearance; }));
-  if (!fattens(chosen)) {
-    refuse("--radius", radius_.has_value(), "far");
-    refuse("--offset", offset_.has_value(), "far");
-    refuse("--depth", depth_.has_value(), "far");
-  }
-  if (!draws(chosen)) {
-    const std::string drawing = method_names([](const Traits& t) { return t.draws; });
-    refuse("--depth-format", depth_format_.has_value(), drawing);
-    refuse("--query", query_.has_value(), drawing);
-    refuse("--rounds", rounds_.has_value(), drawing);
-    refuse("--clear", clear_.has_value(), drawing);
-    refuse("--level", level_.has_value(), drawing);
-  }
-  if (clusters_ && (!draws(chosen) || tests_self_alone(chosen)))
-    refuse("--clusters", true, "far, cullide or quick-cullide");
-  if (!looks(chosen)) {
-    const std::string others =
-        method_names([](const Traits& t) { return t.draws || t.chooses_views; });
-    refuse("--resolution", resolution_.has_value(), others);
-    refuse("--views", views_.has_value(), others);
-    refuse("--device", device_.has_value(), others);
-  }
-  if (!culls(chosen) && full_)
-    throw Error("--full", "exact leaves nothing out", "leave --full out");
+  return read_options(options_.given(), out);
 }
 
 void RunCommand::refuse_outputs() const {
@@ -310,14 +170,13 @@ void RunCommand::refuse_outputs() const {
   needs_pairs("--segments", segments_, "adds columns to");
   needs_pairs("--kinds", kinds_.has_value(), "chooses the rows of");
   if (!outputs_.certificate) return;
-  const auto refuse = [](const char* option, bool given) {
+  const auto refuse = [](const std::string& option, bool given) {
     if (!given) return;
     throw Error(option, "a certificate is about all colliding pairs of all objects",
-                std::string("leave ") + option + " or --certificate out");
+                "leave " + option + " or --certificate out");
   };
-  refuse("--ignore", ignore_.has_value());
-  refuse("--ignore-file", ignore_file_.has_value());
-  refuse("--limit", limit_.has_value());
+  for (const char* name : {"ignore", "ignore_file", "limit"})
+    refuse(option_word(name), options_.has(name));
 }
 
 PairColumns RunCommand::columns() const {
@@ -329,24 +188,26 @@ PairColumns RunCommand::columns() const {
 
 std::vector<IgnoredNames> RunCommand::ignored() const {
   std::vector<IgnoredNames> out;
-  if (ignore_) out = parse_ignored(*ignore_);
-  if (ignore_file_) {
-    for (IgnoredNames& names : read_ignored(*ignore_file_)) out.push_back(std::move(names));
+  if (const Text& list = options_.text("ignore")) out = parse_ignored(*list);
+  if (const Text& file = options_.text("ignore_file")) {
+    for (IgnoredNames& names : read_ignored(*file)) out.push_back(std::move(names));
   }
   return out;
 }
 
 std::vector<NamedFile> RunCommand::read_files(const std::optional<FrameRange>& range) const {
   std::vector<NamedFile> out = scene_files(scene_, range);
-  if (ignore_file_) out.push_back({"--ignore-file", *ignore_file_});
+  if (const Text& file = options_.text("ignore_file")) out.push_back({"--ignore-file", *file});
   return out;
 }
 
 std::string RunCommand::with_self() const {
   std::string command = kind_ == Kind::run ? "run" : kind_ == Kind::verify ? "verify" : "plan";
   command = command_with("farcull " + command, scene_);
-  const bool can = !method_ || tests_self(parse_method(*method_));
-  if (method_) command += " --method " + (can ? *method_ : to_string(kDefaultMethod));
+  if (const Text& method = options_.text("method")) {
+    const bool can = tests_self(parse_method(*method));
+    command += " --method " + (can ? *method : to_string(kDefaultMethod));
+  }
   if (frames_) command += " --frames " + quoted(*frames_);
   return command + " --self";
 }
@@ -373,7 +234,7 @@ int RunCommand::run() const {
 int RunCommand::plan(const RunOptions& options) const {
   const Outputs outputs = checked(outputs_, read_files());
   Scene scene = load_scene(scene_);
-  if (self_) make_self(scene);
+  if (options_.has("self")) make_self(scene);
   RunOptions all = options;
   all.ignored = ignored_objects(scene, ignored());
   const Plan planned = farcull::plan(scene, all);
@@ -390,7 +251,7 @@ int RunCommand::run_once(const RunOptions& options, const Outputs& outputs) cons
   const Progress progress = terminal.callback();
   if (progress) progress("reading the scene");
   Scene scene = load_scene(scene_);
-  if (self_) make_self(scene);
+  if (options_.has("self")) make_self(scene);
   if (outputs.certificate) require_nothing_ignored(scene, "a certificate");
   RunOptions all = options;
   all.ignored = ignored_objects(scene, ignored());
@@ -419,7 +280,7 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
   const Progress progress = terminal.callback();
   FramesQuestion question{.options = options,
                           .range = range,
-                          .self = self_,
+                          .self = options_.has("self"),
                           .strict = kind_ == Kind::verify,
                           .pairs = outputs.pairs.has_value(),
                           .columns = columns(),
@@ -430,7 +291,7 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
     };
   }
   if (progress) progress("reading the scene");
-  FrameSource source(scene_, range, self_);
+  FrameSource source(scene_, range, options_.has("self"));
   if (const std::optional<Error> missing = source.missing()) {
     terminal.clear();
     complain(missing->where + ": the file does not exist; the frames before it are run");

@@ -21,13 +21,11 @@ class RunCommand {
   CLI::App* add_to(CLI::App& app);
   /// The exit status: 0 done, 1 a guarantee is broken. Throws Error where the arguments are bad.
   int run() const;
-  /// The options of the method. Throws Error where one is bad, or options do not go together.
-  RunOptions parse() const;
 
  private:
-  void add_method_options(CLI::App& command);
+  /// The options of the method. Throws Error where one is bad, or options do not go together.
+  RunOptions parse() const;
   void add_outputs(CLI::App& command);
-  void refuse_idle(Method chosen) const;
   /// Throws Error where an output cannot say what another option asks.
   void refuse_outputs() const;
   PairColumns columns() const;
@@ -50,13 +48,10 @@ class RunCommand {
 
   Kind kind_;
   std::vector<std::string> scene_;
-  Text method_, resolution_, radius_, offset_, depth_, depth_format_, query_, clusters_, views_,
-      device_;
-  Text rounds_, clear_, level_;
-  Text clearance_, frames_, ignore_, ignore_file_, limit_, kinds_, tiles_;
+  MethodOptions options_;
+  Text frames_, kinds_, tiles_;
   Outputs outputs_;
-  bool self_ = false, no_verify_ = false, full_ = false, faces_ = false, conservative_ = false;
-  bool contacts_ = false, segments_ = false;
+  bool no_verify_ = false, faces_ = false, contacts_ = false, segments_ = false;
 };
 
 }  // namespace farcull

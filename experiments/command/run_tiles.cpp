@@ -39,7 +39,7 @@ void require_text(const std::string& option, const std::string& file) {
 SceneSource RunCommand::source() const {
   return [this](const TakePart& take) {
     return stream_scene(scene_, [&](Scene& part) {
-      if (self_) make_self(part);
+      if (options_.has("self")) make_self(part);
       take(part);
     });
   };
@@ -58,7 +58,7 @@ void RunCommand::refuse_with_tiles(const RunOptions& options) const {
   }
   refuse("--frames", frames_.has_value(), "a tile is of a scene that stands still");
   refuse("--certificate", outputs_.certificate.has_value(), "a certificate is about a whole scene");
-  refuse("--limit", limit_.has_value(), "no tile knows how many pairs the others have");
+  refuse("--limit", options_.has("limit"), "no tile knows how many pairs the others have");
 }
 
 int RunCommand::run_tile(const RunOptions& options) const {

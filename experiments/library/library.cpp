@@ -1,12 +1,7 @@
-// The collider: input is checked and copied into a scene, then planned, found and decided.
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <thread>
+// The collider: input is checked and copied into a scene, which is run (experiments/method/run.h).
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
 #include "core/gl/base/context.h"
 #include "core/view/view.h"
@@ -35,7 +30,10 @@ RunOptions run_options(const ColliderOptions& options) {
   RunOptions out{.method = Method::far_pairs,
                  .resolution = options.resolution,
                  .views = options.views == "auto" ? "" : options.views,
-                 .clearance = options.clearance};
+                 .clearance = options.clearance,
+                 .verify = false,
+                 .limit = options.limit,
+                 .contacts = detail_of(options.contacts)};
   out.device = device_of(options);
   try {
     if (options.views != "auto") parse_views(options.views);
@@ -65,11 +63,11 @@ struct Collider::State {
   RunOptions run;
   Session session;
   Scene scene;  // of the last call
+  std::uint64_t calls = 0;
   std::atomic_flag used;
 
   explicit State(const ColliderOptions& given)
       : options(given), run(run_options(given)), session(device_of(given), given.threads, Say()) {
-    session.remember_frames();
     device();
     promise();
   }
@@ -111,57 +109,30 @@ void Collider::State::report_device(const UsedDevice& used, ColliderReport& repo
 
 ColliderResult Collider::State::find(const Stopwatch& start) {
   device();
-  const unsigned threads =
-      options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
   run.ignored = ignored_of(options, scene.objects.size());
-  const Plan planned = plan(scene, run, options.threads, {}, session.pair_memory());
-  const Candidates found = farcull::find(scene, planned, session);
+  // What is remembered is two more copies of the scene, which one call alone has no use for.
+  if (++calls == 2) session.remember_frames();
+  const Record record = farcull::run(
+      scene, run, session, {}, {.answer_only = true, .decide_neighbours = options.neighbours});
   ColliderResult out;
   ColliderReport& report = out.report;
-  report.candidates_ms = start.ms();
-  report.candidates = found.count;
-
-  const Stopwatch deciding;
-  const ExactQuestion question{
-      .clearance = options.clearance, .threads = threads, .neighbours = options.neighbours};
-  Collisions decided;
-  report.decided = found.pairs.size();
-  if (options.limit > 0) {
-    FirstCollisions first = decide_first(scene, found.pairs, options.limit, question);
-    decided = std::move(first.collisions);
-    report.decided = first.decided;
-    out.complete = first.complete;
-  } else {
-    decided = session.frame_decider()->decide(scene, found.pairs, question);
-  }
-  out.pairs = given_out(decided.pairs);
-  out.neighbour_pairs = given_out(decided.neighbour_pairs);
-  report.neighbours = decided.neighbours;
-  report.exact_ms = deciding.ms();
-
-  const Stopwatch contacts;
-  const ContactDetail detail = detail_of(options.contacts);
-  out.contacts = given_out(contacts_of(scene, decided.pairs, detail, threads));
-  out.neighbour_contacts = given_out(contacts_of(scene, decided.neighbour_pairs, detail, threads));
-  report.contacts_ms = contacts.ms();
-
-  require_proved("arithmetic");  // the driver's code ran in this thread too
-  const FloatingPoint callers = callers_floating_point();
-  if (callers != kProved) report.callers_arithmetic = to_string(callers);
-  report_device(found.device, report);
-  std::vector<Stage> stages = planned.trace;
-  stages.insert(stages.end(), found.trace.begin(), found.trace.end());
-  stages.push_back({.kind = StageKind::exact,
-                    .ran = true,
-                    .reason = Reason::predicates,
-                    .ms = report.exact_ms,
-                    .in = report.decided,
-                    .out = out.pairs.size() + out.neighbour_pairs.size(),
-                    .unit = Unit::pairs});
-  for (const Stage& s : stages)
+  report.candidates_ms = start.ms() - record.ms.exact - record.ms.contacts;
+  report.candidates = record.found.count;
+  report.decided = record.decided;
+  report.neighbours = record.collisions.neighbours;
+  report.exact_ms = record.ms.exact;
+  report.contacts_ms = record.ms.contacts;
+  out.pairs = given_out(record.collisions.pairs);
+  out.neighbour_pairs = given_out(record.collisions.neighbour_pairs);
+  out.contacts = given_out(record.contacts);
+  out.neighbour_contacts = given_out(record.neighbour_contacts);
+  out.complete = record.complete;
+  if (record.callers != kProved) report.callers_arithmetic = to_string(record.callers);
+  report_device(record.found.device, report);
+  for (const Stage& s : record.trace)
     report.stages.push_back(
         {name_of(s), s.ran, reason_of(s), s.ms, s.in, s.out, to_string(s.unit)});
-  for (const PairView& v : found.pair_views())
+  for (const PairView& v : record.found.pair_views())
     report.views.push_back({v.name, v.looked, v.reason, v.width, v.height});
   return out;
 }

@@ -61,16 +61,10 @@ void ColliderStream::State::decide_part(std::vector<ColliderFound>& pairs) {
   candidates->next(kPart, part);
   const ExactQuestion question{
       .clearance = options.clearance, .threads = threads, .neighbours = options.neighbours};
-  Collisions found;
-  if (options.limit > 0 && !part.empty()) {
-    FirstCollisions first = decide_first(scene, part, options.limit - given, question);
-    found = std::move(first.collisions);
-    decided += first.decided;
-    complete = first.complete && candidates->at_end();
-  } else {
-    found = decide(scene, part, question);
-    decided += part.size();
-  }
+  const std::uint64_t limit = part.empty() || options.limit == 0 ? 0 : options.limit - given;
+  const auto [found, count, whole] = decide(scene, part, question, limit, nullptr);
+  decided += count;
+  if (limit > 0) complete = whole && candidates->at_end();
   const auto append = [&](const std::vector<TrianglePair>& those, bool neighbours) {
     const std::vector<ContactShape> contacts =
         contacts_of(scene, those, detail_of(options.contacts), threads);

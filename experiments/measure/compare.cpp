@@ -78,22 +78,14 @@ std::vector<RunOptions> cells_of(const CompareArguments& arguments, bool self) {
 
 // Refuses a choice that none of the methods has.
 void require_used(const RunOptions& asked, const std::vector<RunOptions>& cells) {
-  const auto require = [&](const char* option, bool given, const auto& has, const char* method) {
-    if (!given || std::any_of(cells.begin(), cells.end(), has)) return;
-    throw Error(option, "has no meaning for any of the methods",
-                std::string("leave it out, or add ") + method + " to --methods");
-  };
-  require(
-      "--rounds", asked.rounds > 0, [](const RunOptions& o) { return o.rounds > 0; }, "cullide");
-  require(
-      "--clear", asked.clear == ClearRule::all,
-      [](const RunOptions& o) { return o.clear == ClearRule::all; }, "cullide");
-  require(
-      "--level", asked.objects_alone, [](const RunOptions& o) { return o.objects_alone; },
-      "cullide");
-  require(
-      "--conservative", asked.conservative, [](const RunOptions& o) { return o.conservative; },
-      "cullide");
+  for (const Option& option : run_options()) {
+    if (!option.copy || !option.unusual(asked)) continue;
+    if (std::ranges::any_of(cells,
+                            [&](const RunOptions& o) { return option.unusual(o).has_value(); }))
+      continue;
+    throw Error("{" + std::string(option.name) + "}", "has no meaning for any of the methods",
+                "leave it out, or add cullide to --methods");
+  }
 }
 
 // A resolution beyond the device is refused before the first run, not after an hour of smaller

@@ -41,25 +41,17 @@ std::vector<std::string> chosen(const std::string& option, const std::string& te
   return out;
 }
 
-// The pipeline, without a record. Neighbours are not asked for: the peers leave them out too.
+// Neighbours are not asked for: the peers leave them out too.
 BenchRun method_run(Method method, std::shared_ptr<Session> session, const std::string& device) {
   RunOptions options{.method = method, .verify = false, .neighbours = false};
   options.device = device;
   return [=](const Scene& scene) {
     const Stopwatch watch;
-    const unsigned threads = session->threads();
-    Candidates found = find(scene, plan(scene, options, threads), *session);
-    BenchAnswer answer{.candidates_ms = watch.ms() - found.decided_ms,
-                       .exact_ms = found.decided_ms,
-                       .candidate_pairs = found.count};
-    if (found.decided) {
-      answer.pairs = std::move(found.decided->pairs);
-      return answer;
-    }
-    const Stopwatch exact;
-    answer.pairs = decide(scene, found.pairs, {.threads = threads, .neighbours = false}).pairs;
-    answer.exact_ms = exact.ms();
-    return answer;
+    Record record = run(scene, options, *session, {}, {.answer_only = true});
+    return BenchAnswer{.candidates_ms = watch.ms() - record.ms.exact,
+                       .exact_ms = record.ms.exact,
+                       .candidate_pairs = record.found.count,
+                       .pairs = std::move(record.collisions.pairs)};
   };
 }
 

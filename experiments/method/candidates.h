@@ -54,10 +54,21 @@ struct Candidates {
   double ms = 0;          // of finding, without setup
   double decided_ms = 0;  // of deciding, where `decided` is set; not part of ms
 
-  /// Of the variant; empty or zero for another kind.
-  const std::vector<ViewReport>& views() const;
-  const std::vector<PairView>& pair_views() const;
-  std::optional<std::uint64_t> swept_triangles() const;
+  /// Of the variant; empty for another kind.
+  const std::vector<ViewReport>& views() const { return all_of<ViewReport>(); }
+  const std::vector<PairView>& pair_views() const { return all_of<PairView>(); }
+  std::optional<std::uint64_t> swept_triangles() const {
+    const auto* swept = std::get_if<SweptObjects>(&by);
+    return swept ? std::optional(swept->triangles) : std::nullopt;
+  }
+
+ private:
+  template <class View>
+  const std::vector<View>& all_of() const {
+    static const std::vector<View> none;
+    const auto* views = std::get_if<std::vector<View>>(&by);
+    return views ? *views : none;
+  }
 };
 
 }  // namespace farcull

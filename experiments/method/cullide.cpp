@@ -1,7 +1,5 @@
 // FAR and the CULLIDE family: boxes say what is drawn, a canvas culls it view by view, with one
 // offset after the other, and the boxes of what is kept are joined.
-#include "experiments/method/cullide.h"
-
 #include <algorithm>
 #include <iterator>
 
@@ -9,7 +7,9 @@
 #include "core/base/stopwatch.h"
 #include "core/boxes/join.h"
 #include "core/native/lanes.h"
+#include "core/boxes/join.h"
 #include "core/scene/scene.h"
+#include "experiments/method/methods.h"
 #include "offsets/minkowski.h"
 #include "offsets/obb.h"
 // The header of a new offset goes here.
@@ -175,8 +175,8 @@ void plan_drawing(const Scene& scene, unsigned, const Progress&, Plan& plan) {
   if (!self && has_self(scene)) plan.trace.push_back(cut(scene, work.patches));
   const Stopwatch watch;
   if (options.objects_alone && work.patches.cut) {
-    throw Error("--level", "an object that is tested against itself is asked in patches",
-                "leave --level objects or the self-collision out");
+    throw Error("{level}", "an object that is tested against itself is asked in patches",
+                "leave {level} objects or the self-collision out");
   }
   work.regions = find_regions(scene, {.self = self || work.patches.cut, .full = options.full});
   const Regions& regions = work.regions;

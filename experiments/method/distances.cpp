@@ -60,8 +60,8 @@ void require_few_questions(const Scene& scene, const DistanceOptions& options) {
   throw Error("scene",
               "has " + std::to_string(questions) + " pairs of objects, and at most " +
                   std::to_string(most) + " are answered",
-              "ask for the nearest objects of each (--pairs nearest), or for the triangles within "
-              "a distance (--pairs all --within D)");
+              "ask for the nearest objects of each ({pairs} nearest), or for the triangles within "
+              "a distance ({pairs} all {within} D)");
 }
 
 std::vector<std::optional<TrianglePair>> hints_for(std::span<const ObjectPair> questions,
@@ -238,7 +238,7 @@ void between_triangles(const Scene& scene, const Progress& progress, DistanceRec
         "has " + std::to_string(pairs.size()) + " pairs of triangles, and at most " +
             std::to_string(options.most_pairs) + " are answered",
         "give a smaller distance, or ask for the pairs without their distances: farcull run "
-        "--clearance");
+        "{clearance}");
   }
   watch = Stopwatch();
   if (progress) progress("closest points");

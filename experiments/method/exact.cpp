@@ -1,5 +1,5 @@
 // All pairs whose boxes overlap, each decided as the join finds it: nothing is culled.
-#include "experiments/method/exact.h"
+#include "experiments/method/methods.h"
 
 namespace farcull {
 
@@ -14,10 +14,11 @@ void plan_exact(const Scene& scene, unsigned, const Progress&, Plan& plan) {
 Candidates find_exact(const Scene& scene, const Plan& plan, Session& session,
                       const Progress& progress) {
   if (progress) progress("exact tests of every pair");
-  ExactQuestion question{.clearance = plan.options.clearance,
-                         .neighbours = plan.options.neighbours};
-  if (session.threads() > 0) question.threads = session.threads();
-  ExactResult result = all_colliding_pairs(scene, question, plan.options.ignored);
+  ExactResult result = all_colliding_pairs(scene,
+                                           {.clearance = plan.options.clearance,
+                                            .threads = session.cpu_threads(),
+                                            .neighbours = plan.options.neighbours},
+                                           plan.options.ignored);
   Candidates out;
   out.device.note = "the method draws nothing";
   out.triangle_count = scene.triangles.size();

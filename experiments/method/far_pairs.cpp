@@ -1,9 +1,8 @@
 // FAR pairs (core/pairs/pairs.h): boxes of runs on the CPU, or interval pairs on the device of the
 // session.
-#include "experiments/method/far_pairs.h"
-
 #include "core/base/stopwatch.h"
 #include "core/pairs/backend.h"
+#include "experiments/method/methods.h"
 
 namespace farcull {
 

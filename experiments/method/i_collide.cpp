@@ -1,9 +1,8 @@
 // Sweep and prune on the boxes of objects, then of their triangles (I-COLLIDE, 1995).
-#include "experiments/method/i_collide.h"
-
 #include "core/base/count.h"
 #include "core/base/stopwatch.h"
 #include "core/scene/scene.h"
+#include "experiments/method/methods.h"
 
 namespace farcull {
 namespace {

@@ -31,6 +31,13 @@ struct Candidates;  // candidates.h
 struct Plan;        // plan.h
 class Session;      // session.h
 
+/// Decides all that needs no pixels. Fills work, trace and ahead of `plan`, whose options are set.
+using PlanFunction = void(const Scene& scene, unsigned threads, const Progress& progress,
+                          Plan& plan);
+/// The method: candidates of the scene that was planned.
+using FindFunction = Candidates(const Scene& scene, const Plan& plan, Session& session,
+                                const Progress& progress);
+
 /// When a method promises to miss no pair.
 enum class Promises { never, always, at_budget_radius };
 
@@ -48,12 +55,8 @@ struct Traits {
   bool tests_self_alone = false;  // and tests nothing else
   bool takes_clearance = false;
 
-  /// Decides all that needs no pixels. Fills work, trace and ahead of `plan`, whose options are
-  /// set.
-  void (*plan)(const Scene& scene, unsigned threads, const Progress& progress, Plan& plan);
-  /// The method: candidates of the scene that was planned.
-  Candidates (*find)(const Scene& scene, const Plan& plan, Session& session,
-                     const Progress& progress);
+  PlanFunction* plan;
+  FindFunction* find;
 };
 
 /// The entry of the table.
@@ -62,7 +65,7 @@ const Traits& traits(Method method);
 std::span<const Method> all_methods();
 std::string to_string(Method method);
 /// Throws Error naming `option` for an unknown one.
-Method parse_method(const std::string& name, const std::string& option = "--method");
+Method parse_method(const std::string& name, const std::string& option = "{method}");
 /// "far, cullide, ... or exact", of those that `can`.
 std::string method_names(const std::function<bool(const Traits&)>& can = {});
 

@@ -1,9 +1,14 @@
-// What a run is asked to do: options, their defaults, and which go together.
+// What a run is asked to do: the options of the methods, as one table and as one struct.
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include "core/cull/cull.h"
@@ -13,32 +18,12 @@
 
 namespace farcull {
 
-/// A whole number of pixels, 1 or more. Throws Error naming `option`.
-int parse_resolution(const std::string& text, const std::string& option = "--resolution");
-/// "published", "budget" or a factor on the budget radius (0 to 100000). Throws Error naming
-/// --radius.
-RadiusRule parse_radius(const std::string& text);
-
-/// "flags" or "occlusion". Throws Error naming --query.
-QueryMode parse_query(const std::string& text);
-/// Sizes of clusters by commas, each 2 or more and below the one before; "none" for no clusters.
-/// Throws Error naming --clusters.
-std::vector<std::uint32_t> parse_clusters(const std::string& text);
-/// A number of rounds, 1 or more. Throws Error naming --rounds.
-int parse_rounds(const std::string& text);
-/// "any" or "all". Throws Error naming --clear.
-ClearRule parse_clear(const std::string& text);
-/// Whether the text is "objects", not "triangles". Throws Error naming --level.
-bool parse_level(const std::string& text);
-/// A number of runs, 1 or more. Throws Error naming --repeat.
-int parse_repeat(const std::string& text);
-
 /// The method where none is named, on every device. It misses nothing, and on most scenes it is the
 /// fastest (docs/bench.md).
 inline constexpr Method kDefaultMethod = Method::far_pairs;
 
-/// What a run says of how colliding triangles meet (verify/contact_kind.h). segments: with the
-/// points that they have in common.
+/// How much contact detail to report (verify/contact_kind.h). segments: with the points that the
+/// triangles have in common.
 enum class ContactDetail : std::uint8_t { none, kinds, segments };
 
 struct RunOptions {
@@ -71,15 +56,80 @@ struct RunOptions {
   ContactDetail contacts = ContactDetail::none;
   bool full = false;  // leave nothing out that the scene does not need (docs/methods.md)
   std::optional<std::uint64_t> seed = {};  // what the scene was drawn with; empty: it is not random
+  // The value of a new option goes here.
 };
+
+/// A value as records hold it; empty: null.
+using OptionValue = std::variant<std::monostate, bool, int, double, std::string>;
+
+/// An option that a user gives by name. The table of them makes the command line with its help,
+/// completion and manual, the refusals, Python's keywords, and the options in records.
+struct Option {
+  const char* name;  // of the parameter, as in depth_format, which is --depth-format as a word
+  const char* type;  // stands for the value in a help, as in "fragment|fixed"; "" for a flag
+  std::string help;  // lines of a help
+  bool (*serves)(const Traits&);  // which methods have it
+  /// Reads a value; a flag's is "". Returns false where it is none. Throws Error where another
+  /// message says more. Precondition: options.method is set. Null: it is about the scene, and the
+  /// caller reads it.
+  bool (*take)(const std::string& text, RunOptions& options) = nullptr;
+  const char* kind = "";    // a bad value "is no <kind>"
+  const char* remedy = "";  // and what to give instead
+  /// The value, as on the command line, where it changes what methods do; only methods that have
+  /// the option take it. Null: methods that do not have the option pass over its value, but for one
+  /// that the user gave.
+  std::optional<std::string> (*unusual)(const RunOptions&) = nullptr;
+  /// Why a method does not have it; null: it "has no meaning" for the method.
+  const char* (*why_not)(const Traits&) = nullptr;
+  /// Of the options of a form (docs/methods.md, "Forms of CULLIDE"): copies the value.
+  void (*copy)(const RunOptions& from, RunOptions& to) = nullptr;
+  /// What records hold; null: the table of the record says it elsewhere.
+  OptionValue (*value)(const RunOptions&) = nullptr;
+  std::vector<std::string> words = {};  // what a shell completes, where `type` does not list it
+};
+
+/// All options, in the order of the help.
+std::span<const Option> run_options();
+/// Precondition: there is such an option.
+const Option& run_option(std::string_view name);
+/// The option as a word of a command line, as in --depth-format. For spell_parameters().
+std::string option_word(const std::string& name);
+
+/// Options that a user gave, by their names; a flag's value is "".
+using GivenOptions = std::map<std::string, std::string, std::less<>>;
+
+/// Reads the value of an option into `options`. Throws Error naming it.
+void take_option(std::string_view name, const std::string& text, RunOptions& options);
+/// Reads all that are in the table and in RunOptions, then validates. Throws Error naming the
+/// option that is bad.
+RunOptions read_options(const GivenOptions& given, RunOptions options = {});
+/// Throws Error naming an option whose value is out of its range.
+void require_range(const RunOptions& options);
+/// The same, and where options do not go together, and
+/// where the method does not have an option that was given, or whose value is unusual. Opens no
+/// device.
+void validate(const RunOptions& options, const GivenOptions& given = {});
+
+/// A whole number of pixels, 1 or more. Throws Error naming `option`.
+int parse_resolution(const std::string& text, const std::string& option = "{resolution}");
+/// "published", "budget" or a factor on the budget radius (0 to 100000). Throws Error naming
+/// radius.
+RadiusRule parse_radius(const std::string& text);
+/// A number of runs, 1 or more. Throws Error naming repeat.
+int parse_repeat(const std::string& text);
 
 /// px; far-pairs takes no more. Nothing depends on it but time: a window has the square of it.
 constexpr int kMostPairResolution = 16384;
 /// Throws Error naming `option` for more.
-void require_pair_resolution(int resolution, const std::string& option = "--resolution");
+void require_pair_resolution(int resolution, const std::string& option = "{resolution}");
 
 /// Whether a device is the cores of the CPU: "native" or, as far-pairs has called it, "cpu".
 inline bool is_cpu(const std::string& device) { return device == "native" || device == "cpu"; }
+inline constexpr const char* kDeviceHelp =
+    "native (alias cpu: the cores of the CPU, no GPU), gl,\n"
+    "software, hardware or a number that `farcull doctor`\n"
+    "lists; default GL where hardware answers and keeps the\n"
+    "assumptions, else native";
 
 /// What applies where the option is not given. resolution_of: 0 and views_of: "" where the scene
 /// chooses.
@@ -95,14 +145,12 @@ bool promises(const RunOptions& options);
 std::string form_text(const RunOptions& options);
 /// The same without what the method cannot take, so that one choice serves several methods.
 RunOptions with_fitting_form(RunOptions options);
+/// "published", "budget", or the factor on the budget radius.
+std::string radius_text(const RadiusRule& radius);
 /// The method in words for messages, such as "cullide at 512 px, --rounds 1".
 std::string describe(const RunOptions& options);
 
 /// Why the method was run, as "--method" or "no --method: far-pairs misses nothing, ...".
 std::string method_reason(const RunOptions& options);
-
-/// Throws Error naming the option where one is out of range or options do not go together. Opens no
-/// device.
-void validate(const RunOptions& options);
 
 }  // namespace farcull

@@ -52,12 +52,12 @@ void require_scene(const Scene& scene, Method method) {
   if (self && !tests_self(method)) {
     throw Error(scene.name,
                 to_string(method) + " tests no object against itself, as one of it has to be",
-                "use --method " + method_names([](const Traits& t) { return t.tests_self; }));
+                "use {method} " + method_names([](const Traits& t) { return t.tests_self; }));
   }
   if (!self && tests_self_alone(method)) {
     throw Error(scene.name,
                 to_string(method) + " tests objects against themselves, and none of it has to be",
-                "add --self, or use --method cullide or quick-cullide");
+                "add {self}, or use {method} cullide or quick-cullide");
   }
 }
 

@@ -1,9 +1,107 @@
-// The one pipeline. Command line, library, benchmark, studies and pictures call it.
+// Each stage fills its part of the record; run() at the end says in which order.
 #include "experiments/method/run.h"
 
+#include <algorithm>
+#include <limits>
+
+#include "core/base/stopwatch.h"
 #include "core/scene/scene.h"
 
 namespace farcull {
+namespace {
+
+// Sets the triangles and objects that are left from the candidate pairs.
+void count_kept(const Scene& scene, Candidates& found) {
+  found.triangles = members_of(found.pairs, scene.triangles.size());
+  found.triangle_count = found.triangles.size();
+  found.object_count = count_objects(scene, found.triangles);
+}
+
+// Plans and finds. The plan ends here, to make room for the stages behind it.
+void find_stage(const Scene& scene, Session& session, const Progress& progress, Record& record) {
+  const Plan planned =
+      plan(scene, record.options, session.threads(), progress, session.pair_memory());
+  record.options.ignored = planned.options.ignored;
+  record.plan = planned.stages();
+  record.found = find(scene, planned, session, progress);
+  record.trace = planned.trace;
+  record.trace.insert(record.trace.end(), record.found.trace.begin(), record.found.trace.end());
+  record.ms.setup = record.found.setup_ms;
+  record.ms.cull = planned.ms + record.found.ms;
+}
+
+// Takes the answers of a method that decides as it finds, which has its stage in the trace.
+void decide_stage(const Scene& scene, Session& session, const Progress& progress,
+                  bool decide_neighbours, Record& record) {
+  const RunOptions& options = record.options;
+  if (record.found.decided) {
+    record.collisions = *std::move(record.found.decided);
+    record.found.decided.reset();
+    record.ms.exact = record.found.decided_ms;
+    record.decided = record.found.count;
+    return;
+  }
+  Stage stage{.kind = StageKind::exact,
+              .depends = !options.full,
+              .reason = Reason::no_candidates,
+              .unit = Unit::pairs};
+  if (!record.found.pairs.empty() || options.full) {
+    if (progress) progress("exact tests");
+    const Stopwatch watch;
+    const ExactQuestion question{.clearance = options.clearance,
+                                 .threads = session.cpu_threads(),
+                                 .neighbours = options.neighbours && decide_neighbours};
+    FirstCollisions first =
+        decide(scene, record.found.pairs, question, options.limit, session.frame_decider());
+    record.collisions = std::move(first.collisions);
+    record.decided = first.decided;
+    record.complete = first.complete;
+    stage.ran = true;
+    stage.reason = Reason::predicates;
+    stage.ms = record.ms.exact = watch.ms();
+    stage.in = record.decided;
+    stage.out = record.collisions.pairs.size() + record.collisions.neighbour_pairs.size();
+  }
+  record.trace.push_back(stage);
+}
+
+// If the options ask for it, accounts for every pair that was not left to the exact tests.
+void verify_stage(const Scene& scene, const Progress& progress, Record& record) {
+  Stage stage{.kind = StageKind::verify, .reason = Reason::not_asked, .unit = Unit::pairs};
+  if (record.options.verify) {
+    if (progress) progress("accounting for every pair");
+    const bool culled = culls(record.options.method);
+    const std::vector<TrianglePair> decided =
+        culled ? std::vector<TrianglePair>() : pairs_left(record);
+    record.verification = account(scene, culled ? record.found.pairs : decided,
+                                  {.clearance = record.options.clearance,
+                                   .max_examples = std::numeric_limits<std::size_t>::max(),
+                                   .ignored = record.options.ignored});
+    Accounting& accounting = *record.verification;
+    if (record.options.clearance == 0) record.missed = count_contacts(scene, accounting.examples);
+    accounting.examples.resize(std::min(accounting.examples.size(), kExamples));
+    stage.ran = true;
+    stage.reason = Reason::every_pair;
+    stage.ms = accounting.ms;
+    stage.in = accounting.pairs_total;
+    stage.out = accounting.false_negatives;
+  }
+  record.trace.push_back(stage);
+}
+
+// The kinds of contact, if the options ask for them.
+void contact_stage(const Scene& scene, Session& session, const Progress& progress, Record& record) {
+  const ContactDetail asked = record.options.contacts;
+  if (asked == ContactDetail::none) return;
+  if (progress) progress("kinds of contact");
+  const Stopwatch watch;
+  const unsigned threads = session.cpu_threads();
+  record.contacts = contacts_of(scene, record.collisions.pairs, asked, threads);
+  record.neighbour_contacts = contacts_of(scene, record.collisions.neighbour_pairs, asked, threads);
+  record.ms.contacts = watch.ms();
+}
+
+}  // namespace
 
 Candidates find(const Scene& scene, const Plan& plan, Session& session, const Progress& progress) {
   const FloatingPointGuard guard;
@@ -37,37 +135,62 @@ Promise promise_of(const RunOptions& options, const UsedDevice& device, Session&
 }
 
 Record run(const Scene& scene, const RunOptions& options, Session& session,
-           const Progress& progress) {
+           const Progress& progress, const RunUse& use) {
   const FloatingPointGuard guard;
   Record record;
   record.callers = callers_floating_point();
   record.options = options;
-  const Plan planned = plan(scene, options, session.threads(), progress, session.pair_memory());
-  record.options.ignored = planned.options.ignored;
-  record.plan = planned.stages();
-  record.trace = planned.trace;
-  record.scene_hash = scene_hash(scene);
-  record.degenerate_triangles = degenerate_triangles(scene);
-
-  record.found = find(scene, planned, session, progress);
-  // Where the method gives pairs alone.
-  if (!record.found.pairs.empty() && record.found.triangles.empty())
-    count_kept(scene, record.found);
-  record.trace.insert(record.trace.end(), record.found.trace.begin(), record.found.trace.end());
-  record.promise = promise_of(options, record.found.device, session);
-  record.ms.setup = record.found.setup_ms;
-  record.ms.cull = planned.ms + record.found.ms;
-  decide_stage(scene, session, progress, record);
+  find_stage(scene, session, progress, record);
+  Candidates& found = record.found;
+  if (!use.answer_only) {
+    record.scene_hash = use.scene_hash.empty() ? scene_hash(scene) : use.scene_hash;
+    record.degenerate_triangles = degenerate_triangles(scene);
+    record.promise = promise_of(options, found.device, session);
+  }
+  if (use.filter) {
+    verify_stage(scene, progress, record);
+    use.filter(found.pairs);
+    found.count = found.pairs.size();
+  }
+  // Methods that return only pairs leave it to us which triangles those have.
+  const bool only_pairs = use.filter || (!found.pairs.empty() && found.triangles.empty());
+  if (only_pairs && !use.answer_only) count_kept(scene, found);
+  decide_stage(scene, session, progress, use.decide_neighbours, record);
   record.ms.total = record.ms.setup + record.ms.cull + record.ms.exact;
-  std::vector<TrianglePair> decided;  // of a method that decides as it finds
-  if (options.verify && !culls(options.method)) decided = pairs_left(record);
-  verify_stage(scene, culls(options.method) ? record.found.pairs : decided, progress, record);
-  // Of a method that decides as it finds: decide_first() has kept to the limit already.
+  if (!use.filter && !use.answer_only) verify_stage(scene, progress, record);
+  // A method that decides as it finds has all pairs; decide() has kept to the limit already.
   if (options.limit > 0 && keep_first(options.limit, record.collisions)) record.complete = false;
   contact_stage(scene, session, progress, record);
   require_proved("arithmetic");  // a driver's code ran in this thread too
   record.used = floating_point();
   return record;
+}
+
+FirstCollisions decide(const Scene& scene, const std::vector<TrianglePair>& candidates,
+                       const ExactQuestion& question, std::uint64_t limit, FrameDecider* frames) {
+  if (limit > 0) return decide_first(scene, candidates, limit, question);
+  return {.collisions = frames ? frames->decide(scene, candidates, question)
+                               : decide(scene, candidates, question),
+          .decided = candidates.size()};
+}
+
+std::vector<ContactShape> contacts_of(const Scene& scene, const std::vector<TrianglePair>& pairs,
+                                      ContactDetail contacts, unsigned threads) {
+  if (contacts == ContactDetail::segments) return contact_shapes(scene, pairs, threads);
+  std::vector<ContactShape> out;
+  if (contacts == ContactDetail::none) return out;
+  for (const ContactKind kind : contact_kinds(scene, pairs, threads)) out.push_back({.kind = kind});
+  return out;
+}
+
+std::vector<std::pair<ContactKind, std::uint64_t>> count_kinds(const Record& record) {
+  std::vector<std::pair<ContactKind, std::uint64_t>> out;
+  for (const ContactKind kind : kContactKinds) {
+    const auto is = [&](const ContactShape& shape) { return shape.kind == kind; };
+    out.emplace_back(kind, std::ranges::count_if(record.contacts, is) +
+                               std::ranges::count_if(record.neighbour_contacts, is));
+  }
+  return out;
 }
 
 std::vector<TrianglePair> pairs_left(const Record& record) {

@@ -4,7 +4,10 @@
 #include <cstdio>
 
 #include "core/base/error.h"
+#include "core/base/parameter.h"
 #include "core/base/terminal.h"
+#include "core/gl/pairs/pairs.h"
+#include "core/pairs/backend.h"
 #include "experiments/method/kernel_probes.h"
 #include "experiments/method/options.h"
 
@@ -32,20 +35,27 @@ const DeviceVerdict& Session::verdict(Reliance reliance) {
 }
 
 const CanvasDevice& Session::canvas_device() {
-  if (!canvas_device_) canvas_device_ = choose_canvas_device();
+  if (!canvas_device_) canvas_device_ = choose_device([] {}, true);
   return *canvas_device_;
 }
 
-CanvasDevice Session::choose_canvas_device() {
-  if (is_cpu(device_)) return {true, "--device " + device_};
-  if (!device_.empty()) return {false, "--device " + device_};
-  const std::string rule = "no --device: GL where hardware answers, else the CPU; ";
+// `open` makes what is needed on the GL device. Where no device was named, a failure is a reason to
+// take the CPU.
+CanvasDevice Session::choose_device(const std::function<void()>& open, bool probe) {
+  const std::string named = spelled("{device} ") + device_;
+  if (is_cpu(device_)) return {true, named};
+  if (!device_.empty()) {
+    open();
+    return {false, named};
+  }
+  const std::string rule = spelled("no {device}: GL where hardware answers, else the CPU; ");
   try {
     if (!GlContext::hardware_listed()) return {true, rule + "EGL lists no hardware device"};
     if (context().info().kind != "hardware")
       return {true, rule + "no hardware device could be opened"};
-    const DeviceVerdict& found = verdict(Reliance::drawing);
-    if (!found.holds) return {true, rule + "the hardware failed a probe"};
+    if (probe && !verdict(Reliance::drawing).holds)
+      return {true, rule + "the hardware failed a probe"};
+    open();
     return {false, rule + "hardware answered"};
   } catch (const Error& error) {
     return {true, rule + error.where + ": " + error.reason};
@@ -74,10 +84,15 @@ int Session::max_resolution() {
 }
 
 PairDevice& Session::pairs() {
-  if (!pairs_)
-    pairs_ =
-        open_pair_device(device_, threads_, [this]() -> const GlContext& { return context(); });
-  return *pairs_;
+  if (pairs_) return *pairs_;
+  PairDevice made;
+  const auto open = [&] {
+    made.backend = gl_pair_backend(context());
+    made.gl = context().info();
+  };
+  made.reason = choose_device(open, false).reason;
+  if (!made.gl) made.backend = cpu_pair_backend(threads_);
+  return pairs_.emplace(std::move(made));
 }
 
 void Session::forget_device() {

@@ -1,20 +1,22 @@
 // What runs of one process share: the GL context, canvases, the device of FAR pairs, workspaces.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <tuple>
 
 #include "core/canvas/fatten.h"
 #include "core/gl/base/context.h"
 #include "core/gl/canvas/canvas.h"
 #include "core/native/canvas.h"
+#include "core/pairs/backend.h"
 #include "core/pairs/pairs.h"
 #include "core/sweep/sweep_prune.h"
 #include "experiments/method/device_verdict.h"
-#include "experiments/method/pair_device.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -28,18 +30,29 @@ struct CanvasDevice {
   std::string reason;
 };
 
+/// Where FAR pairs runs.
+struct PairDevice {
+  std::unique_ptr<PairBackend> backend;  // keeps its buffers from call to call
+  std::optional<GlInfo> gl;              // what answered; empty: the CPU
+  std::string reason;                    // why this one
+};
+
 /// Each part is made when first needed, and kept from run to run. Not to be used by two threads at
 /// once.
 class Session {
  public:
   /// device: as RunOptions::device. Without one a fixed rule decides: GL where a hardware device
-  /// answers and keeps the assumptions, else the cores of the CPU.
-  /// threads: of the CPU, for far-pairs; 0: as many as there are cores.
-  /// say: told in one line that the device is probed, and why; may be empty.
+  /// answers, and for canvases keeps the assumptions; else the cores of the CPU (a software
+  /// renderer is the same CPU by a longer way). threads: of the CPU, for far-pairs; 0: as many as
+  /// there are cores. say: told in one line that the device is probed, and why; may be empty.
   explicit Session(std::string device, unsigned threads = 0, Say say = say_on_stderr())
       : device_(std::move(device)), threads_(threads), say_(std::move(say)) {}
 
   unsigned threads() const { return threads_; }
+  /// The same as a number of threads.
+  unsigned cpu_threads() const {
+    return threads_ > 0 ? threads_ : std::thread::hardware_concurrency();
+  }
   const GlContext& context();
   /// Whether the context's device keeps the assumptions; probed where no verdict is kept. GL state
   /// is not kept.
@@ -50,6 +63,7 @@ class Session {
   Canvas& canvas(const Fattener& fattener, const GlCanvasOptions& options);
   /// px; the largest resolution of its canvases.
   int max_resolution();
+  /// Throws Error where a device that was named does not answer.
   PairDevice& pairs();
   PairWorkspace& pair_workspace() { return pair_workspace_; }
   /// From now on runs are frames of a scene, one after the other: far-pairs and the exact tests
@@ -65,7 +79,7 @@ class Session {
   void forget_device();
 
  private:
-  CanvasDevice choose_canvas_device();
+  CanvasDevice choose_device(const std::function<void()>& open, bool probe);
 
   std::string device_;
   unsigned threads_;

@@ -1,12 +1,11 @@
 // The table of methods: the one place that lists them.
-#include <array>
-
-#include "experiments/method/cullide.h"
-#include "experiments/method/exact.h"
-#include "experiments/method/far_pairs.h"
-#include "experiments/method/i_collide.h"
 #include "experiments/method/method.h"
-// The header of a new method goes here.
+
+#include <array>
+#include <vector>
+
+#include "core/base/error.h"
+#include "experiments/method/methods.h"
 
 namespace farcull {
 namespace {
@@ -83,5 +82,25 @@ static_assert([] {
 const Traits& traits(Method method) { return kTable[static_cast<std::size_t>(method)]; }
 
 std::span<const Method> all_methods() { return kMethods; }
+
+std::string to_string(Method method) { return traits(method).name; }
+
+Method parse_method(const std::string& name, const std::string& option) {
+  for (const Method method : all_methods()) {
+    if (name == to_string(method)) return method;
+  }
+  throw Error(option, "'" + name + "' is no method", "give " + method_names());
+}
+
+std::string method_names(const std::function<bool(const Traits&)>& can) {
+  std::vector<std::string> names;
+  for (const Method method : all_methods()) {
+    if (!can || can(traits(method))) names.push_back(to_string(method));
+  }
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 < names.size() ? ", " : " or ") + names[i];
+  return text;
+}
 
 }  // namespace farcull

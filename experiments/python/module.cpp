@@ -1,4 +1,6 @@
 // The compiled module. The package farcull/ around it checks arguments, and is what people call.
+#include "core/base/parameter.h"
+#include "experiments/method/options.h"
 #include "experiments/python/parts.h"
 
 namespace farcull::python {
@@ -19,6 +21,7 @@ void fill(py::module_& module) {
   });
   register_exceptions();
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_calls));
+  spell_parameters(option_word);  // as records say it; exceptions name keywords (call.cpp)
   add_collider(module);
   add_stream(module);
   add_distances(module);

@@ -12,12 +12,10 @@
 #include <vector>
 
 #include "core/scene/scene.h"
-#include "experiments/command/run_options.h"
 #include "experiments/measure/lab.h"
 #include "experiments/picture/picture.h"
 #include "experiments/python/arrays.h"
 #include "experiments/python/parts.h"
-#include "experiments/python/scene.h"
 #include "experiments/record/check.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
@@ -25,8 +23,6 @@
 
 namespace farcull::python {
 namespace {
-
-using Words = std::vector<std::string>;
 
 // A record, with the scene that it is about.
 struct KeptRecord {
@@ -49,18 +45,20 @@ struct KeptRecord {
 using Ignored = std::vector<std::array<std::uint32_t, 2>>;
 
 // ignore: pairs of two different objects of the scene; limit: 0 for none.
-void add_asked(const Ignored& ignore, std::uint64_t limit, RunOptions& options) {
-  for (const auto& [a, b] : ignore) options.ignored.push_back({a, b});
-  options.ignored = in_order(std::move(options.ignored));
-  options.limit = limit;
+RunOptions options_of(const GivenOptions& given, const Ignored& ignore, std::uint64_t limit,
+                      bool verify = true, bool kinds = false) {
+  RunOptions out{.verify = verify,
+                 .limit = limit,
+                 .contacts = kinds ? ContactDetail::kinds : ContactDetail::none};
+  for (const auto& [a, b] : ignore) out.ignored.push_back({a, b});
+  out.ignored = in_order(std::move(out.ignored));
+  return read_options(given, out);
 }
 
-KeptRecord run_of(const KeptScene& kept, const Words& words, unsigned threads, bool kinds,
-                  const Ignored& ignore, std::uint64_t limit) {
+KeptRecord run_of(const KeptScene& kept, const GivenOptions& given, bool verify, unsigned threads,
+                  bool kinds, const Ignored& ignore, std::uint64_t limit) {
   return answer_beside([&] {
-    RunOptions options = parse_run_options(words);
-    options.contacts = kinds ? ContactDetail::kinds : ContactDetail::none;
-    add_asked(ignore, limit, options);
+    const RunOptions options = options_of(given, ignore, limit, verify, kinds);
     Session session(options.device, threads, Say());
     return KeptRecord{kept.scene, run(*kept.scene, options, session, stopping_progress())};
   });
@@ -107,11 +105,10 @@ py::list views_of(const Candidates& found) {
   return out;
 }
 
-py::tuple plan_of(const KeptScene& kept, const Words& words, unsigned threads,
+py::tuple plan_of(const KeptScene& kept, const GivenOptions& given, unsigned threads,
                   const Ignored& ignore, std::uint64_t limit) {
   const auto [json, table] = answer_beside([&] {
-    RunOptions options = parse_run_options(words);
-    add_asked(ignore, limit, options);
+    const RunOptions options = options_of(given, ignore, limit);
     const Plan planned = plan(*kept.scene, options, threads, stopping_progress());
     return std::pair(plan_json(*kept.scene, planned).dump(), plan_table(*kept.scene, planned));
   });
@@ -162,7 +159,7 @@ py::dict check_of(const KeptScene& kept, const std::optional<std::string>& certi
   return out;
 }
 
-py::tuple picture_of(const KeptScene& kept, const std::vector<Words>& panels,
+py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& panels,
                      const std::string& view, const std::string& up, bool zoom,
                      const std::optional<std::string>& depth_view, int width, int height,
                      const std::string& device, unsigned threads) {
@@ -175,7 +172,7 @@ py::tuple picture_of(const KeptScene& kept, const std::vector<Words>& panels,
     arguments.depth_view = depth_view;
     arguments.width = width;
     arguments.height = height;
-    for (const Words& words : panels) arguments.panels.push_back(parse_run_options(words));
+    for (const GivenOptions& given : panels) arguments.panels.push_back(read_options(given));
     validate(arguments);
     Lab lab(device, stopping_progress(), threads);
     lab.scene("scene", [&] { return *kept.scene; });
@@ -256,6 +253,13 @@ void add_runs(py::module_& module) {
         }
         return answer_beside([&] { return to_text(certificate_of(*k.scene, k.record)); });
       });
+  // The keywords of run(), and which are flags; method and limit are parameters of their own.
+  py::dict options;
+  for (const Option& option : run_options()) {
+    if (option.take && option.name != std::string("method") && option.name != std::string("limit"))
+      options[option.name] = *option.type == 0;
+  }
+  module.attr("options") = options;
   module.def("run", &run_of);
   module.def("plan", &plan_of);
   module.def("check", &check_of);

@@ -12,7 +12,6 @@
 #include "experiments/library/input.h"
 #include "experiments/python/arrays.h"
 #include "experiments/python/parts.h"
-#include "experiments/python/scene.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/frames.h"
 #include "experiments/scenes/ignore.h"

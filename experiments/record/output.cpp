@@ -261,33 +261,32 @@ Json stages_json(const std::vector<Stage>& trace) {
   return stages;
 }
 
+namespace {
+
+Json value_json(const OptionValue& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag;
+  if (const auto* whole = std::get_if<int>(&value)) return *whole;
+  if (const auto* real = std::get_if<double>(&value)) return *real;
+  return nullptr;
+}
+
+}  // namespace
+
 nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
   const RunOptions& o = record.options;
-  const bool drawn = draws(o.method);
-  Json resolution = nullptr;
-  if (looks(o.method)) resolution = resolution_of(o) > 0 ? Json(resolution_of(o)) : Json("auto");
   Json views = Json::array();
   for (const ViewReport& view : record.found.views()) views.push_back(view_json(view));
   for (const PairView& view : record.found.pair_views()) views.push_back(view_json(view));
-  const auto only = [](bool has, Json value) { return has ? std::move(value) : Json(nullptr); };
-  return {
-      {"scene", scene_json(scene, record.degenerate_triangles, record.scene_hash)},
-      {"method", to_string(o.method)},
-      {"method_reason", method_reason(o)},
-      {"resolution", resolution},
-      {"radius", only(fattens(o.method), radius_text(o.radius))},
-      {"offset", only(fattens(o.method), o.offset)},
-      {"depth", only(drawn, depth_of(o) == DepthMode::fragment ? "fragment" : "fixed")},
-      {"depth_format", only(drawn, o.depth_format == DepthFormat::float32 ? "32f" : "24")},
-      {"query", only(drawn && !record.found.device.cpu,
-                     query_of(o) == QueryMode::flags ? "flags" : "occlusion")},
-      {"rounds", only(drawn && o.rounds > 0, o.rounds)},
-      {"clear", only(drawn, o.clear == ClearRule::all ? "all" : "any")},
-      {"level",
-       only(drawn && !tests_self_alone(o.method), o.objects_alone ? "objects" : "triangles")},
-      {"conservative", only(drawn && !fattens(o.method), o.conservative)},
-      {"clearance", only(takes_clearance(o.method), o.clearance)},
-      {"full", o.full},
+  const std::optional<std::uint64_t> swept = record.found.swept_triangles();
+  Json out = {{"scene", scene_json(scene, record.degenerate_triangles, record.scene_hash)},
+              {"method", to_string(o.method)},
+              {"method_reason", method_reason(o)}};
+  for (const Option& option : run_options()) {
+    if (option.value) out[option.name] = value_json(option.value(o));
+  }
+  if (record.found.device.cpu) out["query"] = nullptr;
+  const Json rest = {
       {"promises", record.promise.holds},
       {"promise_reason", record.promise.reason},
       {"verdict", verdict_json(record)},
@@ -319,6 +318,8 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
         {"contacts", record.ms.contacts}}},
       {"seed", json_of(o.seed)},
       {"commit", FARCULL_COMMIT}};
+  out.update(rest);
+  return out;
 }
 
 std::string pairs_header(const Scene& scene, const PairColumns& columns) {

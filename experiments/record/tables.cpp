@@ -283,11 +283,6 @@ std::string ignored_line(const Record& record) {
 
 }  // namespace
 
-std::string radius_text(const RadiusRule& radius) {
-  if (radius.published) return "published";
-  return radius.factor == 1 ? "budget" : fmt::format("{}", radius.factor);
-}
-
 const ViewReport* widest_budget(const std::vector<ViewReport>& views) {
   const ViewReport* widest = nullptr;
   for (const ViewReport& view : views) {

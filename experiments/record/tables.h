@@ -9,9 +9,6 @@
 
 namespace farcull {
 
-/// The radius as the option gives it: "budget", "published" or the factor.
-std::string radius_text(const RadiusRule& radius);
-
 /// The view with the largest budget: the one that a reader should quote. Null where none was drawn.
 const ViewReport* widest_budget(const std::vector<ViewReport>& views);
 

@@ -12,7 +12,9 @@
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
-#include "experiments/tiles/gather.h"
+#include "experiments/tiles/census.h"
+#include "experiments/tiles/slab.h"
+#include "verify/certificate/pair_list.h"
 
 namespace farcull {
 
@@ -25,6 +27,16 @@ TileNumber parse_tile(const std::string& text);
 /// "N", 1 to kMostTiles. Throws Error naming --tiles.
 std::size_t parse_tiles(const std::string& text);
 inline constexpr std::size_t kMostTiles = 10'000;
+
+/// The part of a scene that meets a tile. Objects and triangles keep their order; objects without a
+/// triangle there are left out, and so are vertices that no triangle uses.
+struct TileScene {
+  Scene scene;             // with the whole scene's name
+  ListNumbers numbers;     // of its objects and triangles in the whole scene
+  std::uint64_t home = 0;  // triangles whose grown box begins in the tile
+  std::string hash;        // scene_hash() of the whole scene
+  std::string faces_hash;  // of its source faces, which scene_hash() leaves out
+};
 
 struct TileQuestion {
   RunOptions options;  // of far-pairs, without a limit; `ignored` is empty
@@ -48,9 +60,10 @@ struct TileRun {
 };
 
 /// Reads the scene twice and finds the pairs that belong to the tile. The same scene, options and
-/// number of tiles give the same cuts for every tile. Memory: that of gather_tile() and of a run on
-/// the triangles that meet the tile. Throws Error as gather_tile(), plan() and find() do, and
-/// std::logic_error for another method or a limit.
+/// number of tiles give the same cuts for every tile. Memory: O(largest part) and that of a run on
+/// the triangles that meet the tile. Throws Error as plan() and find() do, naming the
+/// scene where the second reading differs from the first or a tile has 2^31 triangles and objects,
+/// and std::logic_error for another method or a limit.
 TileRun run_tile(const SceneSource& source, const TileQuestion& question, Session& session,
                  const Progress& progress = {});
 

@@ -87,7 +87,7 @@ void require_memory() {
     throw Error(
         "EGL",
         "a device may take " + std::to_string(bytes >> 20) + " MB of memory, and less is left",
-        "raise the limit (ulimit -v), use --method far-pairs --device cpu, or a machine with "
+        "raise the limit (ulimit -v), use {method} far-pairs {device} cpu, or a machine with "
         "more memory");
   }
   ::munmap(reserved, bytes);
@@ -270,7 +270,7 @@ GlCurrent::GlCurrent(const GlContext& context) {
                         "another interface than EGL (GLX) is current in this thread"
                       : "it cannot be made current",
                 taken ? "use it from one thread at a time, and release a GLX context first"
-                      : "run again, or with another --device");
+                      : "run again, or with another {device}");
   }
   before_ = std::move(before);
 }
@@ -285,11 +285,11 @@ GlContext::GlContext(const std::string& device) {
   if (list.empty()) throw Error("EGL", "there is no EGL device", kInstall);
   const std::optional<int> wanted = parse_number<int>(device);
   if (!device.empty() && device != "hardware" && device != "software" && !wanted) {
-    throw Error("--device", "'" + device + "' is no device",
+    throw Error("{device}", "'" + device + "' is no device",
                 "give software, hardware or a number that `farcull doctor` lists");
   }
   if (wanted && (*wanted < 0 || *wanted >= static_cast<int>(list.size()))) {
-    throw Error("--device",
+    throw Error("{device}",
                 "there is no device " + device + " (0 .. " + std::to_string(list.size() - 1) + ")",
                 "see `farcull doctor`");
   }
@@ -313,7 +313,7 @@ GlContext::GlContext(const std::string& device) {
   throw Error("EGL", problems.empty() ? "there is no " + device + " device" : problems,
               problems.find(kNoMemory) == std::string::npos
                   ? kInstall
-                  : "use a machine with more memory, or --method far-pairs --device cpu");
+                  : "use a machine with more memory, or {method} far-pairs {device} cpu");
 }
 
 GlContext::~GlContext() = default;
@@ -381,7 +381,7 @@ void check_gl(const std::string& stage) {
   if (!errors.empty()) {
     throw Error("GL " + stage, errors,
                 errors.find("MEMORY") != std::string::npos
-                    ? "memory is missing: choose a smaller resolution or another --device"
+                    ? "memory is missing: choose a smaller resolution or another {device}"
                     : "this is a fault of the driver or of farcull: report it with the output of "
                       "`farcull doctor`");
   }
@@ -390,7 +390,7 @@ void check_gl(const std::string& stage) {
         epoxy_gl_version() >= 45 ? glGetGraphicsResetStatus() : glGetGraphicsResetStatusKHR();
     if (reset != GL_NO_ERROR)
       throw Error("GL " + stage, "the graphics context was reset",
-                  "run again, or with another --device");
+                  "run again, or with another {device}");
   }
   require_proved("GL " + stage);
 }

@@ -50,7 +50,7 @@ void bind_storage(GLuint name) {
 }  // namespace
 
 void throw_lost(const std::string& stage, const std::string& reason, const std::string& cause) {
-  throw Error("GL " + stage, reason, cause + ": run again, or with another --device");
+  throw Error("GL " + stage, reason, cause + ": run again, or with another {device}");
 }
 
 bool gl_forget(const GlContext& context, const std::function<void()>& drop) {
@@ -134,7 +134,7 @@ void gl_wait(const std::string& stage) {
               answer == GL_TIMEOUT_EXPIRED
                   ? "the device did not finish within " + std::to_string(kLongestWait) + " s"
                   : "the device does not say whether it has finished",
-              "choose a smaller resolution, or another --device");
+              "choose a smaller resolution, or another {device}");
 }
 
 GlTexture gl_texture(GLenum format, int width, int height) {

@@ -381,7 +381,7 @@ std::vector<float> CanvasState::samples(Verb verb, const std::vector<Draw>& want
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, values, 0);
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     throw Error("GL samples", "the device refuses a float target",
-                "choose a smaller resolution or another --device");
+                "choose a smaller resolution or another {device}");
   }
   const float none[4] = {std::numeric_limits<float>::quiet_NaN(), 0, 0, 0};
   glClearBufferfv(GL_COLOR, 0, none);
@@ -419,10 +419,10 @@ GlCanvas::GlCanvas(const GlContext& context, DepthMode mode, const SolidProgram&
                    const GlCanvasOptions& options)
     : context_(context), mode_(mode), solid_(solid.glsl), options_(options) {
   if (options.query == QueryMode::flags && options.depth_format == DepthFormat::fixed24) {
-    throw Error("--query",
+    throw Error("{query}",
                 "flags cannot be used with a 24-bit depth buffer: a comparison in the shader loses "
                 "equal depths",
-                "use --query occlusion or --depth-format 32f");
+                "use {query} occlusion or {depth_format} 32f");
   }
   if (options.conservative && mode == DepthMode::fragment)
     throw std::logic_error("GlCanvas: proxies are not drawn conservatively");

@@ -45,10 +45,10 @@ GLenum conservative_switch() {
   if (epoxy_has_gl_extension("GL_NV_conservative_raster")) return GL_CONSERVATIVE_RASTERIZATION_NV;
   if (epoxy_has_gl_extension("GL_INTEL_conservative_rasterization"))
     return GL_CONSERVATIVE_RASTERIZATION_INTEL;
-  throw Error("--conservative",
+  throw Error("{conservative}",
               "the device has neither GL_NV_conservative_raster nor "
               "GL_INTEL_conservative_rasterization",
-              "use --device native, which draws conservatively on the cores of the CPU");
+              "use {device} native, which draws conservatively on the cores of the CPU");
 }
 
 constexpr std::uint32_t kNone = 0xffffffff;
@@ -198,7 +198,7 @@ CanvasState::CanvasState(const GlContext& c, DepthMode m, const std::string& s,
                 "the device has " + std::to_string(blocks) +
                     " storage blocks for vertex programs, the canvas needs " +
                     std::to_string(needed),
-                "use another --device, or --method far-pairs");
+                "use another {device}, or {method} far-pairs");
   }
   long storage = context.info().max_storage_block;
   if (options.storage_limit > 0) storage = std::min(storage, options.storage_limit);
@@ -254,7 +254,7 @@ void CanvasState::resize_target() {
     throw Error("GL render target",
                 "the device refuses a depth target of " + std::to_string(width) + " x " +
                     std::to_string(height) + " px",
-                "choose a smaller resolution, another --depth-format or another --device");
+                "choose a smaller resolution, another {depth_format} or another {device}");
   }
   clear_depth(kLeft);
 }
@@ -349,7 +349,7 @@ void CanvasState::upload(const CanvasPass& laid, bool with_flags) {
       static_cast<std::size_t>(context.info().max_storage_block)) {
     throw Error("GL pass",
                 "its draw list or its slots are beyond this device's largest storage block",
-                "split the scene into several runs, or choose another --device");
+                "split the scene into several runs, or choose another {device}");
   }
   draws.reserve(list.size(), std::max(block, list.size()));
   draws.write(0, list.data(), list.size());

@@ -133,7 +133,7 @@ void PairFinder::divide(const Portion& portion, std::uint64_t emitted, std::size
   const std::uint64_t parts = std::max<std::uint64_t>((needed + needed / 16) / most + 1, 2);
   if (parts > kMostPortions / portion.of) {
     throw Error("GL pairs", "one work item has more pairs than fit its memory",
-                "use --device cpu or a larger --resolution");
+                "use {device} cpu or a larger {resolution}");
   }
   for (std::uint32_t k = 0; k < parts; ++k) {
     left_.push_back({portion.k + k * portion.of, static_cast<std::uint32_t>(parts) * portion.of});

@@ -51,7 +51,7 @@ bool takes_too_much(const PairTask& task) {
 bool PartMemory::take(std::size_t bytes) {
   if (bytes > block && last) {
     throw Error("GL pairs", "one pixel needs a buffer of " + std::to_string(bytes) + " bytes",
-                "use --device cpu or a larger --resolution");
+                "use {device} cpu or a larger {resolution}");
   }
   if (last) return true;
   if (bytes > block || bytes > left) return false;
@@ -235,7 +235,7 @@ bool PairFinder::overflow(const PairTotalWords& totals) const {
   if (totals[kTotalOverflow] == 0) return false;
   if (memory_.last) {
     throw Error("GL pairs", "one pixel has more work than can be counted in 32 bits",
-                "use --device cpu or a larger --resolution");
+                "use {device} cpu or a larger {resolution}");
   }
   return true;
 }

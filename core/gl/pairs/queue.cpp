@@ -161,7 +161,7 @@ PairQueue::PairQueue(const GlContext& context, const GlPairOptions& options)
     throw Error("GL pairs",
                 "the device has " + std::to_string(bindings) +
                     " storage bindings, FAR pairs needs " + std::to_string(kBindings),
-                "use --device cpu or another device");
+                "use {device} cpu or another device");
   }
   // Those that every scene needs.
   for (std::size_t p = 0; p <= static_cast<std::size_t>(PairProgram::tests); ++p) program(p);

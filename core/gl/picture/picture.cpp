@@ -163,7 +163,7 @@ Image draw_picture(const GlContext& context, const Scene& scene, const Window& w
   if (std::max(width, height) >
       std::min(context.info().max_texture_size, context.info().max_viewport)) {
     throw Error("GL picture", "the device has no room for " + size,
-                "choose a smaller picture or another --device");
+                "choose a smaller picture or another {device}");
   }
   const GlProgram program =
       gl_program("picture", {},
@@ -181,7 +181,7 @@ Image draw_picture(const GlContext& context, const Scene& scene, const Window& w
   check_gl("picture of " + size);
   if (status != GL_FRAMEBUFFER_COMPLETE) {
     throw Error("GL picture", "the device refuses a target of " + size,
-                "choose a smaller picture or another --device");
+                "choose a smaller picture or another {device}");
   }
   glViewport(0, 0, width, height);
   glDisable(GL_CULL_FACE);

@@ -149,7 +149,7 @@ Target::Target(int width, int height, DepthBuffer depth)
     throw Error("GL probe target",
                 "the device refuses a target of " + std::to_string(width) + " x " +
                     std::to_string(height) + " px",
-                "try another --device");
+                "try another {device}");
   }
   vertex_array_ = gl_make<GlVertexArray>(glGenVertexArrays);
   elements_ = gl_make<GlBuffer>(glGenBuffers);

@@ -67,7 +67,7 @@ class GlVoronoi : public VoronoiDevice {
       throw Error("GL Voronoi diagram",
                   "the device has " + std::to_string(blocks) +
                       " storage blocks for vertex programs, the diagram needs 4",
-                  "use another --device, or --device cpu");
+                  "use another {device}, or {device} cpu");
     }
     on_.program = gl_program(
         "voronoi", {},
@@ -188,7 +188,7 @@ class GlVoronoi : public VoronoiDevice {
       throw Error("GL Voronoi diagram",
                   std::to_string(triangles.size()) +
                       " triangles are more than a storage block of this device holds",
-                  "use --device cpu, or a smaller scene");
+                  "use {device} cpu, or a smaller scene");
     }
     on_.triangles.reserve(bytes, block_);
     on_.triangles.write(0, words.data(), bytes);
@@ -203,7 +203,7 @@ class GlVoronoi : public VoronoiDevice {
       throw Error("resolution",
                   "a slice of " + std::to_string(cells_[0]) + " x " + std::to_string(cells_[1]) +
                       " cells has no room on this device",
-                  "give fewer cells, or use --device cpu");
+                  "give fewer cells, or use {device} cpu");
     }
     on_.report.reserve(bytes, block_);
     report_.resize(bytes / sizeof(std::uint32_t));
@@ -220,7 +220,7 @@ class GlVoronoi : public VoronoiDevice {
     for (const GLenum status : {first, second, bare}) {
       if (status != GL_FRAMEBUFFER_COMPLETE)
         throw Error("GL Voronoi diagram", "the device refuses a target of the slice's size",
-                    "give fewer cells, or use another --device");
+                    "give fewer cells, or use another {device}");
     }
   }
 
@@ -353,7 +353,7 @@ class GlVoronoi : public VoronoiDevice {
                   "a slice has " + std::to_string(listed) +
                       " triangles that may be nearest to its cells, more than a storage block of "
                       "this device holds",
-                  "give more cells, or use --device cpu");
+                  "give more cells, or use {device} cpu");
     }
     on_.list.reserve(bytes, block_);
   }

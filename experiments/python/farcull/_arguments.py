@@ -3,7 +3,7 @@
 import math
 import numbers
 import operator
-from typing import Any, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -170,25 +170,23 @@ def limit(given: Any) -> int:
     return 0 if given is None else integer("limit", given, 1, 2**64 - 1)
 
 
-def words(**options: Any) -> List[str]:
-    """Options as on the command line. None and False are left out."""
-    out = []
+def texts(**options: Any) -> Dict[str, str]:
+    """Options as texts, a flag as an empty one. None and False are left out."""
+    out = {}
     for name, value in options.items():
         if value is None or value is False:
             continue
-        option = "--" + name.replace("_", "-")
         if value is True:
-            out.append(option)
-            continue
-        if isinstance(value, (list, tuple)):
+            value = ""
+        elif isinstance(value, (list, tuple)):
             if not value:
                 raise InputError(name, "is empty", "give a value, or leave it out")
-            value = ",".join(_word(name, part) for part in value)
-        out.append(f"{option}={_word(name, value)}")
+            value = ",".join(_text_of(name, part) for part in value)
+        out[name] = _text_of(name, value)
     return out
 
 
-def _word(name: str, value: Any) -> str:
+def _text_of(name: str, value: Any) -> str:
     if isinstance(value, str):
         if "\0" in value:
             raise InputError(name, "holds a zero byte", "give text")

@@ -1,11 +1,12 @@
 """The compiled module. It is no interface for users: the package around it is."""
 
-from typing import Any, List, Optional, Sequence, Tuple, TypedDict
+from typing import Any, List, Mapping, Optional, Sequence, Tuple, TypedDict
 
 from numpy import bool_, float64, int64, uint8, uint32
 from numpy.typing import NDArray
 
 kinds: Tuple[str, ...]
+options: Mapping[str, bool]
 
 def require_main_interpreter() -> None: ...
 
@@ -105,14 +106,15 @@ class Record:
 
 def run(
     scene: Scene,
-    words: Sequence[str],
+    given: Mapping[str, str],
+    verify: bool,
     threads: int,
     kinds: bool,
     ignore: Sequence[Sequence[int]],
     limit: int,
 ) -> Record: ...
 def plan(
-    scene: Scene, words: Sequence[str], threads: int, ignore: Sequence[Sequence[int]], limit: int
+    scene: Scene, given: Mapping[str, str], threads: int, ignore: Sequence[Sequence[int]], limit: int
 ) -> Tuple[str, str]: ...
 def check(
     scene: Scene,
@@ -122,7 +124,7 @@ def check(
 ) -> dict[str, Any]: ...
 def picture(
     scene: Scene,
-    panels: Sequence[Sequence[str]],
+    panels: Sequence[Mapping[str, str]],
     view: str,
     up: str,
     zoom: bool,

@@ -13,26 +13,6 @@ from ._errors import InputError
 if TYPE_CHECKING:
     from ._scenes import Scene
 
-_OPTIONS = (
-    "resolution",
-    "radius",
-    "offset",
-    "depth",
-    "depth_format",
-    "query",
-    "clusters",
-    "views",
-    "rounds",
-    "clear",
-    "level",
-    "conservative",
-    "device",
-    "clearance",
-    "full",
-)
-_FLAGS = ("conservative", "full")
-
-
 def _scene(given: Any) -> Any:
     from ._scenes import Scene
 
@@ -41,15 +21,15 @@ def _scene(given: Any) -> Any:
     return given._scene
 
 
-def _words(method: Any, options: Dict[str, Any]) -> List[str]:
+def _options(method: Any, options: Dict[str, Any]) -> Dict[str, str]:
     for name, value in options.items():
-        if name not in _OPTIONS:
-            raise InputError(name, "is no option", "give one of " + ", ".join(_OPTIONS))
-        if name in _FLAGS:
+        if name not in _farcull.options:
+            raise InputError(name, "is no option", "give one of " + ", ".join(_farcull.options))
+        if _farcull.options[name]:
             _arguments.flag(name, value)
         elif isinstance(value, (bool, np.bool_)):
             raise InputError(name, f"{value!r} is no value of it", "give text or a number")
-    return _arguments.words(method=_arguments.text("method", method), **options)
+    return _arguments.texts(method=_arguments.text("method", method), **options)
 
 
 class Record:
@@ -154,12 +134,10 @@ def run(
     limit: Optional[int] = None,
     **options: Any,
 ) -> Record:
-    words = _words(method, options)
-    if not _arguments.flag("verify", verify):
-        words.append("--no-verify")
     made = _farcull.run(
         _scene(scene),
-        words,
+        _options(method, options),
+        _arguments.flag("verify", verify),
         _arguments.threads(threads),
         _arguments.flag("kinds", kinds),
         _arguments.ignored(ignore, scene._scene),
@@ -191,11 +169,11 @@ def plan(
 ) -> Plan:
     """What :meth:`Scene.run` would do with these options. Opens no device. A limit changes no plan,
     since it stops what comes behind the culling; ``kinds`` is no part of one."""
-    words = _words(method, options)
+    given = _options(method, options)
     made = _scene(scene)
     text, table = _farcull.plan(
         made,
-        words,
+        given,
         _arguments.threads(threads),
         _arguments.ignored(ignore, made),
         _arguments.limit(limit),
@@ -291,7 +269,7 @@ def picture(
     panels = []
     for one in methods:
         options = dict(one) if isinstance(one, dict) else {"method": one}
-        panels.append(_words(options.pop("method", "far-pairs"), options))
+        panels.append(_options(options.pop("method", "far-pairs"), options))
     pixels, shown = _farcull.picture(
         _scene(scene),
         panels,

@@ -1,5 +1,7 @@
 #!/usr/bin/env bash
-# Follows docs/extending.md: adds the method and the offset of its examples, and runs them.
+# Follows docs/extending.md: adds the method and the offset of its examples, and runs them. The option
+# of its example changes a struct that half of the program holds, so its files are only compiled, and
+# counted.
 #   tests/experiments/method/extending_test.sh SOURCE BUILD
 # Each code block of the page goes where the line above it says: "In the new file `FILE`:" or "In
 # `FILE`, before "TEXT":". The files that change are compiled again, with the commands of the build,
@@ -21,11 +23,12 @@ fail() {
   exit 1
 }
 
-# blocks FOLDER: writes every block of the page as FOLDER/NUMBER.{code,file,before}; `before` is
+# blocks FOLDER: writes every block of the page as FOLDER/NUMBER.{code,file,before,section}; `before` is
 # empty for a new file. A direction may stand on two lines of the page.
 blocks() {
   mkdir -p "$1"
   awk -v folder="$1" '
+    /^## / { section = substr($0, 4) }
     /^ *```cpp$/ {
       number++
       text = previous " " line
@@ -39,6 +42,7 @@ blocks() {
       if (place ~ /before "/) { before = place; sub(/.*before "/, "", before); sub(/":$/, "", before) }
       print file > (folder "/" number ".file")
       print before > (folder "/" number ".before")
+      print section > (folder "/" number ".section")
       match($0, /^ */); indent = RLENGTH
       inside = 1
       next
@@ -50,12 +54,15 @@ blocks() {
   ls "$1"/*.code >/dev/null 2>&1 || fail "docs/extending.md has no code block"
 }
 
-# place OVERLAY BLOCKS [LEFT_OUT]: the changed and new files in a folder of their own.
+# place OVERLAY BLOCKS OPTION [LEFT_OUT]: the changed and new files in a folder of their own; those of
+# the option's section where OPTION is yes, else those of the others.
 place() {
-  local n file before at
+  local n file before at option
   for ((n = 1; ; ++n)); do
     [[ -e $2/$n.code ]] || break
-    [[ ${3-} == "$n" ]] && continue
+    option=no
+    [[ $(<"$2/$n.section") == 'An option of a method' ]] && option=yes
+    [[ $option == "$3" && ${4-} != "$n" ]] || continue
     file=$(<"$2/$n.file")
     before=$(<"$2/$n.before")
     mkdir -p "$1/$(dirname "$file")"
@@ -88,7 +95,7 @@ compile() {
 }
 
 blocks "$work/blocks"
-place "$work/overlay" "$work/blocks"
+place "$work/overlay" "$work/blocks" no
 compile "$work/overlay" || fail "what docs/extending.md adds does not compile"
 
 # The link of the program, with these objects before all others.
@@ -125,9 +132,21 @@ grep -q -- '--radius' "$work/refused" || fail "the refusal does not name --radiu
 for ((n = 1; ; ++n)); do
   [[ $(<"$work/blocks/$n.file") == experiments/method/boxes.cpp ]] && break
 done
-place "$work/twin" "$work/blocks" "$n"
+place "$work/twin" "$work/blocks" no "$n"
 rm "$work"/overlay/experiments_method_boxes.cpp.o
 if (cd "$folder" && eval "${link//$work\/farcull/$work\/twin_farcull}") >/dev/null 2>&1; then
   fail "the twin links without the new method's functions: this test cannot fail"
 fi
+
+# The option, on top of the method.
+cp -r "$work/overlay" "$work/option"
+place "$work/option" "$work/blocks" yes
+mapfile -t files < <(cd "$work/blocks" && for n in *.section; do
+  [[ $(<"$n") != 'An option of a method' ]] || cat "${n%.section}.file"
+done | sort -u)
+((${#files[@]} >= 3 && ${#files[@]} <= 4)) || fail "an option of a method touches ${#files[@]} files"
+find "$work/option" -name '*.cpp' | while IFS= read -r file; do
+  [[ " ${files[*]} " == *" ${file#"$work/option/"} "* ]] || rm "$file"
+done
+compile "$work/option" || fail "the option that docs/extending.md adds does not compile"
 echo "extending_test: docs/extending.md adds a method and an offset that run"

@@ -1,16 +1,44 @@
-// The probes of A4 for the kernels of both offsets, by the canvas's fragment program, each on
-// fattened triangles and on solids made of floats; and the sets of probes that commands run.
+// The probes of A4. Kernels of FAR pairs: the device answers all intervals in one dispatch, and
+// slices in one for each window. Kernels of both offsets: by the canvas's fragment program, each on
+// fattened triangles and on solids made of floats. verify/kernel_check draws the cases and counts
+// what answers lose.
+#include "experiments/method/kernel_probes.h"
+
 #include <algorithm>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/gl/probe/probe.h"
-#include "experiments/method/kernel_probes_parts.h"
 #include "offsets/fit.h"
 #include "offsets/minkowski.h"
 #include "offsets/obb.h"
+#include "verify/kernel_check.h"
 
 namespace farcull {
 namespace {
+
+// A probe whose measured value is how much was lost; answers that are loose too often fail it as
+// well. One that breaks off by an Error fails.
+ProbeResult result(const std::string& name, const std::string& tried,
+                   const std::function<KernelTally()>& run) {
+  ProbeResult out{.assumption = "A4", .name = name, .unit = "lost", .note = {}};
+  try {
+    const KernelTally t = run();
+    const bool loose = static_cast<double>(t.loose) > kLooseShare * static_cast<double>(t.ordinary);
+    out.measured = static_cast<double>(t.lost);
+    out.samples = t.checked;
+    out.pass = t.checked > 0 && t.lost == 0 && !loose;
+    out.note = tried;
+    if (t.ordinary > 0) {
+      out.note += "; " + std::to_string(t.loose) + " of " + std::to_string(t.ordinary) +
+                  " ordinary ones wider than exact by 0.1 px" + (loose ? ": TOO MANY" : "");
+    }
+  } catch (const Error& error) {
+    out.note = error.what();
+    out.broke_off = true;
+  }
+  return out;
+}
 
 using Check = void (*)(const SolidCase&, const SolidAnswer&, bool ordinary, KernelTally&);
 using Fatten = Solid (*)(const KernelTriangle&);
@@ -53,9 +81,44 @@ KernelTally solids(const GlContext& context, const KernelProbeOptions& options, 
 
 }  // namespace
 
+std::vector<ProbeResult> pair_kernel_probes(const GlContext& context,
+                                            const KernelProbeOptions& options) {
+  std::vector<ProbeResult> out;
+  out.push_back(result(
+      "intervals of FAR pairs",
+      "far_bounds, far_margin, far_strip, far_depths; real triangles at their limit, over a pixel",
+      [&] {
+        const std::size_t count = options.brief ? 600 : 1800;
+        KernelTally tally;
+        const std::vector<IntervalCase> cases = interval_kernel_cases(options.seed, count);
+        const std::vector<IntervalAnswer> answers = device_intervals(
+            context, cases, options.bare ? "#define FAR_PAIR_ROUNDING 0.0f\n" : "");
+        for (std::size_t i = 0; i < cases.size(); ++i) check_interval(cases[i], answers[i], tally);
+        return tally;
+      }));
+  out.push_back(result(
+      "depth slices, float to int",
+      "far_slice as rationals give it, at borders of steps and beside them", [&] {
+        KernelTally tally;
+        for (std::uint64_t window = 0; window < (options.brief ? 3 : 8); ++window) {
+          const std::vector<SliceCase> cases = slice_kernel_cases(options.seed * 64 + window, 8192);
+          std::vector<SliceCase> sent = cases;
+          if (options.reversed_slices) {
+            for (SliceCase& c : sent) c.steps_per_px = -c.steps_per_px;
+          }
+          check_slices(cases, device_slices(context, sent), tally);
+        }
+        return tally;
+      }));
+  for (ProbeResult& r : out) {
+    r.drawing = false;
+    r.pairs = true;
+  }
+  return out;
+}
+
 std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
                                              const KernelProbeOptions& options) {
-  using kernel_probe::result;
   const std::string tried =
       "solid_interval by the canvas's fragment program; triangles of every kind, and floats made "
       "to fail; each is seen behind itself, by the programs with flags and with queries, in both "

@@ -1,0 +1,14 @@
+// The functions that the table of methods names: Traits::plan and Traits::find (method.h) of each.
+#pragma once
+
+#include "experiments/method/candidates.h"
+#include "experiments/method/plan.h"
+#include "experiments/method/session.h"
+
+namespace farcull {
+
+PlanFunction plan_drawing, plan_sweep, plan_far_pairs, plan_exact;
+FindFunction find_by_drawing, find_by_sweep, find_far_pairs, find_exact;
+// The functions of a new method go here.
+
+}  // namespace farcull
