@@ -15,9 +15,9 @@
 #include "experiments/record/tables.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/scene_file.h"
-#include "experiments/system/text_table.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/shell_word.h"
+#include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {

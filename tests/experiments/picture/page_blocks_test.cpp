@@ -1,4 +1,5 @@
-// The compressed data of pages: read back as web/page_view.js reads them, they are what was written.
+// The compressed data of pages: read back as web/page_view.js reads them, they are what was
+// written.
 #include "experiments/picture/page.h"
 
 #include <gtest/gtest.h>
