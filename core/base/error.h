@@ -10,9 +10,9 @@ namespace farcull {
 
 class Error : public std::runtime_error {
  public:
-  /// where: a file ("mesh.obj"), an option ("--radius") or a GL stage ("store"); reason: what is
+  /// where: a file ("mesh.obj"), a parameter ("{radius}") or a GL stage ("store"); reason: what is
   /// wrong there; remedy: what the user can do next; line: 1-based line of a text file, 0 where
-  /// there is none.
+  /// there is none. All three are spelled() (core/base/parameter.h).
   Error(std::string where, std::string reason, std::string remedy, long line = 0);
 
   std::string where;
