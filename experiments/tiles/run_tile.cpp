@@ -118,18 +118,6 @@ class Gathering {
   std::vector<std::uint32_t> vertex_;  // of the part, in the tile
 };
 
-// Reads all parts of the scene and keeps the triangles whose boxes, grown by half the clearance,
-// meet the tile: every pair that belongs to the tile (slab.h) is one of these triangles. Memory
-// O(largest part + triangles that meet the tile). Throws Error naming the scene where it differs
-// from the census in an object's number of triangles or self, and where 2^31 or more triangles and
-// objects meet the tile; and what `source` throws.
-TileScene gather_tile(const SceneSource& source, const Census& census, const Slab& slab,
-                      double clearance) {
-  Gathering gathering(census, slab, clearance);
-  source([&](Scene& part) { gathering.add(part); });
-  return gathering.take();
-}
-
 // Pairs of objects of the whole scene as those of the part; those of which one is elsewhere can
 // have no pair here.
 std::vector<ObjectPair> in_part(const std::vector<ObjectPair>& whole, const ListNumbers& numbers) {
@@ -164,6 +152,13 @@ TileNumber parse_tile(const std::string& text) {
   }
   throw Error("--tiles", "'" + text + "' is no tile",
               fmt::format("give K/N with 1 <= K <= N <= {}, such as 2/4", kMostTiles));
+}
+
+TileScene gather_tile(const SceneSource& source, const Census& census, const Slab& slab,
+                      double clearance) {
+  Gathering gathering(census, slab, clearance);
+  source([&](Scene& part) { gathering.add(part); });
+  return gathering.take();
 }
 
 TileRun run_tile(const SceneSource& source, const TileQuestion& question, Session& session,

@@ -38,6 +38,14 @@ struct TileScene {
   std::string faces_hash;  // of its source faces, which scene_hash() leaves out
 };
 
+/// Reads all parts of the scene and keeps the triangles whose boxes, grown by half the clearance,
+/// meet the tile: every pair that belongs to the tile (slab.h) is one of these triangles. Memory
+/// O(largest part + triangles that meet the tile). Throws Error naming the scene where it differs
+/// from the census in an object's number of triangles or self, and where 2^31 or more triangles and
+/// objects meet the tile; and what `source` throws.
+TileScene gather_tile(const SceneSource& source, const Census& census, const Slab& slab,
+                      double clearance);
+
 struct TileQuestion {
   RunOptions options;  // of far-pairs, without a limit; `ignored` is empty
   TileNumber tile = {};

@@ -16,11 +16,11 @@
 namespace farcull {
 namespace {
 
-// A value that the option takes: a word that its type or a shell offers, or 1; of a flag "".
+// A value that the option takes: a word that a shell or its type offers, or 1; of a flag "".
 std::string value_of(const Option& option) {
   if (*option.type == 0) return "";
-  std::vector<std::string> values = split_list(option.type, '|');
-  values.insert(values.end(), option.words.begin(), option.words.end());
+  std::vector<std::string> values = option.words;
+  for (const std::string& word : split_list(option.type, '|')) values.push_back(word);
   values.push_back("1");
   for (const std::string& value : values) {
     try {
