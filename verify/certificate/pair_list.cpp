@@ -13,11 +13,6 @@
 namespace farcull {
 namespace {
 
-bool has_self(const Scene& scene) {
-  return std::any_of(scene.objects.begin(), scene.objects.end(),
-                     [](const Object& object) { return object.self; });
-}
-
 bool share_corner(const Scene& scene, const TrianglePair& pair) {
   for (const Vec3& p : scene.corners(pair.a)) {
     for (const Vec3& q : scene.corners(pair.b)) {
