@@ -27,7 +27,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kRowsShown = 24;
+constexpr std::size_t kObjectsShown = 24;
 
 std::string numbered_name(const Scene& scene, std::uint32_t object) {
   return fmt::format("{} {}", object, scene.objects[object].name);
@@ -44,7 +44,7 @@ std::string nearest_text(const Scene& scene, const PotentialNeighbours& of) {
 std::string objects_table(const Scene& scene, const DiagramRecord& record) {
   Table table("llrrrr");
   table.add({"object", "nearest", "distance", "objects left", "triangles left", "lost"});
-  const std::size_t shown = std::min(record.objects.size(), kRowsShown);
+  const std::size_t shown = std::min(record.objects.size(), kObjectsShown);
   for (std::uint32_t object = 0; object < shown; ++object) {
     const PotentialNeighbours& of = record.objects[object];
     table.add({numbered_name(scene, object), nearest_text(scene, of),

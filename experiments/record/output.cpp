@@ -278,7 +278,6 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
   Json views = Json::array();
   for (const ViewReport& view : record.found.views()) views.push_back(view_json(view));
   for (const PairView& view : record.found.pair_views()) views.push_back(view_json(view));
-  const std::optional<std::uint64_t> swept = record.found.swept_triangles();
   Json out = {{"scene", scene_json(scene, record.degenerate_triangles, record.scene_hash)},
               {"method", to_string(o.method)},
               {"method_reason", method_reason(o)}};
@@ -306,7 +305,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
       {"neighbours", record.collisions.neighbours},
       {"contacts", contacts_json(record)},
       {"ignored", ignored_json(record)},
-      {"limit", only(o.limit > 0, o.limit)},
+      {"limit", o.limit > 0 ? Json(o.limit) : Json(nullptr)},
       {"decided_pairs", record.decided},
       {"complete", record.complete},
       {"verification", verification_json(scene, record)},
