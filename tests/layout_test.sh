@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Checks the layout of the repository: which folder includes which, which libraries a folder uses,
-# which file starts threads, that a type has its name alone in its namespace, where source files lie,
-# and that the paths named in the pages exist.
+# which file starts threads, that core names no option of the command line, that a type has its name
+# alone in its namespace, where source files lie, and that the paths named in the pages exist.
 #   tests/layout_test.sh [ROOT]          checks ROOT (default: this repository). It prints one line
 #                                        for each violation, and then exits with status 1.
 #   tests/layout_test.sh --graph [ROOT]  prints the folders by level and the arrows between them
@@ -483,6 +483,13 @@ top_level() {
   done <<<"$names"
 }
 
+# Texts of core that name an option as the command line writes it.
+option_words() {
+  [[ -d core ]] || return 0
+  { grep -rnE --include='*.cpp' --include='*.h' '"[^"]*--[a-z]' core || true; } | LC_ALL=C sort |
+    sed -E 's/^([^:]*:[0-9]+:).*/\1 names an option of the command line: write {name} (core\/base\/parameter.h)/'
+}
+
 check() {
   local judged violations
   local -i seen
@@ -496,6 +503,7 @@ check() {
     fi
     thread_starts | sed -E \
       's/^([^:]*:[0-9]+:).*/\1 starts a thread: only core\/base\/parallel.cpp does, which sets the arithmetic of each/'
+    option_words
     type_names
     page_paths
     top_level
@@ -719,6 +727,14 @@ break_threads() {
   rm core/base/parallel.cpp
 }
 
+break_options() {
+  printf '#include <vector>\nconst char* s = "use --device cpu";\n' >core/view/words.cpp
+  expect "an option in a text of core" caught "$(verdict core/view/words.cpp 'names an option')"
+  printf '#include <vector>\nconst char* s = "use {device} cpu"; int i = 3; int j = i--;\n' >core/view/words.cpp
+  expect "a parameter in a text of core" pass "$(verdict '' '')"
+  rm core/view/words.cpp
+}
+
 # types FIRST SECOND VERDICT: two files in which these types are defined.
 types() {
   printf '#include <vector>\n%s\n' "$1" >verify/first.h
@@ -827,6 +843,7 @@ self_test() {
   break_cycles
   break_places
   break_threads
+  break_options
   break_types
   break_pages
   # The top level, as a plain folder and as a git checkout.

@@ -35,8 +35,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::uint64_t kMaxCheckedBytes = std::uint64_t{4} << 30;  // of a certificate or a list
+
 Certificate read_certificate(const std::string& path) {
-  return parse_certificate(read_file(path, kMaxBytes), clean_name(path));
+  return parse_certificate(read_file(path, kMaxCheckedBytes), clean_name(path));
 }
 
 // The clearance that is asked about: --clearance, or that of the certificate, of several frames the
@@ -48,7 +50,7 @@ double clearance_of(const CheckArguments& arguments,
 
 GivenList read_list(const CheckArguments& arguments) {
   GivenList list =
-      read_pair_list(read_file(arguments.pairs, kMaxBytes), clean_name(arguments.pairs));
+      read_pair_list(read_file(arguments.pairs, kMaxCheckedBytes), clean_name(arguments.pairs));
   for (std::string& column : list.not_looked_at) column = clean_name(column);
   if (list.has_frames && !arguments.frames) {
     throw Error(list.name, "has a column `frame`",
@@ -123,7 +125,7 @@ Scene read_scene(const CheckArguments& arguments) {
 int check_one(const CheckArguments& arguments, const GivenList* list) {
   std::optional<Certificate> certificate;
   if (!arguments.certificate.empty()) {
-    const std::string text = read_file(arguments.certificate, kMaxBytes);
+    const std::string text = read_file(arguments.certificate, kMaxCheckedBytes);
     const std::string name = clean_name(arguments.certificate);
     if (is_distance_certificate(text)) {
       require_no_list(arguments);
@@ -191,7 +193,7 @@ int check_distance_frames(const CheckArguments& arguments) {
   for_each_frame(*arguments.frames, kVerdictsGiven, {}, "", [&](long frame, const Progress&) {
     const std::string file = numbered(arguments.certificate, frame);
     DistanceCertificate certificate =
-        parse_distance_certificate(read_file(file, kMaxBytes), clean_name(file));
+        parse_distance_certificate(read_file(file, kMaxCheckedBytes), clean_name(file));
     const Scene& scene = source.at(frame);
     const CheckedDistances check = check_with(file, std::move(certificate), scene);
     const std::uint64_t listed = check.certificate.distances.size();
