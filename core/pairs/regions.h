@@ -44,10 +44,10 @@ struct PairParts {
   std::vector<TrianglePair> sample = {};  // some pairs of the others whose boxes overlap
 };
 /// Decides for each meeting (two objects whose boxes overlap, or an object that is tested against
-/// itself) whether boxes of blocks find its candidates, or views. Blocks do where few of their boxes
-/// overlap, since no view is as cheap then: see kPairsPerBlock and kOverlapsPerTriangle below.
-/// all: nothing is left to views, unless the scene is `crowded`. threads: 0 for as many as there
-/// are cores. ignored: as pair_regions(); the blocks of two such objects are never a pair.
+/// itself) whether boxes of blocks find its candidates, or views. Blocks do where few of their
+/// boxes overlap, since no view is as cheap then: see kPairsPerBlock and kOverlapsPerTriangle
+/// below. all: nothing is left to views, unless the scene is `crowded`. threads: 0 for as many as
+/// there are cores. ignored: as pair_regions(); the blocks of two such objects are never a pair.
 PairParts split_meetings(const Scene& scene, double clearance, unsigned threads = 0,
                          bool all = false, std::span<const ObjectPair> ignored = {});
 

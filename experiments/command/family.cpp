@@ -4,8 +4,8 @@
 #include "core/base/error.h"
 #include "experiments/command/commands.h"
 #include "experiments/command/options.h"
-#include "experiments/measure/family.h"
 #include "experiments/measure/compare.h"
+#include "experiments/measure/family.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {

@@ -11,8 +11,8 @@
 #include "core/base/fields.h"
 #include "core/base/progress.h"
 #include "core/gl/base/context.h"
-#include "core/voronoi/voronoi.h"
 #include "core/scene/scene.h"
+#include "core/voronoi/voronoi.h"
 
 namespace farcull {
 

@@ -7,7 +7,6 @@
 #include "core/base/stopwatch.h"
 #include "core/boxes/join.h"
 #include "core/native/lanes.h"
-#include "core/boxes/join.h"
 #include "core/scene/scene.h"
 #include "experiments/method/methods.h"
 #include "offsets/minkowski.h"
