@@ -24,7 +24,7 @@ Fraction fraction(const Q& x) { return {x.get_num(), x.get_den()}; }
 double root_above(const Q& squared) { return root_above(fraction(squared)); }
 
 /// Two triangles some way from each other, of a size and at a place of any magnitude.
-std::array<std::array<Vec3, 3>, 2> random_pair(rational::RandomDraws& random) {
+std::array<std::array<Vec3, 3>, 2> random_pair(rational::Draws& random) {
   const double unit = std::exp2(random.below(3) == 0 ? random.uniform(-1060, 1000) : 0);
   const Vec3 apart = random.cube(std::exp2(random.uniform(-10, 10)) * unit);
   std::array<std::array<Vec3, 3>, 2> out;
@@ -41,7 +41,7 @@ double moved_by_ulps(double x, int ulps) {
 }
 
 TEST(Separation, IsProvedOnlyWhereTrianglesAreFartherApart) {
-  rational::RandomDraws random(1);
+  rational::Draws random(1);
   int wrong = 0, by_planes = 0, by_boxes = 0, farther = 0, twin_wrong = 0;
   for (int k = 0; k < trials(4'000); ++k) {
     const auto [a, b] = random_pair(random);
@@ -80,7 +80,7 @@ TEST(Separation, OfBoxesKeepsWhatMayBeAsNear) {
 }
 
 TEST(DistanceClaims, RootsAreRoundedOnce) {
-  rational::RandomDraws random(2);
+  rational::Draws random(2);
   for (int k = 0; k < trials(20'000); ++k) {
     const double x = std::abs(random.scaled(-1070, 1020));
     const Q square = Q(x) * Q(x);
@@ -146,7 +146,7 @@ std::vector<ClaimedDistance> right_answers(const Scene& scene, const DistanceOpt
 }
 
 std::vector<Case> cases(Kind kind, int count) {
-  rational::RandomDraws random(3 + static_cast<int>(kind));
+  rational::Draws random(3 + static_cast<int>(kind));
   std::vector<Case> out;
   while (static_cast<int>(out.size()) < count) {
     Case one{distance_lab::random_scene(random, 3 + random.below(3), 10), {}, {}};
@@ -234,7 +234,7 @@ Counted counted(const Scene& scene, const ClaimedDistance& claim) {
 
 // Scenes on a grid of any scale: pairs that tie, that touch and that are degenerate.
 TEST(DistanceAccounting, MissedPairsAreThoseOfRationalNumbers) {
-  rational::RandomDraws random(17);
+  rational::Draws random(17);
   std::uint64_t nearer = 0, before = 0, behind = 0;
   // Few scenes have ties, so that all of them are needed under sanitizers too.
   for (const Case& one : cases(Kind::objects, 16)) {
@@ -286,7 +286,7 @@ Scene three_triangles(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b
 TEST(DistanceAccounting, HardPairsAreDecidedAsByRationalNumbers) {
   std::uint64_t nearer = 0, farther = 0, ties = 0;
   RandomDraws random(21);
-  rational::RandomDraws draws(22);
+  rational::Draws draws(22);
   const auto expect_decided = [&](const DrawnPair& pair) {
     std::array<Vec3, 3> other = {pair.b[1], pair.b[2], pair.b[0]};
     if (draws.coin()) {
@@ -350,7 +350,7 @@ TEST(DistanceAccounting, FindsADistanceThatIsOneBitOff) {
 }
 
 TEST(DistanceAccounting, FindsPointsAndFeaturesThatAreNotTheFirstNearest) {
-  rational::RandomDraws random(23);
+  rational::Draws random(23);
   for (const Kind kind : {Kind::objects, Kind::nearest, Kind::all}) {
     for (const Case& one : cases(kind, trials(8))) {
       const auto wrong = [&](const std::function<void(ClaimedDistance&)>& change) {

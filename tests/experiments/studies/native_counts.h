@@ -30,7 +30,7 @@
 
 namespace farcull::native_counts {
 
-struct GridPoint {
+struct StudyGridPoint {
   const Study* study;
   Point point;
 };
@@ -55,8 +55,8 @@ inline bool is_counted(const Point& point) {
 }
 
 /// The points of a study's quick grid, each run once: repeats only make its time better.
-inline std::vector<GridPoint> quick_points(const Study& study) {
-  std::vector<GridPoint> out;
+inline std::vector<StudyGridPoint> quick_points(const Study& study) {
+  std::vector<StudyGridPoint> out;
   for (Point& point : study.grid({.quick = true, .seed = 1})) {
     if (!is_counted(point)) continue;
     if (auto* const run = std::get_if<RunPoint>(&point)) run->repeat = 1;

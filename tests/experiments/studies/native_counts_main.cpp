@@ -92,12 +92,12 @@ std::string kind_of(const Point& point) {
          column_text(key.depth_format) + ";" + column_text(key.depth_mode);
 }
 
-std::vector<GridPoint> chosen_points(const Arguments& arguments) {
-  std::vector<GridPoint> out;
+std::vector<StudyGridPoint> chosen_points(const Arguments& arguments) {
+  std::vector<StudyGridPoint> out;
   for (const Study& study : studies()) {
     if (!arguments.study.empty() && study.name != arguments.study) continue;
     std::map<std::string, std::size_t> had;
-    for (GridPoint& point : quick_points(study)) {
+    for (StudyGridPoint& point : quick_points(study)) {
       if (arguments.meshes != "both" && needs_meshes(point.point) != (arguments.meshes == "only"))
         continue;
       if (arguments.first > 0 && ++had[kind_of(point.point)] > arguments.first) continue;
@@ -122,7 +122,7 @@ std::string left_over(const Table& table, const Table& found, const Arguments& a
 }
 
 int run(const Arguments& arguments) {
-  const std::vector<GridPoint> points = chosen_points(arguments);
+  const std::vector<StudyGridPoint> points = chosen_points(arguments);
   const Table table = arguments.renew ? Table() : read(arguments.file);
   std::size_t different = 0, lines = 0;
   const auto report = [&](const std::string& text, const std::string& where) {
@@ -138,7 +138,7 @@ int run(const Arguments& arguments) {
       std::vector<std::pair<double, std::string>> slow;
       Lab lab("native", {}, threads);
       const auto began = std::chrono::steady_clock::now();
-      for (const GridPoint& point : points) {
+      for (const StudyGridPoint& point : points) {
         const auto start = std::chrono::steady_clock::now();
         const Line line = measured(*point.study, point.point, key_of(point.point), lab);
         slow.emplace_back(

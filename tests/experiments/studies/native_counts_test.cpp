@@ -16,7 +16,7 @@ const std::string kFile = FARCULL_TEST_DIR "/experiments/studies/native_counts.t
 
 // The point of that key in the quick grid of accuracy.
 Point accuracy_point(const PointKey& key) {
-  for (const GridPoint& of : quick_points(study_named("accuracy"))) {
+  for (const StudyGridPoint& of : quick_points(study_named("accuracy"))) {
     if (key_of(of.point) == key) return of.point;
   }
   throw std::logic_error("no point " + describe(key));
@@ -114,7 +114,7 @@ TEST(NativeCounts, TheFileHasEveryPointOnceAndIsWhatItWouldBeWrittenAs) {
   std::size_t points = 0, lines = 0;
   for (const auto& [section, of] : table) lines += section == kScenes ? 0 : of.size();
   for (const Study& study : studies()) {
-    for (const GridPoint& of : quick_points(study)) {
+    for (const StudyGridPoint& of : quick_points(study)) {
       ++points;
       std::string key;
       for (const std::string& axis : axis_values(key_of(of.point))) key += axis + ";";
