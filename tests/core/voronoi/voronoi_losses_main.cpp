@@ -99,9 +99,9 @@ std::uint64_t scene_table(const std::vector<std::string>& names, int largest) {
       const NeighbourSizes reliable = measured(NeighbourMethod::voronoi_reliable);
       std::printf("| %s | %d | %" PRIu64 " | %" PRIu64 " | %" PRIu64 " | %" PRIu64 " | %" PRIu64
                   " | %" PRIu64 " | %.0f | %.0f |\n",
-                  name.c_str(), resolution, published.with_nearest, published.missed, reliable.missed,
-                  published.object_pairs, reliable.object_pairs, reliable.triangle_pairs, ms[0],
-                  ms[1]);
+                  name.c_str(), resolution, published.with_nearest, published.missed,
+                  reliable.missed, published.object_pairs, reliable.object_pairs,
+                  reliable.triangle_pairs, ms[0], ms[1]);
       std::fflush(stdout);
       lost += reliable.missed + reliable.missed_pairs;
     }
