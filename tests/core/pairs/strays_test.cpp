@@ -11,7 +11,6 @@
 #include "core/proximity/near_pairs.h"
 #include "core/scene/pair_sort.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/base/trials.h"
 #include "tests/core/pairs/pairs_lab.h"
 #include "tests/core/pairs/stray_scenes.h"
 
@@ -56,10 +55,11 @@ std::string wrong(const Scene& scene, const PairResult& result) {
   return "";
 }
 
-// As the scene decides, and by views alone, as on a GL device.
+// As the scene decides, and by views alone, as on a GL device. All six scenes, with the address
+// sanitizer too: fewer do not show all three ways.
 TEST(Strays, TakeNoMoreWorkThanExactAndMissNothing) {
   std::size_t uneven = 0, given_up = 0, others = 0;
-  for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(trials(6, 3)); ++seed) {
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
     const Strays strays = random_strays(seed);
     const Scene scene = stray_scene(seed, kTriangles, strays);
     SCOPED_TRACE(seed);
