@@ -33,11 +33,13 @@ std::string spelled(const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = text[at] == '{' ? text.find('}', at) : std::string::npos;
     const std::string name = end == std::string::npos ? "" : text.substr(at + 1, end - at - 1);
-    if (!is_parameter(name)) {
+    const std::string word =
+        is_parameter(name) && spelling_of_program ? spelling_of_program(name) : name;
+    if (!is_parameter(name) || word.empty()) {  // braces of a file's name, perhaps
       out += text[at++];
       continue;
     }
-    out += spelling_of_program ? spelling_of_program(name) : name;
+    out += word;
     at = end + 1;
   }
   return out;

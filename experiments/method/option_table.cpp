@@ -387,6 +387,12 @@ const Option& run_option(std::string_view name) {
 }
 
 std::string option_word(const std::string& name) {
+  // Texts name these too, which are options of single commands.
+  static constexpr std::string_view kOthers[] = {"compare", "inside", "no_verify",
+                                                 "pairs",   "repeat", "within"};
+  if (std::ranges::none_of(run_options(), [&](const Option& o) { return name == o.name; }) &&
+      std::ranges::find(kOthers, name) == std::end(kOthers))
+    return {};
   std::string out = "--" + name;
   std::replace(out.begin(), out.end(), '_', '-');
   return out;

@@ -92,7 +92,8 @@ struct Option {
 std::span<const Option> run_options();
 /// Precondition: there is such an option.
 const Option& run_option(std::string_view name);
-/// The option as a word of a command line, as in --depth-format. For spell_parameters().
+/// The option as a word of a command line, as in --depth-format; empty: no command has it. For
+/// spell_parameters().
 std::string option_word(const std::string& name);
 
 /// Options that a user gave, by their names; a flag's value is "".

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 
 #include "core/base/stopwatch.h"
 #include "core/scene/scene.h"
@@ -148,6 +149,8 @@ Record run(const Scene& scene, const RunOptions& options, Session& session,
     record.promise = promise_of(options, found.device, session);
   }
   if (use.filter) {
+    if (found.decided)
+      throw std::logic_error("run: no filter, since the method decides as it finds");
     verify_stage(scene, progress, record);
     use.filter(found.pairs);
     found.count = found.pairs.size();

@@ -174,6 +174,7 @@ done <<'END'
 END
 printf '{"objects":\n[{"mesh": "missing.obj"}]}' >nested.json
 bad_scene 'scene file with a missing mesh' '.*missing\.obj: the file does not exist' nested.json
+bad_scene 'a name in braces' 'x[{]left[}]\.obj: the file does not exist' 'x{left}.obj'
 printf '{"objects":\n[{"mesh": "face.obj"}]}' >nested.json
 bad_scene 'scene file with a bad mesh' '.*face\.obj:5: ' nested.json
 printf '{"objects": [{"mesh": "nested.json"}]}' >nested.json

@@ -106,5 +106,13 @@ TEST(Error, SpellsParametersAsTheProgramDoes) {
   EXPECT_EQ(Error("{device}", "a", "b").where, "--device");
 }
 
+// Every name in braces that a text of the product holds is one that the program spells; the name of
+// a file is not.
+TEST(Error, LeavesOtherNamesInBraces) {
+  for (const Option& option : run_options()) EXPECT_FALSE(option_word(option.name).empty());
+  EXPECT_EQ(option_word("no_verify"), "--no-verify");
+  EXPECT_EQ(option_word("left"), "");
+}
+
 }  // namespace
 }  // namespace farcull
