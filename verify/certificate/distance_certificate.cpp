@@ -16,9 +16,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Pairs = DistanceCertificate::Pairs;
 
-constexpr const char* kFormat = "farcull-distances";
-constexpr std::uint64_t kVersion = 2;
-constexpr const char* kRemedy =
+constexpr const char* kDistancesFormat = "farcull-distances";
+constexpr std::uint64_t kDistancesVersion = 2;
+constexpr const char* kDistancesRemedy =
     "give a file that `farcull distance ... --certificate` wrote; docs/certificate.md is the "
     "format";
 constexpr std::uint8_t kFeatures = 7;
@@ -145,8 +145,8 @@ DistanceEntry entry_of(const Scene& scene, const TrianglePair& pair, std::string
 std::string to_text(const DistanceCertificate& certificate) {
   const bool nearest = certificate.pairs == Pairs::nearest;
   const bool bounded = std::isfinite(certificate.within);
-  const Json head = {{"format", kFormat},
-                     {"version", kVersion},
+  const Json head = {{"format", kDistancesFormat},
+                     {"version", kDistancesVersion},
                      {"scene", scene_key_json(certificate.scene)},
                      {"query",
                       {{"pairs", to_string(certificate.pairs)},
@@ -171,15 +171,16 @@ std::string to_text(const DistanceCertificate& certificate) {
 }
 
 DistanceCertificate parse_distance_certificate(std::string_view text, const std::string& name) {
-  const JsonReader reader(name, kRemedy);
+  const JsonReader reader(name, kDistancesRemedy);
   // There may be very many answers, so the limit of values is the number of characters.
   const Json root = reader.parse(text, text.size());
   if (!root.is_object()) reader.fail("the certificate is no object");
   // Before the keys, which another version may have others of.
-  if (root.value("format", Json()) != kFormat) reader.fail(std::string("format is not ") + kFormat);
+  if (root.value("format", Json()) != kDistancesFormat)
+    reader.fail(std::string("format is not ") + kDistancesFormat);
   if (const Json version = root.value("version", Json());
-      !version.is_number_unsigned() || version != kVersion) {
-    reader.fail("version is not " + std::to_string(kVersion));
+      !version.is_number_unsigned() || version != kDistancesVersion) {
+    reader.fail("version is not " + std::to_string(kDistancesVersion));
   }
   reader.object(root, "", {"format", "version", "scene", "query", "distances"});
   DistanceCertificate certificate;

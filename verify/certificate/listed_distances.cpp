@@ -10,7 +10,7 @@
 namespace farcull {
 namespace {
 
-constexpr const char* kRemedy = "give the scene that the certificate was written for";
+constexpr const char* kOtherScene = "give the scene that the certificate was written for";
 
 }  // namespace
 
@@ -29,7 +29,7 @@ std::vector<Listed> located(const DistanceCertificate& certificate, const Scene&
                         (known ? "triangle " + std::to_string(entry.triangles[side]) + " of object "
                                : std::string("object ")) +
                         std::to_string(object) + ", which the scene does not have",
-                    kRemedy);
+                    kOtherScene);
       }
       triangles[side] = scene.objects[object].first_triangle + entry.triangles[side];
     }

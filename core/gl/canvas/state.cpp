@@ -51,7 +51,7 @@ GLenum conservative_switch() {
               "use {device} native, which draws conservatively on the cores of the CPU");
 }
 
-constexpr std::uint32_t kNone = 0xffffffff;
+constexpr std::uint32_t kAllBits = 0xffffffff;
 constexpr std::uint32_t kGroup = 64;            // local_size_x of canvas_work.comp
 constexpr std::uint32_t kBatches[2] = {64, 4};  // work items of an invocation, by step
 constexpr std::size_t kVec4 = 4 * sizeof(std::uint32_t);
@@ -140,7 +140,7 @@ std::vector<std::uint8_t> CanvasReport::read(const std::string& stage) {
   gl_wait(stage);
   const std::size_t bits = kHead + echoes_.size();
   // If nothing is read, no echo is found.
-  std::vector<std::uint32_t> words(bits + (flags_ + 31) / 32, kNone);
+  std::vector<std::uint32_t> words(bits + (flags_ + 31) / 32, kAllBits);
   store_.read(0, words.data(), words.size() * sizeof(std::uint32_t));
   bytes_ += words.size() * sizeof(std::uint32_t);
   check_gl(stage);
