@@ -6,8 +6,10 @@
 # address and undefined behaviour sanitizers. If CI is set, only those of core, offsets, verify, the
 # library and scenes, and the fuzz targets on their corpus: half of the time, and what handles memory
 # by numbers or reads the files of strangers.
+# If the first argument is --long, the campaigns of docs/tests.md run one after the other instead: hours. Those that passed at
+# this commit are not run again, and words behind --long choose some: bash tests/run.sh --long polygons odr
 # Exit status: 0 every test passed, and there was at least one; 2 the tests did not start; otherwise
-# that of ctest.
+# that of ctest, or 1 if a campaign failed.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=../experiments/setup.sh
@@ -18,6 +20,57 @@ cd "$farcull_root"
 export FARCULL_SEED=${FARCULL_SEED:-$(date -u +%Y%m%d)}
 echo "tests: seed of the day $FARCULL_SEED; FARCULL_SEED=$FARCULL_SEED replays it"
 
+# Campaigns: a name, and a command in the folder of the checkout.
+campaigns=(
+  "rounding FARCULL_ROUNDING_PAIRS=320000 build/tests/farcull_tests --gtest_filter=WorstRounding.LosesNoPair*"
+  "polygons FARCULL_POLYGONS=1000000 build/tests/farcull_tests --gtest_filter=Polygons.*"
+  "model FARCULL_MODEL_TRIALS=1000000 ctest --test-dir build --output-on-failure -R CullModel"
+  "strays cmake --build build --target farcull_strays && build/tests/farcull_strays 100"
+  "reliability bash experiments/reliability.sh"
+  "reliability_pairs bash experiments/reliability_pairs.sh"
+  "reliability_motion bash experiments/reliability_motion.sh"
+  "reliability_distances bash experiments/reliability_distances.sh"
+  "odr bash tests/odr.sh"
+  "fuzz bash tests/fuzz/run.sh"
+  "gl_loops bash tests/gl_loops.sh"
+  "gl_loops_late bash tests/gl_loops.sh 20 --late"
+  "gl_loops_address bash tests/gl_loops.sh 20 --address"
+  "mutants bash tests/mutants.sh"
+)
+
+# run_campaigns [NAMES...]: runs those, or all; keeps the output of each in build/long/NAME.log, and build/long/NAME.COMMIT
+# where it passed. Prints a line for each; status 1 if one failed.
+run_campaigns() {
+  local commit campaign name log failed=0 status wanted=" $* " started
+  commit=$(git rev-parse --short HEAD 2>/dev/null || echo unknown)
+  mkdir -p build/long
+  for campaign in "${campaigns[@]}"; do
+    name=${campaign%% *} started=$SECONDS
+    log=build/long/$name.log
+    if (($#)) && [[ $wanted != *" $name "* ]]; then continue; fi
+    wanted=${wanted/" $name "/ }
+    if [[ -e build/long/$name.$commit ]]; then
+      echo "long: $name passed at $commit before"
+      continue
+    fi
+    echo "long: ${campaign#* }  (output: $log)"
+    if (eval "${campaign#* }") >"$log" 2>&1; then
+      date >"build/long/$name.$commit"
+      echo "long: $name passed in $((SECONDS - started)) s"
+    else
+      status=$?
+      failed=1
+      echo "long: $name FAILED with status $status after $((SECONDS - started)) s; the output ends with"
+      tail -n 5 "$log" | sed 's/^/  /'
+    fi
+  done
+  if [[ $wanted =~ [^\ ] ]]; then
+    echo "long: no campaign is called${wanted% }; there are: $(printf '%s\n' "${campaigns[@]%% *}" | tr '\n' ' ')" >&2
+    return 2
+  fi
+  return "$failed"
+}
+
 sanitize=${CI:+inner}
 if [[ ${1-} == --sanitize ]]; then
   sanitize=all
@@ -27,6 +80,12 @@ fi
 farcull_packages+=("${farcull_test_packages[@]}")
 farcull_setup
 farcull_build all
+
+if [[ ${1-} == --long ]]; then
+  bash experiments/meshes.sh
+  run_campaigns "${@:2}"
+  exit
+fi
 
 without=()
 status=0
