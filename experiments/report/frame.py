@@ -80,7 +80,7 @@ class Panel:
     series: list = field(default_factory=list)
     marks: list = field(default_factory=list)
     drawing: bool = False  # shapes without axes, a unit of x as long as one of y
-    rows: list = field(default_factory=list)  # names of rows of a strip: y is 0, 1, ... from above
+    strip: list = field(default_factory=list)  # Series without y, a row each below the panel
 
 
 @dataclass
