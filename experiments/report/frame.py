@@ -20,6 +20,10 @@ the study NAME, and has one function `fill(chapter, study)`:
 - Numbers are written by estimates.py (all of its names are here too), never by hand.
 
 farcull_report_fixture DIR (tests) makes a store with rows of every study to try a chapter with;
+chapters/devices.py is no chapter: its `fill(chapter, study, device, others)` adds to any chapter
+what further devices gave, where others are pairs of a device's name and its Study. A figure's
+Panel.strip has Series without y, each a row of its own below the panel.
+
 chapters/stability.py is a short one to begin from. A figure has at most six series a panel where
 that is possible; its `n` says what it rests on, and its caption and title say what is shown. Zeros
 on a logarithmic axis need Axis(..., zero=True), and are then drawn at zero.
