@@ -437,6 +437,7 @@ class Drawer:
         rows = placed.panel.strip
         ax = self.axes(left, right, bottom + 4, bottom + placed.strip)
         self.ticks(ax, Placed(type(placed.panel)("", placed.panel.x), placed.x, placed.y))
+        ax.set_facecolor("none")
         ax.set_ylim(len(rows) - 0.5, -0.5)
         ax.set_yticks(range(len(rows)), [s.name for s in rows])
         ax.set_yticks([], minor=True)
