@@ -29,9 +29,12 @@ that is possible; its `n` says what it rests on, and its caption and title say w
 on a logarithmic axis need Axis(..., zero=True), and are then drawn at zero.
 """
 import json
+import math
+import re
 import shlex
 from dataclasses import dataclass, field
 
+import numpy as np
 import pandas as pd
 
 from estimates import *  # noqa: F401,F403: chapters take numbers from here
