@@ -238,3 +238,8 @@ def estimate_text(e, digits=3):
     if e.n == 1:
         return rounded(e.value, digits)
     return f"{rounded(e.value, digits)} ({rounded(e.low, digits)} to {rounded(e.high, digits)})"
+
+
+def median_text(values):
+    """The median of values with its interval; `-` of none."""
+    return estimate_text(median_estimate(tuple(values))) if len(values) else "-"

@@ -4,12 +4,10 @@ from store import AXES
 
 
 def compared(first, other):
-    """The rows of the points that both devices have measured, side by side; the columns of the
-    first end in `_first`."""
+    """The rows of the points that both devices have measured; columns of the first end in `_first`."""
     out = other.rows.merge(first.rows, on=AXES, suffixes=("", "_first"))
-    return out.assign(
-        differs=[row.counts != row.counts_first for row in out.itertuples()],
-        ratio=column(out, "total_ms") / column(out, "total_ms_first"))
+    return out.assign(differs=[row.counts != row.counts_first for row in out.itertuples()],
+                      ratio=column(out, "total_ms") / column(out, "total_ms_first"))
 
 
 def lost(rows, end):
@@ -19,30 +17,25 @@ def lost(rows, end):
 
 
 def fill(chapter, study, device, others):
-    """Adds a table of each method on `device` and on each of the others, which are pairs of a name
-    and a Study, and a finding for each of them. Adds nothing where there are no others."""
+    """Adds a table of each method on `device` and on each of the others, which are pairs of a name and a Study, and a
+    finding for each of them. Adds nothing where there are no others."""
     table = Table(
         chapter.study + "-devices",
-        f"The same points on other devices than {device}: points that both have measured, those of "
-        "them at which any count differs, missed pairs (of the lemmas: violations) and candidates "
-        f"on {device} and on the other, and the median of the ratios of their times",
-        columns(["device", "method"],
-                ["points", "differ", "missed, first", "missed, other", "candidates, first",
-                 "candidates, other", "time, other/first"]))
+        f"The same points on other devices than {device}: points that both have measured, those of them at which any "
+        f"count differs, missed pairs (of the lemmas: violations) and candidates on {device} and on the other, and the "
+        "median of the ratios of their times",
+        columns(["device", "method"], ["points", "differ", "missed, first", "missed, other", "candidates, first",
+                                       "candidates, other", "time, other/first"]))
     for name, other in others:
-        for row in other.rows.itertuples():
-            if breaks(row):
-                chapter.find_broken(f"On {name}, {row.contestant} did not keep its promise at "
-                                    f"{describe(row)}.")
+        for row in filter(breaks, other.rows.itertuples()):
+            chapter.find_broken(f"On {name}, {row.contestant} did not keep its promise at {describe(row)}.")
         rows = compared(study, other)
         for method, of in by(rows, "contestant"):
             ratios = of.ratio[(of.ratio > 0) & np.isfinite(of.ratio)]
-            table.rows.append(
-                [name, method, grouped(len(of)), grouped(of.differs.sum()),
-                 grouped(lost(of, "_first")), grouped(lost(of, "")),
-                 grouped(total(of, "candidates_first")), grouped(total(of, "candidates")),
-                 rounded(median(ratios)) if len(ratios) else "-"])
+            counts = [len(of), of.differs.sum(), lost(of, "_first"), lost(of, ""), total(of, "candidates_first"),
+                      total(of, "candidates")]
+            table.rows.append([name, method, *map(grouped, counts), rounded(median(ratios)) if len(ratios) else "-"])
         if len(rows):
-            chapter.find(f"On {name} counts differ from those on {device} at "
-                         f"{of_all(rows.differs.sum(), len(rows))} points.")
+            chapter.find(f"On {name} counts differ from those on {device} at {of_all(rows.differs.sum(), len(rows))} "
+                         "points.")
     chapter.tables += [table] * bool(table.rows)
