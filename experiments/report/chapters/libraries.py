@@ -23,12 +23,12 @@ WRONG = "wrong answers per million"
 def with_families(rows):
     """The rows with the columns family (of `small/pairs/random` pairs/random), pairs (else of meshes), group (of
     figures), and texts that none of them lacks."""
-    rows = rows.assign(family=rows.scene.str.partition("/")[2], **{
+    rows = rows.assign(family=[scene.partition("/")[2] for scene in rows.scene], **{
         name: [text(row, name) for row in rows.itertuples()]
         for name in ("library", "means", "call", "says", "source", "use", "scores", "reason")})
-    words = rows.library.str.partition(" ")[0]
-    return rows.assign(pairs=rows.family.str.startswith("pairs/"), group=[next(
-        (title for title, libraries in GROUPS.items() if word in libraries), list(GROUPS)[-1]) for word in words])
+    title_of = {word: title for title, words in GROUPS.items() for word in words}
+    return rows.assign(pairs=rows.scene.str.match("[^/]*/pairs/"),
+                       group=[title_of.get(library.split(" ")[0], list(GROUPS)[-1]) for library in rows.library])
 
 
 def totals(rows, *names):

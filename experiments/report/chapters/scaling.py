@@ -16,7 +16,7 @@ def rows_of(rows, plot):
     _, _, scenes, size = PLOTS[plot]
     rows = rows[rows.scene.str.fullmatch(scenes)]
     if size == "density":
-        rows = rows.assign(density=rows.scene.str.rpartition(":")[2].astype(float))
+        rows = rows.assign(density=[float(scene.split(":")[-1]) for scene in rows.scene])
     rows = rows.assign(at=column(rows, size))
     return rows[rows["at"] > 0 if size == "resolution" else rows["at"].notna()].sort_values("at", kind="stable")
 
