@@ -23,6 +23,9 @@ import sys
 import tempfile
 
 MARKER = ".unfinished"
+# A row that promises and counts one of these broke its promise; a contestant also by silence.
+BROKEN = ("missed", "missed_pairs", "wrong", "violations", "refused", "unanswered", "not_asked", "crashed", "hung",
+          "no_memory")
 PAGE_RESOLUTIONS = [32, 64, 128, 256, 512]  # that the reader of a picture's page steps through
 
 
@@ -46,7 +49,7 @@ try:
     import tables
     from chapters import devices
     from estimates import counted, grouped, listed, of_all, sentence
-    from frame import Chapter, breaks, command_of, describe
+    from frame import Chapter, Damaged, command_of, describe, promising, value
     from store import Store, other_devices
 except ImportError as error:
     print(f"farcull: {error.name}: is not there for {sys.executable}; install it (Debian: python3-matplotlib "
@@ -198,7 +201,8 @@ class Reporter:
         chapter.findings.sort(key=lambda finding: not finding[0])
         before = len(self.broken)
         for where, of in [("", study)] + [(f" on {device}", of) for device, of in others]:
-            self.broken += [f"{study.name}{where}: {describe(row)}" for row in of.rows.itertuples() if breaks(row)]
+            self.broken += [f"{study.name}{where}: {describe(row)}" for row in promising(of.rows).itertuples()
+                            if any(value(row, name) > 0 for name in BROKEN)]
         # What a chapter finds broken where each row by itself is right, such as energy that a solver made.
         if len(self.broken) == before:
             self.broken += [f"{study.name}: {text}" for broken, text in chapter.findings if broken]
@@ -361,6 +365,9 @@ def main():
         os.kill(os.getpid(), ended.args[0])
     except Refusal as error:
         print(f"farcull: {error}", file=sys.stderr)
+    except Damaged as error:
+        print(f"farcull: {sys.argv[1]}/results.sqlite: is damaged: {error}; use the farcull that measured it",
+              file=sys.stderr)
     except OSError as error:
         print(f"farcull: {error.filename or 'the report'}: cannot be written: {error.strerror}; make room on the disk",
               file=sys.stderr)

@@ -42,6 +42,10 @@ from estimates import (NONE, Estimate, counted, estimate_text, grouped, listed, 
                        of_all, rate_text, rounded)
 
 
+class Damaged(ValueError):
+    """A text of a row is not what its chapter can read."""
+
+
 @dataclass
 class Series:
     """Points of one line or cloud. x and y have one length. NaN: a gap."""

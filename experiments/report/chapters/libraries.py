@@ -66,7 +66,7 @@ def scores_of(rows):
         for score in row.scores.split(";") if row.scores else []:
             words = score.partition("|")[0].split()
             if "|" not in score or len(words) != len(SCORE) + 3:
-                raise ValueError(f"'{score}' is no score of this version of farcull")
+                raise Damaged(f"'{score}' is no score of this version of farcull")
             out.append([row.method, row.family, abs(float(words[0])), words[1]] + [int(word) for word in words[2:-1]])
     names = ["contestant", "family", "parameter", "kind"]
     return pd.DataFrame(out, columns=names + SCORE).astype({name: int for name in SCORE})

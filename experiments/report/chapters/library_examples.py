@@ -39,7 +39,7 @@ class Example:
         except (ValueError, IndexError, OverflowError):
             good = False
         if not good:
-            raise ValueError(f"the example of {self.contestant} is no pair: {self.line}")
+            raise Damaged(f"the example of {self.contestant} is no pair: {self.line}")
         self.words = " ".join("(" + ", ".join(map(decimal, corner)) + ")" for corner in self.corners)
 
 

@@ -13,7 +13,7 @@ from frame import Chapter  # noqa: E402
 from store import AXES, Store  # noqa: E402
 
 TEXTS = [axis for axis in AXES if axis not in ("resolution", "frame", "seed")]
-CONSTANTS = {"scene_resolution": 512, "few_triangles": 1000, "users": {}, "depth_rounding": {"24": 1e-7, "32": 1e-7},
+CONSTANTS = {"scene_resolution": 512, "few_triangles": 1000, "users": {}, "depth_rounding": {"24": 3.5, "32": 1.5},
              "scenes": {"needles": {"seed": 2, "description": "thin"}, "crowd": {"seed": 4, "description": "many"},
                         "two-spheres": {"description": "two"}, "cloth": {"description": "cloth"},
                         "two-bunnies": {"needs_meshes": True, "description": "scans"}}}
