@@ -215,7 +215,10 @@ class Reporter:
         for figure in chapter.figures:
             self.say("drawing " + figure.name)
             draw.legible(figure)
-            drawn.svgs.append(draw.draw_figure(figure, root / "figures"))
+            files = draw.files_of(figure)
+            for kind, content in files.items():
+                write(root / "figures" / f"{figure.name}.{kind}", content)
+            drawn.svgs.append(files["svg"])
         for table in chapter.tables:
             write(root / "tables" / (table.name + ".csv"), tables.table_csv(table))
             write(root / "tables" / (table.name + ".tex"), tables.table_latex(table))
@@ -311,9 +314,12 @@ class Reporter:
         return 1 if self.broken else 0
 
 
-def write(path, text):
-    with open(path, "w", encoding="utf-8", newline="", errors="surrogateescape") as file:
-        file.write(text)
+def write(path, content):
+    """Writes a text, or bytes."""
+    try:
+        path.write_bytes(content if isinstance(content, bytes) else content.encode("utf-8", "surrogateescape"))
+    except OSError as error:
+        raise Refusal(path, f"cannot be written: {error.strerror}", "make room on the disk") from error
 
 
 # ---- the command

@@ -234,6 +234,7 @@ class Layout:
         single = len(figure.panels) == 1 and not figure.panels[0].strip
         narrow = single and all(text_width(n) + 34 < SINGLE - 8 for n in self.key)
         self.width = SINGLE if narrow else DOUBLE
+        figure.narrow = narrow
         self.high = 190.0 if single and not narrow else (0, 150.0, 150.0, 105.0)[self.columns]
         self.direct = self.width == DOUBLE and single and self.can_label()
         self.placed = [Placed(panel) for panel in figure.panels]
@@ -522,22 +523,16 @@ def numbers_of(figure):
     return out.getvalue()
 
 
-def draw_figure(figure, folder):
-    """Writes NAME.svg, NAME.pdf and NAME.csv; returns the text of the SVG, which carries title and
-    caption for readers who cannot see it."""
-    canvas = Drawer(figure).canvas
-    base = os.path.join(folder, figure.name)
-    canvas.savefig(base + ".pdf", metadata={"CreationDate": None, "Title": figure.title})
-    svg = io.StringIO()
+def files_of(figure):
+    """The files of a figure by their kinds: svg and csv (texts), pdf (bytes). The SVG carries title and caption for
+    readers who cannot see it."""
+    canvas, svg, pdf = Drawer(figure).canvas, io.StringIO(), io.BytesIO()
+    canvas.savefig(pdf, format="pdf", metadata={"CreationDate": None, "Title": figure.title})
     canvas.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
     pyplot.close(canvas)
     words = f"<title>{html.escape(figure.title)}</title>\n<desc>{html.escape(figure.caption)}</desc>"
     out = re.sub(r"(<svg [^>]*>)", lambda m: m.group(1) + "\n " + words, svg.getvalue(), 1)
-    out = out.replace("'DejaVu Sans'", FAMILIES)
-    for name, text in ((".svg", out), (".csv", numbers_of(figure))):
-        with open(base + name, "w", encoding="utf-8", newline="") as file:
-            file.write(text)
-    return out
+    return {"svg": out.replace("'DejaVu Sans'", FAMILIES), "pdf": pdf.getvalue(), "csv": numbers_of(figure)}
 
 
 def inline_svg(svg, prefix):

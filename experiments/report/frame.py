@@ -100,6 +100,7 @@ class Figure:
     title: str
     caption: str = ""
     panels: list = field(default_factory=list)
+    narrow: bool = False  # as wide as one column of two; draw.py says
 
 
 @dataclass

@@ -199,8 +199,7 @@ class HtmlPage:
         name = figure.name
         links = " ".join(f'<a href="figures/{name}.{kind}">{kind.upper()}</a>'
                          for kind in ("svg", "pdf", "csv"))
-        narrow = float(re.search(r'<svg [^>]*?width="([0-9.]+)pt"', svg).group(1)) < 300
-        return (f'<figure id="fig-{name}">\n<div class="drawing{" narrow" if narrow else ""}" '
+        return (f'<figure id="fig-{name}">\n<div class="drawing{" narrow" if figure.narrow else ""}" '
                 f'role="img" aria-label="{html_text(figure.title)}" tabindex="0">'
                 f'{inline_svg(svg, name + "-")}</div>\n<figcaption><strong>Figure {self.figures}. '
                 f'{html_text(sentence(figure.title))}</strong> '
@@ -368,8 +367,8 @@ def page_latex(page):
         out += (f"\n\\section{{{latex_text(chapter.title)}}}\n{latex_text(chapter.question)}\n" +
                 latex_items(printed(f) for f in chapter.findings))
         for f in chapter.figures:
-            out += ("\\begin{figure}[htbp]\n  \\centering\n  \\includegraphics[width=\\ifdim"
-                    "\\width>\\linewidth\\linewidth\\else\\width\\fi,height=0.8\\textheight,"
+            out += ("\\begin{figure}[htbp]\n  \\centering\n  \\includegraphics["
+                    f"width={'0.5' if f.narrow else ''}\\linewidth,height=0.8\\textheight,"
                     f"keepaspectratio]{{figures/{f.name}.pdf}}\n  \\caption{{"
                     f"{latex_text(sentence(f.title))} {latex_text(caption_of(f, chapter))}}}\n"
                     f"  \\label{{fig:{f.name}}}\n\\end{{figure}}\n")
