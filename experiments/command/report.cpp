@@ -128,12 +128,15 @@ std::string context_for(const Store& store) {
       .dump();
 }
 
-// The folder of the Python program: installed beside this one, or in the source that it was built
-// from.
+// The folder of the Python program: named, installed beside this program, or in the source that it
+// was built from.
 std::string python_folder() {
+  const char* const named = std::getenv("FARCULL_REPORT");
   const fs::path self = fs::read_symlink("/proc/self/exe");
   const fs::path installed = self.parent_path().parent_path() / "share/farcull/report";
-  const std::string folder = fs::exists(installed) ? installed.string() : FARCULL_REPORT_FOLDER;
+  const std::string folder = named != nullptr && *named != '\0' ? named
+                             : fs::exists(installed)            ? installed.string()
+                                                                : FARCULL_REPORT_FOLDER;
   if (!fs::exists(folder + "/__main__.py"))
     throw Error(folder, "the program that writes reports is not there", "install farcull again");
   return folder;
