@@ -117,10 +117,11 @@ def kept_figure(own):
     out = Figure("accuracy-kept", "Missed pairs against the candidates that are left",
                  "Each point is a run at one resolution. A method that leaves all pairs of overlapping boxes (exact) "
                  "misses nothing and has culled nothing: below and to the left is better. Scenes that are drawn at "
-                 "random have their own seed. Quick-CULLIDE, both directions of each axis and views that all have to "
-                 "clear are in the tables.")
+                 "random have their own seed. Quick-CULLIDE, objects alone, both directions of each axis and views "
+                 "that all have to clear are in the tables.")
     rows = own[~own.sized & (column(own, "colliding") > 0) & (column(own, "candidates") > 0) &
-               (own.radius != "published") & (own.offset != "exact") & ~left_out(own)]
+               (own.radius != "published") & (own.offset != "exact") & ~left_out(own) &
+               ~own.method.str.contains("--clear all|--level objects")]
     for group, here in by(rows, "group"):
         out.panels.append(Panel(group, log("candidates / colliding pairs"), Axis("missed pairs (%)", low=0, high=100), [
             series_of(name, of, lambda row: row.candidates / row.colliding,
@@ -135,8 +136,9 @@ def size_figure(own):
     out, runs = Figure(
         "accuracy-size", "Missed pairs against the size of triangles",
         "The resolution is chosen so that a triangle that can take part covers 1, 4 or 16 pixels, on average over the "
-        "triangles and the axes. Scenes that are drawn at random have their own seed."), 0
-    for group, here in by(own[own.sized], "group"):
+        "triangles and the axes. Scenes that are drawn at random have their own seed. Both directions of each axis are "
+        "in the table."), 0
+    for group, here in by(own[own.sized & (own.views != BOTH_DIRECTIONS)], "group"):
         forms = list(here.groupby("form"))
         if max(len(rows) for _, rows in forms) == 1:
             out.caption += f" Not drawn, since one size alone fits: {group}."

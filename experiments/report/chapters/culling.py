@@ -35,8 +35,8 @@ def figure_of(rows):
         "culling", "Candidates for each pair that collides",
         f"Pairs that are left to exact predicates, over the pairs that collide, on {rows.scene.nunique()} scenes; "
         "neighbours are in neither. 1 is the least there can be. Boxes, oriented boxes and what FAR pairs chooses by "
-        "itself have no resolution, so they are level lines; where it leaves what boxes leave, its line lies on theirs. "
-        "One run at each point.")
+        "itself have no resolution, so they are level lines; where it leaves what boxes leave, its line lies on "
+        "theirs. One run at each point.")
     for scene, of in by(rows, "scene"):
         panel = Panel(scene, log("resolution (px)"), log("candidates / colliding"))
         for way in WAYS:
@@ -56,8 +56,8 @@ def tables_of(rows, best):
         "Pairs that collide, pairs whose boxes overlap, and candidates for each pair that collides: of boxes, of FCL's "
         "oriented boxes, and of FAR pairs by its own choice, in the view z and in the views x, y, z, each at the "
         "resolution that leaves the fewest",
-        columns(["scene"], ["colliding", "boxes overlap", "boxes", "oriented", "FAR pairs", "1 view", "at px", "3 views",
-                            "at px"]))
+        columns(["scene"], ["colliding", "boxes overlap", "boxes", "oriented", "FAR pairs", "1 view", "at px",
+                            "3 views", "at px"]))
     for scene, ways in best.items():
         some = ways.get(CHOSEN) or ways.get(BOXES)
         if some is None:
@@ -106,8 +106,8 @@ def add_views(chapter, rows, best):
                      f"{sum(better)} of {len(better)} scenes.")
     views = rows[rows.way == THREE_VIEWS].sort_values("resolution").groupby("scene").left
     if worse := int((views.last() > views.min()).sum()):
-        chapter.find(f"More pixels do not always leave fewer: on {worse} of {len(best)} scenes three views leave more at "
-                     "the largest resolution than at a smaller one.")
+        chapter.find(f"More pixels do not always leave fewer: on {worse} of {len(best)} scenes three views leave more "
+                     "at the largest resolution than at a smaller one.")
 
 
 def fill(chapter, study):
@@ -117,8 +117,8 @@ def fill(chapter, study):
     add_choice(chapter, best)
     add_views(chapter, rows, best)
     chapter.limits = [
-        "Fewer candidates are not less time: where boxes leave few pairs for each that collides, exact predicates on all "
-        "of them take less time than a view.",
+        "Fewer candidates are not less time: where boxes leave few pairs for each that collides, exact predicates on "
+        "all of them take less time than a view.",
         "FCL refuses degenerate triangles. Libraries leave out neighbours that share an index, FAR pairs those that "
         "share a position: where a mesh has a vertex twice, the libraries' candidates hold a few more.",
         "Inside an object FAR pairs leaves neighbours to the predicates as well. They are not counted here."]

@@ -2,8 +2,8 @@
 of CULLIDE."""
 from frame import *  # noqa: F403: a chapter uses most of it
 
-OBB, EXACT, PAIRS, BOXES, PLAIN, QUICK = "FAR (OBB)", "FAR (exact)", "FAR pairs", "I-COLLIDE", "CULLIDE", "Quick-CULLIDE"
-METHODS = [OBB, EXACT, PLAIN, QUICK, PAIRS, BOXES]
+METHODS = ["FAR (OBB)", "FAR (exact)", "CULLIDE", "Quick-CULLIDE", "FAR pairs", "I-COLLIDE"]
+OBB, EXACT, PLAIN, QUICK, PAIRS, BOXES = METHODS
 NAMES = ["object_triangles", "kept_triangles", "colliding_triangles", "candidates", "triangles", "queries", "draws",
          "colliding", "missed", "total_ms", "there"]
 
@@ -54,8 +54,8 @@ def figures_of(scenes):
          for scene, frames in scenes.items()])
     quick = Figure(
         "efficiency-quick", "What Quick-CULLIDE asks and draws over what CULLIDE does, frame by frame",
-        "Each runs until a round changes nothing. Below 1 Quick-CULLIDE does less. Both miss pairs, so they do not have "
-        f"the same answer. {n}",
+        "Each runs until a round changes nothing. Below 1 Quick-CULLIDE does less. Both miss pairs, so they do not "
+        f"have the same answer. {n}",
         [Panel(what, axis, Axis("Quick-CULLIDE / CULLIDE", low=0), [
             line(scene, (frames[what][QUICK] / frames[what][PLAIN]).where(frames[what][PLAIN] > 0))
             for scene, frames in scenes.items() if measured(frames, QUICK)], [Mark(1, "as many", vertical=False)])
@@ -71,17 +71,18 @@ def quick_row(scene, frames):
     over = common(frames, [QUICK, PLAIN, BOXES, OBB, EXACT])
     sums = over.sum(min_count=1)
     missed = sums.missed
-    return ([scene, grouped(len(over))] + [rounded(sums[what][QUICK] / sums[what][PLAIN]) for what in ("queries", "draws")] +
-            [cell(sums.colliding[BOXES]), cell(missed[PLAIN]), cell(missed[QUICK]),
-             cell(missed[[OBB, EXACT]].sum(min_count=1))])
+    return ([scene, grouped(len(over))] +
+            [rounded(sums[what][QUICK] / sums[what][PLAIN]) for what in ("queries", "draws")] +
+            [cell(count) for count in (sums.colliding[BOXES], missed[PLAIN], missed[QUICK],
+                                       missed[[OBB, EXACT]].sum(min_count=1))])
 
 
 def tables_of(scenes):
     interval = "with the 95 % interval that it would have were the frames independent"
     return [
         Table("efficiency-factors",
-              "How many times more I-COLLIDE leaves than FAR: triangles of the objects whose boxes meet, triangles whose "
-              f"boxes meet, and pairs of them; median of the frames in which FAR keeps something, {interval}",
+              "How many times more I-COLLIDE leaves than FAR: triangles of the objects whose boxes meet, triangles "
+              f"whose boxes meet, and pairs of them; median of the frames in which FAR keeps something, {interval}",
               columns(["scene", "offset"], ["frames", "objects", "triangles", "pairs"]),
               [[scene, offset, grouped(len(factors(frames, method, "object_triangles"))),
                 median_text(factors(frames, method, "object_triangles")),
@@ -90,8 +91,8 @@ def tables_of(scenes):
                for scene, frames in scenes.items() for method, offset in ((OBB, "OBB"), (EXACT, "exact"))
                if measured(frames, method)]),
         Table("efficiency-quick",
-              "Quick-CULLIDE against CULLIDE, summed over the frames that all of them have: queries and draws as a part "
-              "of CULLIDE's, and the colliding pairs that each misses; a pair counts once in each frame",
+              "Quick-CULLIDE against CULLIDE, summed over the frames that all of them have: queries and draws as a "
+              "part of CULLIDE's, and the colliding pairs that each misses; a pair counts once in each frame",
               columns(["scene"], ["frames", "queries", "draws", "colliding", "CULLIDE misses", "Quick-CULLIDE misses",
                                   "FAR misses"]),
               [quick_row(scene, frames) for scene, frames in scenes.items() if measured(frames, QUICK)]),
@@ -124,8 +125,8 @@ def add_missed(chapter, rows):
     parts = [f"{method} {with_bound(total(of, 'missed'), total(of, 'colliding'))}"
              for method in (OBB, EXACT, PAIRS, BOXES, PLAIN, QUICK) if len(of := known[known.contestant == method])]
     if parts:
-        chapter.find("Colliding pairs missed, over all frames (a pair counts once in each frame; the bounds are 3/N, at "
-                     f"95 % were all N independent): {listed(parts)}.")
+        chapter.find("Colliding pairs missed, over all frames (a pair counts once in each frame; the bounds are 3/N, "
+                     f"at 95 % were all N independent): {listed(parts)}.")
 
 
 def add_quick(chapter, scenes):
@@ -144,8 +145,8 @@ def fill(chapter, study):
     add_missed(chapter, study.rows)
     add_quick(chapter, scenes)
     chapter.limits = [
-        "Scenes are far smaller than in the papers, so that a software device can draw them; `farcull experiment family` "
-        "takes any size.",
+        "Scenes are far smaller than in the papers, so that a software device can draw them; `farcull experiment "
+        "family` takes any size.",
         "Factors depend on resolution: at a lower one FAR fattens more and keeps more.",
         "FAR and CULLIDE are measured between objects; scenes with objects that are tested against themselves are "
         "measured by I-COLLIDE and FAR pairs alone.",

@@ -83,14 +83,15 @@ def overview(rows, pairs):
     start, counts = (
         "Pairs of triangles: missed (they meet, and it says apart) and false alarms (they are apart, and it says that "
         "they meet), per million of the pairs that were answered", ["asked"]) if pairs else (
-        "Meshes: the colliding pairs of all meshes that were asked, and the pairs that were reported; missed per million "
-        "of the colliding pairs of those meshes that were answered, false alarms per million of the reported pairs, "
-        "since nobody counts the pairs of a mesh that are apart. Both rates are given", ["colliding", "reported"])
+        "Meshes: the colliding pairs of all meshes that were asked, and the pairs that were reported; missed per "
+        "million of the colliding pairs of those meshes that were answered, false alarms per million of the reported "
+        "pairs, since nobody counts the pairs of a mesh that are apart. Both rates are "
+        "given", ["colliding", "reported"])
     out = Table(
         "libraries" if pairs else "libraries-meshes",
-        f"{start}, first by what the documentation of each promises, then by closed triangles. Counts"
-        f"{'' if pairs else ' of meshes'}: refused; without an answer, or not asked after too many deaths; crashed, a "
-        "hang or a lack of memory among them; answered otherwise the second time",
+        f"{start}, first by what the documentation of each promises, then by closed triangles. "
+        f"Counts{'' if pairs else ' of meshes'}: refused; without an answer, or not asked after too many deaths; "
+        "crashed, a hang or a lack of memory among them; answered otherwise the second time",
         columns(["contestant", "library", "measured as"],
                 counts + ["missed, own", "false, own", "missed", "false", "refused", "unanswered", "deaths", "differs",
                           "ns a pair" if pairs else "ms in all"]))

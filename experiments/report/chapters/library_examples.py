@@ -10,9 +10,9 @@ TITLES = {"missed": "Missed: pairs that meet and that a library calls apart",
 CAPTION = (
     "The pairs of the table of examples, one for each contestant: the first triangle is filled, the second has dashed "
     "edges. Each pair is moved and stretched along x, y and z until its box is a cube, which changes nothing about "
-    "whether triangles meet, and is seen from where both triangles are broad. So every panel has a scale of its own, and "
-    "says nothing of lengths and angles: the table has the coordinates. A triangle that is equal to the other, or much "
-    "smaller, cannot be seen, nor can differences in the last place.")
+    "whether triangles meet, and is seen from where both triangles are broad. So every panel has a scale of its own, "
+    "and says nothing of lengths and angles: the table has the coordinates. A triangle that is equal to the other, or "
+    "much smaller, cannot be seen, nor can differences in the last place.")
 KINDS = ["apart", "touch-vertex", "touch-edge", "touch-face", "crossing", "coplanar", "equal", "neighbours-meet",
          "neighbours-apart"]  # how the triangles of a labelled pair meet
 

@@ -14,8 +14,8 @@ FIGURES = [
      "Of FAR: pixel centres in which the fattened triangle is stored or asked. Of FAR pairs: entries in the lists of "
      "pixels, one for each triangle and pixel that it may touch, in the views that it looked with."),
     ("time", TIME, "time (ms)", "Time from triangles to pairs",
-     "Medians of the runs with their 95 % intervals as bars, without contexts and shaders. FAR with exact offsets draws "
-     "boxes first.")]
+     "Medians of the runs with their 95 % intervals as bars, without contexts and shaders. FAR with exact offsets "
+     "draws boxes first.")]
 
 
 def figure_of(rows, name, of, label, title, caption):
@@ -82,8 +82,8 @@ def fill(chapter, study):
         "Fragments of FAR are those of one drawing; a run draws what is left several times.",
         "FAR pairs compares pairs and chooses its directions, FAR culls sets along x, y and z: what differs is not the "
         "bound alone.",
-        "FAR with exact offsets draws boxes first and exact offsets on what these leave; where boxes leave few triangles "
-        "it draws no exact offset.",
+        "FAR with exact offsets draws boxes first and exact offsets on what these leave; where boxes leave few "
+        "triangles it draws no exact offset.",
         "On a software device times say nothing about graphics hardware; counts carry over."]
     add_gaps(chapter, study)
     if len(rows):

@@ -87,8 +87,8 @@ def add_kept_promises(chapter, rows):
     if len(sets) and not broken:
         chapter.find(f"{listed(sorted(set(sets.name)))} lost {rate_text(0, total(sets, 'with_nearest'))} nearest "
                      f"neighbours of objects, and {rate_text(0, total(sets, 'nearest_pairs'))} nearest pairs of "
-                     f"triangles, in {counted(len(sets), 'run', 'runs')}. An object counts once in each run; the bounds "
-                     "take all of them as independent.")
+                     f"triangles, in {counted(len(sets), 'run', 'runs')}. An object counts once in each run; the "
+                     "bounds take all of them as independent.")
     if len(distances) and not broken:
         chapter.find(f"Of the distances of farcull {rate_text(0, total(distances, 'asked'))} were not the nearest "
                      "double.")
@@ -110,8 +110,8 @@ def lost_figure(scenes):
         "proximity-lost", "Objects that lose their nearest neighbour, against the resolution",
         "An object is lost if none of its nearest neighbours is in its set. Bars are 95 % intervals of the share, were "
         "the objects independent. clusters:R has clusters whose sides are 1/R of that of the scene. Not widened: the "
-        "reliable form without the half diagonal of a cell that its proof asks for. Scenes of which nothing is lost are "
-        f"in the table. {objects_text(scenes)}.",
+        "reliable form without the half diagonal of a cell that its proof asks for. Scenes of which nothing is lost "
+        f"are in the table. {objects_text(scenes)}.",
         [Panel(scene.base, log(CELLS), Axis("lost (% of objects)", low=0), [
             series for method in DIAGRAMS if (series := lost_series(scene, method)).x])
          for scene in scenes])
@@ -120,8 +120,9 @@ def lost_figure(scenes):
 def lost_table(scenes, sizes):
     return Table(
         "proximity-lost",
-        "Objects that lose their nearest neighbour, at each resolution in cells along the scene; \"-\" where the diagram "
-        "was left out or not asked for", columns(["scene", "method"], ["objects"] + [str(cells) for cells in sizes]),
+        "Objects that lose their nearest neighbour, at each resolution in cells along the scene; \"-\" where the "
+        "diagram was left out or not asked "
+        "for", columns(["scene", "method"], ["objects"] + [str(cells) for cells in sizes]),
         [[scene.base, method, grouped(of.with_nearest.iloc[0])] +
          ["-" if count != count else grouped(count) for count in of.missed.reindex(sizes)]
          for scene in scenes for method in DIAGRAMS if len(of := scene.of(method))])
@@ -156,9 +157,9 @@ def frames_figure(scenes):
 def efficiency_table(rest, moving, finest):
     out = Table(
         "proximity-efficiency",
-        "Culling efficiency: how many times more triangles the boxes of objects leave in the sets. Of scenes at rest the "
-        f"diagrams have {finest} cells along the scene; of scenes that move, the median over the frames with the 95 % "
-        "interval that it would have were the frames independent",
+        "Culling efficiency: how many times more triangles the boxes of objects leave in the sets. Of scenes at rest "
+        f"the diagrams have {finest} cells along the scene; of scenes that move, the median over the frames with the "
+        "95 % interval that it would have were the frames independent",
         columns(["scene"], ["frames", "triangles per object, boxes", TREES, RELIABLE, PUBLISHED]))
     for scene in rest:
         out.rows.append([scene.base, "-", rounded(scene.value(BOXES, 0, "triangles_each"))] + [
@@ -214,8 +215,8 @@ def error_figure(rows):
     out = Figure(
         "proximity-error", "Errors of distances against time",
         "The largest error of a distance over the exact distance, of those where neither is 0; those that are wrong in "
-        f"another way are in the table. {sample_text(drawn)} on one thread, from the triangles to the distances, with its "
-        "95 % interval as a bar.")
+        f"another way are in the table. {sample_text(drawn)} on one thread, from the triangles to the distances, with "
+        "its 95 % interval as a bar.")
     for scene, of in by(drawn, "scene"):
         panel = Panel(scene, log("time (ms)"), log("largest relative error", zero=True))
         for name, row in by(of, "name"):
@@ -228,9 +229,9 @@ def error_figure(rows):
 def distance_table(rows):
     out = table_of_rows(
         "proximity-distances",
-        "Distances asked for, those that are not the nearest double, and of these: lacking, 0 where objects are apart or "
-        "the reverse, of another object that is not as near; the largest relative error of the others; time in ms as the "
-        "median with its 95 % interval", pd.concat([rows[:0]] + [of for _, of in by(rows, "scene")]),
+        "Distances asked for, those that are not the nearest double, and of these: lacking, 0 where objects are apart "
+        "or the reverse, of another object that is not as near; the largest relative error of the others; time in ms "
+        "as the median with its 95 % interval", pd.concat([rows[:0]] + [of for _, of in by(rows, "scene")]),
         {"scene": "=scene", "contestant": "=name", "asked": "asked", "off": "wrong", "lacking": "lacking",
          "other 0": "other_zero", "other object": "other_object",
          "largest error": lambda row: rounded(value(row, "largest_relative"), 2), "time (ms)": estimate_cell,
@@ -266,22 +267,24 @@ def fill(chapter, study):
     add_sets(chapter, rest, sizes)
     add_distances(chapter, rows[~rows.sets])
     chapter.limits = [
-        "The code of the published diagram is not known: its form here is the one that docs/voronoi.md defines. It runs "
-        "on one thread of the CPU, so that its times say nothing about graphics hardware.",
-        "Objects of one scene are not independent, so that intervals of shares are the best that so many objects allow.",
+        "The code of the published diagram is not known: its form here is the one that docs/voronoi.md defines. It "
+        "runs on one thread of the CPU, so that its times say nothing about graphics hardware.",
+        "Objects of one scene are not independent, so that intervals of shares are the best that so many objects "
+        "allow.",
         "Boxes of objects are those along the axes; other hulls would leave fewer triangles.",
-        "Most of the time of a library is that of building its trees, which a program that asks again would build once."]
+        "Most of the time of a library is that of building its trees, which a program that asks again would build "
+        "once."]
     if (apart.name == "embree-points").any():
         chapter.limits.append(
-            "Embree has no query for the distance of two meshes. embree-points asks it from every vertex of each object "
-            "for the nearest point of the other one. That bounds the distance from above, but for the rounding to "
-            "floats: it is too large where the nearest points lie inside two edges, and above 0 where objects cross. So "
-            "its time is no time of the same question.")
+            "Embree has no query for the distance of two meshes. embree-points asks it from every vertex of each "
+            "object for the nearest point of the other one. That bounds the distance from above, but for the rounding "
+            "to floats: it is too large where the nearest points lie inside two edges, and above 0 where objects "
+            "cross. So its time is no time of the same question.")
     add_gaps(chapter, study)
     exponents = Table(
         "proximity-exponents",
-        "Exponent b of time = a x^b over the number of objects x, by least squares in logarithms, with its 95 % interval "
-        f"(Student's t of the residuals; not given for fewer than {FEWEST_FOR_INTERVAL} points)",
+        "Exponent b of time = a x^b over the number of objects x, by least squares in logarithms, with its 95 % "
+        f"interval (Student's t of the residuals; not given for fewer than {FEWEST_FOR_INTERVAL} points)",
         columns(["of", "method"], ["from", "to", "points", "exponent"]))
     figures = [lost_figure(rest), size_figure(rest, "triangles"), size_figure(rest, "objects"), frames_figure(moving),
                count_figure(chapter, rows, exponents), error_figure(apart)]

@@ -25,8 +25,8 @@ def miss_table(chapter, rows):
     """Missed of colliding pairs by method, over all rows; a method that misses is a finding."""
     out = Table(
         "scaling-missed",
-        "Missed pairs of all that collide, over all sizes and resolutions: a pair counts once in each run. Where none is "
-        "missed, the upper bound of the rate, 3/N (at 95 % were all N independent)",
+        "Missed pairs of all that collide, over all sizes and resolutions: a pair counts once in each run. Where none "
+        "is missed, the upper bound of the rate, 3/N (at 95 % were all N independent)",
         columns(["method"], ["points", "colliding", "missed", "rate"]))
     for method, of in rows[column(rows, "missed").notna()].groupby("contestant"):
         missed, colliding = total(of, "missed"), total(of, "colliding")
@@ -39,10 +39,10 @@ def miss_table(chapter, rows):
 
 def caption_of(rows, drawn):
     sides = sorted({side for plot in PLOTS if plot != "resolution" for side in resolutions(rows_of(rows, plot))})
-    drawing = (f"Methods that draw are measured at {listed(map(str, sides))} px but for the plot of resolution, and not "
-               "at the largest sizes. ") if sides else ""
-    return (f"{sample_text(drawn)}, with its 95 % interval as a bar. Both axes are logarithmic, so that a power of x is a "
-            f"straight line. {drawing}Density and colliding pairs are two views of the same rows: the same objects in "
+    drawing = (f"Methods that draw are measured at {listed(map(str, sides))} px but for the plot of resolution, and "
+               "not at the largest sizes. ") if sides else ""
+    return (f"{sample_text(drawn)}, with its 95 % interval as a bar. Both axes are logarithmic, so that a power of x is "
+            f"a straight line. {drawing}Density and colliding pairs are two views of the same rows: the same objects in "
             "ever smaller boxes.")
 
 
@@ -75,13 +75,14 @@ def fill(chapter, study):
             chapter.find(f"Exponent of time over {plot}, with its 95 % interval: {listed(said)}.")
         figure.panels += [panel] * bool(panel.series)
     chapter.limits = [
-        "A fitted exponent holds for its range alone: constant parts flatten small sizes, caches and the growing number "
-        "of rounds steepen large ones. The interval is of the straight line through the medians, not of another machine.",
+        "A fitted exponent holds for its range alone: constant parts flatten small sizes, caches and the growing "
+        "number of rounds steepen large ones. The interval is of the straight line through the medians, not of another "
+        "machine.",
         "More objects in `crowd:N` stand at the same density, more triangles in `torii:N` are of the same six objects, "
         "so that what collides grows with both.",
         "I-COLLIDE sorts anew in each run here; from frame to frame it would mend what it has sorted.",
-        "Fragment work runs on the CPU where the device is software: there, resolution costs what graphics hardware does "
-        "side by side."]
+        "Fragment work runs on the CPU where the device is software: there, resolution costs what graphics hardware "
+        "does side by side."]
     add_gaps(chapter, study)
     if drawn:
         figure.caption = caption_of(rows, pd.concat(drawn).drop_duplicates("position"))

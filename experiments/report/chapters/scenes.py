@@ -50,15 +50,16 @@ def tables_of(study, at):
     return [
         Table("scenes",
               "All scenes of the studies. Self: whether objects are tested against themselves. Pairs that collide, "
-              "without neighbours inside an object. Then the pixels that the median triangle covers at each resolution: "
-              "the area of its image in the views x, y and z. The median is that of the triangles whose box meets "
-              "another object's or whose object is tested against itself. Of a scene that moves, the frame that is named",
+              "without neighbours inside an object. Then the pixels that the median triangle covers at each "
+              "resolution: the area of its image in the views x, y and z. The median is that of the triangles whose "
+              "box meets another object's or whose object is tested against itself. Of a scene that moves, the frame "
+              "that is named",
               columns(["scene", "source", "self"], numbers + [f"{resolution} px" for resolution in RESOLUTIONS]),
               [start + [self_text(row)] + count + [pixels_text(row, "pixels_half", side, at) for side in RESOLUTIONS]
                for row, start, count in zip(rows, starts, counts)]),
         Table("scenes-all",
-              "All scenes, the studies that use them, colliding neighbours, and the pixels that the smallest tenth, half "
-              f"and nine tenths of the triangles cover at most at {at} px",
+              "All scenes, the studies that use them, colliding neighbours, and the pixels that the smallest tenth, "
+              f"half and nine tenths of the triangles cover at most at {at} px",
               columns(["scene", "source", "description", "studies", "self"],
                       numbers + ["neighbours", "tenth", "half", "nine tenths"], ["scene hash"]),
               [start + [builtin(study, row.scene).get("description", "-"),
