@@ -133,15 +133,16 @@ def families_table(rows):
     def cell(of):
         pairs = of.pairs.any()
         asked, said = (total(of, "asked"), total(of, "answered")) if pairs else (10**6, 10**6)
-        return "-" if of.empty or asked == 0 else " / ".join(per_million(*rate) for rate in (
-            (total(of, "missed"), said), (total(of, "wrong"), said), (total(of, "refused"), asked), (deaths(of), asked)))
+        return "-" if of.empty or asked == 0 else " / ".join(
+            [per_million(total(of, name), said) for name in ("missed", "wrong")] +
+            [per_million(count, asked) for count in (total(of, "refused"), deaths(of))])
 
     return Table(
         "libraries-families",
         "Missed / false alarms per million answers and refused / deaths per million pairs that were asked, of each "
         "family, by closed triangles; of meshes the counts", columns(["contestant"] + families, []),
-        [[contestant] + [cell(of[of.family == family]) for family in families] for contestant, of in by(rows, "method")],
-        in_text=False)
+        [[contestant] + [cell(of[of.family == family]) for family in families]
+         for contestant, of in by(rows, "method")], in_text=False)
 
 
 def all_table(rows):

@@ -54,8 +54,8 @@ def examples_of(rows):
 
 
 def in_unit_cube(corners):
-    """Moved and stretched along each axis until the box of the corners is the unit cube. Halves, since the difference of
-    two doubles may be infinite."""
+    """Moved and stretched along each axis until the box of the corners is the unit cube. Halves, since the difference
+    of two doubles may be infinite."""
     half = corners / 2
     low, size = half.min(axis=0), half.max(axis=0) - half.min(axis=0)
     return np.where(size > 0, (half - low) / np.where(size > 0, size, 1), 0)

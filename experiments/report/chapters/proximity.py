@@ -204,9 +204,9 @@ def count_figure(chapter, rows, exponents):
             chapter.find(f"Exponent of time over objects, of {what}, with its 95 % interval: {listed(said)}.")
         out.panels += [panel] * bool(panel.series)
     if drawn:
-        out.caption = (f"{sample_text(pd.concat(drawn))}, on one thread, with its 95 % interval as a bar. Objects stand "
-                       "at the same density. Distances are from the triangles to the distance of each object from its "
-                       "nearest one, trees included.")
+        out.caption = (f"{sample_text(pd.concat(drawn))}, on one thread, with its 95 % interval as a bar. Objects "
+                       "stand at the same density. Distances are from the triangles to the distance of each object "
+                       "from its nearest one, trees included.")
     return out
 
 
@@ -261,7 +261,8 @@ def sets_table(rows):
 def fill(chapter, study):
     rows = with_names(study.rows)
     sets, apart = rows[rows.sets], rows[~rows.sets & ~rows.counts]
-    rest, moving = scenes_of(sets[(sets.frame < 0) & ~sets.counts], "resolution"), scenes_of(sets[sets.frame >= 0], "frame")
+    rest = scenes_of(sets[(sets.frame < 0) & ~sets.counts], "resolution")
+    moving = scenes_of(sets[sets.frame >= 0], "frame")
     sizes = sorted({cells for scene in rest for _, cells in scene.sums.index if cells > 0})
     add_kept_promises(chapter, rows)
     add_sets(chapter, rest, sizes)

@@ -41,9 +41,9 @@ def caption_of(rows, drawn):
     sides = sorted({side for plot in PLOTS if plot != "resolution" for side in resolutions(rows_of(rows, plot))})
     drawing = (f"Methods that draw are measured at {listed(map(str, sides))} px but for the plot of resolution, and "
                "not at the largest sizes. ") if sides else ""
-    return (f"{sample_text(drawn)}, with its 95 % interval as a bar. Both axes are logarithmic, so that a power of x is "
-            f"a straight line. {drawing}Density and colliding pairs are two views of the same rows: the same objects in "
-            "ever smaller boxes.")
+    return (f"{sample_text(drawn)}, with its 95 % interval as a bar. Both axes are logarithmic, so that a power of x "
+            f"is a straight line. {drawing}Density and colliding pairs are two views of the same rows: the same "
+            "objects in ever smaller boxes.")
 
 
 def fill(chapter, study):
