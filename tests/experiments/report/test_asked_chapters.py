@@ -26,9 +26,11 @@ def proximity_rows(missed=0, missed_pairs=0, wrong=0):
             out += [row(scene, "voronoi", sets(lost, 30, False), resolution=cells),
                     row(scene, "voronoi-reliable", sets(missed, 10, True, missed_pairs), resolution=cells)]
     for frame, each in ((0, 2), (1, 4)):
-        out += [row("crowd:30", "boxes", sets(each=20), frame=frame), row("crowd:30", "trees", sets(each=each), frame=frame)]
+        out += [row("crowd:30", method, sets(each=triangles), frame=frame)
+                for method, triangles in (("boxes", 20), ("trees", each))]
     out += [row(f"crowd:{n}", "trees", sets(objects=n), n) for n in (10, 100, 1000)]
-    return out + [row("field", "farcull nearest", asked(wrong, 0, True)), row("field", "peer nearest", asked(3, 0.25), 5)]
+    return out + [row("field", "farcull nearest", asked(wrong, 0, True)),
+                  row("field", "peer nearest", asked(3, 0.25), 5)]
 
 
 def test_proximity_says_what_is_lost_and_by_whom():

@@ -3,7 +3,7 @@ made up. Most tests have a twin, in which the opposite is said."""
 import numpy as np
 import pytest
 
-from made_up import chapter_of, figure, findings, row, study_of, table
+from made_up import chapter_of, findings, row, study_of, table
 from chapters import devices
 from frame import Chapter
 
