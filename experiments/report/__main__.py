@@ -17,7 +17,6 @@ import pathlib
 import re
 import shutil
 import signal
-import stat
 import subprocess
 import sys
 import tempfile
@@ -50,6 +49,7 @@ try:
     from chapters import devices
     from estimates import counted, grouped, listed, of_all, sentence
     from frame import Chapter, Damaged, command_of, describe, promising, value
+    from legible import legible
     from store import Store, other_devices
 except ImportError as error:
     print(f"farcull: {error.name}: is not there for {sys.executable}; install it (Debian: python3-matplotlib "
@@ -214,7 +214,7 @@ class Reporter:
         chapter = drawn.chapter
         for figure in chapter.figures:
             self.say("drawing " + figure.name)
-            draw.legible(figure)
+            legible(figure)
             files = draw.files_of(figure)
             for kind, content in files.items():
                 write(root / "figures" / f"{figure.name}.{kind}", content)
@@ -238,14 +238,14 @@ class Reporter:
             if self.arguments.no_pictures:
                 raise Refusal("--no-pictures", "was given", "leave it out")
             path.parent.mkdir(exist_ok=True)
-            self.run_picture(picture, ["-o", path])
+            broken = self.run_picture(picture, ["-o", path])
             out.png = path.read_bytes()
         except Refusal as error:
             out.left_out = f"{error.where} {error.reason}"
             self.notes.append(f"picture {picture.name} is left out: {out.left_out}")
             return out
         self.counts["picture"] += 1
-        self.add_counts(picture, chapter, png_texts(out.png))
+        self.add_counts(picture, chapter, png_texts(out.png), bool(broken))
         out.page = self.make_page(picture, root / "pages" / (picture.name + ".html"))
         return out
 
@@ -260,8 +260,9 @@ class Reporter:
             raise Refusal(where, reason.split("; ")[0], "")
         return lines if done.returncode == 1 else []
 
-    def add_counts(self, picture, chapter, texts):
-        """Writes what the drawn panels count into the caption, and tells where the rows say otherwise."""
+    def add_counts(self, picture, chapter, texts, broken):
+        """Writes what the drawn panels count into the caption, and tells where the rows say otherwise. broken: the
+        program says that a method that promises missed something."""
         said, stored = [], []
         for i, (method, *known) in enumerate(picture.panels):
             text = texts[f"Panel {i + 1}"]
@@ -270,7 +271,7 @@ class Reporter:
             if known[:2] != [missed, colliding]:
                 words = ["an unknown number" if n is None or n != n else grouped(n) for n in known[:2]]
                 stored.append(f"{words[0]} of {words[1]} by {method}")
-            if missed and method.startswith("FAR"):
+            if broken and missed and method.startswith("FAR"):
                 text = (f"in the picture {picture.name}, {method} misses {of_all(missed, colliding)} colliding pairs, "
                         "and promises to miss none.")
                 chapter.find_broken(text)

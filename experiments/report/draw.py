@@ -19,8 +19,7 @@ from matplotlib import font_manager, pyplot, textpath  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.patches import Rectangle  # noqa: E402
 
-from estimates import listed, sentence  # noqa: E402
-from scales import Scale, scale_of, tick_label  # noqa: E402
+from scales import Scale, scale_of  # noqa: E402
 
 pyplot.style.use(os.path.join(os.path.dirname(os.path.abspath(__file__)), "journal.mplstyle"))
 
@@ -29,7 +28,6 @@ LINE = 11.0   # from line to line of text
 ROW = 10.5    # of a strip
 FAMILIES = "'DejaVu Sans', Helvetica, Arial, sans-serif"
 NOTE = "Shaded: the axis is linear, from 0 to the end of the shade. Beyond, it is logarithmic."
-LONGEST_NAME = 85  # characters that the key has room for
 
 SOLID, DASHES = "-", ["-", (0, (5, 2.5)), (0, (1, 1.5)), (0, (5, 2, 1, 2)), (0, (8, 2))]
 MARKERS = ["o", "s", "^", "v", "D", "o ", "s ", "^ ", "v ", "D "]  # with a blank: hollow
@@ -41,8 +39,7 @@ KNOWN = [  # the first whose words are in a name
     ("cullide", "#d55e00", 1, "o "), ("i collide", "#777777", 3, "s "),
     ("cgal", "#882255", 2, "v "), ("fcl", "#aa7744", 2, "D"), ("embree", "#999933", 2, "v"),
     ("exact", "#000000", 2, "+"), ("colliding", "#000000", 2, "+"), ("ode", "#661100", 2, "x")]
-FREE = ["#332288", "#117733", "#cc6677", "#44aa99", "#aa4499", "#888800", "#661100", "#6699cc",
-        "#555555", "#dd8800"]
+FREE = ["#332288", "#117733", "#cc6677", "#44aa99", "#aa4499", "#888800", "#661100", "#6699cc", "#555555", "#dd8800"]
 
 
 @dataclass
@@ -58,14 +55,12 @@ class Look:
 
     def points(self):
         hollow = self.marker.endswith(" ") or self.marker in "+x"
-        return {"color": self.colour, "linestyle": "none", "marker": self.marker.strip(),
-                "markersize": self.size, "markeredgewidth": 0.8,
-                "markerfacecolor": "none" if hollow else self.colour}
+        return {"color": self.colour, "linestyle": "none", "marker": self.marker.strip(), "markersize": self.size,
+                "markeredgewidth": 0.8, "markerfacecolor": "none" if hollow else self.colour}
 
 
 def series_names(figure):
-    return list(dict.fromkeys(
-        s.name for panel in figure.panels for s in panel.series + panel.strip))
+    return list(dict.fromkeys(s.name for panel in figure.panels for s in panel.series + panel.strip))
 
 
 def mark_names(figure):
@@ -73,9 +68,8 @@ def mark_names(figure):
 
 
 def looks_of(figure):
-    """A Look for each name. Later names of one method have other dashes and markers; emphasised
-    ones are thick, and get thinner in the order in which they lie over each other, so that those
-    with the same values all stay visible."""
+    """A Look for each name. Later names of one method have other dashes and markers; emphasised ones are thick, and get
+    thinner in the order in which they lie over each other, so that those with the same values all stay visible."""
     out, times, unknown, thick = {}, {}, 0, 0
     emphasised = {s.name for panel in figure.panels for s in panel.series if s.emphasis}
     for name in series_names(figure):
@@ -87,8 +81,7 @@ def looks_of(figure):
             look = Look(known[1], DASHES[(known[2] + n) % len(DASHES)],
                         MARKERS[(at + n) % len(MARKERS)] if n else known[3])
         else:
-            look = Look(FREE[unknown % len(FREE)],
-                        DASHES[(unknown + unknown // len(FREE)) % len(DASHES)],
+            look = Look(FREE[unknown % len(FREE)], DASHES[(unknown + unknown // len(FREE)) % len(DASHES)],
                         MARKERS[(unknown + unknown // len(MARKERS)) % len(MARKERS)])
             unknown += 1
         if name in emphasised:
@@ -101,70 +94,6 @@ def looks_of(figure):
 def text_width(text, size=8):
     font = font_manager.FontProperties(family="DejaVu Sans", size=size)
     return textpath.text_to_path.get_text_width_height_descent(text, font, False)[0]
-
-
-# ---- what is worth drawing
-
-def same(a, b):
-    return len(a) == len(b) and all(x == y or (x != x and y != y) for x, y in zip(a, b))
-
-
-def agree(figure, one, other):
-    for panel in figure.panels:
-        a, b = ([s for s in panel.series if s.name == name] for name in (one, other))
-        if len(a) != len(b) or any(
-                x.style != y.style or not all(same(getattr(x, f), getattr(y, f)) for f in (
-                    "x", "y", "x_low", "x_high", "y_low", "y_high")) for x, y in zip(a, b)):
-            return False
-    return True
-
-
-def merge_series(figure):
-    """Series that agree in every panel are drawn once, under a name that tells all of them."""
-    groups = []
-    for name in dict.fromkeys(s.name for panel in figure.panels for s in panel.series):
-        group = next((g for g in groups if agree(figure, g[0], name)), None)
-        if group:
-            group.append(name)
-        else:
-            groups.append([name])
-    emphasised = {s.name for panel in figure.panels for s in panel.series if s.emphasis}
-    for group in groups:
-        if len(group) == 1:
-            continue
-        # The first gives the colour: what the figure is about, or ours.
-        group.sort(key=lambda n: not (n in emphasised or n.startswith("FAR")))
-        name = " = ".join(group)
-        if len(name) > LONGEST_NAME:
-            few = f"{group[0]} and {len(group) - 1} others"
-            figure.caption = f"{sentence(figure.caption)} {few}: {name}."
-            name = few
-        for panel in figure.panels:
-            thick = any(s.name in group and s.emphasis for s in panel.series)
-            panel.series = [s for s in panel.series if s.name not in group[1:]]
-            for series in panel.series:
-                if series.name == group[0]:
-                    series.name, series.emphasis = name, thick
-
-
-def drop_panels(figure):
-    """Panels without a difference become a sentence of the caption."""
-    kept, constant, empty = [], {}, []
-    for panel in figure.panels:
-        values = [y for s in panel.series for y in s.y if math.isfinite(y)]
-        if panel.drawing or panel.strip or any(y != values[0] for y in values):
-            kept.append(panel)
-        elif values:
-            constant.setdefault(tick_label(values[0]), []).append(panel.title)
-        else:
-            empty.append(panel.title)
-    if not kept:
-        return
-    figure.panels, figure.caption = kept, sentence(figure.caption)
-    for value, titles in constant.items():
-        figure.caption += f" Not drawn, since every value is {value}: {listed(titles)}."
-    if empty:
-        figure.caption += f" Not drawn, since there is no value: {listed(empty)}."
 
 
 # ---- layout
@@ -228,8 +157,7 @@ class Layout:
     def __init__(self, figure):
         self.figure, self.looks = figure, looks_of(figure)
         self.columns = columns_for(figure)
-        self.key = [n for n in series_names(figure)
-                    if any(s.name == n for p in figure.panels for s in p.series)]
+        self.key = [n for n in series_names(figure) if any(s.name == n for p in figure.panels for s in p.series)]
         self.key += mark_names(figure)
         single = len(figure.panels) == 1 and not figure.panels[0].strip
         narrow = single and all(text_width(n) + 34 < SINGLE - 8 for n in self.key)
@@ -337,7 +265,7 @@ class Drawer:
                                      self.y(top) - self.y(bottom)])
 
     def panel(self, placed):
-        panel, (left, right, top, bottom) = placed.panel, placed.box
+        panel, left, top = placed.panel, placed.box[0], placed.box[2]
         ax = self.axes(*placed.box)
         if panel.title:
             self.text(left, top - LINE / 2 - 2, panel.title, color="#000000")
@@ -357,29 +285,25 @@ class Drawer:
         drawn = [self.series(ax, placed, s)
                  for s in sorted(panel.series, key=lambda s: not s.emphasis)]
         if not any(drawn) and not panel.strip:
-            ax.text(0.5, 0.5, "nothing was measured", transform=ax.transAxes, ha="center",
-                    va="center", color="#666666")
+            ax.text(0.5, 0.5, "nothing was measured", transform=ax.transAxes, ha="center", va="center", color="#666666")
         if panel.strip:
             self.strip(placed)
         if self.layout.direct:
             self.direct(ax, placed)
 
     def ticks(self, ax, placed):
-        for scale, axis, limits in ((placed.x, ax.xaxis, ax.set_xlim),
-                                    (placed.y, ax.yaxis, ax.set_ylim)):
+        for scale, axis, limits in ((placed.x, ax.xaxis, ax.set_xlim), (placed.y, ax.yaxis, ax.set_ylim)):
             limits(*scale.ends)
             major = [(scale.place(at), label) for at, label in scale.ticks if label]
             axis.set_ticks([at for at, _ in major], [label for _, label in major])
-            axis.set_ticks([scale.place(at) for at, label in scale.ticks if not label],
-                           minor=True)
+            axis.set_ticks([scale.place(at) for at, label in scale.ticks if not label], minor=True)
         if placed.panel.strip:
             ax.tick_params(axis="x", which="both", labelbottom=False)
 
     def labels(self, placed):
         panel, (left, right, top, bottom) = placed.panel, placed.box
         if placed.labels[0]:
-            self.text((left + right) / 2, bottom + placed.strip + 1.5 * LINE + 4, panel.x.label,
-                      ha="center")
+            self.text((left + right) / 2, bottom + placed.strip + 1.5 * LINE + 4, panel.x.label, ha="center")
         if placed.labels[1]:
             label = wrapped(panel.y.label, bottom - top)
             ticks = max([0.0] + [text_width(t) for _, t in placed.y.ticks])
@@ -388,18 +312,15 @@ class Drawer:
 
     def shade(self, ax, placed):
         """Where an axis that shows zeros is linear it is shaded, with a line at 0."""
-        for scale, span, line in ((placed.x, ax.axvspan, ax.axvline),
-                                  (placed.y, ax.axhspan, ax.axhline)):
+        for scale, span, line in ((placed.x, ax.axvspan, ax.axvline), (placed.y, ax.axhspan, ax.axhline)):
             if scale.linear_to:
                 span(scale.ends[0], scale.place(scale.linear_to), color="#f1f1ee", zorder=0)
-                line(scale.place(0), color="#999999", linewidth=0.6, linestyle=(0, (1, 2)),
-                     zorder=0.6)
+                line(scale.place(0), color="#999999", linewidth=0.6, linestyle=(0, (1, 2)), zorder=0.6)
 
     def mark_look(self, name):
         dashes = [(0, (3, 2)), (0, (1, 1.5)), (0, (6, 2)), (0, (4, 1.5, 1, 1.5))]
         at = mark_names(self.layout.figure).index(name) if name else 0
-        return {"color": "#444444", "linewidth": 0.9, "linestyle": dashes[at % len(dashes)],
-                "zorder": 1.5}
+        return {"color": "#444444", "linewidth": 0.9, "linestyle": dashes[at % len(dashes)], "zorder": 1.5}
 
     def bars(self, ax, look, x, y, low, high, horizontal):
         along = x if horizontal else y
@@ -421,11 +342,9 @@ class Drawer:
             ax.plot(x, y, **look.line())
             return True
         if s.x_low:
-            self.bars(ax, look, x, y, *([placed.x.place(v) for v in ends]
-                                        for ends in (s.x_low, s.x_high)), True)
+            self.bars(ax, look, x, y, *([placed.x.place(v) for v in ends] for ends in (s.x_low, s.x_high)), True)
         if s.y_low:
-            self.bars(ax, look, x, y, *([placed.y.place(v) for v in ends]
-                                        for ends in (s.y_low, s.y_high)), False)
+            self.bars(ax, look, x, y, *([placed.y.place(v) for v in ends] for ends in (s.y_low, s.y_high)), False)
         if s.style in ("lines", "lines_points"):
             ax.plot(x, y, **look.line(), **clip)
         if s.style in ("points", "lines_points"):
@@ -482,26 +401,19 @@ class Drawer:
                 continue
             look, style = self.layout.looks[name], styles[name]
             if style == "area":
-                self.add(Rectangle((ends[0][0], self.y(y + 3)), ends[0][1] - ends[0][0],
-                                   self.y(y - 3) - self.y(y + 3), color=look.colour, alpha=0.25,
-                                   linewidth=0))
+                self.add(Rectangle((ends[0][0], self.y(y + 3)), ends[0][1] - ends[0][0], self.y(y - 3) - self.y(y + 3),
+                                   color=look.colour, alpha=0.25, linewidth=0))
             if style != "points":
                 self.add(Line2D(*ends, **look.line()))
             if style in ("points", "lines_points"):
                 self.add(Line2D([self.x(x + 10)], [self.y(y)], **look.points()))
         if self.layout.note_top is not None:
-            self.text(self.layout.width / 2,
-                      self.layout.note_top + LINE * (1 + self.layout.note.count("\n")) / 2,
+            self.text(self.layout.width / 2, self.layout.note_top + LINE * (1 + self.layout.note.count("\n")) / 2,
                       self.layout.note, ha="center", color="#555555", linespacing=1.1)
 
     def add(self, line):
         line.set_transform(self.canvas.transFigure)
         self.canvas.add_artist(line)
-
-
-def legible(figure):
-    drop_panels(figure)
-    merge_series(figure)
 
 
 def numbers_of(figure):
@@ -518,8 +430,7 @@ def numbers_of(figure):
     for panel in figure.panels:
         for s in panel.series + panel.strip:
             for i in range(len(s.x)):
-                writer.writerow([panel.title, s.name] +
-                                [cell(getattr(s, name), i) for name in ("x", "y", *ends)])
+                writer.writerow([panel.title, s.name] + [cell(getattr(s, name), i) for name in ("x", "y", *ends)])
     return out.getvalue()
 
 

@@ -85,8 +85,7 @@ def beta_share(a, b, x):
         return float(x >= 1)
     if x > (a + 1) / (a + b + 2):
         return 1 - beta_share(b, a, 1 - x)
-    front = math.exp(math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b) +
-                     a * math.log(x) + b * math.log1p(-x)) / a
+    front = math.exp(math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b) + a * math.log(x) + b * math.log1p(-x)) / a
     c, d = 1.0, 1 / (1 - (a + b) * x / (a + 1))
     total = d
     for m in range(1, 10000):
@@ -119,8 +118,7 @@ def rate_of(hits, of):
 
 @functools.lru_cache(maxsize=None)
 def student_t95(degrees):
-    return solved(lambda t: 1 - beta_share(degrees / 2, 0.5, degrees / (degrees + t * t)) / 2,
-                  0.975, 0, 1000)
+    return solved(lambda t: 1 - beta_share(degrees / 2, 0.5, degrees / (degrees + t * t)) / 2, 0.975, 0, 1000)
 
 
 @dataclass
@@ -214,8 +212,7 @@ def rate_text(hits, of):
 
 
 def at_most(n):
-    """The upper bound of a rate of which none of n cases showed one: 3/n (Hanley and
-    Lippman-Hand, 1983)."""
+    """The upper bound of a rate of which none of n cases showed one: 3/n (Hanley and Lippman-Hand, 1983)."""
     return "at most " + rounded(min(1.0, 3 / n), 2)
 
 

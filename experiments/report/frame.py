@@ -201,15 +201,12 @@ def contestant(point):
 def describe(point):
     """A point in words: `two-bunnies, cullide, 512 px`."""
     cells = "cells" if point.method.startswith("voronoi") else "px"
-    return ", ".join(word for word in (
-        point.scene, point.method, point.offset,
-        "radius " + point.radius if point.radius not in ("", "budget") else "",
-        "24-bit depth" if point.depth_format == "fixed24" else "",
-        "fixed-function depth" if point.depth_mode == "fixed" else "",
-        f"{point.resolution} {cells}" if point.resolution > 0 else "",
-        "views " + point.views if point.views else "",
-        f"frame {point.frame}" if point.frame >= 0 else "",
-        f"seed {point.seed}" if point.seed > 0 else "") if word)
+    return ", ".join(word for word in (point.scene, point.method, point.offset, "radius " + point.radius if point.radius
+                                       not in ("", "budget") else "", "24-bit depth" if point.depth_format == "fixed24"
+                                       else "", "fixed-function depth" if point.depth_mode == "fixed" else "",
+                                       f"{point.resolution} {cells}" if point.resolution > 0 else "", "views " +
+                                       point.views if point.views else "", f"frame {point.frame}" if point.frame >= 0
+                                       else "", f"seed {point.seed}" if point.seed > 0 else "") if word)
 
 
 def scene_base(scene):
@@ -280,8 +277,7 @@ def resolutions(rows):
 
 def find_row(rows, name, resolution):
     """The first row of a contestant at a resolution; None where there is none."""
-    return next(rows[(rows.contestant == name) & (rows.resolution == resolution)].itertuples(),
-                None)
+    return next(rows[(rows.contestant == name) & (rows.resolution == resolution)].itertuples(), None)
 
 
 def estimate(row):
@@ -366,9 +362,8 @@ def table_of_rows(name, caption, rows, cells):
         return getattr(row, cell[1:]) if cell[0] == "=" else count_cell(row, cell)
 
     sides = ["l" if isinstance(cell, str) and cell[0] == "=" else "r" for cell in cells.values()]
-    return Table(name, caption, list(zip(cells, sides)),
-                 [[filled(row, cell) for cell in cells.values()] for row in rows.itertuples()],
-                 in_text=False)
+    return Table(name, caption, list(zip(cells, sides)), [[filled(row, cell) for cell in cells.values()] for row in
+                                                          rows.itertuples()], in_text=False)
 
 
 def resolution_cell(none):
@@ -416,9 +411,8 @@ def add_promises(chapter, study):
         # At a resolution chosen by the size of triangles it is the same method.
         names = [contestant(row._replace(method=row.method.split(" @")[0]))
                  for row in pairs.itertuples()]
-        chapter.find(f"{listed(dict.fromkeys(names))} missed "
-                     f"{rate_text(0, total(pairs, 'colliding'))} colliding pairs in "
-                     f"{counted(len(pairs), 'run', 'runs')}.")
+        chapter.find(f"{listed(dict.fromkeys(names))} missed {rate_text(0, total(pairs, 'colliding'))} colliding pairs "
+                     f"in {counted(len(pairs), 'run', 'runs')}.")
     if len(points) and not (lost[points.index] > 0).any():
         chapter.find(f"The lemmas are violated at {rate_text(0, total(points, 'points'))} points "
                      f"in {counted(len(points), 'run', 'runs')}.")
@@ -433,8 +427,7 @@ def add_gaps(chapter, study):
     for reason, count in sorted(reasons.value_counts().items()):
         chapter.limits.append(f"Left out at {of_all(count, len(study.points))} points: {reason}.")
     if not study.complete:
-        chapter.limits.append(
-            f"Not finished: {of_all(len(study.all_rows), len(study.points))} points are measured.")
+        chapter.limits.append(f"Not finished: {of_all(len(study.all_rows), len(study.points))} points are measured.")
 
 
 def command_of(study, runs):

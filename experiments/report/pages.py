@@ -126,8 +126,7 @@ class HtmlPage:
     def machines(self):
         """Each once, in order: devices and CPUs of the runs."""
         runs = self.page.runs[self.page.runs.run.isin(list(rows_of_runs(self.page)))]
-        return list(dict.fromkeys(f"{run.gl_renderer} on {run.cpu} ({run.cores} cores)"
-                                  for run in runs.itertuples()))
+        return list(dict.fromkeys(f"{run.gl_renderer} on {run.cpu} ({run.cores} cores)" for run in runs.itertuples()))
 
     def summary(self):
         drawn = self.page.chapters
@@ -137,10 +136,9 @@ class HtmlPage:
         out = ""
         if missing:
             what = "the study that shows" if len(missing) == 1 else "the studies that show"
-            out += (f'<p class="warning" role="note"><strong>Incomplete.</strong> {grouped(rows)} '
-                    f'of {grouped(points)} points have a row; {what} what is missing: '
-                    f'{html_text(listed(missing))}. What follows is of the rows that are there. '
-                    '<code>farcull experiment NAME --resume</code> measures the others.</p>\n')
+            out += (f'<p class="warning" role="note"><strong>Incomplete.</strong> {grouped(rows)} of {grouped(points)} '
+                    f'points have a row; {what} what is missing: {html_text(listed(missing))}. What follows is of the '
+                    f'rows that are there. ' '<code>farcull experiment NAME --resume</code> measures the others.</p>\n')
         out += '<section id="summary">\n<h2>Summary</h2>\n'
         # The claim of the rows, or none.
         claim = ("FAR culls with graphics hardware and never misses a pair that collides; CULLIDE, "
@@ -151,16 +149,13 @@ class HtmlPage:
             out += ('<p class="warning" role="note"><strong>Broken.</strong> What must never '
                     f'happen has happened:</p>\n<ul class="broken">\n{items}</ul>\n')
         grids = {d.study.quick for d in drawn}
-        kind = ("quick grids and full ones" if len(grids) > 1 else
-                "of quick grids, which are made for a first look" if True in grids
-                else "of full grids")
+        kind = ("quick grids and full ones" if len(grids) > 1 else "of quick grids, which are made for a first look" if
+                True in grids else "of full grids")
         out += (f"<p>{claim} This page reports {counted(len(drawn), 'study', 'studies')} on "
-                f"{html_text(listed(self.machines()))}: {counted(rows, 'row', 'rows')}, {kind}. "
-                f"All its numbers come from <code>{html_text(self.page.store)}</code>. Counts are "
-                "the same, bit for bit, on the same device and CPU features; times are of this "
-                "machine.</p>\n")
-        firsts = [(d.chapter, next((f for f in d.chapter.findings if not f[0]), None))
-                  for d in drawn]
+                f"{html_text(listed(self.machines()))}: {counted(rows, 'row', 'rows')}, {kind}. All its numbers come "
+                f"from <code>{html_text(self.page.store)}</code>. Counts are " "the same, bit for bit, on the same "
+                "device and CPU features; times are of this machine.</p>\n")
+        firsts = [(d.chapter, next((f for f in d.chapter.findings if not f[0]), None)) for d in drawn]
         items = linked_items((c, printed(f)) for c, f in firsts if f)
         return out + (f'<ul class="findings">\n{items}</ul>\n' if items else "") + "</section>\n"
 
@@ -172,39 +167,32 @@ class HtmlPage:
 
     def section(self, number, drawn):
         chapter, study = drawn.chapter, drawn.study
-        out = (f'<section id="{chapter.study}" class="study">\n<h2>{number}. '
-               f'{html_text(chapter.title)}</h2>\n'
-               f'<p class="question">{html_prose(chapter.question)}</p>\n')
+        out = (f'<section id="{chapter.study}" class="study">\n<h2>{number}. {html_text(chapter.title)}</h2>\n<p '
+               f'class="question">{html_prose(chapter.question)}</p>\n')
         if not study.complete:
             out += ('<p class="warning" role="note"><strong>Incomplete.</strong> '
                     f'{grouped(len(study.all_rows))} of {grouped(len(study.points))} points have '
                     'a row; findings, figures and tables are of these.</p>\n')
         if chapter.findings:
-            out += ("<h3>What it shows</h3>\n<ul>\n" +
-                    html_items(printed(f) for f in chapter.findings) + "</ul>\n")
+            out += ("<h3>What it shows</h3>\n<ul>\n" + html_items(printed(f) for f in chapter.findings) + "</ul>\n")
         out += "".join(self.picture(p) for p in drawn.pictures)
-        out += "".join(self.figure(f, svg, chapter)
-                       for f, svg in zip(chapter.figures, drawn.svgs))
+        out += "".join(self.figure(f, svg, chapter) for f, svg in zip(chapter.figures, drawn.svgs))
         out += "".join(self.table(t) for t in chapter.tables)
         if chapter.limits:
-            out += ("<h3>What it does not show</h3>\n<ul>\n" + html_items(chapter.limits) +
-                    "</ul>\n")
-        return out + (f'<p class="again">Measured by <code>{html_text(chapter.command)}</code>: '
-                      f'{grid_text(study)}, {grouped(len(study.all_rows))} of '
-                      f'{points_text(study)}. Every row: <a href="tables/{study.name}-rows.csv">'
-                      f'{study.name}-rows.csv</a>.</p>\n</section>\n')
+            out += ("<h3>What it does not show</h3>\n<ul>\n" + html_items(chapter.limits) + "</ul>\n")
+        return out + (f'<p class="again">Measured by <code>{html_text(chapter.command)}</code>: {grid_text(study)}, '
+                      f'{grouped(len(study.all_rows))} of {points_text(study)}. Every row: <a '
+                      f'href="tables/{study.name}-rows.csv">{study.name}-rows.csv</a>.</p>\n</section>\n')
 
     def figure(self, figure, svg, chapter):
         self.figures += 1
         name = figure.name
-        links = " ".join(f'<a href="figures/{name}.{kind}">{kind.upper()}</a>'
-                         for kind in ("svg", "pdf", "csv"))
-        return (f'<figure id="fig-{name}">\n<div class="drawing{" narrow" if figure.narrow else ""}" '
-                f'role="img" aria-label="{html_text(figure.title)}" tabindex="0">'
-                f'{inline_svg(svg, name + "-")}</div>\n<figcaption><strong>Figure {self.figures}. '
-                f'{html_text(sentence(figure.title))}</strong> '
-                f'{html_prose(caption_of(figure, chapter))} <span class="files">{links}</span>'
-                '</figcaption>\n</figure>\n')
+        links = " ".join(f'<a href="figures/{name}.{kind}">{kind.upper()}</a>' for kind in ("svg", "pdf", "csv"))
+        return (f'<figure id="fig-{name}">\n<div class="drawing{" narrow" if figure.narrow else ""}" role="img" '
+                f'aria-label="{html_text(figure.title)}" '
+                f'tabindex="0">{inline_svg(svg, name + "-")}</div>\n<figcaption><strong>Figure {self.figures}. '
+                f'{html_text(sentence(figure.title))}</strong> {html_prose(caption_of(figure, chapter))} <span '
+                f'class="files">{links}</span>' '</figcaption>\n</figure>\n')
 
     def picture(self, drawn):
         name, command = drawn.picture.name, html_text(drawn.command)
@@ -213,25 +201,21 @@ class HtmlPage:
                     f'{html_text(sentence(drawn.left_out))}</p>\n')
         self.figures += 1
         look = f' <a href="pages/{name}.html">look around in it</a>' if drawn.page else ""
-        return (f'<figure id="pic-{name}">\n<img src="data:image/png;base64,'
-                f'{base64.b64encode(drawn.png).decode()}" '
-                f'alt="{html_text(drawn.picture.caption)}">\n<figcaption><strong>Figure '
-                f'{self.figures}.</strong> {html_prose(sentence(drawn.picture.caption))} '
-                f'<span class="files"><code>{command}</code> <a href="pictures/{name}.png">PNG</a>'
-                f'{look}</span></figcaption>\n</figure>\n')
+        return (f'<figure id="pic-{name}">\n<img src="data:image/png;base64,{base64.b64encode(drawn.png).decode()}" '
+                f'alt="{html_text(drawn.picture.caption)}">\n<figcaption><strong>Figure {self.figures}.</strong> '
+                f'{html_prose(sentence(drawn.picture.caption))} <span class="files"><code>{command}</code> <a '
+                f'href="pictures/{name}.png">PNG</a>{look}</span></figcaption>\n</figure>\n')
 
     def table(self, table):
         name = table.name
         if not table.in_text:
-            return (f'<p class="longer">{html_prose(table.caption)} '
-                    f'({counted(len(table.rows), "row", "rows")}): <a href="tables/{name}.csv">'
-                    f'{name}.csv</a>.</p>\n')
+            return (f'<p class="longer">{html_prose(table.caption)} ({counted(len(table.rows), "row", "rows")}): <a '
+                    f'href="tables/{name}.csv">{name}.csv</a>.</p>\n')
         self.tables += 1
-        return (f'<figure id="tab-{name}" class="table">\n<figcaption><strong>Table {self.tables}.'
-                f'</strong> {html_prose(sentence(table.caption))} <span class="files">'
-                f'<a href="tables/{name}.csv">CSV</a> <a href="tables/{name}.tex">LaTeX</a></span>'
-                f'</figcaption>\n<div class="cells" tabindex="0" role="region" '
-                f'aria-label="Table {self.tables}">\n{table_html(table)}</div>\n</figure>\n')
+        return (f'<figure id="tab-{name}" class="table">\n<figcaption><strong>Table {self.tables}.</strong> '
+                f'{html_prose(sentence(table.caption))} <span class="files"><a href="tables/{name}.csv">CSV</a> <a '
+                f'href="tables/{name}.tex">LaTeX</a></span></figcaption>\n<div class="cells" tabindex="0" '
+                f'role="region" aria-label="Table {self.tables}">\n{table_html(table)}</div>\n</figure>\n')
 
     def machine(self):
         out = '<section id="machine">\n<h2>Where it was measured</h2>\n'
@@ -245,20 +229,17 @@ class HtmlPage:
             lines = (("Started", run.started), ("Device", run.gl_renderer),
                      ("Driver", driver_text(run)), ("CPU", run.cpu), ("Cores", str(run.cores)),
                      ("Commit", run.commit_id), ("Options", run.options), ("Rows", parts))
-            cells = "".join(f'<tr><th scope="row">{name}</th>'
-                            f'<td>{html_text(value) or "unknown"}</td></tr>\n'
-                            for name, value in lines)
+            cells = "".join(f'<tr><th scope="row">{name}</th><td>{html_text(value) or "unknown"}</td></tr>\n' for name,
+                            value in lines)
             out += (f'<h3>Run {run.run}</h3>\n<table class="machine">\n<tbody>\n{cells}</tbody>\n'
                     '</table>\n<details>\n<summary>CPU features</summary>\n<p class="features">'
                     f'{html_text(run.cpu_features) or "unknown"}</p>\n</details>\n')
         if devices:
-            answered = listed(f"{name or 'none'} ({counted(n, 'row', 'rows')})"
-                              for name, n in sorted(devices.items()))
+            answered = listed(f"{name or 'none'} ({counted(n, 'row', 'rows')})" for name, n in sorted(devices.items()))
             out += f"<p>What answered: {html_text(answered)}.</p>\n"
-        return out + ("<p>This page was made by <code>farcull report</code> from "
-                      f"{html_text(self.page.store)}; figures with their numbers, tables as CSV "
-                      "and LaTeX lie beside it in <code>figures/</code> and <code>tables/</code>. "
-                      "The page itself needs none of them.</p>\n</section>\n")
+        return out + ("<p>This page was made by <code>farcull report</code> from " f"{html_text(self.page.store)}; "
+                      f"figures with their numbers, tables as CSV " "and LaTeX lie beside it in <code>figures/</code> "
+                      "and <code>tables/</code>. The page itself needs none of them.</p>\n</section>\n")
 
 
 # ---- Markdown
@@ -294,11 +275,10 @@ def markdown_table(table):
 
 def markdown_machine(page):
     rows = rows_of_runs(page)
-    out = "".join(
-        markdown_row([str(run.run), run.started, run.commit_id, run.gl_renderer, driver_text(run),
-                      run.cpu, str(run.cores), "`" + run.options.replace("`", "\\u0060") + "`",
-                      grouped(sum(rows[run.run].values()))])
-        for run in page.runs.itertuples() if run.run in rows)
+    out = "".join(markdown_row([str(run.run), run.started, run.commit_id, run.gl_renderer, driver_text(run), run.cpu,
+                                str(run.cores), "`" + run.options.replace("`", "\\u0060") + "`",
+                                grouped(sum(rows[run.run].values()))]) for run in page.runs.itertuples() if run.run in
+                  rows)
     return ("| run | started | commit | device | driver | CPU | cores | options | rows |\n"
             "|---|---|---|---|---|---|---:|---|---:|\n" + out) if out else ""
 
@@ -312,8 +292,7 @@ def markdown_chapter(number, drawn, count):
     out += bullets(printed(f) for f in chapter.findings)
     for p in drawn.pictures:
         if not p.png:
-            out += (f"A picture ({markdown_code(p.command)}) is left out: "
-                    f"{markdown_prose(sentence(p.left_out))}\n\n")
+            out += (f"A picture ({markdown_code(p.command)}) is left out: {markdown_prose(sentence(p.left_out))}\n\n")
             continue
         count["figure"] += 1
         caption = markdown_prose(sentence(p.picture.caption))
@@ -321,14 +300,12 @@ def markdown_chapter(number, drawn, count):
                 f"{caption} {markdown_code(p.command)}\n\n")
     for f in chapter.figures:
         count["figure"] += 1
-        out += (f"![{markdown_prose(f.title)}](figures/{f.name}.svg)\n\n"
-                f"**Figure {count['figure']}. {markdown_prose(sentence(f.title))}** "
-                f"{markdown_prose(caption_of(f, chapter))}\n\n")
+        out += (f"![{markdown_prose(f.title)}](figures/{f.name}.svg)\n\n**Figure {count['figure']}. "
+                f"{markdown_prose(sentence(f.title))}** {markdown_prose(caption_of(f, chapter))}\n\n")
     for t in chapter.tables:
         if t.in_text:
             count["table"] += 1
-            out += (f"**Table {count['table']}.** {markdown_prose(sentence(t.caption))}\n\n" +
-                    markdown_table(t))
+            out += (f"**Table {count['table']}.** {markdown_prose(sentence(t.caption))}\n\n" + markdown_table(t))
     if chapter.limits:
         out += "What it does not show:\n\n" + bullets(chapter.limits)
     return out + (f"Again: {markdown_code(chapter.command)} ({grid_text(study)}, "
@@ -372,8 +349,7 @@ def page_latex(page):
                     f"keepaspectratio]{{figures/{f.name}.pdf}}\n  \\caption{{"
                     f"{latex_text(sentence(f.title))} {latex_text(caption_of(f, chapter))}}}\n"
                     f"  \\label{{fig:{f.name}}}\n\\end{{figure}}\n")
-        out += "".join(f"{{\\footnotesize\\input{{tables/{t.name}.tex}}}}\n"
-                       for t in chapter.tables if t.in_text)
+        out += "".join(f"{{\\footnotesize\\input{{tables/{t.name}.tex}}}}\n" for t in chapter.tables if t.in_text)
         if chapter.limits:
             out += "\\paragraph{What it does not show.}\n" + latex_items(chapter.limits)
         out += f"Measured by {latex_text(chapter.command)}.\n\\clearpage\n"

@@ -78,8 +78,7 @@ def thinned(ticks, fits):
 def ticks_at_powers_of_two(values):
     """Resolutions and the like: all values are powers of two, and few."""
     distinct = sorted(set(values))
-    if not 3 <= len(distinct) <= 10 or any(
-            v <= 0 or math.frexp(v)[0] != 0.5 for v in distinct):
+    if not 3 <= len(distinct) <= 10 or any(v <= 0 or math.frexp(v)[0] != 0.5 for v in distinct):
         return []
     return [(v, tick_label(v)) for v in distinct]
 
@@ -117,8 +116,7 @@ def log_scale(axis, values, fits):
     least, most = (min(positive), max(positive)) if positive else (1.0, 1.0)
     least = axis.low if axis.low else least
     most = max(axis.high, least) if axis.high else most
-    scale = Scale(True, least if axis.low else round_down(least),
-                  most if axis.high else round_up(most))
+    scale = Scale(True, least if axis.low else round_down(least), most if axis.high else round_up(most))
     if scale.high <= scale.low:
         scale.low, scale.high = round_down(scale.low / 2), round_up(scale.high * 2)
     scale.low, scale.high = min(scale.low, least), max(scale.high, most)

@@ -11,8 +11,7 @@ import pandas as pd
 
 from frame import Study, contestant
 
-AXES = ["scene", "method", "offset", "radius", "depth_format", "depth_mode", "resolution", "views",
-        "frame", "seed"]
+AXES = ["scene", "method", "offset", "radius", "depth_format", "depth_mode", "resolution", "views", "frame", "seed"]
 
 
 class Store:
@@ -38,15 +37,13 @@ class Store:
     def study(self, name, constants):
         declared = self.read("SELECT * FROM studies WHERE study = ?", name).iloc[0]
         points = self.read("SELECT * FROM points WHERE study = ? ORDER BY position", name)
-        rows = self.read(
-            "SELECT position, run, measured, device, counts, times, left_out, points.* FROM rows "
-            "JOIN points USING (study, position) WHERE study = ? ORDER BY position", name)
+        rows = self.read("SELECT position, run, measured, device, counts, times, left_out, points.* FROM rows JOIN "
+                         "points USING (study, position) WHERE study = ? ORDER BY position", name)
         rows = rows.loc[:, ~rows.columns.duplicated()].drop(columns="study")
         counts = [json.loads(text) for text in rows.counts]
         times = [json.loads(text) for text in rows.times]
         rows["counts"], rows["times"] = counts, times
-        rows["runs"] = [tuple(t["totals"]) if isinstance(t.get("totals"), list) else ()
-                        for t in times]
+        rows["runs"] = [tuple(t["totals"]) if isinstance(t.get("totals"), list) else () for t in times]
         values = [{**{n + "_count" if n in AXES else n: v for n, v in c.items()},
                    **{n + "_ms": v for n, v in t.items() if n != "totals"}}
                   for c, t in zip(counts, times)]

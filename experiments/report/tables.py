@@ -43,17 +43,14 @@ def table_csv(table):
 
 def table_html(table):
     sides = [' class="r"' if side == "r" else "" for _, side in table.columns]
-    head = "".join(f'<th scope="col"{side}>{html_prose(name)}</th>'
-                   for side, (name, _) in zip(sides, table.columns))
-    rows = "".join("<tr>" + "".join(f"<td{side}>{html_prose(cell)}</td>"
-                                    for side, cell in zip(sides, row)) + "</tr>\n"
+    head = "".join(f'<th scope="col"{side}>{html_prose(name)}</th>' for side, (name, _) in zip(sides, table.columns))
+    rows = "".join("<tr>" + "".join(f"<td{side}>{html_prose(cell)}</td>" for side, cell in zip(sides, row)) + "</tr>\n"
                    for row in table.rows)
     return f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table>\n"
 
 
 def table_latex(table):
-    """Floats with caption, label tab:NAME and the rules of booktabs, scaled where they are wider
-    than the text."""
+    """Floats with caption, label tab:NAME and the rules of booktabs, scaled where they are wider than the text."""
     def line(cells):
         return "    " + " & ".join(latex_text(cell) for cell in cells) + " \\\\\n"
 
@@ -84,8 +81,7 @@ def rows_csv(study):
     rows = list(study.all_rows.itertuples())
     counts, times = ([*dict.fromkeys(name for row in rows for name in getattr(row, kind))]
                      for kind in ("counts", "times"))
-    lines = [["position", *AXES, *counts, *(name + "_ms" for name in times), "device", "run",
-              "measured", "left_out"]]
+    lines = [["position", *AXES, *counts, *(name + "_ms" for name in times), "device", "run", "measured", "left_out"]]
     for row in rows:
         axes = [getattr(row, name) for name in AXES]
         nothing = [-1 if name == "frame" else 0 for name in AXES]

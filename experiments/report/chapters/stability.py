@@ -6,8 +6,7 @@ from frame import *  # noqa: F403: a chapter uses most of it
 def extreme_of(row):
     """The family of a scene, what it drives to an extreme, and how far."""
     scene = row.scene
-    for mark, family, axis in (("@offset-", "far from the origin", "offset (units)"),
-                               ("@scale-", "scaled", "scale")):
+    for mark, family, axis in (("@offset-", "far from the origin", "offset (units)"), ("@scale-", "scaled", "scale")):
         if mark in scene:
             return family, axis, float(scene.split(mark)[1])
     words = scene.split("@")[0].split(":")
@@ -16,8 +15,7 @@ def extreme_of(row):
         return ("gaps", "gap (ulps)", at) if at > 0 else ("overlaps", "overlap (ulps)", abs(at))
     if words[0] == "cloth":
         apart = "@" in scene
-        return ("cloth on a sphere" if apart else "cloth against itself and a sphere",
-                "stiffness (N/m)", at)
+        return ("cloth on a sphere" if apart else "cloth against itself and a sphere", "stiffness (N/m)", at)
     names = {"slivers": ("slivers", "aspect"), "stack": ("stacked sheets", "distance (widths)"),
              "mixed": ("mixed sizes", "ratio of sizes")}
     return *names.get(words[0], (words[0], "")), at
@@ -63,24 +61,19 @@ def panel_of(family, methods, label):
 
 
 def figures_of(tracks):
-    runs = counted(sum(len(rows) for *_, places in tracks for rows in places.values()),
-                   "point", "points")
-    missed = Figure(
-        "stability-missed", "Missed pairs in extreme scenes",
-        "Colliding pairs that are not found, of all there are. Scenes in which nothing collides "
-        f"have no share. n = {runs}, each of 1 run.")
-    kept = Figure(
-        "stability-kept", "What culling keeps in extreme scenes",
-        "Triangles that are kept, of all; below, those that collide: a method that misses nothing "
-        f"cannot be below that line. n = {runs}, each of 1 run.")
+    runs = counted(sum(len(rows) for *_, places in tracks for rows in places.values()), "point", "points")
+    missed = Figure("stability-missed", "Missed pairs in extreme scenes", "Colliding pairs that are not found, of all "
+                    "there are. Scenes in which nothing collides " f"have no share. n = {runs}, each of 1 run.")
+    kept = Figure("stability-kept", "What culling keeps in extreme scenes", "Triangles that are kept, of all; below, "
+                  "those that collide: a method that misses nothing " f"cannot be below that line. n = {runs}, each of "
+                  f"1 run.")
     for family, methods in families_of(tracks):
         panel = panel_of(family, methods, "missed pairs (%)")
         for method, places in methods:
             if method != "exact":
-                panel.series.append(Series(
-                    method, list(places),
-                    [share(total(r, "missed"), total(r, "colliding")) for r in places.values()],
-                    emphasis=method.startswith("FAR")))
+                panel.series.append(Series(method, list(places), [share(total(r, "missed"), total(r, "colliding")) for r
+                                                                  in places.values()],
+                                           emphasis=method.startswith("FAR")))
         if any(total(r, "colliding") for m, p in methods if m != "exact" for r in p.values()):
             missed.panels.append(panel)
         panel = panel_of(family, methods, "kept triangles (%)")
@@ -92,8 +85,7 @@ def figures_of(tracks):
             of = [total(rows, "triangles") for rows in places.values()]
             ys = {name: [share(total(r, name), n) for r, n in zip(places.values(), of)]
                   for name in ("kept_triangles", "colliding_triangles")}
-            panel.series.append(Series(method, list(places), ys["kept_triangles"],
-                                       emphasis=method.startswith("FAR")))
+            panel.series.append(Series(method, list(places), ys["kept_triangles"], emphasis=method.startswith("FAR")))
             floor = floor or Series("colliding", list(places), ys["colliding_triangles"], "lines")
         if floor:
             panel.series.append(floor)
@@ -102,16 +94,13 @@ def figures_of(tracks):
 
 
 def short_table(tracks):
-    out = Table(
-        "stability",
-        "Pairs in all scenes of a family together: colliding ones, those of them that a method "
-        "missed, those that it would miss with 0.9 of its radius (at risk: where there are none, "
-        "the scenes do not show that the radius is large enough), and those that a library "
-        "reported though they do not collide. Then how many triangles culling kept for each one "
-        "that collides, in the first scene of the family and in its last: \"2.14 at 10\" are 2.14 "
-        "triangles where what the family changes is 10",
-        columns(["family", "method"], ["scenes", "colliding", "missed", "at risk", "wrong",
-                                       "kept, first scene", "kept, last scene"]))
+    out = Table("stability", "Pairs in all scenes of a family together: colliding ones, those of them that a method "
+                "missed, those that it would miss with 0.9 of its radius (at risk: where there are none, the scenes do "
+                "not show that the radius is large enough), and those that a library reported though they do not "
+                "collide. Then how many triangles culling kept for each one that collides, in the first scene of the "
+                "family and in its last: \"2.14 at 10\" are 2.14 triangles where what the family changes is 10",
+                columns(["family", "method"], ["scenes", "colliding", "missed", "at risk", "wrong", "kept, first scene",
+                                               "kept, last scene"]))
     for family, method, places in tracks:
         if method == "exact":
             continue
@@ -127,11 +116,10 @@ def short_table(tracks):
 
 
 def all_table(tracks):
-    out = Table("stability-all", "Every place; of cloth the sum of its frames, and the widest "
-                "radius", columns(["family"], ["at"], ["method"], [
-                    "colliding", "missed", "wrong", "candidates", "kept triangles", "triangles",
-                    "kept/colliding", "radius (px)", "radius (units)", "time (ms)"]),
-                in_text=False)
+    out = Table("stability-all", "Every place; of cloth the sum of its frames, and the widest radius",
+                columns(["family"], ["at"], ["method"], ["colliding", "missed", "wrong", "candidates", "kept triangles",
+                                                         "triangles", "kept/colliding", "radius (px)", "radius (units)",
+                                                         "time (ms)"]), in_text=False)
     for family, method, places in tracks:
         for at, rows in places.items():
             radius = column(rows, "radius_px").fillna(0).max()
@@ -175,8 +163,7 @@ def add_failures(chapter, tracks, promising_names):
         elif method != "exact":
             chapter.find(f"{method} missed nothing here, and promises nothing.")
         if wrongs[method]:
-            chapter.find(f"{method} reported pairs that do not collide, at worst: "
-                         f"{listed(wrongs[method])}.")
+            chapter.find(f"{method} reported pairs that do not collide, at worst: {listed(wrongs[method])}.")
 
 
 def add_degradation(chapter, tracks, method):
@@ -189,9 +176,8 @@ def add_degradation(chapter, tracks, method):
             continue
         low, high = min(values, key=values.get), max(values, key=values.get)
         least, most = rounded(values[low]), rounded(values[high])
-        parts.append(f"{family[0]} {least}" if least == most else
-                     f"{family[0]} {least} (at {number_text(low)}) to {most} "
-                     f"(at {number_text(high)})")
+        parts.append(f"{family[0]} {least}" if least == most else f"{family[0]} {least} (at {number_text(low)}) to "
+                     f"{most} (at {number_text(high)})")
     if parts:
         chapter.find(f"{method} keeps for each triangle that collides: {listed(parts)}.")
 
@@ -203,17 +189,14 @@ def fill(chapter, study):
     add_failures(chapter, tracks, names)
     for method in names:
         add_degradation(chapter, tracks, method)
-    chapter.limits = [
-        "FAR and CULLIDE are measured between objects: of the cloth they see it against the "
-        "sphere, FAR pairs and S-CULLIDE also against itself.",
-        "The cloth here is small, and looked at in a few frames. The study cloth (farcull "
-        "experiment cloth, hours) goes through 500 frames of 20,000 triangles.",
-        "FCL leaves neighbours in one object out, so these are no misses of its; of the others "
-        "they count.",
-        "Where an input is already beyond what a library's type can hold, its misses are those of "
-        "the rounding to it: FCL is asked in float, as it is mostly used.",
-        f"Where {study.constants['few_triangles']} triangles or fewer are left FAR stops culling, "
-        "since testing them is cheaper: what it keeps in small scenes says little."]
+    chapter.limits = ["FAR and CULLIDE are measured between objects: of the cloth they see it against the sphere, FAR "
+                      "pairs and S-CULLIDE also against itself.", "The cloth here is small, and looked at in a few "
+                      "frames. The study cloth (farcull experiment cloth, hours) goes through 500 frames of 20,000 "
+                      "triangles.", "FCL leaves neighbours in one object out, so these are no misses of its; of the "
+                      "others they count.", "Where an input is already beyond what a library's type can hold, its "
+                      "misses are those of the rounding to it: FCL is asked in float, as it is mostly used.",
+                      f"Where {study.constants['few_triangles']} triangles or fewer are left FAR stops culling, "
+                      "since testing them is cheaper: what it keeps in small scenes says little."]
     add_gaps(chapter, study)
     if tracks:
         chapter.figures = figures_of(tracks)

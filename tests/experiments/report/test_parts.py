@@ -5,12 +5,13 @@ import xml.dom.minidom
 import pandas as pd
 import pytest
 
-from made_up import findings, study_of  # noqa: F401: first, since it finds the modules of the report
+from made_up import study_of  # first, since it finds the modules of the report
 import draw
 import estimates
 import pages
 import scales
 import tables
+from legible import legible
 from frame import Axis, Chapter, Figure, Mark, Panel, Series, Table, log
 
 E = math.e
@@ -105,21 +106,21 @@ def names_in(figure):
 
 def test_series_that_agree_are_one():
     figure = two_panels()
-    draw.legible(figure)
+    legible(figure)
     assert names_in(figure) == [["CULLIDE = Quick-CULLIDE", "FAR (OBB)"]] * 2
     other = two_panels()  # the twin: they differ at one point of one panel
     other.panels[1].series[1].y[0] = 6
-    draw.legible(other)
+    legible(other)
     assert len(names_in(other)[0]) == 3
     long = two_panels()
     for panel in long.panels:
         panel.series[1].name = "x" * 90
-    draw.legible(long)
+    legible(long)
     assert names_in(long)[0][0] == "CULLIDE and 1 others" and "x" * 90 in long.caption
     about = two_panels()  # the one that the figure is about gives the style
     for panel in about.panels:
         panel.series[2].y, panel.series[2].emphasis, panel.series[1].y = [5, 7], True, [1, 2]
-    draw.legible(about)
+    legible(about)
     assert names_in(about)[0] == ["Quick-CULLIDE", "FAR (OBB) = CULLIDE"]
 
 
@@ -128,7 +129,7 @@ def test_panels_without_a_difference_become_a_sentence():
     for series in figure.panels[0].series:
         series.y = [3, 3]
     figure.panels.append(Panel("third", series=[Series("a", [1], [math.nan])]))
-    draw.legible(figure)
+    legible(figure)
     assert [p.title for p in figure.panels] == ["second"]
     assert figure.caption == ("c. Not drawn, since every value is 3: first. Not drawn, since there is no value: third.")
 

@@ -14,9 +14,10 @@ import time
 
 import pytest
 
-from made_up import CONSTANTS, ROOT, importlib  # noqa: F401: first, since it finds the modules of the report
+from made_up import CONSTANTS, importlib  # first, since it finds the modules of the report
 import draw
 from frame import Chapter
+from legible import legible
 from store import Store
 
 PROGRAM, FIXTURE = os.environ["FARCULL_PROGRAM"], os.environ["FARCULL_REPORT_FIXTURE"]
@@ -107,7 +108,7 @@ def test_text_of_figures_is_legible(whole, monkeypatch):
         chapter = Chapter(name, "", "", "")
         importlib.import_module("chapters." + name.replace("-", "_")).fill(chapter, store.study(name, CONSTANTS))
         for figure in chapter.figures:
-            draw.legible(figure)
+            legible(figure)
             assert overlapping(figure) == [], figure.name
             seen.append(figure)
     assert len(seen) == len(list((whole / "figures").glob("*.svg"))) > 20
