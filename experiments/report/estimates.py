@@ -69,6 +69,13 @@ def median_estimate(values):
     return with_interval(median(values), len(values), resampled_medians(values)[0])
 
 
+def coverage(n):
+    """The probability with which the 95 % interval of the median of n independent runs holds the true median, n odd:
+    its ends are the runs of some rank from below and from above, and each run is below the true median by 1/2."""
+    rank = math.ceil(median_estimate(tuple(range(n))).low)
+    return 1 - 2 * sum(math.comb(n, below) for below in range(rank + 1)) / 2**n
+
+
 def ratio_estimate(over, under):
     """The median of the first over that of the second, both drawn anew; n: of the smaller one."""
     one, other = resampled_medians(over, under)

@@ -38,7 +38,7 @@ import numpy as np
 import pandas as pd
 
 from estimates import *  # noqa: F401,F403: chapters take numbers from here
-from estimates import (NONE, Estimate, counted, estimate_text, grouped, listed, median_estimate,
+from estimates import (NONE, Estimate, counted, coverage, estimate_text, grouped, listed, median_estimate,
                        of_all, rate_text, rounded)
 
 
@@ -311,7 +311,9 @@ def sample_text(rows):
     if runs[-1] == 1:
         return out + ", each of 1 run"
     several = str(runs[0]) if len(runs) == 1 else f"{runs[0]} to {runs[-1]}"
-    return f"{out}, each the median of {several} runs"
+    few = [n for n in runs if n > 1 and coverage(n) < 0.95]
+    return f"{out}, each the median of {several} runs" + (
+        f" (with {few[0]}, an interval called 95 % covers {100 * coverage(few[0]):.0f} %)" if few else "")
 
 
 # ---- series and tables of rows

@@ -11,7 +11,7 @@ REFERENCE = "far-pairs"  # stands beside all others in figures
 SCORE = ["asked", "answered", "missed", "wrong", "own_asked", "own_missed", "own_wrong", "refused", "unanswered",
          "crashed", "hung", "no_memory", "not_asked", "twice", "differing"]
 # Panels of figures: contestants by the first word of their library; the last takes the others.
-GROUPS = {"farcull": ["farcull"], "libraries for simulation": ["FCL", "Bullet", "ODE", "libccd"],
+GROUPS = {"farcull": ["farcull"], "FCL and libccd": ["FCL", "libccd"], "Bullet and ODE": ["Bullet", "ODE"],
           "libraries for meshes": ["CGAL", "GTS", "VTK", "Open3D", "three-mesh-bvh"], "tests of papers, others": []}
 PARAMETERS = {"slivers": "length over width", "gap-face": "gap, in sizes",
               "far-away": "distance from the origin, in sizes"}

@@ -204,5 +204,5 @@ def test_libraries_stand_in_the_panel_of_their_kind_beside_the_reference():
                         ("b", of_pairs(missed=2, library="CGAL 1")), ("c", of_pairs(missed=3)))
     panels = {panel.title: [series.name for series in panel.series]
               for panel in figure(chapter, "libraries-time").panels}
-    assert panels == {"farcull": ["far-pairs"], "libraries for simulation": ["far-pairs", "a"],
+    assert panels == {"farcull": ["far-pairs"], "FCL and libccd": ["far-pairs", "a"],
                       "libraries for meshes": ["far-pairs", "b"], "tests of papers, others": ["far-pairs", "c"]}

@@ -163,9 +163,9 @@ def test_scaling_says_what_is_missed():
 
 
 def test_scaling_fits_an_interval_to_six_points_and_none_to_fewer():
-    def rows(points):  # time as n^2, with a spread over nine runs
+    def rows(points, runs=9):  # time as n^2, with a spread over the runs
         return [row(f"crowd:{n}", "exact", run_counts(objects=n),
-                    runs=[1e-3 * n * n * (0.96 + 0.01 * run) for run in range(9)])
+                    runs=[1e-3 * n * n * (0.96 + 0.01 * run) for run in range(runs)])
                 for n in (10 << i for i in range(points))]
 
     six = chapter_of("scaling", rows(6))
@@ -174,7 +174,9 @@ def test_scaling_fits_an_interval_to_six_points_and_none_to_fewer():
     # Of nine runs the second least and the second largest.
     assert np.allclose(np.array(series.y_low) / series.y, 0.97, rtol=1e-12)
     assert np.allclose(np.array(series.y_high) / series.y, 1.03, rtol=1e-12)
-    assert six.figures[0].caption.startswith("n = 6 points, each the median of 9 runs")
+    assert six.figures[0].caption.startswith("n = 6 points, each the median of 9 runs, with its 95 % interval")
+    assert chapter_of("scaling", rows(6, runs=5)).figures[0].caption.startswith(
+        "n = 6 points, each the median of 5 runs (with 5, an interval called 95 % covers 94 %), with")
     assert "exact 2.00 (no interval of 5 points)" in findings(chapter_of("scaling", rows(5)))
 
 
