@@ -183,8 +183,8 @@ step studies 1 "all studies" build/farcull experiment all --devices "$devices" -
 rm -f "$out/steps/report"
 if [[ ! -e $out/results/results.sqlite ]]; then
   missing+=("report (of the studies): left out, no study was measured")
-elif ! command -v gnuplot >/dev/null; then
-  missing+=("report (of the studies): left out, gnuplot is not here; elsewhere: farcull report DIR/results")
+elif ! "${FARCULL_PYTHON:-/usr/bin/python3}" -c 'import matplotlib, pandas' 2>/dev/null; then
+  missing+=("report (of the studies): left out, python3-matplotlib and python3-pandas are not here; elsewhere: farcull report DIR/results")
 else
   # It is not part of the budget, since it shows what the budget was spent on. It takes a minute.
   budget=$((budget + 600))

@@ -6,8 +6,8 @@
 #   bash experiments/pack.sh [DIR]               default build/farcull-packed
 #   bash experiments/pack.sh --built [DIR]       takes build/farcull and build/meshes as they are
 # Copy DIR there, and run: bash DIR/hardware.sh [OPTIONS OF experiments/hardware.sh]
-# The test suite and the figures of the report are not in it. What is measured there is in its archive; here,
-# `farcull report` makes the report of it.
+# The test suite is not in it, and no Python: without python3-matplotlib and python3-pandas there, what is measured
+# is in its archive, and here `farcull report` makes the report of it.
 # Exit status: 0; 2 the folder could not be made, or is larger than 60 MiB.
 set -euo pipefail
 
@@ -38,6 +38,8 @@ packed=$work/farcull
 mkdir -p "$packed"/build/{meshes,libraries,fallback} "$packed/experiments"
 cp build/meshes/*.off "$packed/build/meshes/"
 cp experiments/*.sh "$packed/experiments/"
+mkdir -p "$packed/share/farcull"
+cp -r experiments/report "$packed/share/farcull/"
 strip -o "$packed/build/program" build/farcull
 echo "of $(build/farcull --version)" >"$packed/packed"
 
@@ -62,7 +64,7 @@ cat >"$packed/build/farcull" <<'START'
 #!/usr/bin/env bash
 # Starts the program with the libraries of this folder.
 here=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
-export FARCULL_MESHES=${FARCULL_MESHES:-$here/meshes}
+export FARCULL_MESHES=${FARCULL_MESHES:-$here/meshes} FARCULL_REPORT=${FARCULL_REPORT:-${here%/*}/share/farcull/report}
 libraries=$here/libraries
 ldconfig=$(PATH=$PATH:/usr/sbin:/sbin command -v ldconfig)
 for library in libEGL.so.1 libOpenGL.so.0; do

@@ -30,7 +30,9 @@ farcull_packages=(
   # compressed meshes
   zlib1g-dev
   # results, pictures, figures
-  libsqlitecpp-dev libsqlite3-dev libpng-dev libfreetype-dev fonts-dejavu-core gnuplot-nox
+  libsqlitecpp-dev libsqlite3-dev libpng-dev libfreetype-dev fonts-dejavu-core
+  # the report of what was measured
+  python3-matplotlib python3-pandas
   # pages of pictures; the build works without
   libjs-three
   # the Python module; the build works without

@@ -48,9 +48,7 @@ experiments/measure        experiments/record experiments/peers
 experiments/lemma          experiments/generators experiments/record
 experiments/studies        experiments/measure experiments/lemma
 experiments/picture        experiments/measure
-experiments/report/chapters experiments/studies experiments/picture
-experiments/report         experiments/report/chapters
-experiments/command        experiments/report experiments/library experiments/tiles
+experiments/command        experiments/studies experiments/picture experiments/library experiments/tiles
 experiments/python         experiments/library experiments/picture
 tests                      *
 '
@@ -613,10 +611,8 @@ break_includes() {
   forbids experiments/generators experiments/suite
   forbids experiments/suite experiments/lemma
   forbids experiments/peers experiments/studies
-  forbids experiments/studies experiments/report
+  forbids experiments/studies experiments/command
   forbids experiments/picture experiments/studies
-  forbids experiments/report/chapters experiments/report
-  forbids experiments/report experiments/command
   for name in core/base core/view core/cull core/gl offsets verify experiments/command; do
     forbids "$name" tests
   done
@@ -650,8 +646,7 @@ break_includes() {
   keeps experiments/peers/file.cpp '"experiments/suite/reader.h"'
   keeps experiments/peers/contest_cgal.cpp '<CGAL/Kernel.h>'
   keeps experiments/picture/file.cpp '"experiments/measure/compare.h"'
-  keeps experiments/report/file.cpp '"experiments/report/chapters/rows.h"'
-  keeps experiments/report/chapters/file.cpp '"experiments/system/file.h"'
+  keeps experiments/command/file.cpp '"experiments/studies/store.h"'
   keeps experiments/command/file.cpp '"experiments/library/farcull.h"'
   keeps tests/verify/file_test.cpp '"offsets/obb.glsl"'
 }

@@ -1,19 +1,30 @@
-// Options of `farcull report`, and its summary on standard output.
+// Options of `farcull report`. It checks the store, and becomes the Python program of
+// experiments/report/, which reads the store and writes the report.
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
-#include <optional>
+#include <nlohmann/json.hpp>
+#include <set>
 
+#include "commit.h"
 #include "core/base/error.h"
+#include "core/canvas/canvas.h"
+#include "core/view/regions.h"
 #include "experiments/command/commands.h"
 #include "experiments/command/options.h"
-#include "experiments/picture/page.h"
-#include "experiments/report/report.h"
-#include "experiments/system/output_file.h"
-#include "experiments/system/text_table.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/studies/run_studies.h"
+#include "experiments/studies/store.h"
 
 namespace farcull {
 namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 class ReportCommand {
  public:
@@ -38,69 +49,129 @@ CLI::App* ReportCommand::add_to(CLI::App& app) {
       *command,
       "Writes DIR/report: index.html, one page that needs nothing else; figures as SVG and PDF "
       "with\n"
-      "their gnuplot scripts and data; tables as CSV and LaTeX. An earlier report there is "
-      "replaced.\n\n"
+      "their numbers as CSV; tables as CSV and LaTeX. An earlier report there is replaced. It "
+      "needs\n"
+      "Python with pandas and matplotlib; FARCULL_PYTHON names another interpreter than "
+      "python3.\n\n"
       "Examples:\n"
       "  farcull experiment all --quick && farcull report\n"
       "  farcull report results");
   return command;
 }
 
+// The path of the store in the folder. Throws Error where there is none: with what to do where
+// there are shards that are not merged.
+std::string store_of(const std::string& folder) {
+  const std::string path = store_path(folder);
+  if (fs::exists(path)) return path;
+  const std::string remedy = "measure first, as in farcull experiment all --quick --out " + folder;
+  if (!fs::is_directory(folder)) throw Error(folder, "is no folder of results", remedy);
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("results-") && name.ends_with(".sqlite"))
+      throw Error(folder, "holds shards that are not merged", "farcull merge " + folder);
+  }
+  throw Error(folder, "holds no results.sqlite", remedy);
+}
+
+// An earlier report is taken away whole, and what it holds with it.
+void check_store_outside(const std::string& folder) {
+  std::error_code error;
+  const auto place = [&](const std::string& path) {
+    return fs::weakly_canonical(path, error).string();
+  };
+  const std::string report = place(folder + "/report");
+  if (!error && place(store_path(folder)).starts_with(report + "/")) {
+    throw Error(store_path(folder), "leads into DIR/report, which the report replaces",
+                "move the results out of it");
+  }
+}
+
+// The studies of each scene of the study "scenes", by the name of the scene, in the order of
+// studies().
+Json users_of_scenes(const Declaration& scenes) {
+  std::set<std::string> names;
+  for (const PointKey& point : scenes.points) names.insert(point.scene);
+  Json out = Json::object();
+  for (const Study& study : studies_of_all()) {
+    if (study.name == "scenes") continue;
+    std::set<std::string> seen;
+    for (const PointKey& point : keys_of(study.grid(scenes.choice))) {
+      if (names.contains(point.scene) && seen.insert(point.scene).second)
+        out[point.scene].push_back(study.name);
+    }
+  }
+  return out;
+}
+
+// What the Python program has to know of this one, as JSON.
+std::string context_for(const Store& store) {
+  Json known = Json::array(), scenes = Json::object();
+  for (const Study& study : studies())
+    known.push_back({{"name", study.name}, {"title", study.title}, {"question", study.question}});
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    scenes[scene.name] = {{"description", scene.description}, {"needs_meshes", scene.needs_meshes}};
+    if (scene.seed) scenes[scene.name]["seed"] = *scene.seed;
+  }
+  const std::optional<Declaration> declared = store.declaration("scenes");
+  const Json constants = {
+      {"few_triangles", kFewTriangles},
+      {"depth_rounding", {{"24", depth_rounding(24)}, {"32", depth_rounding(32)}}},
+      {"scene_resolution", kSceneResolution},
+      {"scenes", std::move(scenes)},
+      {"users", declared ? users_of_scenes(*declared) : Json::object()}};
+  return Json({{"program", fs::read_symlink("/proc/self/exe").string()},
+               {"commit", FARCULL_COMMIT},
+               {"studies", std::move(known)},
+               {"constants", constants}})
+      .dump();
+}
+
+// The folder of the Python program: named, installed beside this program, or in the source that it
+// was built from.
+std::string python_folder() {
+  const char* const named = std::getenv("FARCULL_REPORT");
+  const fs::path self = fs::read_symlink("/proc/self/exe");
+  const fs::path installed = self.parent_path().parent_path() / "share/farcull/report";
+  const std::string folder = named != nullptr && *named != '\0' ? named
+                             : fs::exists(installed)            ? installed.string()
+                                                                : FARCULL_REPORT_FOLDER;
+  if (!fs::exists(folder + "/__main__.py"))
+    throw Error(folder, "the program that writes reports is not there", "install farcull again");
+  return folder;
+}
+
+// Debian's Python, whose packages are those that the remedy names; else the first of the path.
+std::string python() {
+  const char* const named = std::getenv("FARCULL_PYTHON");
+  if (named != nullptr && *named != '\0') return named;
+  constexpr const char* kUsual = "/usr/bin/python3";
+  return ::access(kUsual, X_OK) == 0 ? kUsual : "python3";
+}
+
 int ReportCommand::run() {
   if (folder_.empty()) throw Error("DIR", "the folder is empty", "name one");
   while (folder_.size() > 1 && folder_.back() == '/') folder_.pop_back();
-  // An earlier report is taken away whole, and what it holds with it.
-  std::error_code error;
-  const auto place = [&](const std::string& path) {
-    return std::filesystem::weakly_canonical(path, error).string();
-  };
-  const std::string report = place(folder_ + "/report");
-  if (!error && place(store_path(folder_)).starts_with(report + "/")) {
-    throw Error(store_path(folder_), "leads into DIR/report, which the report replaces",
-                "move the results out of it");
+  check_store_outside(folder_);
+  std::vector<std::string> words = {python(), "-B", python_folder(), folder_};
+  {
+    const Store store(store_of(folder_), Store::Access::read);
+    for (const std::string& name : store.studies()) {
+      if (store.declaration(name)->of > 1)
+        throw Error(store.path(), "holds a shard of " + name, "farcull merge " + folder_);
+    }
+    words.push_back(context_for(store));
   }
-  TerminalProgress terminal;
-  std::optional<Lab> lab;
-  PictureResult drawn;  // the last one, which the page of its scene holds
-  ReportRequest request;
-  request.folder = folder_;
-  request.progress = terminal.callback();
-  request.draw_picture = [&](const PictureArguments& arguments,
-                             const std::string& path) -> std::vector<PanelResult> {
-    if (no_pictures_) throw Error("--no-pictures", "was given", "leave it out");
-    if (!lab) lab.emplace(device_of(device_), request.progress);
-    drawn = write_picture(arguments, *lab, path);
-    return drawn.panels;
-  };
-  request.make_page = [&](const PictureArguments& picture, const std::string& path) {
-    require_three();
-    std::vector<int> resolutions(kPageResolutions.begin(), kPageResolutions.end());
-    for (const RunOptions& panel : picture.panels) {
-      if (panel.resolution > 0) resolutions.push_back(panel.resolution);
-    }
-    const PageArguments arguments = {
-        .picture = picture, .steps = at_resolutions(picture.panels, resolutions), .frames = {}};
-    const PageResult page = make_page(arguments, drawn, *lab);
-    write_output(path, page.html);
-    std::vector<std::string> broken;
-    for (const PageStep& step : page.steps) {
-      if (step.result.broken) broken.push_back(step.result.title + " " + step.result.headline);
-    }
-    return broken;
-  };
-  const ReportSummary summary = write_report(request);
-  terminal.clear();
-  std::string text;
-  for (const std::string& note : summary.notes) text += note + "\n";
-  text += fmt::format(
-      "{}, {}, {}, {}, {}\n{}/index.html\n", counted(summary.studies, "study", "studies"),
-      counted(summary.figures, "figure", "figures"), counted(summary.tables, "table", "tables"),
-      counted(summary.pictures, "picture", "pictures"), counted(summary.pages, "page", "pages"),
-      summary.folder);
-  write_output("-", text);
-  for (const std::string& broken : summary.broken)
-    complain_broken("a promise is broken: " + broken);
-  return summary.broken.empty() ? 0 : 1;
+  if (no_pictures_) words.push_back("--no-pictures");
+  if (device_) words.push_back("--device=" + *device_);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  ::execvp(arguments.front(), arguments.data());
+  throw Error(words.front(), std::string("cannot be run: ") + std::strerror(errno),
+              "install it (Debian: python3-matplotlib python3-pandas), or run "
+              "experiments/setup.sh");
 }
 
 }  // namespace

@@ -23,6 +23,8 @@ file(RELATIVE_PATH farcull_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE
 configure_file(library/farcull.pc.in farcull.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/farcull.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
+# The program finds it from its own place.
+install(DIRECTORY report/ DESTINATION share/farcull/report PATTERN __pycache__ EXCLUDE)
 install(TARGETS farcull RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(NOT CMAKE_CROSSCOMPILING)
   install(FILES ${farcull_texts}/farcull.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)

@@ -41,10 +41,10 @@ if says "${FAKE_FAIL-}"; then
   exit 1
 fi
 FAKE
-# The report needs a gnuplot to be there.
-printf '#!/bin/sh\n' >"$work/bin/gnuplot"
-chmod +x "$tree/build/farcull" "$work/bin/gnuplot"
-export CALLS=$work/calls PATH=$work/bin:$PATH LC_ALL=C
+# The report needs a Python with its packages to be there.
+printf '#!/bin/sh\n' >"$work/bin/python"
+chmod +x "$tree/build/farcull" "$work/bin/python"
+export CALLS=$work/calls PATH=$work/bin:$PATH LC_ALL=C FARCULL_PYTHON=$work/bin/python
 out=$work/out
 script=$tree/experiments/hardware.sh
 measure() { # OPTIONS...: sets $status; what is said is in $work/said

@@ -1,0 +1,387 @@
+"""`python3 report DIR CONTEXT [--no-pictures] [--device DEVICE]`: writes DIR/report. `farcull report` starts it, after
+it has seen that DIR has a store without fault. CONTEXT is JSON: the program, its commit, the studies and constants.
+
+The folder appears whole or not at all, in place of an earlier report; another folder of that name is left alone. Exit
+status: 0 done; 1 a promise is broken, and the report says so; 2 nothing was made, and a line says why.
+"""
+import argparse
+import ctypes
+import datetime
+import errno
+import fcntl
+import importlib
+import json
+import logging
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+
+MARKER = ".unfinished"
+# A row that promises and counts one of these broke its promise; a contestant also by silence.
+BROKEN = ("missed", "missed_pairs", "wrong", "violations", "refused", "unanswered", "not_asked", "crashed", "hung",
+          "no_memory")
+PAGE_RESOLUTIONS = [32, 64, 128, 256, 512]  # that the reader of a picture's page steps through
+
+
+class Refusal(Exception):
+    """where, what is wrong there, and what the user can do next."""
+
+    def __init__(self, where, reason, remedy):
+        super().__init__(f"{where}: {reason}; {remedy}")
+        self.where, self.reason = where, reason
+
+
+class Interrupted(BaseException):
+    """One of the signals that end a program."""
+
+
+try:
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # folders for its cache are no concern of a report
+    import pandas as pd
+    import draw
+    import pages
+    import tables
+    from chapters import devices
+    from estimates import counted, grouped, listed, of_all, sentence
+    from frame import Chapter, Damaged, command_of, describe, promising, value
+    from legible import legible
+    from store import Store, other_devices
+except ImportError as error:
+    print(f"farcull: {error.name}: is not there for {sys.executable}; install it (Debian: python3-matplotlib "
+          "python3-pandas), or run experiments/setup.sh", file=sys.stderr)
+    sys.exit(2)
+
+
+# ---- the folder of the report
+
+def is_report(folder):
+    try:
+        return pages.MARK in (folder / "index.html").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return False
+
+
+def check_place(place):
+    """An earlier report may be replaced, nothing else."""
+    if not os.path.lexists(place):
+        return
+    folder = place.is_dir() and not place.is_symlink()
+    if not folder or (any(place.iterdir()) and not is_report(place)):
+        raise Refusal(place, "is there and no report of this program", "move it away")
+
+
+def locked(path, flags):
+    """A marker that nobody else has locked, as a file; None otherwise. A lock ends with its process."""
+    try:
+        file = os.open(path, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW | flags, 0o666)
+    except OSError:
+        return None
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return file
+    except OSError:
+        os.close(file)
+        return None
+
+
+def remove_leftovers(place):
+    """Removes what killed reports left beside the place: folders with a marker that nobody has locked, or an earlier
+    report that a new one had just replaced."""
+    for path in sorted(place.parent.glob(place.name + ".part-????????")):
+        if path.is_symlink() or not path.is_dir():
+            continue
+        marked = os.path.lexists(path / MARKER)
+        lock = locked(path / MARKER, 0) if marked else None
+        if lock is not None or (not marked and is_report(path)):
+            shutil.rmtree(path, ignore_errors=True)
+        if lock is not None:
+            os.close(lock)
+
+
+def exchange(path, place):
+    """Puts a folder in place in one step; what was there is then at `path`."""
+    libc = ctypes.CDLL(None, use_errno=True)
+    for flag in (1, 2):  # RENAME_NOREPLACE, RENAME_EXCHANGE
+        if libc.renameat2(-100, os.fsencode(path), -100, os.fsencode(place), flag) == 0:
+            return
+        if ctypes.get_errno() != errno.EEXIST:
+            break
+    if ctypes.get_errno() not in (errno.EINVAL, errno.ENOSYS):
+        raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))
+    if place.exists():  # a file system without it
+        shutil.rmtree(place)
+    os.rename(path, place)
+
+
+class Unfinished:
+    """The folder beside the report in which the report is made. It is removed unless publish() puts it in place."""
+
+    def __init__(self, place):
+        self.place, self.lock, self.path = place, None, None
+
+    def __enter__(self):
+        remove_leftovers(self.place)
+        try:
+            part = tempfile.mkdtemp(prefix=self.place.name + ".part-", dir=self.place.parent)
+            self.path = pathlib.Path(part)
+            # The marker gets its name when it is locked, so that no process sees it without its lock.
+            self.lock = locked(self.path / (MARKER + "-new"), os.O_CREAT | os.O_EXCL)
+            os.rename(self.path / (MARKER + "-new"), self.path / MARKER)
+            mask = os.umask(0)
+            os.umask(mask)
+            self.path.chmod(0o777 & ~mask)
+            for name in ("figures", "tables"):
+                (self.path / name).mkdir()
+        except OSError as error:
+            self.__exit__()
+            raise Refusal(self.place, f"cannot be made: {error.strerror}",
+                          "use a folder with room that you may write to") from error
+        return self
+
+    def publish(self):
+        try:
+            exchange(self.path, self.place)
+        except OSError as error:
+            raise Refusal(self.place, f"cannot be put in place: {error.strerror}",
+                          "see who may write to the folder") from error
+        (self.place / MARKER).unlink(missing_ok=True)
+
+    def __exit__(self, *_):
+        if self.path:
+            shutil.rmtree(self.path, ignore_errors=True)
+        if self.lock is not None:
+            os.close(self.lock)
+
+
+# ---- what is in it
+
+def png_texts(png):
+    """The texts that `farcull picture` puts into its PNG, by their names."""
+    out, at = {}, 8
+    while at + 8 <= len(png):
+        size, kind = int.from_bytes(png[at:at + 4], "big"), png[at + 4:at + 8]
+        if kind in (b"tEXt", b"iTXt"):
+            name, _, text = png[at + 8:at + 8 + size].partition(b"\0")
+            out[name.decode("latin-1")] = text.lstrip(b"\0").decode("utf-8", "replace")
+        at += size + 12
+    return out
+
+
+class Reporter:
+    def __init__(self, arguments, context, store):
+        self.arguments, self.context, self.store = arguments, context, store
+        self.broken, self.notes, self.counts = [], [], dict.fromkeys(("figure", "table", "picture", "page"), 0)
+        self.others, notes = other_devices(arguments.folder, store)
+        self.notes += notes
+        now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
+        self.page = pages.Page(store.path, arguments.folder, context["commit"], now, store.runs)
+        self.terminal = sys.stderr.isatty() and os.environ.get("TERM", "dumb") != "dumb"
+
+    def say(self, what=""):
+        if self.terminal:
+            print(f"\r\033[K{what}", end="", file=sys.stderr, flush=True)
+
+    def fill(self, study):
+        """The chapter of a study, with its broken promises first."""
+        names = [known["name"] for known in self.context["studies"]]
+        if study.name not in names:
+            raise Refusal("report", f"'{study.name}' is no study that this program reports",
+                          "use the farcull that measured it")
+        known = self.context["studies"][names.index(study.name)]
+        chapter = Chapter(study.name, known["title"], known["question"], command_of(study, self.store.runs))
+        importlib.import_module("chapters." + study.name.replace("-", "_")).fill(chapter, study)
+        others = [(other.device, other.study(study.name, study.constants))
+                  for other in self.others if study.name in other.names]
+        devices.fill(chapter, study, self.store.device, others)
+        chapter.findings.sort(key=lambda finding: not finding[0])
+        before = len(self.broken)
+        for where, of in [("", study)] + [(f" on {device}", of) for device, of in others]:
+            self.broken += [f"{study.name}{where}: {describe(row)}" for row in promising(of.rows).itertuples()
+                            if any(value(row, name) > 0 for name in BROKEN)]
+        # What a chapter finds broken where each row by itself is right, such as energy that a solver made.
+        if len(self.broken) == before:
+            self.broken += [f"{study.name}: {text}" for broken, text in chapter.findings if broken]
+        if not study.complete:
+            self.notes.append(f"{study.name}: {len(study.all_rows)} of {len(study.points)} points have a row")
+        self.page.chapters.append(pages.Drawn(chapter, study))
+
+    def draw(self, drawn, root):
+        chapter = drawn.chapter
+        for figure in chapter.figures:
+            self.say("drawing " + figure.name)
+            legible(figure)
+            files = draw.files_of(figure)
+            for kind, content in files.items():
+                write(root / "figures" / f"{figure.name}.{kind}", content)
+            drawn.svgs.append(files["svg"])
+        for table in chapter.tables:
+            write(root / "tables" / (table.name + ".csv"), tables.table_csv(table))
+            write(root / "tables" / (table.name + ".tex"), tables.table_latex(table))
+        write(root / "tables" / (chapter.study + "-rows.csv"), tables.rows_csv(drawn.study))
+        for name, text in chapter.files.items():
+            write(root / name, text)
+        drawn.pictures = [self.picture(picture, chapter, root) for picture in chapter.pictures]
+        chapter.findings.sort(key=lambda finding: not finding[0])
+        self.counts["figure"] += len(chapter.figures)
+        self.counts["table"] += len(chapter.tables)
+
+    # Promises that the picture breaks become findings of the chapter.
+    def picture(self, picture, chapter, root):
+        self.say("picture " + picture.name)
+        out, path = pages.DrawnPicture(picture), root / "pictures" / (picture.name + ".png")
+        try:
+            if self.arguments.no_pictures:
+                raise Refusal("--no-pictures", "was given", "leave it out")
+            path.parent.mkdir(exist_ok=True)
+            broken = self.run_picture(picture, ["-o", path])
+            out.png = path.read_bytes()
+        except Refusal as error:
+            out.left_out = f"{error.where} {error.reason}"
+            self.notes.append(f"picture {picture.name} is left out: {out.left_out}")
+            return out
+        self.counts["picture"] += 1
+        self.add_counts(picture, chapter, png_texts(out.png), bool(broken))
+        out.page = self.make_page(picture, root / "pages" / (picture.name + ".html"))
+        return out
+
+    def run_picture(self, picture, more):
+        """Runs `farcull picture`; returns what it says of broken promises."""
+        device = ["--device", self.arguments.device] if self.arguments.device is not None else []
+        done = subprocess.run([self.context["program"], "picture", *picture.arguments, *device, *more],
+                              capture_output=True, stdin=subprocess.DEVNULL, text=True, errors="replace")
+        lines = [line.removeprefix("farcull: ") for line in done.stderr.splitlines()]
+        if done.returncode not in (0, 1):
+            where, _, reason = (lines or ["farcull picture: failed"])[-1].partition(": ")
+            raise Refusal(where, reason.split("; ")[0], "")
+        return lines if done.returncode == 1 else []
+
+    def add_counts(self, picture, chapter, texts, broken):
+        """Writes what the drawn panels count into the caption, and tells where the rows say otherwise. broken: the
+        program says that a method that promises missed something."""
+        said, stored = [], []
+        for i, (method, *known) in enumerate(picture.panels):
+            text = texts[f"Panel {i + 1}"]
+            missed, colliding = (int(re.search(name + r" (\d+)", text).group(1)) for name in ("missed", "colliding"))
+            said.append(f"{method} misses {of_all(missed, colliding)} colliding pairs")
+            if known[:2] != [missed, colliding]:
+                words = ["an unknown number" if n is None or n != n else grouped(n) for n in known[:2]]
+                stored.append(f"{words[0]} of {words[1]} by {method}")
+            if broken and missed and method.startswith("FAR"):
+                text = (f"in the picture {picture.name}, {method} misses {of_all(missed, colliding)} colliding pairs, "
+                        "and promises to miss none.")
+                chapter.find_broken(text)
+                self.broken.append("BROKEN: " + text)
+        picture.caption = f"{sentence(picture.caption)} Here {listed(said)}."
+        if stored:
+            picture.caption += (" The rows of the study, measured before, say otherwise: "
+                                f"{listed(stored)} missed.")
+
+    def make_page(self, picture, path):
+        """Whether there is a page of the picture's scene, where every panel steps through resolutions."""
+        self.say("page " + picture.name)
+        own = [int(n) for word in picture.arguments for n in re.findall(r":(\d+)", word)]
+        steps = ",".join(str(n) for n in sorted({*PAGE_RESOLUTIONS, *own}))
+        plain = [re.sub(r"(?<=[a-z]):\d+", "", word) for word in picture.arguments]
+        try:
+            path.parent.mkdir(exist_ok=True)
+            said = self.run_picture(type(picture)(picture.name, "", plain, []), ["--html", path, "--resolutions", steps])
+        except Refusal as error:
+            self.notes.append(f"the page of picture {picture.name} is left out: {error.where} {error.reason}")
+            return False
+        self.broken += [f"in the page of the picture {picture.name}, {line}" for line in said]
+        self.counts["page"] += 1
+        return True
+
+    def write_pages(self, root):
+        write(root / "index.html", pages.HtmlPage(self.page).text())
+        write(root / "results.md", pages.page_markdown(self.page))
+        write(root / "report.tex", pages.page_latex(self.page))
+
+    def tell(self):
+        many = {"figure": "figures", "table": "tables", "picture": "pictures", "page": "pages"}
+        counts = [counted(len(self.page.chapters), "study", "studies")]
+        counts += [counted(n, one, many[one]) for one, n in self.counts.items()]
+        print("".join(note + "\n" for note in self.notes) + ", ".join(counts) +
+              f"\n{self.arguments.folder}/report/index.html", flush=True)
+        for broken in self.broken:
+            line = f"farcull: a promise is broken: {broken}"
+            colour = self.terminal and not os.environ.get("NO_COLOR")
+            print(f"\033[1;31m{line}\033[0m" if colour else line, file=sys.stderr)
+        return 1 if self.broken else 0
+
+
+def write(path, content):
+    """Writes a text, or bytes."""
+    try:
+        path.write_bytes(content if isinstance(content, bytes) else content.encode("utf-8", "surrogateescape"))
+    except OSError as error:
+        raise Refusal(path, f"cannot be written: {error.strerror}", "make room on the disk") from error
+
+
+# ---- the command
+
+def report(arguments):
+    context = json.loads(arguments.context)
+    store = Store(arguments.folder)
+    order = [known["name"] for known in context["studies"]]
+    names = sorted(store.names, key=lambda name: order.index(name) if name in order else len(order))
+    shard = store.read("SELECT study FROM studies WHERE shards > 1").study
+    if len(shard):
+        raise Refusal(store.path, f"holds a shard of {shard[0]}", f"farcull merge {arguments.folder}")
+    studies = [store.study(name, context["constants"]) for name in names]
+    if not any(len(study.all_rows) for study in studies):
+        raise Refusal(store.path, "holds no row yet", "measure first, as in farcull experiment all --quick")
+    place = pathlib.Path(arguments.folder, "report")
+    check_place(place)
+    with Unfinished(place) as unfinished:
+        reporter = Reporter(arguments, context, store)
+        for study in studies:
+            reporter.fill(study)
+        for drawn in reporter.page.chapters:
+            reporter.draw(drawn, unfinished.path)
+        reporter.write_pages(unfinished.path)
+        reporter.say()
+        unfinished.publish()
+    return reporter.tell()
+
+
+def interrupt(number, _):
+    raise Interrupted(number)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("folder")
+    parser.add_argument("context")
+    parser.add_argument("--no-pictures", action="store_true")
+    parser.add_argument("--device")
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, interrupt)
+    sys.stdout.reconfigure(encoding="utf-8", errors="surrogateescape")
+    sys.stderr.reconfigure(encoding="utf-8", errors="surrogateescape")
+    try:
+        return report(parser.parse_args())
+    except Interrupted as ended:
+        signal.signal(ended.args[0], signal.SIG_DFL)
+        os.kill(os.getpid(), ended.args[0])
+    except Refusal as error:
+        print(f"farcull: {error}", file=sys.stderr)
+    except Damaged as error:
+        print(f"farcull: {sys.argv[1]}/results.sqlite: is damaged: {error}; use the farcull that measured it",
+              file=sys.stderr)
+    except OSError as error:
+        print(f"farcull: {error.filename or 'the report'}: cannot be written: {error.strerror}; make room on the disk",
+              file=sys.stderr)
+    except pd.errors.DatabaseError as error:
+        print(f"farcull: {sys.argv[1]}/results.sqlite: {error.__cause__}; wait for its end, or name another folder",
+              file=sys.stderr)
+    return 2
+
+
+sys.exit(main())

@@ -1,0 +1,158 @@
+"""Frame by frame: the triangles that FAR and I-COLLIDE leave to exact tests, and the work of Quick-CULLIDE beside that
+of CULLIDE."""
+from frame import *  # noqa: F403: a chapter uses most of it
+
+METHODS = ["FAR (OBB)", "FAR (exact)", "CULLIDE", "Quick-CULLIDE", "FAR pairs", "I-COLLIDE"]
+OBB, EXACT, PLAIN, QUICK, PAIRS, BOXES = METHODS
+NAMES = ["object_triangles", "kept_triangles", "colliding_triangles", "candidates", "triangles", "queries", "draws",
+         "colliding", "missed", "total_ms", "there"]
+
+
+def frames_of(rows):
+    """The rows of a scene with a line for each frame and the columns (name, method); NaN: there is none. The column
+    (there, method) tells whether there is a row."""
+    rows = rows.assign(there=1.0)
+    rows = rows.assign(**{name: column(rows, name) for name in NAMES})
+    wide = rows.groupby(["frame", "contestant"])[NAMES].last().unstack()
+    return wide.reindex(columns=pd.MultiIndex.from_product([NAMES, METHODS]))
+
+
+def measured(frames, method):
+    return frames.there[method].any()
+
+
+def common(frames, methods):
+    """The frames of which each of these methods has a row. Methods without any row do not count."""
+    return frames[frames.there[[m for m in methods if measured(frames, m)]].notna().all(axis=1)]
+
+
+def factors(frames, method, name, what="kept_triangles"):
+    """For each frame in which the method keeps something, count `name` of I-COLLIDE over count `what` of the method."""
+    kept = frames[what][method]
+    return tuple((frames[name][BOXES] / kept)[kept > 0].dropna())
+
+
+def figures_of(scenes):
+    counts = sorted({len(frames) for frames in scenes.values()})
+    n = (f"n = {'' if len(counts) == 1 else f'{counts[0]} to '}{counted(counts[-1], 'frame', 'frames')} of each scene, "
+         "each run once.")
+    axis = Axis("frame", low=0, high=max(1, *(int(frames.index.max()) for frames in scenes.values())))
+
+    def line(name, values, **look):
+        return Series(name, list(values.index), list(values), **look)
+
+    kept = Figure(
+        "efficiency", "Triangles that are left to exact tests, frame by frame",
+        "I-COLLIDE as published ends with the objects whose boxes meet (all their triangles), ours goes on to boxes of "
+        f"triangles. FAR is drawn with both offsets. No method can leave fewer than the triangles that collide. {n}",
+        [Panel(scene, axis, log("triangles", zero=True), [
+            line("I-COLLIDE, objects", frames.object_triangles[BOXES]),
+            line("I-COLLIDE, triangles", frames.kept_triangles[BOXES])] + [
+                line(method, frames.kept_triangles[method], emphasis=method != PAIRS)
+                for method in (OBB, EXACT, PAIRS) if measured(frames, method)] + [
+                    line("colliding triangles", frames.colliding_triangles[BOXES], style="lines")])
+         for scene, frames in scenes.items()])
+    quick = Figure(
+        "efficiency-quick", "What Quick-CULLIDE asks and draws over what CULLIDE does, frame by frame",
+        "Each runs until a round changes nothing. Below 1 Quick-CULLIDE does less. Both miss pairs, so they do not "
+        f"have the same answer. {n}",
+        [Panel(what, axis, Axis("Quick-CULLIDE / CULLIDE", low=0), [
+            line(scene, (frames[what][QUICK] / frames[what][PLAIN]).where(frames[what][PLAIN] > 0))
+            for scene, frames in scenes.items() if measured(frames, QUICK)], [Mark(1, "as many", vertical=False)])
+         for what in ("queries", "draws")])
+    return [kept, quick]
+
+
+def cell(count):
+    return "-" if count != count else grouped(count)
+
+
+def quick_row(scene, frames):
+    over = common(frames, [QUICK, PLAIN, BOXES, OBB, EXACT])
+    sums = over.sum(min_count=1)
+    missed = sums.missed
+    return ([scene, grouped(len(over))] +
+            [rounded(sums[what][QUICK] / sums[what][PLAIN]) for what in ("queries", "draws")] +
+            [cell(count) for count in (sums.colliding[BOXES], missed[PLAIN], missed[QUICK],
+                                       missed[[OBB, EXACT]].sum(min_count=1))])
+
+
+def tables_of(scenes):
+    interval = "with the 95 % interval that it would have were the frames independent"
+    return [
+        Table("efficiency-factors",
+              "How many times more I-COLLIDE leaves than FAR: triangles of the objects whose boxes meet, triangles "
+              f"whose boxes meet, and pairs of them; median of the frames in which FAR keeps something, {interval}",
+              columns(["scene", "offset"], ["frames", "objects", "triangles", "pairs"]),
+              [[scene, offset, grouped(len(factors(frames, method, "object_triangles"))),
+                median_text(factors(frames, method, "object_triangles")),
+                median_text(factors(frames, method, "kept_triangles")),
+                median_text(factors(frames, method, "candidates", "candidates"))]
+               for scene, frames in scenes.items() for method, offset in ((OBB, "OBB"), (EXACT, "exact"))
+               if measured(frames, method)]),
+        Table("efficiency-quick",
+              "Quick-CULLIDE against CULLIDE, summed over the frames that all of them have: queries and draws as a "
+              "part of CULLIDE's, and the colliding pairs that each misses; a pair counts once in each frame",
+              columns(["scene"], ["frames", "queries", "draws", "colliding", "CULLIDE misses", "Quick-CULLIDE misses",
+                                  "FAR misses"]),
+              [quick_row(scene, frames) for scene, frames in scenes.items() if measured(frames, QUICK)]),
+        Table("efficiency-times",
+              "Time in ms from moved vertices to exact pairs: median of the frames that all methods of the scene have, "
+              f"{interval}, each run once", columns(["scene"], ["triangles", "frames"] + METHODS),
+              [[scene, cell(frames.triangles[BOXES].iloc[0]), grouped(len(over))] +
+               [median_text(over.total_ms[method].dropna()) for method in METHODS]
+               for scene, frames in scenes.items() for over in [common(frames, METHODS)]])]
+
+
+def add_factors(chapter, scenes):
+    def range_of(method, name):
+        """The median factors of the scenes, ascending, and in words the first and the last."""
+        of = sorted((median(values), scene) for scene, frames in scenes.items()
+                    if (values := factors(frames, method, name)))
+        return of, " to ".join(f"{rounded(factor)} ({scene})" for factor, scene in (of[:1] + of[-1:]))
+
+    for method, offset in ((OBB, "boxes"), (EXACT, "exact offsets")):
+        (objects, of_objects), (triangles, of_triangles) = (
+            range_of(method, name) for name in ("object_triangles", "kept_triangles"))
+        if objects and triangles:
+            chapter.find(f"FAR with {offset} leaves {of_objects} times fewer triangles than the objects of I-COLLIDE "
+                         f"have, by medians over the frames; against boxes of triangles the factor is {of_triangles}, "
+                         f"above 1 in {sum(factor > 1 for factor, _ in triangles)} of {len(triangles)} scenes.")
+
+
+def add_missed(chapter, rows):
+    known = rows[column(rows, "missed").notna() & column(rows, "colliding").notna()]
+    parts = [f"{method} {with_bound(total(of, 'missed'), total(of, 'colliding'))}"
+             for method in (OBB, EXACT, PAIRS, BOXES, PLAIN, QUICK) if len(of := known[known.contestant == method])]
+    if parts:
+        chapter.find("Colliding pairs missed, over all frames (a pair counts once in each frame; the bounds are 3/N, "
+                     f"at 95 % were all N independent): {listed(parts)}.")
+
+
+def add_quick(chapter, scenes):
+    work = pd.concat([pd.DataFrame()] + [frames[["queries", "draws"]] for frames in scenes.values()])
+    work = work.reindex(columns=[(what, method) for what in ("queries", "draws") for method in (QUICK, PLAIN)])
+    quick, plain, quick_draws, plain_draws = work.dropna().sum()
+    if plain > 0 and plain_draws > 0:
+        chapter.find(f"Over all frames Quick-CULLIDE asks {rounded(quick / plain)} and draws "
+                     f"{rounded(quick_draws / plain_draws)} times as often as CULLIDE.")
+
+
+def fill(chapter, study):
+    scenes = {scene: frames_of(of) for scene, of in by(study.rows, "scene")}
+    add_promises(chapter, study)
+    add_factors(chapter, scenes)
+    add_missed(chapter, study.rows)
+    add_quick(chapter, scenes)
+    chapter.limits = [
+        "Scenes are far smaller than in the papers, so that a software device can draw them; `farcull experiment "
+        "family` takes any size.",
+        "Factors depend on resolution: at a lower one FAR fattens more and keeps more.",
+        "FAR and CULLIDE are measured between objects; scenes with objects that are tested against themselves are "
+        "measured by I-COLLIDE and FAR pairs alone.",
+        "Boxes of triangles are our addition to I-COLLIDE; as published it ends with objects.",
+        "On a software device the times of methods that draw say nothing about graphics hardware; queries and draws "
+        "carry over."]
+    add_gaps(chapter, study)
+    if scenes:
+        chapter.figures, chapter.tables = figures_of(scenes), tables_of(scenes)

@@ -1,0 +1,295 @@
+"""Errors and false positives against time, the Pareto front of each scene, and CULLIDE in the time that FAR takes."""
+from frame import *  # noqa: F403
+
+OURS = ("FAR (OBB)", "FAR pairs")
+SHOWN = (*OURS, "FAR (exact)", "CULLIDE, one round", "CULLIDE, one round, conservative", "cgal-boxes")
+MOST_SCENES = 8  # that the first figure has a panel for
+
+
+@dataclass
+class Entry:
+    """A contestant at a resolution, on a scene or on several drawn alike with different seeds. times: ms of each run,
+    or of several seeds the median of each. The counts are of all seeds; an error is a pair that the answer lacks, or
+    a pair in it that does not collide."""
+    row: object  # of the first seed
+    name: str
+    times: tuple
+    missed: int
+    wrong: int
+    colliding: int
+    candidates: int
+    has_candidates: bool
+
+    def __post_init__(self):
+        self.median = median_estimate(self.times)
+        self.ms, self.error, self.pixels = self.median.value, self.missed + self.wrong, self.row.resolution
+
+    @property
+    def words(self):
+        return self.name + (f" at {self.pixels} px" if self.pixels > 0 else "")
+
+    @property
+    def error_share(self):
+        return share(self.error, self.colliding)
+
+    @property
+    def for_nothing(self):
+        """Candidates that do not collide, over what collides."""
+        if not self.has_candidates or self.colliding == 0:
+            return NONE
+        return (self.candidates - (self.colliding - self.missed)) / self.colliding
+
+
+@dataclass
+class Group:
+    """A scene without its seeds, with what was measured with all of them."""
+    name: str
+    seeds: int
+    entries: list
+
+    @property
+    def title(self):
+        return self.name + (f" ({self.seeds} seeds)" if self.seeds > 1 else "")
+
+    def front(self):
+        """Entries that no other beats: none is as fast with as little error, and better in one of them. Fastest
+        first; of equals the first."""
+        out = []
+        for entry in sorted(self.entries, key=lambda e: (e.ms, e.error)):
+            if not out or entry.error < out[-1].error:
+                out.append(entry)
+        return out
+
+    def yardstick(self):
+        """The peer that times are given against: CGAL's box join, which every build has."""
+        return next((e for e in self.entries if e.row.method == "cgal-boxes"), None)
+
+    def by_name(self):
+        out = {}
+        for entry in self.entries:
+            out.setdefault(entry.name, []).append(entry)
+        return out
+
+
+def entry_of(rows):
+    first = next(rows.itertuples())
+    times = first.runs if len(rows) == 1 and first.runs else tuple(rows.total_ms)
+    return Entry(first, first.contestant, times,
+                 *(total(rows, name) for name in ("missed", "wrong", "colliding", "candidates")),
+                 bool(column(rows, "candidates").notna().all()))
+
+
+def groups_of(rows):
+    out = []
+    for name, here in by(rows.assign(group=rows.scene.map(scene_base)), "group"):
+        seeds = here.scene.nunique()
+        timed = here[column(here, "total_ms").notna()]
+        parts = timed.groupby(["contestant", "resolution"], sort=False) if len(timed) else []
+        out.append(Group(name, seeds, [entry_of(of) for _, of in parts if len(of) == seeds]))
+    return out
+
+
+def times_as_long(entry, other):
+    return estimate_text(ratio_estimate(entry.times, other.times))
+
+
+def sample_of(groups):
+    """`n = 57 points, each the median of 5 runs; of drawn scenes 5 seeds`."""
+    runs = pd.DataFrame({"runs": [entry.row.runs for group in groups for entry in group.entries]})
+    seeds = sorted({group.seeds for group in groups if group.seeds > 1})
+    return sample_text(runs) + (f"; of drawn scenes {listed(map(str, seeds))} seeds" if seeds else "")
+
+
+# ---- figures
+
+def cloud(name, points):
+    """Points of an entry and a y each, over the time with its interval. A line follows the resolution; what chooses
+    its resolution is no point of the line."""
+    out = Series(name, style="lines_points" if sum(e.pixels > 0 for e, _ in points) > 1 else "points",
+                 emphasis=name in OURS)
+    for entry, y in points:
+        values = [(entry.ms, y, entry.median.low, entry.median.high) if entry.median.n > 1
+                  else (entry.ms, y, NONE, NONE)]
+        if entry.pixels <= 0:
+            values = [(NONE,) * 4] * bool(out.x) + values + [(NONE,) * 4]
+        for value_of in values:
+            for along, v in zip((out.x, out.y, out.x_low, out.x_high), value_of):
+                along.append(v)
+    return out
+
+
+def drawn_names(group):
+    """Forms in which all views have to clear are left to the tables, so that the key stays short."""
+    return {name: of for name, of in group.by_name().items() if "all views" not in name}
+
+
+def error_panel(title, label, entries):
+    """Methods that were wrong anywhere in the panel as points, the others as rows of the strip. entries: by the name
+    of a method, pairs of an entry and its errors in per cent."""
+    panel = Panel(title, log(label), log("errors (%)", zero=True))
+    for name, points in entries.items():
+        if any(y > 0 for _, y in points):
+            panel.series.append(cloud(name, points))
+        else:
+            panel.strip.append(cloud(name, points))
+    panel.strip.sort(key=lambda s: (s.name not in OURS, min(x for x in s.x if x == x)))
+    return panel
+
+
+def summary_panel(groups):
+    """What was measured on every scene: the errors of all of them over the median of the times, as multiples of those
+    of cgal-boxes on the same scene."""
+    entries = {}
+    if any(group.yardstick() is None for group in groups):
+        return None
+    found = [{(e.name, e.pixels): e for e in group.entries} for group in groups]
+    for key, first in found[0].items():
+        if "all views" in first.name or not all(key in of for of in found):
+            continue
+        ratios = [of[key].ms / group.yardstick().ms for of, group in zip(found, groups)]
+        whole = Entry(first.row._replace(runs=()), first.name, tuple(ratios),
+                      *(sum(getattr(of[key], n) for of in found) for n in ("missed", "wrong", "colliding",
+                                                                           "candidates")), True)
+        entries.setdefault(first.name, []).append((whole, whole.error_share))
+    return error_panel("all scenes together", "time / that of cgal-boxes", entries) if entries else None
+
+
+def figures_of(groups):
+    shown, sample = groups[:MOST_SCENES], sample_of(groups)
+    error = Figure(
+        "error-time", "Methods that make errors, and those that make none, by run time",
+        "Above: pairs that are missed plus pairs that are reported and do not collide, of all that collide, over the "
+        "median time from triangles to pairs, with its 95 % interval as a bar. Lines follow the resolution. Below, on "
+        "the same time axis: a row for each method that made no error. Of scenes that are drawn with several seeds, "
+        "the sum of the errors and the median of the times. Forms in which all views have to clear are in the table.",
+        [error_panel(group.title, "time (ms)", {name: [(e, e.error_share) for e in of]
+                                                for name, of in drawn_names(group).items()}) for group in shown])
+    summary = summary_panel(shown) if len(shown) > 1 else None
+    if summary:
+        error.panels.append(summary)
+        error.caption += (" All scenes together: the sum of the errors, and the median over the scenes of the time "
+                          "over that of cgal-boxes on the same scene, of what was measured on each.")
+    error.caption += f" {sample}."
+    shown = [Group(group.name, group.seeds, [e for e in group.entries if e.name in SHOWN]) for group in groups]
+    kept = Figure(
+        "error-time-false-positives", "Candidates that do not collide against run time",
+        "Candidates that are handed to exact tests and do not collide, over colliding pairs: of FAR, of CULLIDE in two "
+        "forms, and of the boxes of all triangles. The others are in the table of all points. Bars are the 95 % "
+        f"intervals of median times; {sample_of(shown)}.",
+        [Panel(group.title, log("time (ms)"), log("false positives / colliding", zero=True), [
+            cloud(name, [(e, e.for_nothing) for e in of]) for name, of in group.by_name().items()])
+         for group in shown])
+    return [error, kept]
+
+
+# ---- tables
+
+def front_table(groups):
+    out = Table("error-time-front", "The Pareto fronts: nothing is as fast with as few errors. Times are ratios of "
+                f"medians with their 95 % intervals. {sample_of(groups)}",
+                columns(["scene", "method"], ["time over that of cgal-boxes", "missed", "wrong", "colliding"]))
+    for group in groups:
+        peer = group.yardstick()
+        out.rows += [[group.name, e.words, times_as_long(e, peer) if peer else "-", grouped(e.missed),
+                      grouped(e.wrong), grouped(e.colliding)] for e in group.front()]
+    return out
+
+
+def equal_times(group):
+    """FAR at each resolution, and of the runs of CULLIDE, in any form and at any resolution, that took no longer, the
+    one with the fewest errors; None where none was as fast."""
+    rivals = [e for e in group.entries if "cullide" in e.row.method]
+    return [(far, min((e for e in rivals if e.ms <= far.ms), key=lambda e: e.error, default=None))
+            for far in group.entries if far.name == "FAR (OBB)"]
+
+
+def equal_table(groups):
+    out = Table("error-time-equal", "CULLIDE in the time that FAR takes: of all its forms and resolutions whose median "
+                "time is no longer, the one with the fewest errors. Candidates are what each leaves to exact tests: a "
+                "form that leaves as many as boxes alone has culled nothing",
+                columns(["scene"], ["FAR (OBB) at (px)", "ms", "its candidates"], ["CULLIDE within it"],
+                        ["its ms", "its candidates", "missed by CULLIDE"]))
+    for group in groups:
+        for far, best in equal_times(group):
+            out.rows.append([group.name, str(far.pixels), rounded(far.ms), grouped(far.candidates)] + (
+                [best.words, rounded(best.ms), grouped(best.candidates), of_all(best.missed, best.colliding)] if best
+                else ["none is as fast", "-", "-", "-"]))
+    return out
+
+
+def all_table(rows):
+    def ms(name):
+        return lambda row: rounded(value(row, name))
+
+    return table_of_rows("error-time-all", "All points; times are medians with the fastest and slowest run", rows, {
+        "scene": "=scene", "method": "=contestant", "resolution": resolution_cell("-"), "ms": ms("total_ms"),
+        "fastest": ms("total_min_ms"), "slowest": ms("total_max_ms"), "missed": "missed",
+        "wrong": lambda row: grouped(number(row, "wrong")), "candidates": "candidates", "colliding": "colliding",
+        "false positives": lambda row: rounded(false_positives(row))})
+
+
+# ---- findings
+
+def add_equal_times(chapter, groups):
+    """Adds, for each scene, the fastest FAR and the best CULLIDE of the same time."""
+    cases = [best for group in groups for _, best in equal_times(group)]
+    if not cases:
+        return
+    missing, slower = sum(b is not None and b.missed > 0 for b in cases), sum(b is None for b in cases)
+    chapter.find("In the time that FAR (OBB) takes, the best CULLIDE (of all forms and resolutions that were measured) "
+                 f"misses pairs in {of_all(missing, len(cases))} cases of scene and resolution of FAR" +
+                 (f", and no CULLIDE is as fast in {grouped(slower)}." if slower else "."))
+    for group in groups:
+        far, best = min(equal_times(group), key=lambda pair: pair[0].ms, default=(None, None))
+        if best:
+            chapter.find(f"{group.name}: FAR (OBB) is fastest at {far.pixels} px ({rounded(far.ms)} ms, "
+                         f"{of_all(far.missed, far.colliding)} missed); within that time {best.words} misses the "
+                         f"fewest, {of_all(best.missed, best.colliding)} ({rounded(best.ms)} ms).")
+
+
+def add_front(chapter, group):
+    """Adds the fastest method without an error, the next one, and what is faster with errors."""
+    right = sorted((e for e in group.entries if e.error == 0), key=lambda e: e.ms)
+    if not group.entries:
+        return
+    if not right:
+        chapter.find(f"No method is without an error on {group.name}.")
+        return
+    best, after = right[0], next((e for e in right if e.name != right[0].name), None)
+    chapter.find(f"Fastest method without an error on {group.title}: {best.words}, {rounded(best.ms)} ms" +
+                 (f"; the next method, {after.words}, takes {times_as_long(after, best)} times as long." if after
+                  else "."))
+    faster = [f"{e.words} ({of_all(e.error, e.colliding)} wrong, {rounded(e.ms)} ms)" for e in group.front() if e.error]
+    if faster:
+        chapter.find(f"Faster on {group.name}, with errors: {listed(faster)}.")
+
+
+def fill(chapter, study):
+    rows = study.rows
+    groups = groups_of(rows)
+    add_promises(chapter, study)
+    add_equal_times(chapter, groups)
+    for group in groups:
+        add_front(chapter, group)
+    for name in ("fcl-float", "fcl-double", "ode-trimesh"):  # libraries with a test of triangles of their own
+        of = rows[rows.method == name]
+        if len(of):
+            chapter.find(f"{name} misses {of_rows(of, 'missed', 'colliding')} colliding pairs and reports "
+                         f"{grouped(total(of, 'wrong'))} that do not collide, in {grouped(len(of))} scenes.")
+    chapter.limits = [
+        "Times are one machine's. On a software device those of methods that draw say nothing about graphics hardware, "
+        "and the front is another there.",
+        "Every method may use all cores; FCL's traversal of two objects has one thread, and so has ODE.",
+        "Embree and CGAL give candidates; they are right because exact tests follow, whose time is in theirs. What FCL "
+        "and ODE take includes their own test of triangles.",
+        "At equal time the form and the resolution of CULLIDE were chosen by the same runs that are shown, which "
+        "favours CULLIDE.",
+        "Contexts, shaders and Embree's device are made before; hierarchies and boxes belong to the run.",
+        "On a scene tested against itself libraries leave pairs that share a vertex out, ours count those that collide "
+        "beyond it. So on such a scene our times include the exact tests of all neighbours, which those of libraries "
+        "do not. farcull bench leaves neighbours out for all."]
+    add_gaps(chapter, study)
+    if groups:
+        chapter.figures = figures_of(groups)
+        chapter.tables = [t for t in (front_table(groups), equal_table(groups), all_table(rows))
+                          if t.rows or t.name != "error-time-equal"]

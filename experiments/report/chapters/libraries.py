@@ -1,0 +1,279 @@
+"""What each contestant missed, reported wrongly, refused or crashed at, on a suite of labelled pairs and meshes.
+
+Counts of pairs of triangles and of pairs of meshes are never added: the first are questions, each with its answer, the
+second are what one answer about a mesh has to consist of.
+"""
+from chapters.library_examples import KINDS, add_examples
+from frame import *  # noqa: F403: a chapter uses most of it
+
+REFERENCE = "far-pairs"  # stands beside all others in figures
+# The counts of a score, in the order of peers/score.cpp.
+SCORE = ["asked", "answered", "missed", "wrong", "own_asked", "own_missed", "own_wrong", "refused", "unanswered",
+         "crashed", "hung", "no_memory", "not_asked", "twice", "differing"]
+# Panels of figures: contestants by the first word of their library; the last takes the others.
+GROUPS = {"farcull": ["farcull"], "FCL and libccd": ["FCL", "libccd"], "Bullet and ODE": ["Bullet", "ODE"],
+          "libraries for meshes": ["CGAL", "GTS", "VTK", "Open3D", "three-mesh-bvh"], "tests of papers, others": []}
+PARAMETERS = {"slivers": "length over width", "gap-face": "gap, in sizes",
+              "far-away": "distance from the origin, in sizes"}
+WRONG = "wrong answers per million"
+
+
+# ---- rows and their sums
+
+def with_families(rows):
+    """The rows with the columns family (of `small/pairs/random` pairs/random), pairs (else of meshes), group (of
+    figures), and texts that none of them lacks."""
+    rows = rows.assign(family=[scene.partition("/")[2] for scene in rows.scene], **{
+        name: [text(row, name) for row in rows.itertuples()]
+        for name in ("library", "means", "call", "says", "source", "use", "scores", "reason")})
+    title_of = {word: title for title, words in GROUPS.items() for word in words}
+    return rows.assign(pairs=rows.scene.str.match("[^/]*/pairs/"),
+                       group=[title_of.get(library.split(" ")[0], list(GROUPS)[-1]) for library in rows.library])
+
+
+def totals(rows, *names):
+    return sum(total(rows, name) for name in names)
+
+
+def deaths(rows):
+    """Questions at which the process crashed, hung or ran out of memory."""
+    return totals(rows, "crashed", "hung", "no_memory")
+
+
+def without_answer(rows):
+    return deaths(rows) + totals(rows, "refused", "unanswered", "not_asked")
+
+
+def differing(rows):
+    """`78 of 646`: answered otherwise the second time, of those that were asked twice."""
+    otherwise = total(rows, "differing")
+    return of_all(otherwise, total(rows, "twice")) if otherwise else "0"
+
+
+def answers(rows, pairs, own):
+    """Missed pairs and false alarms of the pairs of triangles that were answered, each with the number that it is a
+    part of: of pairs all answers; of meshes what collides and what was reported, since nobody knows how many pairs are
+    apart. own: only where the contestant's documentation promises the answer."""
+    asked, missed, false = (total(rows, name) for name in (
+        ("own_asked", "own_missed", "own_wrong") if own else ("answered", "missed", "wrong")))
+    return missed, asked, false, asked if pairs else asked - missed + false
+
+
+def scores_of(rows):
+    """The scores of all rows, with contestant, family, parameter, kind and counts."""
+    out = []
+    for row in rows.itertuples():
+        for score in row.scores.split(";") if row.scores else []:
+            words = score.partition("|")[0].split()
+            if "|" not in score or len(words) != len(SCORE) + 3:
+                raise Damaged(f"'{score}' is no score of this version of farcull")
+            out.append([row.method, row.family, abs(float(words[0])), words[1]] + [int(word) for word in words[2:-1]])
+    names = ["contestant", "family", "parameter", "kind"]
+    return pd.DataFrame(out, columns=names + SCORE).astype({name: int for name in SCORE})
+
+
+# ---- tables
+
+def per_million(count, of):
+    """A rate; "0" is none at all."""
+    return "-" if of == 0 else "0" if count == 0 else rounded(1e6 * count / of)
+
+
+def overview(rows, pairs):
+    start, counts = (
+        "Pairs of triangles: missed (they meet, and it says apart) and false alarms (they are apart, and it says that "
+        "they meet), per million of the pairs that were answered", ["asked"]) if pairs else (
+        "Meshes: the colliding pairs of all meshes that were asked, and the pairs that were reported; missed per "
+        "million of the colliding pairs of those meshes that were answered, false alarms per million of the reported "
+        "pairs, since nobody counts the pairs of a mesh that are apart. Both rates are "
+        "given", ["colliding", "reported"])
+    out = Table(
+        "libraries" if pairs else "libraries-meshes",
+        f"{start}, first by what the documentation of each promises, then by closed triangles. "
+        f"Counts{'' if pairs else ' of meshes'}: refused; without an answer, or not asked after too many deaths; "
+        "crashed, a hang or a lack of memory among them; answered otherwise the second time",
+        columns(["contestant", "library", "measured as"],
+                counts + ["missed, own", "false, own", "missed", "false", "refused", "unanswered", "deaths", "differs",
+                          "ns a pair" if pairs else "ms in all"]))
+    for contestant, of in by(rows, "method"):
+        ms, timed = column(of, "total_ms").sum(), total(of, "timed")
+        both = [answers(of, pairs, own) for own in (True, False)]
+        out.rows.append(
+            [contestant, of.library.iloc[0], of.means.iloc[0], grouped(total(of, "asked"))] +
+            ([] if pairs else [grouped(both[1][3])]) +
+            [per_million(*rate) for measure in both for rate in (measure[:2], measure[2:])] +
+            [grouped(total(of, "refused")), grouped(totals(of, "unanswered", "not_asked")), grouped(deaths(of)),
+             differing(of), rounded(ms) if not pairs else rounded(1e6 * ms / timed) if timed else "-"])
+    return out
+
+
+def kinds_table(scores, contestants):
+    sums = scores.groupby(["contestant", "kind"])[SCORE].sum()
+    sums = sums.reindex(pd.MultiIndex.from_product([contestants, KINDS]), fill_value=0)
+    rates = [per_million(row.missed + row.wrong, row.answered) for row in sums.itertuples()]
+    return Table(
+        "libraries-kinds",
+        "Wrong answers (missed or false alarms) per million answers about pairs of each kind of contact, degenerate "
+        "triangles among them; -: none was asked", columns(["contestant"], KINDS),
+        [[name] + rates[i * len(KINDS):][:len(KINDS)] for i, name in enumerate(contestants)])
+
+
+def calls_table(rows):
+    names = ["method", "library", "call", "says", "source", "use"]
+    return Table(
+        "libraries-calls",
+        "How each was called, what its documentation says of exactness and of touching, where it says that, and where "
+        "it is right to be used", columns(["contestant", "library", "called", "says", "source", "use"], []),
+        rows.drop_duplicates("method")[names].values.tolist())
+
+
+def families_table(rows):
+    families = list(rows.family.unique())
+
+    def cell(of):
+        pairs = of.pairs.any()
+        asked, said = (total(of, "asked"), total(of, "answered")) if pairs else (10**6, 10**6)
+        return "-" if of.empty or asked == 0 else " / ".join(
+            [per_million(total(of, name), said) for name in ("missed", "wrong")] +
+            [per_million(count, asked) for count in (total(of, "refused"), deaths(of))])
+
+    return Table(
+        "libraries-families",
+        "Missed / false alarms per million answers and refused / deaths per million pairs that were asked, of each "
+        "family, by closed triangles; of meshes the counts", columns(["contestant"] + families, []),
+        [[contestant] + [cell(of[of.family == family]) for family in families]
+         for contestant, of in by(rows, "method")], in_text=False)
+
+
+def all_table(rows):
+    return table_of_rows(
+        "libraries-all", "Every contestant on every family and mesh; of a mesh, asked are its colliding pairs", rows,
+        {"scene": "=scene", "contestant": "=method", "asked": "asked", "missed, own": "own_missed",
+         "false, own": "own_wrong", "missed": "missed", "false": "wrong", "refused": "refused",
+         "unanswered": "unanswered", "crashed": "crashed", "hung": "hung", "no memory": "no_memory",
+         "first missed": "first_missed", "first false": "first_wrong", "first death": "first_death",
+         "first reason": "=reason"})
+
+
+# ---- figures
+
+def time_figure(rows):
+    points = []
+    for contestant, of in by(rows, "method"):
+        ms, said, errors = column(of, "total_ms").sum(), total(of, "answered"), totals(of, "missed", "wrong")
+        if said and ms:
+            points.append((of.group.iloc[0], Series(contestant, [1e6 * ms / total(of, "timed")], [1e6 * errors / said],
+                                                    "points", contestant == REFERENCE)))
+    return Figure(
+        "libraries-time", "Wrong answers against time",
+        "Wrong answers, missed or false alarms, by closed triangles, over the mean time of a question as the "
+        f"contestant's own process measured it. {REFERENCE} stands in every panel. Neighbours are asked of those alone "
+        "that know them.",
+        [Panel(title, log("time of a pair (ns)", low=50, high=2e6), log(WRONG, zero=True, high=1e6),
+               [series for group, series in points if group == title or series.emphasis])
+         for title in GROUPS if title in dict(points)])
+
+
+def parameter_figure(scores, groups, family):
+    """Errors over the parameter of a family, of the contestants that err there."""
+    sums = scores[(scores.family == "pairs/" + family) & (scores.answered > 0)].groupby(
+        ["contestant", "parameter"])[SCORE].sum()
+    rates = 1e6 * (sums.missed + sums.wrong) / sums.answered
+    erring = rates[rates > 0].index.unique(0)
+    return Figure(
+        "libraries-" + family, f"Wrong answers against the parameter of {family}",
+        "Wrong answers, missed or false alarms, per million of those to pairs with that parameter, without its sign; "
+        "contestants without an error in this family are left out.",
+        [Panel(f"{family}, {title}", log(PARAMETERS[family], zero=True), log(WRONG, zero=True, low=0, high=1e6),
+               [Series(name, list(rates[name].index), list(rates[name])) for name in names])
+         for title in GROUPS if (names := [name for name in groups if groups[name] == title and name in erring])])
+
+
+# ---- findings
+
+def add_ours(chapter, rows):
+    """Each method of farcull that promises. A wrong answer breaks the promise, and so does no answer."""
+    for name, of in by(promising(rows), "method"):
+        pairs, meshes = of[of.pairs], of[~of.pairs]
+        missed, asked, wrong, _ = answers(pairs, True, False)
+        lost, colliding, false, reported = answers(meshes, False, False)
+        answered = sum(without_answer(meshes[meshes.index == at]) == 0 for at in meshes.index)
+        many, silent = counted(answered, "mesh", "meshes"), without_answer(of)
+        for bad, what in ((missed, f"of {grouped(asked)} pairs missed"),
+                          (wrong, f"of {grouped(asked)} pairs reported wrongly"),
+                          (lost, f"of the {grouped(colliding)} colliding pairs of {many} missed"),
+                          (false, f"of the {grouped(reported)} pairs reported of {many} are apart")):
+            if bad:
+                chapter.find_broken(f"{name}: {grouped(bad)} {what}, and it promises none.")
+        if silent:
+            chapter.find_broken(f"{name} has no answer to {counted(silent, 'question', 'questions')}.")
+        if asked + colliding and not missed + wrong + lost + false + silent:
+            what = [f"of {counted(asked, 'pair', 'pairs')}"] * bool(asked) + [
+                f"of the {counted(colliding, 'colliding pair', 'colliding pairs')} of {many}"] * bool(colliding)
+            chapter.find(f"{name} missed none and reported none wrongly {', and '.join(what)}.")
+
+
+def own_errors(rows, pairs):
+    """The part of wrong answers by the contestant's own documentation, NaN where it promises none that was given; and
+    in words."""
+    missed, asked, false, reported = answers(rows, pairs, True)
+    whole = asked if pairs else asked + false  # pairs that collide or were reported
+    return (missed + false) / whole if whole else NONE, of_all(missed + false, asked) if pairs else \
+        f"{of_all(missed, asked)}, {of_all(false, reported)}"
+
+
+def add_others(chapter, rows, pairs):
+    """Those that do not promise: without a wrong answer by their own documentation, the others, and those that died."""
+    right, wrong, published, changing, dead = [], [], [], [], []
+    for name, of in by(rows, "method"):
+        if flag(next(of.itertuples()), "promises"):
+            continue
+        if of.library.iloc[0] == "farcull":
+            published.append(f"{name} ({of_rows(of, 'missed', 'answered')})")
+            continue
+        dead += [f"{name} ({grouped(deaths(of))})"] * bool(deaths(of))
+        changing += [f"{name} ({differing(of)})"] * bool(total(of, "differing"))
+        part, words = own_errors(of, pairs)
+        right += [name] * (part == 0)
+        wrong += [(part, f"{name} ({words})")] * (part > 0)
+    wrong.sort(key=lambda one: -one[0])
+    of_all_such = ("wrong answers to questions of which their documentation promises the answer, of all such that were "
+                   "answered" if pairs else
+                   "wrong answers where their documentation promises the answer (first the missed pairs of those that "
+                   "collide, then the false alarms of those that were reported)")
+    for start, who in (
+            ("these gave no wrong answer by their own documentation", right),
+            (of_all_such, [words for _, words in wrong]),
+            ("missed by methods as they were published, which promise nothing below the size of a pixel", published),
+            ("answered otherwise when they were asked again", changing),
+            ("questions at which the process crashed, hung or ran out of memory", dead)):
+        if who:
+            chapter.find(f"Of {'pairs of triangles' if pairs else 'meshes'}, {start}: {listed(who)}.")
+
+
+def fill(chapter, study):
+    rows = with_families(study.rows)
+    pairs, meshes = rows[rows.pairs], rows[~rows.pairs]
+    add_ours(chapter, rows)
+    for name, of in by(rows, "method"):  # a store of an earlier farcull may hold two versions
+        if of.library.nunique() > 1:
+            chapter.find(f"The rows of {name} are of more than one version: {listed(of.library.unique())}.")
+    add_others(chapter, pairs, True)
+    add_others(chapter, meshes, False)
+    chapter.limits = [
+        "The families are made to be hard. A rate here is no rate on the scenes of a user: the table says which "
+        "questions a contestant gets wrong, not how often they come.",
+        "Where the documentation of a library does not say whether touching counts, it is measured first by the pairs "
+        "that cross or are apart. Where it does not take degenerate triangles, they are left out of that measure.",
+        "The time of a pair includes what the call needs, such as the making of a mesh of one triangle; a library made "
+        "for meshes looks slow on pairs."]
+    add_gaps(chapter, study)
+    if len(pairs):
+        scores, groups = scores_of(pairs), dict(pairs.drop_duplicates("method")[["method", "group"]].values)
+        chapter.tables = [overview(pairs, True), kinds_table(scores, list(groups))]
+        add_examples(chapter, pairs[pairs.library != "farcull"])
+        figures = [time_figure(pairs)] + [parameter_figure(scores, groups, family) for family in PARAMETERS]
+        chapter.figures += [figure for figure in figures if figure.panels]
+    chapter.tables += [overview(meshes, False)] * bool(len(meshes))
+    if len(rows):
+        chapter.tables += [calls_table(rows), families_table(rows), all_table(rows)]

@@ -1,0 +1,145 @@
+"""How far the depths that a buffer holds are outside the bounds that they should keep, over the generators of the
+lemma experiment."""
+from frame import *  # noqa: F403
+
+OURS = "fragment, budget radius"
+COUNTS = ("points", "no_sample", "not_bounding", "rounded")
+
+
+def with_axes(rows):
+    """Rows with how their depth comes about, the buffer, the generator and the depth of the scene."""
+    words = [scene.split(":") for scene in rows.scene]
+    return rows.assign(
+        line=[("fixed-function" if mode == "fixed" else "fragment") + f", {radius} radius"
+              for mode, radius in zip(rows.depth_mode, rows.radius)],
+        bits=["24 bits" if f == "fixed24" else "32-bit float" for f in rows.depth_format],
+        generator=[w[1] for w in words], depth=[float(w[3]) for w in words])
+
+
+def grouped_by(rows, names):
+    """Pairs of the values of columns, ascending, and their rows."""
+    return list(rows.groupby(names)) if len(rows) else []
+
+
+def most(rows, name):
+    """The largest distance; infinite where that of a row is not a number."""
+    return max(0.0, column(rows, name).fillna(math.inf).max())
+
+
+def drawn(rows):
+    """Where only pixels without a sample are violated there is no distance, and no point of a line: the line of
+    zeros would say that all is well."""
+    steps = most(rows, "largest_steps")
+    return NONE if steps == 0 and total(rows, "no_sample") else steps
+
+
+def not_drawn(rows):
+    """Sentences of the caption about violations that no line shows."""
+    samples, endless, gaps = [], [], False
+    for (line, bits), part in grouped_by(rows, ["line", "bits"]):
+        sides = grouped_by(part, ["resolution", "depth"])
+        lacking = sorted({depth for (_, depth), cell in sides if total(cell, "no_sample")})
+        beyond = sorted({depth for (_, depth), cell in sides if math.isinf(most(cell, "largest_steps"))})
+        gaps = gaps or any(math.isnan(drawn(cell)) for _, cell in sides)
+        at = [f"(depth {listed(rounded(d) for d in depths)} px)" for depths in (lacking, beyond)]
+        if lacking:
+            samples.append(f"{line}, {bits} {of_rows(part, 'no_sample', 'points')} {at[0]}")
+        if beyond:
+            endless.append(f"{line}, {bits} {at[1]}")
+    out = ""
+    if samples:
+        out += f" Points whose pixel has no sample have no distance and are in no line: {listed(samples)}."
+        out += " Where there are no others the line has a gap." if gaps else ""
+    if endless:
+        out += f" Farther outside than a number says, and in no line: {listed(endless)}."
+    return out
+
+
+def figure_of(rows, rounding):
+    out = Figure("precision", "How far depth buffers are outside the bounds they should give",
+                 f"The largest violation over all generators, n = {grouped(total(rows, 'points'))} points of "
+                 "triangles. At 0 no sample is outside. Up to the mark a monotone rounding explains it, which the "
+                 "theorem allows." + not_drawn(rows))
+    for (bits, side), here in grouped_by(rows, ["bits", "resolution"]):
+        panel = Panel(f"{bits}, {side} px", log("depth of the scene (px)"), log("outside (depth steps)", zero=True),
+                      marks=[Mark(rounding[bits[:2]], "rounding of the map", vertical=False)])
+        for line, of in grouped_by(here, "line"):
+            depths = grouped_by(of, "depth")
+            panel.series.append(Series(line, [d for d, _ in depths], [drawn(cell) for _, cell in depths],
+                                       emphasis=line == OURS))
+        out.panels.append(panel)
+    return out
+
+
+def sums(rows):
+    return [grouped(total(rows, name)) for name in COUNTS] + [
+        rounded(most(rows, "largest_steps")), rounded(most(rows, "largest_px"))]
+
+
+def tables_of(rows):
+    short = Table("precision", "Points over all generators, sides and depths: without a sample, not bounded, and "
+                  "outside by no more than rounding; how far outside at most",
+                  columns(["depth by", "buffer"], ["points", "no sample", "not bounded", "rounded", "most (steps)",
+                                                   "most (px)"]),
+                  [[*key, *sums(of)] for key, of in grouped_by(rows, ["line", "bits"])])
+    cells = Table("precision-depths", "Points over all generators, at every side and depth: without a sample, not "
+                  "bounded, and outside by no more than rounding",
+                  columns(["depth by", "buffer"], ["side (px)", "depth (px)", "step (px)", "points", "no sample",
+                                                   "not bounded", "rounded", "most (steps)", "most (px)"]),
+                  [[line, bits, grouped(side), grouped(depth), rounded(column(of, "step_px").iloc[-1]), *sums(of)]
+                   for (line, bits, side, depth), of in grouped_by(rows, ["line", "bits", "resolution", "depth"])],
+                  in_text=False)
+    return [short, cells, table_of_rows("precision-all", "All points", rows, {
+        "generator": "=generator", "depth (px)": lambda row: grouped(row.depth), "depth by": "=line",
+        "buffer": "=bits", "side (px)": lambda row: str(row.resolution), "points": "points",
+        "no sample": "no_sample", "not bounded": "not_bounding", "rounded": "rounded",
+        "most (steps)": "~largest_steps", "most (px)": "~largest_px"})]
+
+
+def add_violations(chapter, rows):
+    """Adds each violation of fragment depth at the budget radius; returns whether there is one."""
+    broken = False
+    for row in rows[rows.line == OURS].itertuples():
+        violations = number(row, "no_sample") + number(row, "not_bounding")
+        broken = broken or violations > 0
+        if violations and not breaks(row):  # else said already
+            chapter.find_broken(
+                f"fragment depth at the budget radius, {row.bits}, {row.resolution} px, scene {row.depth:g} px deep: "
+                f"{of_all(violations, number(row, 'points'))} points of the generator \"{row.generator}\" have no "
+                f"sample or are not bounded, by up to {rounded(value(row, 'largest_steps'))} steps.")
+    return broken
+
+
+def add_findings(chapter, rows):
+    broken = add_violations(chapter, rows)
+    for (line, bits), of in grouped_by(rows, ["line", "bits"]):
+        if broken and line == OURS:
+            continue
+        points, no_sample, not_bounding, after = (total(of, name) for name in COUNTS)
+        steps = rounded(most(of, "largest_steps"))
+        if no_sample + not_bounding == 0:
+            words = (f"all {grouped(points)} points have samples that bound them" +
+                     (f", {grouped(after)} of them after rounding of up to {steps} steps." if after
+                      else ", none even by rounding outside."))
+        else:
+            worst = of.generator.iloc[int(np.argmax(column(of, "largest_steps").fillna(math.inf)))]
+            words = f"{of_all(no_sample, points)} points have no sample, {grouped(not_bounding)} are not bounded"
+            words += (f", the worst by {steps} steps, {rounded(most(of, 'largest_px'))} px ({worst})."
+                      if not_bounding else ".")
+        chapter.find(f"{line}, {bits}: {words}")
+
+
+def fill(chapter, study):
+    rows = with_axes(study.rows)
+    add_promises(chapter, study)
+    add_findings(chapter, rows)
+    chapter.limits = [
+        "A violation is decided on what the buffer holds against the exact depth of the point under the exact depth "
+        "map. What a monotone rounding explains is counted apart, because asked and stored depths are rounded alike.",
+        "Fixed-function depth promises nothing: that its surface bounds every point here at the budget radius is this "
+        "device's interpolation, for which GL gives no bound.",
+        "The published radius grows with the depth step, so in deep scenes it is larger than the budget's."]
+    add_gaps(chapter, study)
+    if len(rows):
+        chapter.figures = [figure_of(rows, study.constants["depth_rounding"])]
+        chapter.tables = tables_of(rows)

@@ -1,0 +1,295 @@
+"""Sizes of potential neighbour sets, what a grid loses of them, both over frames, time against the number of objects,
+and errors of distances.
+
+A row is either of the sets that a method leaves, or of the distances that a contestant answers. At rest (frame -1) the
+sets of a scene differ by seed and resolution, in motion by frame.
+"""
+from frame import *  # noqa: F403: a chapter uses most of it
+
+BOXES, TREES, PUBLISHED, RELIABLE = "boxes of objects", "trees of boxes", "Voronoi (published)", "Voronoi (reliable)"
+NARROW = "Voronoi (not widened)"
+NAMES = {"boxes": BOXES, "trees": TREES, "voronoi": PUBLISHED, "voronoi-reliable": RELIABLE,
+         "voronoi-reliable --widening 0": NARROW}
+DIAGRAMS = [PUBLISHED, RELIABLE, NARROW]
+CELLS = "cells along the scene"
+SUMS = ["with_nearest", "missed", "set_objects", "set_triangles"]
+
+
+def with_names(rows):
+    """The rows with the columns name (of the method), base (the scene without its seed), sets (else distances), and
+    counts (whether the row is of the plot over the number of objects)."""
+    return rows.assign(
+        name=[NAMES.get(method, method.split(" ")[0]) for method in rows.method],
+        base=[scene_base(scene) for scene in rows.scene], sets=~rows.method.str.contains(" (?:nearest|objects)$"),
+        counts=(rows.frame < 0) & rows.scene.str.fullmatch("crowd:[0-9]*"),
+        library=[text(row, "library") for row in rows.itertuples()])
+
+
+class SetScene:
+    """The rows of a scene, summed over its seeds by method and `at`, the resolution or frame. What a method lost is
+    `missed`, of the objects that have a nearest neighbour."""
+
+    def __init__(self, base, rows, at):
+        rows = rows.assign(**{name: column(rows, name) for name in SUMS})
+        self.base, self.seeds, self.sums = base, rows.scene.nunique(), rows.groupby(["name", at])[SUMS].sum()
+        for what in ("objects", "triangles"):
+            self.sums[what + "_each"] = (self.sums["set_" + what] / self.sums.with_nearest).fillna(0)
+
+    def of(self, method):
+        return self.sums.loc[method] if method in self.sums.index else self.sums.iloc[:0]
+
+    def value(self, method, at, what):
+        return self.sums.at[(method, at), what] if (method, at) in self.sums.index else NONE
+
+    def factor(self, method, at, at_boxes):
+        """How many times more triangles the boxes leave than the method; NaN where one is not there."""
+        kept = self.value(method, at, "set_triangles")
+        return self.value(BOXES, at_boxes, "set_triangles") / kept if kept else NONE
+
+    def series(self, method, what, **look):
+        of = self.of(method)
+        return Series(method, list(of.index), list(of[what]), emphasis=method == RELIABLE, **look)
+
+
+def scenes_of(rows, at):
+    return [SetScene(base, of, at) for base, of in by(rows, "base")]
+
+
+def objects_text(scenes):
+    """How many objects each panel rests on."""
+    return "n: " + listed(
+        f"{scene.base} ({counted(scene.sums.with_nearest.max(), 'object', 'objects')}"
+        f"{f', {scene.seeds} seeds' if scene.seeds > 1 else ''})" for scene in scenes)
+
+
+# ---- promises
+
+def broken_text(row):
+    """How a row that promises did not keep it; "": it did."""
+    wrong, missed, pairs = (number(row, name) for name in ("wrong", "missed", "missed_pairs"))
+    if not row.sets:
+        return f"{of_all(wrong, number(row, 'asked'))} distances are not the nearest double" if wrong else ""
+    return "" if missed == 0 and pairs == 0 else (
+        f"{of_all(missed, number(row, 'with_nearest'))} objects lose their nearest neighbour, and "
+        f"{of_all(pairs, number(row, 'nearest_pairs'))} nearest pairs of triangles")
+
+
+def add_kept_promises(chapter, rows):
+    rows = promising(rows)
+    known = column(rows, "missed").where(rows.sets, column(rows, "wrong")).notna()
+    broken = [(row, said) for row in rows[known].itertuples() if (said := broken_text(row))]
+    for row, said in broken:
+        chapter.find_broken(f"{describe(row)}: {said}, which it promises not to do.")
+    if silent := int((~known).sum()):
+        chapter.find(f"{'One row' if silent == 1 else grouped(silent) + ' rows'} of methods that promise "
+                     f"{'does' if silent == 1 else 'do'} not say what they lost.")
+    sets, distances = rows[known & rows.sets], rows[known & ~rows.sets]
+    if len(sets) and not broken:
+        chapter.find(f"{listed(sorted(set(sets.name)))} lost {rate_text(0, total(sets, 'with_nearest'))} nearest "
+                     f"neighbours of objects, and {rate_text(0, total(sets, 'nearest_pairs'))} nearest pairs of "
+                     f"triangles, in {counted(len(sets), 'run', 'runs')}. An object counts once in each run; the "
+                     "bounds take all of them as independent.")
+    if len(distances) and not broken:
+        chapter.find(f"Of the distances of farcull {rate_text(0, total(distances, 'asked'))} were not the nearest "
+                     "double.")
+
+
+# ---- sets: what is lost, and sizes
+
+def lost_series(scene, method):
+    of = scene.of(method)
+    of = of[of.with_nearest > 0]
+    rates = [rate_of(int(min(row.missed, row.with_nearest)), int(row.with_nearest)) for row in of.itertuples()]
+    return Series(method, list(of.index), [100 * r.value for r in rates], emphasis=method == RELIABLE,
+                  y_low=[100 * r.low for r in rates], y_high=[100 * r.high for r in rates])
+
+
+def lost_figure(scenes):
+    scenes = [scene for scene in scenes if scene.sums.missed.sum() > 0 and any(map(len, map(scene.of, DIAGRAMS)))]
+    return Figure(
+        "proximity-lost", "Objects that lose their nearest neighbour, against the resolution",
+        "An object is lost if none of its nearest neighbours is in its set. Bars are 95 % intervals of the share, were "
+        "the objects independent. clusters:R has clusters whose sides are 1/R of that of the scene. Not widened: the "
+        "reliable form without the half diagonal of a cell that its proof asks for. Scenes of which nothing is lost "
+        f"are in the table. {objects_text(scenes)}.",
+        [Panel(scene.base, log(CELLS), Axis("lost (% of objects)", low=0), [
+            series for method in DIAGRAMS if (series := lost_series(scene, method)).x])
+         for scene in scenes])
+
+
+def lost_table(scenes, sizes):
+    return Table(
+        "proximity-lost",
+        "Objects that lose their nearest neighbour, at each resolution in cells along the scene; \"-\" where the "
+        "diagram was left out or not asked "
+        "for", columns(["scene", "method"], ["objects"] + [str(cells) for cells in sizes]),
+        [[scene.base, method, grouped(of.with_nearest.iloc[0])] +
+         ["-" if count != count else grouped(count) for count in of.missed.reindex(sizes)]
+         for scene in scenes for method in DIAGRAMS if len(of := scene.of(method))])
+
+
+def size_figure(scenes, what):
+    out = Figure(
+        "proximity-triangles" if what == "triangles" else "proximity-set-objects",
+        f"{what.capitalize()} per set against the resolution",
+        "Mean over the objects that have a nearest neighbour. The published form and boxes take objects with all their "
+        "triangles, or all those near enough; trees and the reliable form take triangles. The published form may be "
+        f"below what holds all nearest neighbours. {objects_text(scenes)}.")
+    for scene in scenes:
+        series = [scene.series(method, what + "_each") for method in (PUBLISHED, RELIABLE) if len(scene.of(method))]
+        if series:  # boxes and trees have no cells: the same at each resolution
+            x, levels = series[0].x, [(method, scene.value(method, 0, what + "_each")) for method in (BOXES, TREES)]
+            series += [Series(method, x, [y] * len(x), "lines") for method, y in levels if y == y]
+            out.panels.append(Panel(scene.base, log(CELLS), log(f"{what} per object", zero=True), series))
+    return out
+
+
+def frames_figure(scenes):
+    return Figure(
+        "proximity-frames", "Triangles per set, frame by frame",
+        "Mean over the objects that have a nearest neighbour in that frame; each frame is searched anew. "
+        f"{objects_text(scenes)}.",
+        [Panel(scene.base, Axis("frame"), log("triangles per object", zero=True), [
+            scene.series(method, "triangles_each") for method in (BOXES, PUBLISHED, RELIABLE, TREES)
+            if len(scene.of(method))]) for scene in scenes])
+
+
+def efficiency_table(rest, moving, finest):
+    out = Table(
+        "proximity-efficiency",
+        "Culling efficiency: how many times more triangles the boxes of objects leave in the sets. Of scenes at rest "
+        f"the diagrams have {finest} cells along the scene; of scenes that move, the median over the frames with the "
+        "95 % interval that it would have were the frames independent",
+        columns(["scene"], ["frames", "triangles per object, boxes", TREES, RELIABLE, PUBLISHED]))
+    for scene in rest:
+        out.rows.append([scene.base, "-", rounded(scene.value(BOXES, 0, "triangles_each"))] + [
+            rounded(scene.factor(*at, 0)) for at in ((TREES, 0), (RELIABLE, finest), (PUBLISHED, finest))])
+    for scene in moving:
+        frames = scene.sums.index.unique(1)
+        factors = [[scene.factor(method, frame, frame) for frame in frames] for method in (TREES, RELIABLE, PUBLISHED)]
+        out.rows.append([scene.base, grouped(len(frames)), median_text(scene.of(BOXES).triangles_each)] +
+                        [median_text([x for x in of if x > 0]) for of in factors])
+    return out
+
+
+def add_sets(chapter, rest, sizes):
+    for method in (PUBLISHED, NARROW) if rest else ():
+        sums = pd.concat([scene.of(method) for scene in rest]).groupby(level=-1).sum()
+        parts = [f"{of_all(sums.missed[cells], sums.with_nearest[cells])} at {cells} cells" for cells in sizes
+                 if cells in sums.index and sums.with_nearest[cells] > 0]
+        if parts:
+            chapter.find(f"{method}, lost of all objects: {listed(parts)}.")
+    factors = sorted((factor, scene.base) for scene in rest if (factor := scene.factor(TREES, 0, 0)) > 0)
+    if factors:
+        ends = " to ".join(f"{rounded(factor)} ({base})" for factor, base in factors[:1] + factors[-1:])
+        chapter.find(f"Boxes of objects leave {ends} times more triangles per object than trees of boxes do.")
+
+
+# ---- times and distances
+
+def count_figure(chapter, rows, exponents):
+    drawn, out = [], Figure("proximity-objects", "Time against the number of objects")
+    for what, title, part in (("sets", "sets: crowd:N", rows[rows.sets]),
+                              ("distances", "distances to the nearest: crowd:N", rows[~rows.sets])):
+        panel, said = Panel(title, log("objects", zero=True), log("time (ms)")), []
+        for name, of in by(part[part.counts], "name"):
+            drawn.append(of.assign(objects=column(of, "objects")).sort_values("objects", kind="stable"))
+            series = times_of(name, drawn[-1], "objects", emphasis=name in (TREES, "farcull"))
+            panel.series.append(series)
+            if e := exponent_of(series.x, series.y):
+                said.append(f"{name} {exponent_text(e)}")
+                exponents.rows.append([what, name, rounded(e.first), rounded(e.last), grouped(e.points),
+                                       exponent_text(e)])
+        if said:
+            chapter.find(f"Exponent of time over objects, of {what}, with its 95 % interval: {listed(said)}.")
+        out.panels += [panel] * bool(panel.series)
+    if drawn:
+        out.caption = (f"{sample_text(pd.concat(drawn))}, on one thread, with its 95 % interval as a bar. Objects "
+                       "stand at the same density. Distances are from the triangles to the distance of each object "
+                       "from its nearest one, trees included.")
+    return out
+
+
+def error_figure(rows):
+    drawn = rows.drop_duplicates(["scene", "contestant"])
+    out = Figure(
+        "proximity-error", "Errors of distances against time",
+        "The largest error of a distance over the exact distance, of those where neither is 0; those that are wrong in "
+        f"another way are in the table. {sample_text(drawn)} on one thread, from the triangles to the distances, with "
+        "its 95 % interval as a bar.")
+    for scene, of in by(drawn, "scene"):
+        panel = Panel(scene, log("time (ms)"), log("largest relative error", zero=True))
+        for name, row in by(of, "name"):
+            time = times_of(name, row, "largest_relative")
+            panel.series.append(Series(name, time.y, time.x, "points", name == "farcull", time.y_low, time.y_high))
+        out.panels.append(panel)
+    return out
+
+
+def distance_table(rows):
+    out = table_of_rows(
+        "proximity-distances",
+        "Distances asked for, those that are not the nearest double, and of these: lacking, 0 where objects are apart "
+        "or the reverse, of another object that is not as near; the largest relative error of the others; time in ms "
+        "as the median with its 95 % interval", pd.concat([rows[:0]] + [of for _, of in by(rows, "scene")]),
+        {"scene": "=scene", "contestant": "=name", "asked": "asked", "off": "wrong", "lacking": "lacking",
+         "other 0": "other_zero", "other object": "other_object",
+         "largest error": lambda row: rounded(value(row, "largest_relative"), 2), "time (ms)": estimate_cell,
+         "library": "=library"})
+    out.in_text = True
+    return out
+
+
+def add_distances(chapter, rows):
+    for name, of in rows.drop(index=promising(rows).index).groupby("name"):
+        largest = column(of, "largest_relative").fillna(0)
+        chapter.find(f"{name}: {of_rows(of, 'wrong', 'asked')} distances are not the nearest double; the largest "
+                     f"relative error is {rounded(largest.max(), 2)} ({of.scene[largest.idxmax()]}).")
+
+
+def sets_table(rows):
+    return table_of_rows(
+        "proximity-sets",
+        "Every row of sets: sizes over the objects that have a nearest neighbour, and times on one thread", rows,
+        {"scene": "=scene", "method": "=name", "cells": resolution_cell("-"),
+         "frame": lambda row: "-" if row.frame < 0 else str(row.frame), "objects": "with_nearest", "lost": "missed",
+         "nearest pairs": "nearest_pairs", "pairs lost": "missed_pairs", "pairs of objects": "object_pairs",
+         "pairs of triangles": "triangle_pairs", "objects, median": "median_objects", "objects, most": "most_objects",
+         "triangles, median": "median_triangles", "triangles, most": "most_triangles", "time (ms)": estimate_cell})
+
+
+def fill(chapter, study):
+    rows = with_names(study.rows)
+    sets, apart = rows[rows.sets], rows[~rows.sets & ~rows.counts]
+    rest = scenes_of(sets[(sets.frame < 0) & ~sets.counts], "resolution")
+    moving = scenes_of(sets[sets.frame >= 0], "frame")
+    sizes = sorted({cells for scene in rest for _, cells in scene.sums.index if cells > 0})
+    add_kept_promises(chapter, rows)
+    add_sets(chapter, rest, sizes)
+    add_distances(chapter, rows[~rows.sets])
+    chapter.limits = [
+        "The code of the published diagram is not known: its form here is the one that docs/voronoi.md defines. It "
+        "runs on one thread of the CPU, so that its times say nothing about graphics hardware.",
+        "Objects of one scene are not independent, so that intervals of shares are the best that so many objects "
+        "allow.",
+        "Boxes of objects are those along the axes; other hulls would leave fewer triangles.",
+        "Most of the time of a library is that of building its trees, which a program that asks again would build "
+        "once."]
+    if (apart.name == "embree-points").any():
+        chapter.limits.append(
+            "Embree has no query for the distance of two meshes. embree-points asks it from every vertex of each "
+            "object for the nearest point of the other one. That bounds the distance from above, but for the rounding "
+            "to floats: it is too large where the nearest points lie inside two edges, and above 0 where objects "
+            "cross. So its time is no time of the same question.")
+    add_gaps(chapter, study)
+    exponents = Table(
+        "proximity-exponents",
+        "Exponent b of time = a x^b over the number of objects x, by least squares in logarithms, with its 95 % "
+        f"interval (Student's t of the residuals; not given for fewer than {FEWEST_FOR_INTERVAL} points)",
+        columns(["of", "method"], ["from", "to", "points", "exponent"]))
+    figures = [lost_figure(rest), size_figure(rest, "triangles"), size_figure(rest, "objects"), frames_figure(moving),
+               count_figure(chapter, rows, exponents), error_figure(apart)]
+    tables = [lost_table(rest, sizes), efficiency_table(rest, moving, max(sizes, default=0)), exponents,
+              distance_table(apart), sets_table(sets)]
+    chapter.figures = [figure for figure in figures if figure.panels]
+    chapter.tables = [table for table in tables if table.rows]

@@ -1,0 +1,376 @@
+"""How often the published radius misses something where nothing was constructed against it; then violated points of
+the lemmas and missed pairs of FAR against the radius, with the published radius beside the budget."""
+from frame import *  # noqa: F403
+
+CLOSE = 0.96  # the second row of panels shows CLOSE to 2 - CLOSE
+NAMED = 3     # generators with a line of their own
+SURFACES = {"lemma-worst": "worst canvas", "fixed": "fixed-function depth"}
+
+
+def with_axes(rows):
+    """Rows with the radius over the budget radius (NaN where a row of a published radius lacks one of the two), and
+    with the canvas and the depth that a lemma was tested with."""
+    over = column(rows, "radius_px") / column(rows, "budget_px")
+    return rows.assign(
+        published=rows.radius == "published",
+        factor=[over[i] if r == "published" else 1.0 if r in ("", "budget") else float(r)
+                for i, r in rows.radius.items()],
+        surface=[SURFACES.get(m) or SURFACES.get(d, "fragment depth") for m, d in zip(rows.method, rows.depth_mode)])
+
+
+def violated(rows):
+    return share(total(rows, "violations"), total(rows, "points"))
+
+
+def missed(rows):
+    return share(total(rows, "missed"), total(rows, "colliding"))
+
+
+def groups(rows, name):
+    return list(rows.groupby(name)) if len(rows) else []
+
+
+class Line:
+    """The rows of a line by factor, and those of the published radius apart."""
+
+    def __init__(self, rows):
+        self.published = rows[rows.published]
+        self.at = dict(groups(rows[~rows.published], "factor"))
+
+    def series(self, name, of, style):
+        return Series(name, list(self.at), [of(rows) for rows in self.at.values()], style)
+
+    @property
+    def published_factor(self):
+        """The published radius over the budget, as the rows of FAR at both say."""
+        if self.published.empty or 1 not in self.at:
+            return NONE
+        one, other = (column(rows, "radius_px").iloc[-1] for rows in (self.published, self.at[1]))
+        return one / other if other > 0 else NONE
+
+
+def lines_of(rows, name):
+    """By surface, Lines by the value of a column."""
+    return {surface: {key: Line(of) for key, of in groups(here, name)} for surface, here in groups(rows, "surface")}
+
+
+# ---- the lemmas
+
+def panel_of(title, label):
+    """A share in per cent against the factor."""
+    return Panel(title, Axis("radius / budget radius", low=0, high=1.1), log(label, zero=True, high=100),
+                 marks=[Mark(1, "budget radius")])
+
+
+def hardest_generators(lines):
+    """Those whose points are violated at the largest factors, on any surface; of equals those with the larger share
+    there."""
+    at = {}
+    for of in lines.values():
+        for name, line in of.items():
+            at[name] = max([at.get(name, (-1, 0))] + [(factor, violated(rows)) for factor, rows in line.at.items()
+                                                      if total(rows, "violations")])
+    return sorted(sorted(at), key=lambda name: at[name], reverse=True)[:NAMED]
+
+
+def envelope_of(lines):
+    """At each factor the largest share of a generator."""
+    most = {}
+    for line in lines.values():
+        for factor, rows in line.at.items():
+            most[factor] = max(most.get(factor, 0.0), violated(rows))
+    return Series("largest of all generators", sorted(most), [most[f] for f in sorted(most)], "lines", True)
+
+
+def published_series(name, lines, factor, of):
+    known = [line for line in lines.values() if len(line.published)]
+    return [Series(name, [factor(line) for line in known], [of(line.published) for line in known],
+                   "points")] if known else []
+
+
+def lemma_figure(generators, points):
+    out, named = Figure("radius", "Points whose pixel lacks a sample or a bound, against the radius"), \
+        hardest_generators(generators)
+    for surface, lines in generators.items():
+        panel = panel_of(surface, "violated points (%)")
+        panel.series = [line.series(name, violated, "lines") for name, line in lines.items() if name in named]
+        panel.series.append(envelope_of(lines))
+        panel.series += published_series("published radius, each generator", lines,
+                                         lambda line: line.published.factor.iloc[-1], violated)
+        out.panels.append(panel)
+    for panel in list(out.panels):  # the same once more, close to the published radius
+        out.panels.append(Panel("the same, close to 1", Axis(panel.x.label, low=CLOSE, high=2 - CLOSE), panel.y,
+                                [Series(**vars(s)) for s in panel.series], panel.marks))
+    count = max(len(lines) for lines in generators.values())
+    out.caption = (f"Lemmas 1 and 2 at {grouped(points)} points of triangles that aim at trouble, drawn by {count} "
+                   "generators. The thick line is the largest share of any generator; those that fail at the largest "
+                   "factors are named. On the worst canvas a pixel has a fragment only where every device that keeps "
+                   "the assumptions gives it one.")
+    return out
+
+
+def miss_figure(depths, runs):
+    out, scenes = Figure("radius-missed", "Missed pairs against the radius"), []
+    for depth, lines in depths.items():
+        panel = panel_of(depth, "missed pairs (%)")
+        panel.series = [line.series(name, missed, "lines_points") for name, line in lines.items()]
+        panel.series += published_series("published radius, each scene", lines, lambda line: line.published_factor,
+                                         missed)
+        out.panels.append(panel)
+        for scene, line in lines.items():
+            rows = line.published if len(line.published) else next(iter(line.at.values()))
+            scenes.append(f"{grouped(column(rows, 'colliding').fillna(0).iloc[-1])} in {scene}")
+    out.caption = (f"FAR with oriented boxes: colliding pairs that culling loses, of {listed(dict.fromkeys(scenes))}. "
+                   f"n = {counted(len(runs), 'run', 'runs')}, one at each point.")
+    return out
+
+
+def least_safe(line):
+    """The least factor from which on no row of the line is violated."""
+    out = "-"
+    for factor, rows in reversed(line.at.items()):
+        if total(rows, "violations"):
+            break
+        out = f"{factor:.4g}"
+    return out
+
+
+def farthest(rows):
+    return max(0.0, column(rows, "largest_px").fillna(math.inf).max())
+
+
+def lemma_table(name, caption, lines):
+    out = Table(name, "Violated points at the published and at the budget radius, and the least factor on the budget "
+                "from which on none is" + caption,
+                columns(["depth", "generator"], ["points", "published", "budget", "least factor",
+                                                 "published: farthest outside (px)"]))
+    for surface, generators in lines.items():
+        for generator, line in generators.items():
+            budget = line.at.get(1)
+            count = (lambda rows, n: "-" if rows is None or rows.empty else grouped(total(rows, n)))
+            out.rows.append([surface, generator, count(budget, "points"), count(line.published, "violations"),
+                             count(budget, "violations"), least_safe(line),
+                             rounded(farthest(line.published)) if len(line.published) else "-"])
+    return out
+
+
+def add_lemmas(chapter, lemmas):
+    """The lemmas at the budget radius and beyond: with fragment depth a proof stands behind them, also where the rows
+    do not say that they promise. Rows for which breaks() holds are said already."""
+    safe, broken = lemmas[~lemmas.published & (lemmas.factor >= 1)], False
+    for row in safe[safe.depth_mode != "fixed"].itertuples():
+        violations = number(row, "violations")
+        broken = broken or violations > 0
+        if violations and not breaks(row):
+            chapter.find_broken(f"at {row.factor:g} of the budget radius, {row.surface}, "
+                                f"{of_all(violations, number(row, 'points'))} points of the generator "
+                                f"\"{row.generator}\" are violated; the lemmas say none.")
+    for surface, rows in groups(safe, "surface"):
+        promised = surface != "fixed-function depth"
+        if not (promised and broken and total(rows, "violations")):
+            chapter.find(f"At the budget radius and beyond, {surface}: {of_rows(rows, 'violations', 'points')} points "
+                         f"are violated{'' if promised else ' (it promises nothing)'}.")
+
+
+def add_published(chapter, generators):
+    for surface, lines in generators.items():
+        known = {name: line.published for name, line in lines.items() if len(line.published)}
+        if not known:
+            continue
+        rows = pd.concat(list(known.values()))
+        factors = [of.factor.iloc[-1] for of in known.values()]
+        least, most = min(factors), max(factors)
+        radius = f"{least:.4f}" if least == most else f"{least:.4f} to {most:.4f}"
+        failing = [f"{name} ({of_rows(of, 'violations', 'points')})" for name, of in known.items()
+                   if total(of, "violations")]
+        if failing:
+            far = farthest(rows)
+            outside = f", others up to {rounded(far)} px outside their bounds" if far > 0 else ""
+            chapter.find(f"The published radius, {radius} of the budget, fails, {surface}: "
+                         f"{of_rows(rows, 'violations', 'points')} points, {grouped(total(rows, 'no_sample'))} of them "
+                         f"without a sample{outside}; on {listed(failing)}.")
+        else:
+            chapter.find(f"The published radius, {radius} of the budget, violates none of "
+                         f"{grouped(total(rows, 'points'))} points, {surface}.")
+
+
+def add_misses(chapter, depths):
+    for depth, lines in depths.items():
+        for scene, line in lines.items():
+            worst = max((f for f, rows in line.at.items() if total(rows, "missed")), default=None)
+            words = (f"{scene}, {depth}: no factor misses a pair" if worst is None else
+                     f"{scene}, {depth}: pairs are missed up to the factor {worst:.4g}")
+            if len(line.published):
+                words += f"; the published radius misses {of_rows(line.published, 'missed', 'colliding')}"
+            chapter.find(words + ".")
+
+
+# ---- placements
+
+def with_placements(rows):
+    """Rows with what was placed: the scene of the patches, the contact, the side in px, and to how many subpixel bits
+    corners are snapped (0: they are not)."""
+    words = [re.fullmatch(r"(.*)@(\w+):([^:]*):.*", scene).groups() for scene in rows.scene]
+    return rows.assign(patches=[w[0] for w in words], contact=[w[1] for w in words], side=[float(w[2]) for w in words],
+                       bits=[int(m.removeprefix("far-snapped-")) if m.startswith("far-snapped-") else 0
+                             for m in rows.method])
+
+
+def bits_text(bits):
+    return f"{bits} subpixel bits" if bits > 0 else "corners not snapped"
+
+
+def rate_of_rows(rows):
+    return rate_text(total(rows, "missed_placements"), total(rows, "colliding_placements"))
+
+
+def add_headline(chapter, runs, placements):
+    """Adds how often the published radius misses something in scenes that nobody constructed for it, and that its
+    failure end to end rests on those that were. First, since the rest is about constructed points."""
+    published = runs[runs.published & (runs.depth_mode == "fragment")]
+    constructed = published[published.scene == "pixel-corners"]
+    natural = published[published.scene != "pixel-corners"]
+    if len(natural):
+        of, lost = of_rows(constructed, "missed", "colliding"), total(natural, "missed")
+        rest = ("" if constructed.empty else
+                f"; its failure end to end rests on the constructed pixel-corners, where it missed {of}"
+                if lost == 0 and total(constructed, "missed") else
+                f"; on the constructed pixel-corners it missed {of} here")
+        chapter.find("On scenes that were not constructed against it, the published radius missed "
+                     f"{rate_text(lost, total(natural, 'colliding'))} colliding pairs in "
+                     f"{counted(len(natural), 'run', 'runs')} with fragment depth{rest}.")
+    for bits, rows in groups(placements[placements.published], "bits"):
+        longest = rounded(column(rows, "largest_miss_px").max())
+        more = f"; the longest intersection that it missed is {longest} px long" if total(rows, "missed") else ""
+        chapter.find(f"Of patches placed into each other at random, {bits_text(bits)}, the published radius missed "
+                     f"something in {rate_of_rows(rows)} placements{more}.")
+    # So that a rate of 0 says something: what a smaller radius misses in the same placements.
+    words = [f"at {factor:.4g} of the budget in {of_rows(rows, 'missed_placements', 'colliding_placements')}"
+             for factor, rows in groups(placements[~placements.published & (placements.factor < 1)], "factor")]
+    if words:
+        chapter.find(f"Smaller radii miss something in such placements: {listed(words)}.")
+
+
+def usual(rows, name):
+    """The value that most placements have; of equals the least."""
+    times = {key: total(of, "placements") for key, of in groups(rows, name)}
+    return max(times, key=times.get)
+
+
+def placements_by_radius(rows):
+    """The rate of placements in which something is missed against the radius, by the size of triangles, where corners
+    are snapped to as many bits as in most placements."""
+    bits = usual(rows, "bits")
+    panel = panel_of(f"{bits_text(bits)}, by the size of triangles", "placements with a miss (%)")
+    for side, here in groups(rows[(rows.bits == bits) & np.isfinite(rows.factor)], "side"):
+        factors = groups(here, "factor")
+        if len(factors) > 1:
+            panel.series.append(Series(f"sides of {side:.4g} px", [f for f, _ in factors], [
+                share(total(of, "missed_placements"), total(of, "colliding_placements")) for _, of in factors]))
+    return panel
+
+
+def rates_panel(title, x, rows, name):
+    """Rates with their intervals against a column. Not lines: fewer bits are not on the way to corners that are not
+    snapped."""
+    panel = Panel(title, x, log("placements with a miss (%)", zero=True))
+    for kind, of in groups(rows, rows.patches + ", " + rows.contact):
+        series = Series(kind, style="points")
+        for at, here in groups(of, name):
+            if total(here, "colliding_placements"):
+                rate = rate_of(total(here, "missed_placements"), total(here, "colliding_placements"))
+                series.x.append(at)
+                for ends, part in ((series.y, rate.value), (series.y_low, rate.low), (series.y_high, rate.high)):
+                    ends.append(100 * part)
+        panel.series.append(series)
+    return panel
+
+
+def placement_figure(placements):
+    """The rate of placements in which something is missed by the radius; and at the published radius, with its
+    interval, by subpixel bits, by the size of triangles and by resolution."""
+    out = Figure("radius-placements", "How often the published radius misses something in random placements")
+    panel, rows = placements_by_radius(placements), placements[placements.published]
+    out.panels += [panel] if panel.series else []
+    if rows.empty:
+        return out
+    bits, pixels = usual(rows, "bits"), usual(rows, "resolution")  # what most rows have is what the others vary
+    others = sorted(rows[rows.bits != bits].side)
+    side = others[0] if others else rows.side.iloc[0]
+    with_bits, with_side, with_pixels = rows.bits == bits, rows.side == side, rows.resolution == pixels
+    out.panels += [
+        rates_panel(f"{rounded(side)} px sides, {pixels} px windows", Axis("subpixel bits (0: not snapped)"),
+                    rows[with_side & with_pixels], "bits"),
+        rates_panel(f"{bits} bits, {pixels} px windows", log("longest side of a triangle (px)"),
+                    rows[with_bits & with_pixels], "side"),
+        rates_panel(f"{bits} bits, {rounded(side)} px sides", log("resolution (px)"), rows[with_bits & with_side],
+                    "resolution")]
+    out.caption = (
+        "FAR with oriented boxes and fragment depth in three views, on placements of two patches of triangles, each "
+        "decided by exact predicates: of those in which a pair collides, those in which one is missed. The first panel "
+        f"is over the radius; the others are at the published radius ({grouped(total(rows, 'placements'))} placements, "
+        "the same ones for each number of subpixel bits), with the 95 % interval of Clopper and Pearson (where none is "
+        "missed, its upper bound is 3 over their number).")
+    return out
+
+
+def placement_table(rows):
+    out = Table("radius-placements", "Random placements in which FAR misses a colliding pair, of those in which one "
+                "collides", columns(["radius", "patches", "contact"], [
+                    "side (px)", "subpixel bits", "resolution", "placements", "with a miss", "missed pairs",
+                    "largest miss (px)"]))
+    for row in rows.itertuples():
+        out.rows.append([
+            row.radius, row.patches, row.contact, rounded(row.side), str(row.bits) if row.bits else "not snapped",
+            str(row.resolution), count_cell(row, "placements"),
+            rate_text(number(row, "missed_placements"), number(row, "colliding_placements")),
+            of_all(number(row, "missed"), number(row, "colliding")),
+            rounded(value(row, "largest_miss_px")) if number(row, "missed") else "-"])
+    return out
+
+
+def fill(chapter, study):
+    rows = with_axes(study.rows)
+    lemma = rows.method.str.startswith("lemma")
+    placed = ~lemma & rows.scene.str.contains("@crossing:|@grazing:")
+    lemmas, placements, runs = rows[lemma], with_placements(rows[placed]), rows[~lemma & ~placed]
+    lemmas = lemmas.assign(generator=[scene.split(":")[1] for scene in lemmas.scene])
+    generators, misses = lines_of(lemmas, "generator"), lines_of(runs, "scene")
+    add_headline(chapter, runs, placements)
+    add_promises(chapter, study)
+    add_lemmas(chapter, lemmas)
+    add_published(chapter, generators)
+    add_misses(chapter, misses)
+    chapter.limits = [
+        "The points are drawn to find violations, so a share of violated points is no probability in a scene.",
+        "Placements are of patches of eight triangles alone, which meet by construction. A rate over them is no rate "
+        "over the pairs of a scene, where other triangles keep many of them.",
+        "Devices that snap are stood in for: the native canvas draws proxies whose corners are rounded to the nearest "
+        "subpixel. A2 allows a device twice that error.",
+        "Below the budget a radius that violates nothing here is not thereby safe: another device may use the slack "
+        "that this one leaves.",
+        "Fixed-function depth is read from the depth buffer, and what rounding of the depth map explains is no "
+        "violation (core/canvas/canvas.h, depth_rounding); fragment depth is what the shader computes, and must bound "
+        "exactly."]
+    add_gaps(chapter, study)
+    if len(lemmas):
+        chapter.figures.append(lemma_figure(generators, total(lemmas, "points")))
+        together = lines_of(lemmas.assign(generator="all generators"), "generator")
+        chapter.tables += [lemma_table("radius", "", together),
+                           lemma_table("radius-generators", ", of every generator", generators)]
+        chapter.tables[-1].in_text = False
+    if len(runs):
+        chapter.figures.append(miss_figure(misses, runs))
+    if len(placements):
+        figure = placement_figure(placements)
+        chapter.figures += [figure] if figure.panels else []
+        chapter.tables.append(placement_table(placements))
+    if len(lemmas):
+        chapter.tables.append(table_of_rows("radius-all", "All points of the lemmas", lemmas, {
+            "generator": "=generator", "depth": "=surface", "radius": "=radius",
+            "radius px": lambda row: rounded(value(row, "radius_px"), 6), "points": "points", "no sample": "no_sample",
+            "not bounding": "not_bounding", "rounded": "rounded", "farthest outside (px)": "~largest_px"}))
+    if len(runs):
+        chapter.tables.append(table_of_rows("radius-missed", "Missed pairs of FAR at every radius", runs, {
+            "scene": "=scene", "depth": "=surface", "radius": "=radius", "colliding": "colliding", "missed": "missed",
+            "kept triangles": "kept_triangles"}))

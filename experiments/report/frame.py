@@ -1,0 +1,448 @@
+"""What a chapter of the report is made of, and how it looks at its rows.
+
+How a chapter is written. The file chapters/NAME.py (dashes become underscores) is the chapter of
+the study NAME, and has one function `fill(chapter, study)`:
+
+- `chapter` is a Chapter with title, question and command. Add sentences by `chapter.find(text)`
+  and `chapter.find_broken(text)` (a promise that was not kept), what the study does not show to
+  `chapter.limits`, and Figure, Table, Picture and files to their lists. In text, `backticks` stand
+  around commands. It returns nothing. Broken findings are put first afterwards.
+- `study.rows` is a pandas DataFrame of the rows that were measured, in the order of the grid.
+  `study.all_rows` also has the rows that say in `left_out` why nothing was measured;
+  `study.points` is the whole grid. A column for each
+    - axis of the point: scene, method, offset, radius, depth_format, depth_mode, views (texts, ""
+      where they do not apply), resolution (0: none), frame (-1: none), seed (0: none);
+    - count, by its name, or NAME_count where an axis has that name; NaN where the row has none;
+    - time, as NAME_ms ("total_ms"), and `runs`: the times of each run, a tuple, perhaps empty;
+    - and `contestant`: the method as figures and tables name it ("FAR (OBB)").
+- Columns that some store may lack are read by `column(rows, name)`, `total(rows, name)`,
+  `value(row, name)`; a row is one of `rows.itertuples()`, with a column as an attribute.
+- Numbers are written by estimates.py (all of its names are here too), never by hand.
+
+farcull_report_fixture DIR (tests) makes a store with rows of every study to try a chapter with;
+chapters/devices.py is no chapter: its `fill(chapter, study, device, others)` adds to any chapter
+what further devices gave, where others are pairs of a device's name and its Study. A figure's
+Panel.strip has Series without y, each a row of its own below the panel.
+
+chapters/stability.py is a short one to begin from. A figure has at most six series a panel where
+that is possible; its `n` says what it rests on, and its caption and title say what is shown. Zeros
+on a logarithmic axis need Axis(..., zero=True), and are then drawn at zero.
+"""
+import json
+import math
+import re
+import shlex
+from dataclasses import dataclass, field
+
+import numpy as np
+import pandas as pd
+
+from estimates import *  # noqa: F401,F403: chapters take numbers from here
+from estimates import (NONE, Estimate, counted, coverage, estimate_text, grouped, listed, median_estimate,
+                       of_all, rate_text, rounded)
+
+
+class Damaged(ValueError):
+    """A text of a row is not what its chapter can read."""
+
+
+@dataclass
+class Series:
+    """Points of one line or cloud. x and y have one length. NaN: a gap."""
+    name: str
+    x: list = field(default_factory=list)
+    y: list = field(default_factory=list)
+    style: str = "lines_points"  # or "lines", "points", "area" (a polygon, filled lightly)
+    emphasis: bool = False       # drawn thick: ours, or the one that the figure is about
+    x_low: list = field(default_factory=list)  # ends of intervals: of the length of x, or none
+    x_high: list = field(default_factory=list)
+    y_low: list = field(default_factory=list)
+    y_high: list = field(default_factory=list)
+
+
+@dataclass
+class Mark:
+    """A line across the panel, such as the budget radius, with its name."""
+    at: float
+    name: str
+    vertical: bool = True
+
+
+@dataclass
+class Axis:
+    """A logarithmic axis that shows zeros is linear from 0 to 1 (where values are below 1: to a
+    power of ten below them all), and logarithmic beyond; the linear part is shaded."""
+    label: str = ""  # with the unit in brackets, "time (ms)"
+    log: bool = False
+    zero: bool = False
+    low: float = None  # ends that are given
+    high: float = None
+
+
+def log(label, zero=False, low=None, high=None):
+    return Axis(label, True, zero, low, high)
+
+
+@dataclass
+class Panel:
+    title: str
+    x: Axis = field(default_factory=Axis)
+    y: Axis = field(default_factory=Axis)
+    series: list = field(default_factory=list)
+    marks: list = field(default_factory=list)
+    drawing: bool = False  # shapes without axes, a unit of x as long as one of y
+    strip: list = field(default_factory=list)  # Series without y, a row each below the panel
+
+
+@dataclass
+class Figure:
+    name: str  # of its files; [a-z0-9-]
+    title: str
+    caption: str = ""
+    panels: list = field(default_factory=list)
+    narrow: bool = False  # as wide as one column of two; draw.py says
+
+
+@dataclass
+class Table:
+    """columns: pairs of a name and "l" (text) or "r" (number), as columns() makes them."""
+    name: str
+    caption: str
+    columns: list
+    rows: list = field(default_factory=list)  # lists of texts, as people read them
+    in_text: bool = True  # False: long, so linked as CSV alone
+
+
+@dataclass
+class Picture:
+    """arguments: words of `farcull picture`, without -o. panels: from the left, the method in
+    words, and the missed and colliding pairs of its row (None: unknown)."""
+    name: str
+    caption: str
+    arguments: list
+    panels: list
+
+
+@dataclass
+class Chapter:
+    study: str
+    title: str
+    question: str
+    command: str  # that measures it again
+    findings: list = field(default_factory=list)  # pairs: broken, text
+    limits: list = field(default_factory=list)    # what the study does not show
+    figures: list = field(default_factory=list)
+    tables: list = field(default_factory=list)
+    pictures: list = field(default_factory=list)
+    files: dict = field(default_factory=dict)     # further files of the report: name, text
+
+    def find(self, text):
+        self.findings.append((False, text))
+
+    def find_broken(self, text):
+        self.findings.append((True, text))
+
+
+@dataclass
+class Study:
+    """The rows of one study, as the module docstring says."""
+    name: str
+    quick: bool
+    seed: int
+    points: pd.DataFrame
+    all_rows: pd.DataFrame
+    constants: dict = field(default_factory=dict)  # numbers of the program, by name
+
+    @property
+    def rows(self):
+        return self.all_rows[self.all_rows.left_out == ""]
+
+    @property
+    def complete(self):
+        return len(self.all_rows) == len(self.points)
+
+
+# ---- names of points
+
+METHODS = {"far-pairs": "FAR pairs", "cullide": "CULLIDE", "quick-cullide": "Quick-CULLIDE",
+           "s-cullide": "S-CULLIDE", "i-collide": "I-COLLIDE"}
+BOTH_DIRECTIONS = "x,-x,y,-y,z,-z"
+
+
+def method_label(point):
+    """`FAR (OBB)`, or in another form `CULLIDE, one round, all views`."""
+    method, _, form = point.method.partition(" ")
+    out = METHODS.get(method, method)
+    if method == "far":
+        out = "FAR (exact)" if point.offset == "exact" else "FAR (OBB)"
+    elif method.startswith("far-snapped-"):
+        out = f"FAR (OBB), {method[len('far-snapped-'):]} subpixel bits"
+    words = form.split()
+    if "--rounds" in words:
+        rounds = words[words.index("--rounds") + 1]
+        out += ", one round" if rounds == "1" else f", {rounds} rounds"
+    for option, label in (("--clear all", ", all views"), ("--level objects", ", objects alone"),
+                          ("--conservative", ", conservative")):
+        out += label if option in form else ""
+    if "@" in form:
+        out += f", {form.split('@')[1].split('px')[0]} px a triangle"
+    return out
+
+
+def contestant(point):
+    """method_label(), with a radius that is not the budget, and views in both directions."""
+    out = method_label(point)
+    if point.radius not in ("", "budget"):
+        published = point.radius == "published"
+        out += ", published radius" if published else ", radius " + point.radius
+    return out + (", both directions" if point.views == BOTH_DIRECTIONS else "")
+
+
+def describe(point):
+    """A point in words: `two-bunnies, cullide, 512 px`."""
+    cells = "cells" if point.method.startswith("voronoi") else "px"
+    return ", ".join(word for word in (point.scene, point.method, point.offset, "radius " + point.radius if point.radius
+                                       not in ("", "budget") else "", "24-bit depth" if point.depth_format == "fixed24"
+                                       else "", "fixed-function depth" if point.depth_mode == "fixed" else "",
+                                       f"{point.resolution} {cells}" if point.resolution > 0 else "", "views " +
+                                       point.views if point.views else "", f"frame {point.frame}" if point.frame >= 0
+                                       else "", f"seed {point.seed}" if point.seed > 0 else "") if word)
+
+
+def scene_base(scene):
+    """The name without the seed that it was drawn with: `field` of `field@seed101`."""
+    return scene.split("@seed")[0]
+
+
+# ---- values of rows
+
+def value(row, name):
+    """A number of a row; NaN where the row has none."""
+    out = getattr(row, name, NONE)
+    number = isinstance(out, (int, float)) or hasattr(out, "dtype")
+    return out if number and not isinstance(out, bool) else NONE
+
+
+def flag(row, name):
+    """Whether the row has a count of that name that is true."""
+    return getattr(row, name, False) is True
+
+
+def text(row, name):
+    """A count that is a text; "" where the row has none."""
+    out = getattr(row, name, "")
+    return out if isinstance(out, str) else ""
+
+
+def number(row, name):
+    """A count as an integer; 0 where the row has none."""
+    out = value(row, name)
+    return 0 if out != out else int(out)
+
+
+def column(rows, name):
+    """A column of numbers; NaN where rows have none."""
+    if name not in rows:
+        return pd.Series(NONE, rows.index, float)
+    return pd.to_numeric(rows[name], errors="coerce")
+
+
+def total(rows, name):
+    """The sum of a count over rows, an integer; rows without it count 0."""
+    return sum(int(x) for x in column(rows, name).dropna())
+
+
+def where_true(rows, name):
+    """The rows with a count of that name that is true."""
+    return rows[rows[name].map(lambda x: x is True)] if name in rows else rows.iloc[:0]
+
+
+def promising(rows):
+    """The rows of methods that promise to miss nothing."""
+    return where_true(rows, "promises")
+
+
+def by(rows, name):
+    """Pairs of a value of the column and its rows, in the order of the first of each. name: a
+    column, or a function of a row."""
+    keys = rows[name] if isinstance(name, str) else pd.Series(
+        [name(row) for row in rows.itertuples()], rows.index, dtype=object)
+    return list(rows.groupby(keys, sort=False)) if len(rows) else []
+
+
+def resolutions(rows):
+    """Every resolution above 0, that is: declared in pixels; ascending."""
+    return sorted(int(r) for r in set(rows.resolution) if r > 0)
+
+
+def find_row(rows, name, resolution):
+    """The first row of a contestant at a resolution; None where there is none."""
+    return next(rows[(rows.contestant == name) & (rows.resolution == resolution)].itertuples(), None)
+
+
+def estimate(row):
+    """The median time of the row's runs in ms with its 95 % interval; of one run no interval; None
+    where the row has no time."""
+    if row.runs:
+        return median_estimate(row.runs)
+    one = value(row, "total_ms")
+    return None if one != one else Estimate(one, one, one, 1)
+
+
+def false_positives(row):
+    """Candidates that do not collide, over what collides; NaN where nothing does."""
+    colliding = value(row, "colliding")
+    if not colliding > 0:
+        return NONE
+    return (value(row, "candidates") - (colliding - number(row, "missed"))) / colliding
+
+
+def of_rows(rows, part, whole):
+    """The sums of two counts: `4 of 3,857`."""
+    return of_all(total(rows, part), total(rows, whole))
+
+
+def sample_text(rows):
+    """`n = 24 points, each the median of 9 runs`: how much the rows rest on."""
+    runs = sorted({max(len(r), 1) for r in rows.runs}) if len(rows) else []
+    out = "n = " + counted(len(rows), "point", "points")
+    if not runs:
+        return out
+    if runs[-1] == 1:
+        return out + ", each of 1 run"
+    several = str(runs[0]) if len(runs) == 1 else f"{runs[0]} to {runs[-1]}"
+    few = [n for n in runs if n > 1 and coverage(n) < 0.95]
+    return f"{out}, each the median of {several} runs" + (
+        f" (with {few[0]}, an interval called 95 % covers {100 * coverage(few[0]):.0f} %)" if few else "")
+
+
+# ---- series and tables of rows
+
+def series_of(name, rows, x, y, **look):
+    """The points x(row), y(row). x and y: functions of a row, or names of columns."""
+    along = [(lambda row, n=f: value(row, n)) if isinstance(f, str) else f for f in (x, y)]
+    out = Series(name, **look)
+    for row in rows.itertuples():
+        out.x.append(along[0](row))
+        out.y.append(along[1](row))
+    return out
+
+
+def times_of(name, rows, x, **look):
+    """The same over the time from triangles to pairs, in ms, with its intervals."""
+    none = Estimate(NONE, NONE, NONE, 0)
+    out = series_of(name, rows, x, lambda row: (estimate(row) or none).value, **look)
+    for row in rows.itertuples():
+        e = estimate(row) or none
+        out.y_low.append(e.low if e.n > 1 else NONE)
+        out.y_high.append(e.high if e.n > 1 else NONE)
+    return out
+
+
+def columns(texts, numbers, more_texts=(), more_numbers=()):
+    """Columns of text, of numbers, of text again and of numbers again."""
+    out = []
+    for names, side in ((texts, "l"), (numbers, "r"), (more_texts, "l"), (more_numbers, "r")):
+        out += [(name, side) for name in names]
+    return out
+
+
+def count_cell(row, name):
+    """A count for people, `-` where the row has none."""
+    out = value(row, name)
+    return "-" if out != out else grouped(out)
+
+
+def table_of_rows(name, caption, rows, cells):
+    """A long table. cells: by the name of a column, how a row fills it: a function of the row, or
+    the name of a count (its digits are grouped), `~NAME` (rounded) or `=NAME` (a text)."""
+    def filled(row, cell):
+        if callable(cell):
+            return cell(row)
+        if cell[0] == "~":
+            return rounded(value(row, cell[1:]))
+        return getattr(row, cell[1:]) if cell[0] == "=" else count_cell(row, cell)
+
+    sides = ["l" if isinstance(cell, str) and cell[0] == "=" else "r" for cell in cells.values()]
+    return Table(name, caption, list(zip(cells, sides)), [[filled(row, cell) for cell in cells.values()] for row in
+                                                          rows.itertuples()], in_text=False)
+
+
+def resolution_cell(none):
+    """A cell of table_of_rows(): the resolution, or `none` where the point has none."""
+    return lambda row: str(row.resolution) if row.resolution > 0 else none
+
+
+def estimate_cell(row):
+    """A cell of table_of_rows(): the time with its interval."""
+    return estimate_text(estimate(row))
+
+
+# ---- findings that every chapter has
+
+def is_lemma(row):
+    """Whether the row promises for points that may be violated, not for pairs that are missed."""
+    return row.method.startswith("lemma")
+
+
+def failures(row):
+    """The count that the promise of the row is about; NaN where it has none."""
+    return value(row, "violations" if is_lemma(row) else "missed")
+
+
+def breaks(row):
+    """Whether the row promises and did not keep it."""
+    return row.left_out == "" and flag(row, "promises") and failures(row) > 0
+
+
+def add_promises(chapter, study):
+    """Adds a broken promise for each row that promises and failed; where none did, how many pairs
+    and points could have been missed. Rows that promise and lack the count are told apart."""
+    rows = promising(study.rows)
+    lost = pd.Series([failures(row) for row in rows.itertuples()], rows.index, float)
+    silent, known = int(lost.isna().sum()), rows[lost.notna()]
+    lemma = known.method.str.startswith("lemma")
+    for row in known.itertuples():
+        if breaks(row):
+            part = of_all(failures(row), number(row, "points" if is_lemma(row) else "colliding"))
+            chapter.find_broken(describe(row) + (
+                f": {part} points are violated, and the lemmas promise none." if is_lemma(row)
+                else f" misses {part} colliding pairs, and promises to miss none."))
+    pairs, points = known[~lemma], known[lemma]
+    if len(pairs) and not (lost[pairs.index] > 0).any():
+        # At a resolution chosen by the size of triangles it is the same method.
+        names = [contestant(row._replace(method=row.method.split(" @")[0]))
+                 for row in pairs.itertuples()]
+        chapter.find(f"{listed(dict.fromkeys(names))} missed {rate_text(0, total(pairs, 'colliding'))} colliding pairs "
+                     f"in {counted(len(pairs), 'run', 'runs')}.")
+    if len(points) and not (lost[points.index] > 0).any():
+        chapter.find(f"The lemmas are violated at {rate_text(0, total(points, 'points'))} points "
+                     f"in {counted(len(points), 'run', 'runs')}.")
+    if silent:
+        chapter.find(f"{'One row' if silent == 1 else grouped(silent) + ' rows'} of methods that "
+                     f"promise {'does' if silent == 1 else 'do'} not say what they missed.")
+
+
+def add_gaps(chapter, study):
+    """Adds to the limits why points were left out, and how many have no row."""
+    reasons = study.all_rows.left_out[study.all_rows.left_out != ""]
+    for reason, count in sorted(reasons.value_counts().items()):
+        chapter.limits.append(f"Left out at {of_all(count, len(study.points))} points: {reason}.")
+    if not study.complete:
+        chapter.limits.append(f"Not finished: {of_all(len(study.all_rows), len(study.points))} points are measured.")
+
+
+def command_of(study, runs):
+    """`farcull experiment NAME` with the options that the last run of its rows was given."""
+    words = ["farcull", "experiment", study.name] + ["--quick"] * study.quick
+    words += ["--seed", str(study.seed)] if study.seed != 1 else []
+    last = study.all_rows.run.max() if len(study.all_rows) else 0
+    for options in runs.options[runs.run == last]:
+        try:
+            options = json.loads(options)
+        except ValueError:
+            options = {}
+        for name in ("suite", "contestants", "device"):
+            if isinstance(options, dict) and isinstance(options.get(name), str) and options[name]:
+                words += ["--" + name, shlex.quote(options[name])]
+    return " ".join(words)

@@ -1,0 +1,65 @@
+"""Reads a store of results (experiments/studies/store.h) into data frames.
+
+The command has opened the store before, and refused one that is damaged or of another version.
+"""
+import json
+import pathlib
+import sqlite3
+import urllib.parse
+
+import pandas as pd
+
+from frame import Study, contestant
+
+AXES = ["scene", "method", "offset", "radius", "depth_format", "depth_mode", "resolution", "views", "frame", "seed"]
+
+
+class Store:
+    def __init__(self, folder):
+        self.path = f"{folder}/results.sqlite"
+        name = urllib.parse.quote(str(pathlib.Path(self.path).absolute()))
+        # What a killed program left half done is taken back first, for which it must be writable.
+        self.database = sqlite3.connect(f"file:{name}?mode=rw", uri=True)
+        self.runs = self.read("SELECT * FROM runs ORDER BY run")
+        self.names = list(self.read("SELECT study FROM studies ORDER BY rowid").study)
+
+    def read(self, question, *parameters):
+        return pd.read_sql_query(question, self.database, params=parameters)
+
+    @property
+    def device(self):
+        return self.runs.gl_renderer.iloc[-1] if len(self.runs) else "no device"
+
+    @property
+    def commit(self):
+        return self.runs.commit_id.iloc[-1] if len(self.runs) else ""
+
+    def study(self, name, constants):
+        declared = self.read("SELECT * FROM studies WHERE study = ?", name).iloc[0]
+        points = self.read("SELECT * FROM points WHERE study = ? ORDER BY position", name)
+        rows = self.read("SELECT position, run, measured, device, counts, times, left_out, points.* FROM rows JOIN "
+                         "points USING (study, position) WHERE study = ? ORDER BY position", name)
+        rows = rows.loc[:, ~rows.columns.duplicated()].drop(columns="study")
+        counts = [json.loads(text) for text in rows.counts]
+        times = [json.loads(text) for text in rows.times]
+        rows["counts"], rows["times"] = counts, times
+        rows["runs"] = [tuple(t["totals"]) if isinstance(t.get("totals"), list) else () for t in times]
+        values = [{**{n + "_count" if n in AXES else n: v for n, v in c.items()},
+                   **{n + "_ms": v for n, v in t.items() if n != "totals"}}
+                  for c, t in zip(counts, times)]
+        rows = pd.concat([rows, pd.DataFrame(values, rows.index)], axis=1)
+        rows["contestant"] = [contestant(row) for row in rows.itertuples()]
+        return Study(name, bool(declared.quick), int(declared.seed), points, rows, constants)
+
+
+def other_devices(folder, first):
+    """The stores of further devices in the folder, by name, and notes of those left out because
+    they are of another commit."""
+    stores, notes = [], []
+    for path in sorted(pathlib.Path(folder).glob("on-*/results.sqlite")):
+        other = Store(f"{folder}/{path.parent.name}")
+        if other.commit == first.commit:
+            stores.append(other)
+        else:
+            notes.append(f"{folder}/{path.parent.name} is of another commit, and is not compared")
+    return stores, notes

@@ -1,0 +1,92 @@
+"""Tables as files: CSV for programs, LaTeX (booktabs) for papers, HTML for the page; and text with
+the escapes of each."""
+import csv
+import html
+import io
+import json
+import re
+
+from store import AXES
+
+# Signs that pdfLaTeX's text fonts lack, and characters of commands.
+LATEX = {"±": "$\\pm$", "×": "$\\times$", "≤": "$\\le$", "≥": "$\\ge$", "·": "$\\cdot$",
+         "→": "$\\to$", "−": "$-$", "∞": "$\\infty$", "µ": "$\\mu$", "≈": "$\\approx$",
+         "⁻": "$^{-}$", **{d: f"$^{i}$" for i, d in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")},
+         **{c: "\\" + c for c in "&%$#_{}"}, "~": "\\textasciitilde{}",
+         "^": "\\textasciicircum{}", "\\": "\\textbackslash{}", "<": "$<$", ">": "$>$",
+         "|": "$|$", "`": ""}
+ROWS_OF_FLOAT = 40  # a float holds a page at most
+
+
+def html_text(text):
+    return html.escape(re.sub(r"[\x00-\x09\x0b-\x1f\x7f]", " ", text)).replace("&#x27;", "&#39;")
+
+
+def html_prose(text):
+    """What stands between backticks as code; a backtick without a partner is one."""
+    return re.sub("`([^`]*)`", r"<code>\1</code>", html_text(text))
+
+
+def latex_text(text):
+    return "".join(LATEX.get(c, " " if c < " " else c) for c in text)
+
+
+def csv_text(lines):
+    out = io.StringIO()
+    csv.writer(out).writerows(lines)  # RFC 4180
+    return out.getvalue()
+
+
+def table_csv(table):
+    return csv_text([[name for name, _ in table.columns]] + table.rows)
+
+
+def table_html(table):
+    sides = [' class="r"' if side == "r" else "" for _, side in table.columns]
+    head = "".join(f'<th scope="col"{side}>{html_prose(name)}</th>' for side, (name, _) in zip(sides, table.columns))
+    rows = "".join("<tr>" + "".join(f"<td{side}>{html_prose(cell)}</td>" for side, cell in zip(sides, row)) + "</tr>\n"
+                   for row in table.rows)
+    return f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table>\n"
+
+
+def table_latex(table):
+    """Floats with caption, label tab:NAME and the rules of booktabs, scaled where they are wider than the text."""
+    def line(cells):
+        return "    " + " & ".join(latex_text(cell) for cell in cells) + " \\\\\n"
+
+    out, caption = "% \\usepackage{booktabs,graphicx}\n", latex_text(table.caption)
+    for begin in range(0, max(len(table.rows), 1), ROWS_OF_FLOAT):
+        title = f"{caption}.}}\n  \\label{{tab:{table.name}}}" if begin == 0 \
+            else f"{caption}, continued.}}"
+        out += ("\\begin{table}\n  \\centering\n  \\caption{" + title +
+                "\n  \\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n"
+                "  \\begin{tabular}{" + "".join(side for _, side in table.columns) +
+                "}\n    \\toprule\n" + line(name for name, _ in table.columns) +
+                "    \\midrule\n" +
+                "".join(line(row) for row in table.rows[begin:begin + ROWS_OF_FLOAT]) +
+                "    \\bottomrule\n  \\end{tabular}}\n\\end{table}\n")
+    return out
+
+
+def value_text(values, name):
+    value = values.get(name)
+    if value is None or isinstance(value, str):
+        return value or ""
+    return json.dumps(value, ensure_ascii=False, separators=(",", ":"))
+
+
+def rows_csv(study):
+    """Everything that the store holds of the study: the axes, then all counts and times by their
+    names, the device, the run, and why nothing was measured."""
+    rows = list(study.all_rows.itertuples())
+    counts, times = ([*dict.fromkeys(name for row in rows for name in getattr(row, kind))]
+                     for kind in ("counts", "times"))
+    lines = [["position", *AXES, *counts, *(name + "_ms" for name in times), "device", "run", "measured", "left_out"]]
+    for row in rows:
+        axes = [getattr(row, name) for name in AXES]
+        nothing = [-1 if name == "frame" else 0 for name in AXES]
+        lines.append([row.position, *("" if a == n else a for a, n in zip(axes, nothing)),
+                      *(value_text(row.counts, name) for name in counts),
+                      *(value_text(row.times, name) for name in times),
+                      row.device, row.run, row.measured, row.left_out])
+    return csv_text(lines)

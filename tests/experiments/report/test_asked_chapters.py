@@ -1,0 +1,208 @@
+"""The chapters of proximity and libraries on rows that were made up."""
+import pytest
+
+from made_up import chapter_of, figure, findings, row, table
+
+
+# ---- proximity
+
+def sets(missed=0, each=4, promises=True, missed_pairs=0, objects=50):
+    """Of 50 objects that have a nearest neighbour; `each` triangles in the set of an object."""
+    return {"with_nearest": 50, "missed": missed, "nearest_pairs": 60, "missed_pairs": missed_pairs,
+            "set_objects": 100, "set_triangles": 50 * each, "objects": objects, "promises": promises}
+
+
+def asked(wrong, error, promises=False):
+    return {"asked": 40, "wrong": wrong, "largest_relative": error, "objects": 50, "promises": promises,
+            "library": "made-up 1.0"}
+
+
+def proximity_rows(missed=0, missed_pairs=0, wrong=0):
+    out = []
+    for scene in ("clusters:64@seed1", "clusters:64@seed2", "field"):
+        out += [row(scene, "boxes", sets(each=40)), row(scene, "trees", sets())]
+        for cells in (64, 128):
+            lost = 0 if scene == "field" else 640 // cells
+            out += [row(scene, "voronoi", sets(lost, 30, False), resolution=cells),
+                    row(scene, "voronoi-reliable", sets(missed, 10, True, missed_pairs), resolution=cells)]
+    for frame, each in ((0, 2), (1, 4)):
+        out += [row("crowd:30", method, sets(each=triangles), frame=frame)
+                for method, triangles in (("boxes", 20), ("trees", each))]
+    out += [row(f"crowd:{n}", "trees", sets(objects=n), n) for n in (10, 100, 1000)]
+    return out + [row("field", "farcull nearest", asked(wrong, 0, True)),
+                  row("field", "peer nearest", asked(3, 0.25), 5)]
+
+
+def test_proximity_says_what_is_lost_and_by_whom():
+    chapter = chapter_of("proximity", proximity_rows())
+    said = findings(chapter)
+    assert "BROKEN" not in said
+    for part in ("Voronoi (reliable), boxes of objects and trees of boxes lost 0 of 950 ",
+                 "Of the distances of farcull 0 of 40 ",
+                 "Voronoi (published), lost of all objects: 20 of 150 at 64 cells and 10 of 150 at 128 cells.",
+                 "peer: 3 of 40 distances are not the nearest double; the largest relative error is 0.25 (field)."):
+        assert part in said
+    # Seeds of a scene are one panel, with the share of all their objects; of `field` nothing is lost.
+    lost = figure(chapter, "proximity-lost")
+    assert [panel.title for panel in lost.panels] == ["clusters:64"]
+    assert lost.panels[0].series[0].y == [20, 10] and lost.panels[0].series[0].y_low[0] < 20
+    assert "n: clusters:64 (100 objects, 2 seeds)" in lost.caption
+    assert table(chapter, "proximity-lost")[0] == ["clusters:64", "Voronoi (published)", "100", "20", "10"]
+    assert len(table(chapter, "proximity-lost")) == 4
+
+
+def test_proximity_compares_sizes_and_times():
+    chapter = chapter_of("proximity", proximity_rows())
+    sizes = table(chapter, "proximity-efficiency")
+    assert sizes[1] == ["field", "-", "40", "10", "4", "1.33"]
+    # The median over two frames, 10 and 5 times fewer; no diagram was asked for there.
+    assert sizes[2] == ["crowd:30", "2", "20 (20 to 20)", "7.50 (5 to 10)", "-", "-"]
+    field = figure(chapter, "proximity-triangles").panels[1]
+    assert [series.y for series in field.series] == [[30, 30], [10, 10], [40, 40], [4, 4]]
+    assert "trees of boxes 1.00 (no interval of 3 points)" in findings(chapter)
+    assert table(chapter, "proximity-distances")[1] == ["field", "peer", "40", "3", "-", "-", "-", "0.25", "5",
+                                                        "made-up 1.0"]
+    assert figure(chapter, "proximity-error").panels[0].series[1].y == [0.25]
+
+
+@pytest.mark.parametrize("broken, said", [
+    ((2, 0, 0), "BROKEN: clusters:64@seed1, voronoi-reliable, 64 cells: 2 of 50 objects lose"),
+    ((0, 1, 0), "BROKEN: clusters:64@seed1, voronoi-reliable, 64 cells: 0 of 50 objects lose their nearest neighbour, "
+                "and 1 of 60 nearest pairs"),
+    ((0, 0, 3), "BROKEN: field, farcull nearest: 3 of 40 distances")])
+def test_proximity_begins_with_the_promise_that_was_not_kept(broken, said):
+    text = findings(chapter_of("proximity", proximity_rows(*broken)))
+    assert text.startswith(said) and " lost 0 of " not in text and "farcull 0 of " not in text
+
+
+def test_proximity_says_what_is_not_known():
+    rows = proximity_rows()
+    del rows[0][1]["missed"]
+    rows[3] = row("clusters:64@seed1", "voronoi-reliable", left_out="64 cells leave too many pairs", resolution=64)
+    chapter = chapter_of("proximity", rows)
+    assert "One row of methods that promise does not say what they lost." in findings(chapter)
+    assert any("64 cells leave too many pairs" in limit for limit in chapter.limits)
+
+
+@pytest.mark.parametrize("more", [[], [row("field", "embree-points nearest", asked(3, 0.25), 5)]])
+def test_proximity_says_what_distances_from_vertices_are(more):
+    limits = chapter_of("proximity", proximity_rows() + more).limits
+    assert any(limit.startswith("Embree has no query") for limit in limits) == bool(more)
+
+
+# ---- libraries
+
+PAIR = "0 0 - crossing " + " ".join(x.hex() for x in (
+    0., 0., 0., 1., 0., 0., 0., 1., 0., .25, .25, -1., .25, .25, 1., 1e300, 2., 1.))
+
+
+def of_pairs(ours=False, missed=0, **more):
+    """Of 1,000 crossing pairs it refuses 500 and answers 500."""
+    refused = 0 if ours else 500
+    return {"asked": 1000, "answered": 500, "timed": 500, "missed": missed, "wrong": 0, "own_asked": 500,
+            "own_missed": missed, "own_wrong": 0, "refused": refused, "promises": ours,
+            "library": "farcull" if ours else "x 1", "means": "closed",
+            "scores": f"0 crossing 1000 500 {missed} 0 500 {missed} 0 {refused} 0 0 0 0 0 0 0 0|", **more}
+
+
+def of_mesh(ours=False, **more):
+    """Of 100 colliding pairs it misses 10, and it reports 30 that are apart. Its documentation speaks of 50 of the
+    colliding pairs, 5 of the missed and 20 of those apart."""
+    bad = {"missed": 10, "wrong": 30, "own_missed": 5, "own_wrong": 20}
+    return {"asked": 100, "answered": 100, "own_asked": 50, **({name: 0 for name in bad} if ours else bad),
+            "promises": ours, "library": "farcull" if ours else "x 1", "means": "crossing", **more}
+
+
+def libraries(*asked_of):
+    """asked_of: pairs of a contestant and its counts."""
+    return chapter_of("libraries", [
+        row("small/pairs/random" if "timed" in counts else f"small/meshes/{at}", name, counts, 1.0)
+        for at, (name, counts) in enumerate(asked_of)])
+
+
+def cells(chapter, name):
+    """The cells of the first row by column, the last of equal names."""
+    found = next(table for table in chapter.tables if table.name == name)
+    return dict(zip((column for column, _ in found.columns), found.rows[0]))
+
+
+def test_rates_of_libraries_are_of_what_was_answered():
+    chapter = libraries(("theirs", of_pairs(missed=5)))
+    assert cells(chapter, "libraries")["missed"] == "10,000"  # 5 of 500, and not of 1,000
+    assert cells(chapter, "libraries")["refused"] == "500"
+    assert cells(chapter, "libraries-kinds")["crossing"] == "10,000"
+    assert cells(chapter, "libraries-kinds")["apart"] == "-"
+    assert "BROKEN" not in findings(chapter) and "theirs (5 of 500)" in findings(chapter)
+    with pytest.raises(ValueError, match="is no score"):
+        libraries(("theirs", of_pairs(scores="0 crossing 1|")))
+
+
+@pytest.mark.parametrize("more, broken", [
+    ({}, False), ({"missed": 1}, True), ({"refused": 1}, True), ({"unanswered": 1}, True), ({"crashed": 1}, True),
+    ({"hung": 1}, True), ({"no_memory": 1}, True)])
+def test_a_miss_or_a_silence_of_ours_is_broken(more, broken):
+    said = findings(libraries(("far", of_pairs(True, **more))))
+    assert said.startswith("BROKEN: far") == broken
+    assert ("far missed none and reported none wrongly of 500 pairs." in said) == (not broken)
+
+
+def test_false_alarms_of_meshes_are_a_part_of_what_was_reported():
+    chapter = libraries(("theirs", of_mesh()))
+    assert {name: cells(chapter, "libraries-meshes")[name] for name in (
+        "colliding", "reported", "missed", "false", "missed, own", "false, own")} == {
+            "colliding": "100", "reported": "120",       # 100 - 10 + 30
+            "missed": "100,000", "false": "250,000",     # 30 of 120, and not of 100
+            "missed, own": "100,000", "false, own": "307,692"}  # 5 of 50, 20 of 65
+    assert "theirs (5 of 50, 20 of 65)" in findings(chapter)
+    assert "theirs (5 of 50, 1,000 of 1,045)" in findings(libraries(("theirs", of_mesh(own_wrong=1000))))
+    # Without one colliding pair of which it promises the answer, it may still err.
+    assert "theirs (0 of 0, 20 of 20)" in findings(libraries(("theirs", of_mesh(own_asked=0, own_missed=0))))
+
+
+def test_pairs_and_pairs_of_meshes_are_not_added():
+    ours = [("far", of_pairs(True)), ("far", of_mesh(True)), ("far", of_mesh(True))]
+    said = findings(libraries(*ours))
+    assert "far missed none and reported none wrongly of 500 pairs, and of the 200 colliding pairs of 2 meshes." in said
+    assert "700" not in said
+    broken = findings(libraries(*ours, ("far", of_mesh(True, missed=3, wrong=4))))
+    assert "BROKEN: far: 3 of the 300 colliding pairs of 3 meshes missed, and it promises none." in broken
+    assert "BROKEN: far: 4 of the 301 pairs reported of 3 meshes are apart" in broken and "missed none" not in broken
+
+
+def test_contestants_are_sorted_into_those_that_err_change_die_or_do_not():
+    said = findings(libraries(
+        ("good", of_pairs()), ("bad", of_pairs(missed=5)), ("worse", of_pairs(missed=9, differing=3, twice=34)),
+        ("dead", of_pairs(crashed=1, hung=1)), ("cullide", of_pairs(library="farcull", missed=7))))
+    for part in ("gave no wrong answer by their own documentation: good and dead.", "bad (5 of 500)",
+                 ": worse (9 of 500) and bad (5 of 500).", "below the size of a pixel: cullide (7 of 500).",
+                 "asked again: worse (3 of 34).", "ran out of memory: dead (2)."):
+        assert part in said
+    assert "more than one version" not in said
+    assert "The rows of theirs are of more than one version: x 1 and x 2." in findings(
+        libraries(("theirs", of_pairs()), ("theirs", of_pairs(library="x 2"))))
+
+
+def test_examples_are_a_table_a_figure_and_a_file_of_the_suite():
+    chapter = libraries(("theirs", of_pairs(missed=5, example_missed=PAIR)), ("others", of_pairs()),
+                        ("cullide", of_pairs(library="farcull", missed=5, example_missed=PAIR)))
+    assert table(chapter, "libraries-examples") == [[
+        "theirs", "missed", "pairs/random", "crossing",
+        "(0, 0, 0) (1, 0, 0) (0, 1, 0) (0.25, 0.25, -1) (0.25, 0.25, 1) (1e+300, 2, 1)"]]
+    panel = figure(chapter, "libraries-examples-missed").panels[0]
+    assert panel.drawing, "its axes would have no meaning"
+    assert [series.style for series in panel.series] == ["area", "lines"], "in grey they would look the same"
+    assert all(abs(x) < 2 for series in panel.series for x in series.x), "it is drawn in a cube of size 1"
+    assert chapter.files["libraries-examples.txt"].splitlines()[2:] == ["# theirs missed pairs/random", PAIR]
+    for wrong in ("0 0 - crossing 1 2 3", PAIR.replace("crossing", "guess"), PAIR + " 0x1p+0",
+                  PAIR.replace("0x0.0p+0", "nan", 1)):
+        with pytest.raises(ValueError, match="the example of liars is no pair"):
+            libraries(("liars", of_pairs(example_missed=wrong)))
+
+
+def test_libraries_stand_in_the_panel_of_their_kind_beside_the_reference():
+    chapter = libraries(("far-pairs", of_pairs(True)), ("a", of_pairs(missed=1, library="FCL 1")),
+                        ("b", of_pairs(missed=2, library="CGAL 1")), ("c", of_pairs(missed=3)))
+    panels = {panel.title: [series.name for series in panel.series]
+              for panel in figure(chapter, "libraries-time").panels}
+    assert panels == {"farcull": ["far-pairs"], "FCL and libccd": ["far-pairs", "a"],
+                      "libraries for meshes": ["far-pairs", "b"], "tests of papers, others": ["far-pairs", "c"]}

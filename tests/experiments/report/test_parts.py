@@ -1,0 +1,238 @@
+"""The parts of a report: numbers, axes, figures, tables and pages."""
+import math
+import xml.dom.minidom
+
+import pandas as pd
+import pytest
+
+from made_up import study_of  # first, since it finds the modules of the report
+import draw
+import estimates
+import pages
+import scales
+import tables
+from legible import legible
+from frame import Axis, Chapter, Figure, Mark, Panel, Series, Table, log
+
+E = math.e
+
+
+def fits(room):
+    return lambda ticks: sum(len(label) + 2 for _, label in ticks if label) <= room
+
+
+# ---- numbers
+
+def test_exponents():
+    x = [2.0, 8.0, 32.0, 128.0]
+    fit = estimates.exponent_of(x, [3 * v * math.sqrt(v) for v in x])
+    assert (round(fit.value, 12), round(fit.error, 12), fit.points, fit.first, fit.last) == (1.5, 0, 4, 2, 128)
+    # log y = 0, 1, 0 over log x = 0, 1, 2: residuals -1/3, 2/3, -1/3; t of one degree of freedom is 12.706.
+    fit = estimates.exponent_of([1, E, E * E], [1, E, 1])
+    assert fit.error == pytest.approx(math.sqrt(1 / 3)) and fit.high == pytest.approx(12.706 * math.sqrt(1 / 3), 1e-4)
+    text = [estimates.exponent_text(estimates.Exponent(0.8, 0, 0.6, 1, 0, 0, n)) for n in (6, 5)]
+    assert text == ["0.80 (0.60 to 1.00)", "0.80 (no interval of 5 points)"]
+    for few in (([1, 2], [1, 2]), ([1, 2, 0], [1, 2, 3]), ([2, 2, 2], [1, 2, 3])):
+        assert estimates.exponent_of(*few) is None
+
+
+# Known values: 1 - 0.05^(1/100), tables of Clopper and Pearson's interval, the 10,000th number of std::mt19937_64.
+def test_intervals():
+    rate = estimates.rate_of(5, 100)
+    assert estimates.rate_of(0, 100).high == pytest.approx(0.029513, abs=1e-6) and estimates.rate_of(0, 100).low == 0
+    assert (rate.low, rate.high) == pytest.approx((0.016432, 0.112835), abs=1e-6)
+    assert estimates.rate_of(7, 7).high == 1 and estimates.rate_text(0, 0) == "0 of 0"
+    assert estimates.at_most(114014) == "at most 2.6e-05" and estimates.at_most(2) == "at most 1"
+    assert estimates.with_bound(0, 3000).endswith("(a rate of at most 0.0010)") and estimates.with_bound(4, 9) == "4 of 9"
+    assert int(estimates.random_words(10)[0]) == 2469588189546311528 >> 32, "std::mt19937_64 with seed 1"
+    median = estimates.median_estimate((5.0, 1.0, 3.0))
+    assert (median.value, median.low, median.high, median.n) == (3, 1, 5, 3)
+    assert estimates.student_t95(4) == pytest.approx(2.776445, abs=1e-6)
+
+
+@pytest.mark.parametrize("value, text", [(12345.6, "12,346"), (0.01234, "0.0123"), (0, "0"), (10, "10"), (-1.5, "-1.50"),
+                                         (1234567, "1,234,567"), (math.nan, "-"), (1e-5, "1e-05"), (0.9996, "1.000")])
+def test_numbers_are_rounded_for_people(value, text):
+    assert estimates.rounded(value) == text
+
+
+# ---- axes
+
+def test_zeros_have_a_place_of_their_own():
+    scale = scales.scale_of(log("", zero=True), [0, 300, 5000], fits(100))
+    at = [scale.place(v) for v in (0, 0.5, 1)]
+    assert scale.ends[0] < at[0] < at[2] and at[1] == pytest.approx((at[0] + at[2]) / 2) and scale.linear_to == 1
+    assert [label for _, label in scale.ticks][0] == "0" and all(v == 0 or v >= 1 for v, _ in scale.ticks)
+    assert scales.scale_of(log("", zero=True), [0, 0.03, 50], fits(100)).linear_to == pytest.approx(0.01)
+    alone = scales.scale_of(log("", zero=True), [0, 0], fits(100))
+    assert alone.ends[0] < alone.place(0) < alone.ends[1]
+    # The twins: without zeros nothing is linear, and an axis that does not show them has no place for them.
+    assert scales.scale_of(log("", zero=True), [3, 5000], fits(100)).linear_to == 0
+    assert math.isnan(scales.scale_of(log(""), [0, 3, 5000], fits(100)).place(0))
+
+
+@pytest.mark.parametrize("axis", [Axis(), log("")])
+def test_an_axis_holds_every_value_of_any_size(axis):
+    for exponent in range(-300, 300, 7):
+        for m in (1.0, 1.9999999, 2.0, 4.2, 9.999999):
+            value = m * 10.0 ** exponent
+            scale = scales.scale_of(axis, [value, value * 3, math.nan], fits(60))
+            assert scale.low < scale.high and scale.low <= value and scale.high >= 3 * value
+            assert 0 < len(scale.ticks) <= 60
+
+
+def test_ticks():
+    def labels(axis, values, room=100):
+        return [label for _, label in scales.scale_of(axis, values, fits(room)).ticks if label]
+
+    assert labels(log(""), [64, 128, 256, 512]) == ["64", "128", "256", "512"]
+    assert len(labels(log(""), [112, 131, 190], 60)) >= 3 <= len(labels(Axis(low=0.96, high=1.04), [1], 60))
+    assert 2 <= len(labels(log(""), [1e-9, 1e9], 30)) < len(labels(log(""), [1e-9, 1e9], 200))
+    assert [scales.tick_label(v) for v in (1000, 0.1, 0, 1e9, 1e-12)] == ["1,000", "0.1", "0", "10⁹", "10⁻¹²"]
+
+
+# ---- figures
+
+def two_panels(**first):
+    names = ["CULLIDE", "Quick-CULLIDE", "FAR (OBB)"]
+    return Figure("f", "t", "c", [Panel(title, series=[
+        Series(name, [1, 2], [5, 0 if name[0] == "F" else 7]) for name in names], **(first if title == "first" else {}))
+        for title in ("first", "second")])
+
+
+def names_in(figure):
+    return [[s.name for s in panel.series] for panel in figure.panels]
+
+
+def test_series_that_agree_are_one():
+    figure = two_panels()
+    legible(figure)
+    assert names_in(figure) == [["CULLIDE = Quick-CULLIDE", "FAR (OBB)"]] * 2
+    other = two_panels()  # the twin: they differ at one point of one panel
+    other.panels[1].series[1].y[0] = 6
+    legible(other)
+    assert len(names_in(other)[0]) == 3
+    long = two_panels()
+    for panel in long.panels:
+        panel.series[1].name = "x" * 90
+    legible(long)
+    assert names_in(long)[0][0] == "CULLIDE and 1 others" and "x" * 90 in long.caption
+    about = two_panels()  # the one that the figure is about gives the style
+    for panel in about.panels:
+        panel.series[2].y, panel.series[2].emphasis, panel.series[1].y = [5, 7], True, [1, 2]
+    legible(about)
+    assert names_in(about)[0] == ["Quick-CULLIDE", "FAR (OBB) = CULLIDE"]
+
+
+def test_panels_without_a_difference_become_a_sentence():
+    figure = two_panels()
+    for series in figure.panels[0].series:
+        series.y = [3, 3]
+    figure.panels.append(Panel("third", series=[Series("a", [1], [math.nan])]))
+    legible(figure)
+    assert [p.title for p in figure.panels] == ["second"]
+    assert figure.caption == ("c. Not drawn, since every value is 3: first. Not drawn, since there is no value: third.")
+
+
+def test_a_method_looks_the_same_in_every_figure():
+    looks = draw.looks_of(two_panels())
+    assert looks["FAR (OBB)"].colour == draw.looks_of(Figure("g", "t", "", [Panel("", series=[
+        Series("other"), Series("FAR (OBB) = exact"), Series("farther")])]))["FAR (OBB) = exact"].colour
+    assert looks["CULLIDE"].colour != looks["Quick-CULLIDE"].colour
+    many = draw.looks_of(Figure("g", "t", "", [Panel("", series=[Series(f"{of} {i}") for of in ("x", "cgal")
+                                                                 for i in range(10)])]))
+    assert len({(look.colour, look.marker) for look in many.values()}) == 20
+
+
+def lines_at_zero(figure):
+    """By name, how far each drawn line is from the place of zero, in the first panel."""
+    drawer = draw.Drawer(figure)
+    zero = drawer.layout.placed[0].y.place(0)
+    return {name: {abs(y - zero) for line in drawer.canvas.axes[0].lines if line.get_color() == look.colour
+                   for y in line.get_ydata()} for name, look in drawer.layout.looks.items()}
+
+
+def test_zeros_are_drawn_at_zero():
+    figure = two_panels(y=log("missed", zero=True))
+    for series in figure.panels[0].series:
+        series.y = [0, 0]
+    figure.panels[0].series[0].y = [0, 0.5]
+    distances = lines_at_zero(figure)
+    assert distances["FAR (OBB)"] == distances["Quick-CULLIDE"] == {0}
+    assert len(distances["CULLIDE"]) == 2, "the twin: what is not zero is not there"
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-200, 1e200])
+@pytest.mark.parametrize("high", [False, True])
+def test_a_drawing_has_one_scale_for_both_axes_and_holds_all(scale, high):
+    x, y = ([v * scale for v in values] for values in ((0, 9, 4, 0), (0, 0, 1, 0)))
+    figure = two_panels()
+    figure.panels.insert(0, Panel("drawn", drawing=True, series=[Series("a", *((y, x) if high else (x, y)), "area")]))
+    placed = draw.Layout(figure).placed[0]
+    left, right, top, bottom = placed.box
+    per_unit = [(right - left) / (placed.x.high - placed.x.low), (bottom - top) / (placed.y.high - placed.y.low)]
+    assert per_unit[0] / per_unit[1] == pytest.approx(1)
+    assert all(s.low < v < s.high for s, vs in ((placed.x, figure.panels[0].series[0].x),
+                                                (placed.y, figure.panels[0].series[0].y)) for v in vs)
+
+
+def test_figures_are_drawn_whatever_they_hold():
+    figure = Figure("trap", "it's a \"trap\" & <b> \\ `date` $(date) 100 %", "`x` @macro $x_1$", [])
+    none = [math.nan] * 3
+    for kind in (Axis("%g 'x'"), log("%g 'x'", zero=True)):
+        for y in ([1, math.nan, 3], [0, 0, 0], none, [5, 5, 5], [1e-300, 1, 1e300], [-1, 0, math.inf]):
+            series = [Series("s'" + style, [0, 1, 2], y, style, style == "lines", y_low=none if style == "points" else y,
+                             y_high=none if style == "points" else [7, 1e9, math.nan]) for style in (
+                                 "lines_points", "lines", "points")]
+            figure.panels.append(Panel("%s a_b^{c} $q$ @x", log("x", zero=True), kind, series,
+                                       [Mark(1, "it's"), Mark(0, "%d", False)], strip=[Series("row", [1, 2])]))
+    figure.panels += [Panel("")] + [Panel("d", drawing=True, series=[Series("area", x, [0, 0, 0], "area")])
+                                    for x in ([0, 1, 2], [1, 1, 1], [1e-300, 0, 0], [1e200] * 3, none)]
+    files = draw.files_of(figure)
+    texts = [node.firstChild.data for node in xml.dom.minidom.parseString(files["svg"]).getElementsByTagName("title")]
+    assert figure.title in texts and files["pdf"].startswith(b"%PDF") and files["csv"].count("\n") > 50
+
+
+# ---- tables and pages
+
+def test_text_is_no_markup():
+    assert tables.html_text("<b>&\"'\n\x01") == "&lt;b&gt;&amp;&quot;&#39;\n "
+    assert tables.html_prose("run `a<b` `") == "run <code>a&lt;b</code> `"
+    assert tables.latex_text("50 % of a_b & 10⁻³ ± 1") == "50 \\% of a\\_b \\& 10$^{-}$$^3$ $\\pm$ 1"
+    assert pages.markdown_prose("a_b `c_d|` `") == "a\\_b `c_d\\|` \\`"
+    assert [pages.markdown_code(t) for t in ("a b", "a `b` ``c``", "a\nb")] == ["`a b`", "``` a `b` ``c`` ```", "`a b`"]
+    svg = '<?xml version="1.0"?>\n<svg><g id="a"><use xlink:href="#p" clip="url(#q)"/></g></svg>'
+    assert draw.inline_svg(svg, "x-") == '<svg><g id="x-a"><use xlink:href="#x-p" clip="url(#x-q)"/></g></svg>'
+
+
+def test_cells_stay_cells():
+    table = Table("t", "c", [("a,b", "l"), ("n", "r")], [["say \"so\"", "1,234"]])
+    assert tables.table_csv(table) == "\"a,b\",n\r\n\"say \"\"so\"\"\",\"1,234\"\r\n"
+    assert "<td class=\"r\">1,234</td>" in tables.table_html(table)
+    assert "\\begin{tabular}{lr}" in tables.table_latex(table)
+
+
+def page_with(*said):
+    chapter = Chapter("accuracy", "Accuracy", "?", "command", list(said))
+    runs = pd.DataFrame({name: [] for name in ("run", "gl_renderer", "cpu", "cores")})
+    return pages.Page("store", "my results", "commit", "now", runs, [pages.Drawn(chapter, study_of("accuracy", []))])
+
+
+def test_the_page_claims_nothing_that_its_chapters_deny():
+    broken, good = page_with((True, "first"), (True, "second"), (False, "fine")), page_with((False, "fine"))
+    html, markdown = pages.HtmlPage(broken).text(), pages.page_markdown(broken)
+    assert "never misses" not in html
+    assert all(part in html.split("<nav")[0] for part in ("BROKEN: first", "BROKEN: second", "fine"))
+    assert markdown.index("BROKEN: second") < markdown.index("All of this page")
+    assert "`farcull report 'my results'`" in markdown
+    assert "never misses" in pages.HtmlPage(good).text() and "Broken." not in pages.HtmlPage(good).text()
+
+
+def test_latex_has_every_finding_figure_and_table():
+    page = page_with((False, "50 % of a_b & more"))
+    page.chapters[0].chapter.figures = [Figure("f", "t", "c")]
+    page.chapters[0].chapter.tables = [Table("t", "c", [])]
+    text = pages.page_latex(page)
+    assert all(part in text for part in ("\\item 50 \\% of a\\_b \\& more.", "{figures/f.pdf}", "\\input{tables/t.tex}"))
+    page.chapters[0].chapter.tables[0].in_text = False  # the twin
+    assert "\\input" not in pages.page_latex(page)

@@ -1,0 +1,201 @@
+"""The chapters of scenes, offsets, culling, efficiency and scaling, and the comparison of devices, on rows that were
+made up. Most tests have a twin, in which the opposite is said."""
+import numpy as np
+import pytest
+
+from made_up import chapter_of, findings, row, study_of, table
+from chapters import devices
+from frame import Chapter
+
+
+def run_counts(missed=0, promises=False, **more):
+    return {"colliding": 20, "missed": missed, "colliding_triangles": 10, "candidates": 40, "kept_triangles": 30,
+            "triangles": 100, "promises": promises, **more}
+
+
+# ---- what every chapter says of promises and gaps
+
+STUDIES = [("offsets", "s", {}), ("culling", "s", {}), ("efficiency", "cloth:450", {"frame": 3}),
+           ("scaling", "crowd:100", {})]
+
+
+@pytest.mark.parametrize("study, scene, axes", STUDIES)
+@pytest.mark.parametrize("missed, first", [
+    (1, " misses 1 of 20 colliding pairs, and promises to miss none."),
+    (0, " missed 0 of 20 (95 % bound: at most 0.14) colliding pairs in 1 run."),
+    (None, "One row of methods that promise does not say what they missed.")])
+def test_promises(study, scene, axes, missed, first):
+    rows = [row(scene, "exact", run_counts(), **axes),
+            row(scene, "far", run_counts(missed, True), resolution=64, **axes)]
+    chapter = chapter_of(study, rows)
+    broken, text = chapter.findings[0]
+    assert first in text and broken == (missed == 1)
+    assert findings(chapter).count("BROKEN") == (missed == 1), "a row is told once"
+    assert (" missed 0 of 20 (95 %" in findings(chapter)) == (missed == 0)
+
+
+@pytest.mark.parametrize("study", ["offsets", "culling", "efficiency", "scaling", "scenes", "proximity", "libraries"])
+def test_missing_rows_are_told(study):
+    empty = chapter_of(study, [], declared=3)
+    assert empty.figures == [] and empty.tables == []
+    assert "Not finished: 0 of 3 points are measured." in empty.limits
+    left = chapter_of(study, [row("s", "far", left_out="the device is too small")])
+    assert "Left out at 1 of 1 points: the device is too small." in left.limits
+
+
+# ---- offsets
+
+def offset_rows(exact):
+    return [row("s", "far", run_counts(0, True, kept_triangles=40, fragments=400), 2, resolution=64),
+            row("s", "far", run_counts(0, True, kept_triangles=exact, fragments=300), 6, resolution=64, offset="exact"),
+            row("s", "far-pairs", run_counts(0, True, kept_triangles=20, fragments=200), 1, resolution=64)]
+
+
+def test_a_smaller_offset_must_not_keep_more():
+    good = chapter_of("offsets", offset_rows(30))
+    assert "fewer triangles than boxes at 1 of 1 points" in findings(good) and "BROKEN" not in findings(good)
+    assert "FAR (exact) against FAR (OBB)" in findings(good) and "3 times (3 to 3, n = 1) the time" in findings(good)
+    assert len(good.figures) == 4
+    assert findings(chapter_of("offsets", offset_rows(41))).startswith(
+        "BROKEN: s, far, exact, 64 px keeps 41 triangles where boxes keep 40")
+
+
+# ---- culling
+
+def kept(candidates, neighbours=0):
+    """Ten pairs collide, two of them neighbours; of the candidates so many are neighbours."""
+    both = 2 if neighbours else 0
+    return {"colliding": 8 + both, "missed": 0, "candidates": candidates, "neighbour_candidates": neighbours,
+            "neighbours": both, "promises": neighbours > 0}
+
+
+def culling_rows(chosen):
+    out = []
+    for scene, hard in (("easy", False), ("hard", True)):
+        out += [row(scene, "cgal-boxes", kept(8000 if hard else 80)), row(scene, "fcl-obb", kept(80 if hard else 16)),
+                row(scene, "far-pairs", kept((chosen if hard else 79) + 100, 100))]
+        out += [row(scene, "far-pairs", kept(left, 100), resolution=side, views=views) for views, side, left in (
+            ("z", 64, 160), ("z", 256, 132 if hard else 164), ("x,y,z", 64, 140), ("x,y,z", 256, 116 if hard else 124))]
+    return out
+
+
+def test_culling_tells_a_join_of_boxes_from_culling():
+    chapter = chapter_of("culling", culling_rows(800))
+    said = findings(chapter)
+    for part in ("on easy (79 of 80): there it is a fast join of boxes", "keeps fewer on hard (800 of 8,000)",
+                 "Three views leave 2 candidates for each pair that collides on hard (at 256 px), where boxes leave "
+                 "1,000, and 3 candidates for each pair that collides on easy",
+                 "than FCL's oriented boxes on 1 of 2 scenes"):
+        assert part in said
+    assert "BROKEN" not in said and "More pixels" not in said
+    hard = chapter.figures[0].panels[1]
+    assert [series.name for series in hard.series][0] == "boxes" and len(hard.series) == 5
+    assert hard.series[0].y == [1000, 1000]
+    assert hard.series[3].x == [64, 256] and hard.series[3].y == [7.5, 4]
+    assert table(chapter, "culling")[1] == ["hard", "8", "8,000", "1,000", "10", "100", "4", "256", "2", "256"]
+    assert table(chapter, "culling")[0][7] == "64"  # of one view on easy, where 256 px leave more
+    join = findings(chapter_of("culling", culling_rows(7990)))
+    assert "on easy (79 of 80) and hard (7,990 of 8,000): there it is" in join and "keeps fewer" not in join
+    more = culling_rows(800) + [row("easy", "far-pairs", kept(190, 100), resolution=512, views="x,y,z")]
+    assert "on 1 of 2 scenes three views leave more at the largest" in findings(chapter_of("culling", more))
+
+
+# ---- scenes
+
+def scene_counts(**more):
+    return {"triangles": 100, "objects": 2, "self_objects": 0, "colliding": 3, "neighbours": 0, "scene_hash": "ab",
+            "pixels_tenth": 1, "pixels_half": 4.0, "pixels_ninety": 9.0, **more}
+
+
+@pytest.mark.parametrize("scene, source", [
+    ("needles:60@seed101", "drawn, seed 101"), ("needles:60", "drawn, seed 2"),
+    ("needles:60@seed103@far", "drawn, seed 103"), ("crowd:60@offset-1e0", "drawn, seed 4"),
+    ("crowd:60@seed7@scale-1e3", "drawn, seed 7"), ("two-bunnies", "scanned or modelled"),
+    ("cloth:450:1e4", "simulated"), ("two-spheres", "constructed"), ("pixel-corners", "constructed")])
+def test_the_source_of_a_scene(scene, source):
+    chapter = chapter_of("scenes", [row(scene, "exact", scene_counts())])
+    assert table(chapter, "scenes")[0][1] == source == table(chapter, "scenes-all")[0][1]
+
+
+def test_scenes_tell_the_size_of_triangles_at_each_resolution():
+    chapter = chapter_of("scenes", [
+        row("two-spheres", "exact", scene_counts(triangles=10240, colliding=300)),
+        row("cloth:450:1e4", "exact", scene_counts(triangles=610, self_objects=1, pixels_half=0.5), frame=40)])
+    said = findings(chapter)
+    assert "2 scenes: 0 of scanned or modelled meshes, 1 of simulated cloth, 0 drawn at random and 1 constr" in said
+    assert "610 to 10,240 triangles. In 1 of them objects" in said
+    assert "At 512 px the median triangle covers less than a pixel in 1 of 2" in said
+    assert table(chapter, "scenes")[0] == ["two-spheres", "constructed", "no", "-", "2", "10,240", "300", "0.062",
+                                           "0.25", "1", "4", "16", "64", "256"]  # of 4 pixels at 512 px
+    assert table(chapter, "scenes")[1][2:4] == ["1 of 2", "40"]
+
+
+# ---- efficiency
+
+def efficiency_rows(partial):
+    return [row("s", method, run_counts(3 if method == "cullide" else 0, queries=10 if method == "cullide" else 5,
+                                        draws=100, object_triangles=60), 2.0 + 2 * frame, frame=frame)
+            for frame in (0, 1) for method in ("i-collide", "far", "cullide", "quick-cullide")
+            if not (partial and frame == 1 and method == "quick-cullide")]
+
+
+@pytest.mark.parametrize("partial, quick, time", [
+    (True, ["s", "1", "0.500", "1", "20", "3", "0", "0"], "2"),
+    (False, ["s", "2", "0.500", "1", "40", "6", "0", "0"], "3 (2 to 4)")])
+def test_efficiency_sums_the_frames_that_all_have(partial, quick, time):
+    chapter = chapter_of("efficiency", efficiency_rows(partial))
+    assert table(chapter, "efficiency-quick") == [quick]
+    assert table(chapter, "efficiency-times")[0][3] == time
+    assert table(chapter, "efficiency-factors")[0] == ["s", "OBB", "2", "2 (2 to 2)", "1 (1 to 1)", "1 (1 to 1)"]
+    assert "leaves 2 (s) to 2 (s) times fewer triangles than the objects" in findings(chapter)
+    assert "CULLIDE 6 of 40" in findings(chapter) and "FAR (OBB) 0 of 40 (a rate of at most 0.075)" in findings(chapter)
+
+
+# ---- scaling
+
+def test_scaling_says_what_is_missed():
+    rows = [row("crowd:100", "cullide", run_counts(missed, objects=100), resolution=side)
+            for side, missed in ((128, 4), (512, 1))]
+    chapter = chapter_of("scaling", rows)
+    assert "CULLIDE missed 5 of 40 colliding pairs over all sizes." in findings(chapter)
+    assert table(chapter, "scaling-missed") == [["CULLIDE", "2", "40", "5", "0.125"]]
+    assert "at 128 and 512 px" in chapter.figures[0].caption
+
+
+def test_scaling_fits_an_interval_to_six_points_and_none_to_fewer():
+    def rows(points, runs=9):  # time as n^2, with a spread over the runs
+        return [row(f"crowd:{n}", "exact", run_counts(objects=n),
+                    runs=[1e-3 * n * n * (0.96 + 0.01 * run) for run in range(runs)])
+                for n in (10 << i for i in range(points))]
+
+    six = chapter_of("scaling", rows(6))
+    assert "exact 2.00 (2.00 to 2.00)" in findings(six)
+    series = six.figures[0].panels[0].series[0]
+    # Of nine runs the second least and the second largest.
+    assert np.allclose(np.array(series.y_low) / series.y, 0.97, rtol=1e-12)
+    assert np.allclose(np.array(series.y_high) / series.y, 1.03, rtol=1e-12)
+    assert six.figures[0].caption.startswith("n = 6 points, each the median of 9 runs, with its 95 % interval")
+    assert chapter_of("scaling", rows(6, runs=5)).figures[0].caption.startswith(
+        "n = 6 points, each the median of 5 runs (with 5, an interval called 95 % covers 94 %), with")
+    assert "exact 2.00 (no interval of 5 points)" in findings(chapter_of("scaling", rows(5)))
+
+
+# ---- devices
+
+def device_study(*rows):
+    return study_of("accuracy", [
+        row(scene, "far", {"colliding": 9, "missed": missed, "candidates": candidates, "promises": True}, ms,
+            resolution=64) for scene, candidates, missed, ms in rows])
+
+
+def test_devices_are_compared_point_by_point():
+    first = device_study(("a", 20, 0, 2), ("b", 30, 0, 2), ("c", 7, 0, 2))
+    chapter = Chapter("accuracy", "", "", "")
+    devices.fill(chapter, first, "native", [])
+    assert chapter.findings == [] and chapter.tables == []
+    devices.fill(chapter, first, "native", [("llvmpipe", device_study(("a", 20, 0, 6), ("b", 33, 0, 8)))])
+    assert findings(chapter) == "On llvmpipe counts differ from those on native at 1 of 2 points."
+    assert table(chapter, "accuracy-devices") == [["llvmpipe", "FAR (OBB)", "2", "1", "0", "0", "50", "53", "3.50"]]
+    # A promise that another device does not keep is as bad as one of the first.
+    devices.fill(chapter, first, "native", [("liar", device_study(("a", 20, 1, 2)))])
+    assert "BROKEN: On liar, FAR (OBB) did not keep its promise at a, far" in findings(chapter)
