@@ -1,0 +1,397 @@
+"""See layout_test.sh. The rules are the tables at the top; the self-test is a table of changes to a small tree that obeys
+every rule, and the violation that each has to give."""
+import glob
+import itertools
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+# Folder, and the folders that it includes. A folder may include itself, what its row names, and whatever those may include;
+# a * stands for every folder. A file belongs to the longest folder of the table that its path begins with.
+MAY_INCLUDE = {row.split(':')[0].strip(): row.split(':')[1].split() for row in '''
+core/base:   ;   core/scene: core/base;   core/boxes: core/scene;   core/view: core/boxes;   core/canvas: core/view;
+core/cull: core/canvas;   core/sweep: core/boxes;   core/pairs: core/view;   core/proximity: core/boxes;
+core/voronoi: core/scene;   core/native: core/canvas;   core/gl: core/cull core/sweep core/pairs core/proximity core/voronoi;
+offsets: core/native;   verify/certificate: core/scene;   verify: core/canvas verify/certificate;
+experiments/system: core/base;   experiments/scenes/mesh: experiments/system core/gl;
+experiments/scenes/cloth: experiments/scenes/mesh;
+experiments/scenes/builtin: experiments/scenes/mesh experiments/scenes/cloth;
+experiments/scenes: experiments/scenes/builtin;   experiments/method: core/gl core/proximity offsets verify;
+experiments/library: experiments/method;   experiments/record: experiments/method experiments/system;
+experiments/tiles: experiments/scenes experiments/record;   experiments/generators: experiments/scenes;
+experiments/suite: experiments/generators verify;   experiments/peers: experiments/suite experiments/library;
+experiments/measure: experiments/record experiments/peers;   experiments/lemma: experiments/generators experiments/record;
+experiments/studies: experiments/measure experiments/lemma;   experiments/picture: experiments/measure;
+experiments/report/chapters: experiments/studies experiments/picture;   experiments/report: experiments/report/chapters;
+experiments/command: experiments/report experiments/library experiments/tiles;
+experiments/python: experiments/library experiments/picture;   tests: *'''.split(';')}
+# The verification shares no code with the culling that it checks: neither the boxes, with their joins and trees, nor the plan
+# nor the error budget, although the table lets it.
+UNSHARED = ['core/boxes', 'core/view/budget', 'core/view/plan', 'core/view/regions']
+# Library, a regular expression for its headers, and who may include them: folders of the table, or with a * all files whose
+# path begins so.
+LIBRARIES = [
+    ('EGL/OpenGL', r'^(epoxy|EGL|GL|GLES[0-9]*|KHR)/', 'core/gl tests/faults/*'),
+    ('CGAL', '^CGAL/', 'verify experiments/peers/cgal* experiments/peers/contest_cgal* tests'),
+    ('GMP/MPFR', r'^(gmp|gmpxx|mpfr)\.h$', 'verify verify/certificate tests'),
+    ('zlib', r'^zlib\.h$', 'experiments/scenes/mesh tests')]
+MOST_FOLDERS = 20  # in experiments/
+OURS = ['core', 'offsets', 'verify', 'experiments', 'tests']
+OUR = re.compile(f"({'|'.join(OURS)})/")
+TOP = ['CMakeLists.txt', 'README.md', 'docs', *OURS]
+SOURCES = ('.h', '.cpp', '.glsl', '.vert', '.frag', '.comp')  # shaders too, since C++ includes some of them
+# Where text must not be: the files' endings, folders, exception, pattern, message.
+LINES = [
+    (('.h', '.cpp'), OURS[:4], 'core/base/parallel.cpp', r'std::(jthread|async|thread)([^:_\w]|$)|pthread_create',
+     'starts a thread: only core/base/parallel.cpp does, which sets the arithmetic of each'),
+    (('.h', '.cpp'), ['core'], '', '"[^"]*--[a-z]',
+     'names an option of the command line: write {name} (core/base/parameter.h)')]
+
+
+def reached(start, edges):
+    """The start, and what the edges lead to from there."""
+    found, left = {start}, [start]
+    while left:
+        new = set(edges.get(left.pop(), ())) - found
+        found |= new
+        left.extend(new)
+    return found
+
+
+ALLOWED = {folder: set(MAY_INCLUDE) if '*' in row else reached(folder, MAY_INCLUDE) for folder, row in MAY_INCLUDE.items()}
+
+
+def read(path):
+    with open(path, encoding='utf-8', errors='replace') as file:
+        return file.read()
+
+
+def files_of(folders, endings):
+    return sorted(os.path.join(folder, name) for top in folders for folder, _, names in os.walk(top)
+                  for name in names if name.endswith(endings))
+
+
+def folder_of(path):
+    while path := os.path.dirname(path):
+        if path in MAY_INCLUDE:
+            return path
+    return ''
+
+
+def includes(files):
+    """File, line, included file. An include relative to its own folder is the file that it means, however spelled."""
+    known = set(files)
+    for file in files:
+        for number, line in enumerate(read(file).split('\n'), 1):
+            if found := re.match(r'\s*#\s*include\s*[<"]([^>"]*)', line):
+                beside = os.path.normpath(os.path.join(os.path.dirname(file), found[1]))
+                yield file, number, beside if beside in known else found[1]
+
+
+def stem(path):
+    return re.sub(r'\.(h|cpp)$', '', path)
+
+
+def why_not(file, included):
+    """Why the file must not include the other."""
+    here, there = folder_of(file), folder_of(included)
+    for name, _, users in (row for row in LIBRARIES if re.search(row[1], included)):
+        may = any(file.startswith(user[:-1]) if user[-1] == '*' else user == here for user in users.split())
+        return '' if may else f'only {users} may use {name}'
+    if not here or not OUR.match(included):
+        return ''
+    if not there:
+        return 'it lies in no folder of the table'
+    if here.startswith('verify') and {stem(included), there} & set(UNSHARED):
+        return 'the verification shares no code with the culling that it checks'
+    return '' if there in ALLOWED[here] else f'the table does not let {here} include {there}'
+
+
+def cycles(found):
+    """Files that include each other, where .h and .cpp of one name are one file."""
+    below = {}
+    for file, _, included in found:
+        if OUR.match(included) and stem(file) != stem(included):
+            below.setdefault(stem(file), set()).add(stem(included))
+    reach = {file: reached(file, below) for file in below}
+    groups = {tuple(sorted(other for other in reach[file] if file in reach.get(other, ()))) for file in below}
+    for group in sorted(group for group in groups if len(group) > 1):
+        yield f"{group[0]}: a cycle of includes, with .h and .cpp of one name as one file: {', '.join(group)}"
+
+
+def places(files):
+    for file in files:
+        if not folder_of(file):
+            yield f'{file}: lies directly in {os.path.dirname(file)}, which is no folder of the table'
+    count = len({os.path.dirname(file) for file in files if file.startswith('experiments/') and file.count('/') > 1})
+    if count > MOST_FOLDERS:
+        yield f'experiments: {count} folders hold source files; at most {MOST_FOLDERS} may'
+
+
+# Strings, characters, comments and directives.
+BLANKED = re.compile('|'.join([
+    r'R"([^ ()\\"]*)\(.*?\)\1"', r'"(?:[^"\\\n]|\\.)*"', r"(?<![0-9A-Za-z])'(?:[^'\\\n]|\\.)+'", r'//[^\n]*', r'/\*.*?\*/',
+    r'^[ \t]*#(?:\\\n|[^\n])*']), re.DOTALL | re.MULTILINE)
+TYPE = re.compile(r'(?:^| )(?:enum class|enum struct|struct|class|union|enum) (\w+)(?: final)?(?: :[^:].*)?$')
+
+
+def types():
+    """Types that two files define in one namespace: to a linker they are one type, and which of its functions a program gets
+    is chance (tests/odr.sh asks the linker). Types of anonymous namespaces, nested types and specializations are no such
+    types. A name that one file defines twice stands in the branches of an #if."""
+    place = {}
+    for file in files_of(OURS, ('.h', '.cpp', '.inl')):
+        text = BLANKED.sub(lambda found: ('""' if '"' in found[0][:2] else ' ') + '\n' * found[0].count('\n'), read(file))
+        scopes, blocks = [], 0
+        for piece in re.finditer('([^{};]*)([{};])', text):
+            words = ' '.join(re.sub(r'\[\[[^\]]*\]\]|alignas *\([^)]*\)', ' ', piece[1]).split())
+            if blocks:
+                blocks += {'{': 1, '}': -1, ';': 0}[piece[2]]
+                continue
+            if piece[2] != '{':
+                del scopes[len(scopes) - (piece[2] == '}'):]
+                continue
+            if named := re.fullmatch(r'(?:inline )?namespace ?([\w:]*)|extern ""', words):
+                scopes.append('' if named[1] is None else named[1] + '::' if named[1] else '<anonymous>')
+                continue
+            blocks = 1
+            found = TYPE.search(words)
+            if found and '<anonymous>' not in scopes and (words.startswith('template') or not re.search('[(=]', words)):
+                line = f'{file}:{text.count(chr(10), 0, piece.start(2)) + 1}'
+                first = place.setdefault(''.join(scopes) + found[1], line)
+                if first.split(':')[0] != file:
+                    yield f"{line}: defines {''.join(scopes)}{found[1]}, and so does {first}: a type name once a namespace"
+
+
+def page_paths():
+    """Paths in the pages that do not exist: paths in backticks and in indented blocks that begin with one of our folders, and
+    the targets of links. NAME and * in a path stand for any text. A path without an ending, such as verify/accounting, means
+    the files of that name with any ending. A page may name a file that it tells the reader to make: "the new file `PATH`",
+    there and below."""
+    there = {'README.md', 'CMakeLists.txt', *OURS, 'docs'}
+    for top in [*OURS, 'docs']:
+        there |= {os.path.join(folder, name) for folder, *names in os.walk(top) for name in itertools.chain(*names)}
+    there |= {re.sub(r'[.][^./]*$', '', path) for path in there}
+    for page in (page for page in [*glob.glob('README.md'), *files_of(['docs'], '.md')] if page.count('/') < 3):
+        made, inside = set(), False  # a span in backticks may go on in the next line, but not further
+
+        def known(path):
+            pattern = re.sub(r'NAME|\\\*', '[^/]*', re.escape(path))
+            return path in there or path in made or pattern != re.escape(path) and any(re.fullmatch(pattern, one) for one in there)
+
+        for number, line in enumerate(read(page).split('\n'), 1):
+            made |= set(re.findall('new file `([^`]*)`', line))
+            inside = inside and line != ''
+            spans = line.split('`')
+            block = line.startswith('    ') and not inside
+            words = [word.rstrip('.').rstrip('/') for text in ([line] if block else spans[1 - inside::2])
+                     for word in re.split(r'[^\w./*@%-]+', text)]
+            yield from (f'{page}:{number}: names {path}, which does not exist' for path in words
+                        if re.match(OUR.pattern + '|docs/', path) and not known(path))
+            targets = [] if block else [target.split('#')[0] for target in re.findall(r'\]\(([^)]*)\)', line)]
+            yield from (f'{page}:{number}: links to {target}, which does not exist' for target in targets
+                        if target and not re.match('[a-z]+:', target)
+                        and not known(os.path.normpath(os.path.join(os.path.dirname(page), target))))
+            inside ^= not block and len(spans) % 2 == 0
+
+
+def top_level():
+    """The names at the top, without dot files: those that git has or would add, or all but build folders without git."""
+    names = {name for name in os.listdir() if not name.startswith(('build', '.'))}
+    if os.path.exists('.git'):
+        listed = subprocess.run(['git', 'ls-files', '--cached', '--others', '--exclude-standard'], capture_output=True,
+                                check=False, text=True)
+        if listed.returncode == 0:  # Git still lists a file whose removal is not committed yet
+            names = {name for name in {path.split('/')[0] for path in listed.stdout.split('\n')} & {*os.listdir()} if name[0] != '.'}
+    yield from (f'{name}: missing at the top level' for name in TOP if name not in names)
+    yield from (f"{name}: the top level holds nothing but {' '.join(TOP)}" for name in sorted(names - set(TOP)))
+
+
+def violations():
+    """All of them, and the number of includes."""
+    files = files_of(OURS, SOURCES)
+    found = list(includes(files))
+    said = [f'{file}:{line}: includes {included}: {why}'
+            for file, line, included in found if (why := why_not(file, included))]
+    said += [*places(files), *cycles(found), *types(), *page_paths(), *top_level()]
+    for endings, folders, exception, pattern, message in LINES:
+        said += [f'{file}:{number}: {message}' for file in files_of(folders, endings) if file != exception
+                 for number, line in enumerate(read(file).split('\n'), 1) if re.search(pattern, line)]
+    if not found:
+        said.append('no #include found: this is not the repository, or the test reads it wrongly')
+    return said, len(found)
+
+
+def graph():
+    """The folders by level, and the arrows between them."""
+    files = files_of(OURS, SOURCES)
+    folders = [folder for folder in MAY_INCLUDE if folder != 'tests' and folder in map(folder_of, files)]
+    arrows = {folder: set() for folder in MAY_INCLUDE}
+    for here, there in ((folder_of(file), folder_of(included)) for file, _, included in includes(files)):
+        if here and there and here != there:
+            arrows[here].add(there)
+    good = {folder: arrows[folder] & ALLOWED[folder] for folder in folders}
+
+    def level(folder):
+        return 1 + max(map(level, good.get(folder, ())), default=-1)
+
+    drawn = {folder: [to for to in MAY_INCLUDE if to in good[folder] and
+                      not any(to in reached(via, good) for via in good[folder] - {to})] for folder in folders}
+    against = {folder: [to for to in MAY_INCLUDE if to in arrows[folder] - good[folder]] for folder in folders}
+    upward = sum(level(to) >= level(folder) for folder in folders for to in against[folder])
+    levels = range(max(map(level, folders)), -1, -1)
+    texts = {folder: drawn[folder] + [f'{to} (against the table)' for to in against[folder]] for folder in folders}
+    count = sum(folder.startswith('experiments/') for folder in {os.path.dirname(file) for file in files})
+    return '\n'.join([
+        'Folders by level. A folder includes only folders of lower levels.',
+        *(f"{at:5}  {', '.join(folder for folder in folders if level(folder) == at)}" for at in levels),
+        '\nArrows: a folder, and those that it includes directly. Left out are the arrows to folders',
+        'that it also reaches through another folder.',
+        *(f"  {folder:27} -> {', '.join(texts[folder])}" for folder in folders if texts[folder]),
+        f'\n{len(folders)} folders ({count} in experiments, at most {MOST_FOLDERS}), {len(levels)} levels, '
+        f'{sum(len(arrows[folder]) for folder in folders)} arrows ({sum(map(len, drawn.values()))} drawn), '
+        f'{sum(map(len, against.values()))} against the table, {upward} upward'])
+
+
+def check():
+    said, count = violations()
+    return '\n'.join(said) or f'layout: {count} includes obey the table', bool(said)
+
+
+# ---- self-test: each change of a small tree that obeys every rule, and the violation that it gives (none: '')
+
+TREE = {'CMakeLists.txt': 'top', 'README.md': 'top', 'docs/index.md': 'page', 'build/junk': 'junk', '.gitignore': '/build*/',
+        **{f'core/{name}.h': '#include <vector>' for name in 'base/error scene/scene view/view view/budget canvas/canvas cull/cull '
+           'gl/canvas'.split()}, 'offsets/obb.glsl': '#include "core/base/shim.h"', 'offsets/obb.h': '#include <vector>',
+        'verify/exact.h': '#include <CGAL/Kernel.h>', 'experiments/method/run.cpp': '#include "offsets/obb.h"',
+        'tests/all_test.cpp': '#include "verify/exact.h"'}
+# Folders, what a file of theirs (or these files) includes, and the reason; = stands for: the table does not let them.
+INCLUDING = [row.split(':') for row in r'''
+core/base:core/scene tests:= | core/scene:core/view core/boxes offsets experiments/command:= | core/boxes:core/view core/pairs:=
+core/proximity:core/pairs:= | core/voronoi:core/proximity:= | core/pairs:verify core/canvas:= | core/canvas:core/gl offsets:=
+core/view:core/canvas core/cull verify tests ../canvas/canvas.h:= | core/cull:offsets core/sweep experiments/command tests:=
+core/gl:offsets verify experiments/method tests:= | core/gl/canvas/cull.frag:offsets/obb.glsl:=
+offsets:core/gl core/pairs verify experiments/command tests:= | verify/certificate:verify core/view:=
+verify:offsets core/cull core/sweep core/pairs core/gl experiments/system tests ../offsets/obb.glsl:=
+verify/canvas.h verify/deep/canvas.h:<offsets/obb.h> offsets/obb.h:= | experiments/system:core/scene:=
+experiments/scenes:experiments/record:= | experiments/scenes/mesh:experiments/scenes:=
+experiments/scenes/cloth:experiments/scenes/builtin:= | experiments/method:experiments/record experiments/scenes:=
+experiments/library:experiments/record:= | experiments/record:experiments/scenes:= | experiments/lemma:experiments/measure:=
+experiments/peers:experiments/measure experiments/studies:= | experiments/generators:experiments/suite:=
+experiments/suite:experiments/lemma:= | experiments/studies:experiments/report:= | experiments/picture:experiments/studies:=
+experiments/command:tests:= | experiments/report/chapters:experiments/report:= | experiments/report:experiments/command:=
+verify:core/boxes/join.h core/boxes/block_join.h core/view/budget.h core/view/plan.h:shares no code
+verify/certificate:core/boxes/join.h:shares no code | core/scene:core/other/other.h:in no folder of the table
+core/scene core/canvas:core/base/error.h: | core/view:core/scene/scene.h core/boxes/join.h: | offsets:core/view/budget.h:
+core/gl:core/canvas/canvas.h generated/commit.h <epoxy/egl.h>: | verify/certificate:<gmpxx.h>:
+verify:core/canvas/canvas.h verify/certificate/json.h <gmpxx.h>: | experiments/method:core/gl/canvas/canvas.h:
+experiments/suite:verify/certificate/integer_pair.h: | experiments/peers:experiments/suite/reader.h:
+experiments/picture:experiments/measure/compare.h: | experiments/report:experiments/report/chapters/rows.h:
+experiments/report/chapters:experiments/system/file.h: | experiments/command:experiments/library/farcull.h:
+experiments/peers/cgal.cpp experiments/peers/contest_cgal.cpp:<CGAL/Kernel.h>: | tests/verify:offsets/obb.glsl <CGAL/Kernel.h>:
+tests/faults:<epoxy/gl.h>:
+core/scene core/canvas core/cull offsets verify experiments/command tests/core/gl:<epoxy/gl.h> <EGL/egl.h>:may use EGL/OpenGL
+core/scene core/pairs core/gl offsets verify/certificate experiments/command experiments/peers:<CGAL/box.h>:may use CGAL
+core/scene core/gl offsets experiments/command experiments/peers:<gmpxx.h> <mpfr.h>:may use GMP/MPFR
+'''.strip().replace('\n', ' | ').split(' | ')]
+CYCLE = 'core/view/left: a cycle of includes, with .h and .cpp of one name as one file: core/view/left, core/view/'
+LEFT, TO_LEFT = {'core/view/left.h': '#include "core/view/right.h"'}, '#include "core/view/left.h"'
+# Files as they are then (None: removed), and the violation.
+CHANGED = [
+    ({}, ''), ({'verify/odd.h': '  #  include\t"offsets/obb.h" // why\r\n'}, 'verify/odd.h: let verify include offsets'),
+    ({**LEFT, 'core/view/right.h': TO_LEFT}, CYCLE + 'right'), ({**LEFT, 'core/view/right.cpp': TO_LEFT}, CYCLE + 'right'),
+    ({**LEFT, 'core/view/right.cpp': '#include "middle.h"', 'core/view/middle.h': TO_LEFT}, CYCLE + 'middle, core/view/right'),
+    ({**LEFT, 'core/view/right.cpp': '#include "middle.h"', 'core/view/middle.h': ''}, ''),
+    ({'core/file.cpp': ''}, 'core/file.cpp: lies directly in core'),
+    ({'experiments/file.h': ''}, 'experiments/file.h: lies directly in experiments'),
+    ({'experiments/unknown/file.h': ''}, 'experiments/unknown/file.h: no folder of the table'),
+    ({f'experiments/measure/more{i}/file.h': '' for i in range(MOST_FOLDERS)}, f'experiments: at most {MOST_FOLDERS} may'),
+    *(({'verify/threads.cpp': text}, 'verify/threads.cpp: starts a thread') for text in (
+        'std::jthread t(work);', 'auto f = std::async(w);', 'std::vector<std::thread> t;', 'pthread_create(&t, nullptr, w, 0);')),
+    ({'verify/threads.cpp': 'unsigned n = std::thread::hardware_concurrency();'}, ''),
+    ({'core/base/parallel.cpp': 'std::jthread t(work);'}, ''),
+    ({'core/view/words.cpp': 'const char* s = "use --device cpu";'}, 'core/view/words.cpp: names an option'),
+    ({'core/view/words.cpp': 'const char* s = "use {device} cpu"; int i = 3; int j = i--;'}, ''),
+    ({'README.md': 'The file `verify/gone.h`.'}, 'README.md: verify/gone.h, which does not exist'),
+    ({'notes.txt': ''}, 'notes.txt: the top level holds nothing but'), ({'extra/note': ''}, 'extra: the top level holds nothing but'),
+    ({'CMakeLists.txt': None}, 'CMakeLists.txt: missing at the top'), ({'README.md': None}, 'README.md: missing at the top level'),
+    ({'docs/index.md': None}, 'docs: missing at the top level'),
+    ({path: None for path in TREE if path[-2:] in ('.h', 'sl', 'pp')} | {f'{name}/none': '' for name in OURS}, 'no #include found: ')]
+# Types beside `namespace farcull { struct A {}; }` of another file: the same one, and another one.
+SAME_TYPE = ['class A {};', 'struct A final : B<int> {};', 'enum class A : int { x };', 'template <class T = int> struct A {};',
+             'struct alignas(64) [[nodiscard]] A {};', r'const char* s = "{\"}"; struct A {};', "char c = '{'; struct A {};",
+             '/* { */ struct A {}; // }', "const int n = 1'000; struct A {};", 'int f(int x) { return x; } struct A {};',
+             'const char* s = R"(\n{)"; struct A {};', '\n#define X {\\\n{\nstruct A {};']
+OTHER_TYPE = ['namespace deep { struct A {}; }', 'namespace { struct A {}; }', 'struct B { struct A {}; };',
+              'struct A; struct B::A {}; template <> struct A<int> {};', 'void f() { struct A {}; } struct A* g() {}']
+# What a page says, and the path that is not there.
+PAGES = [
+    ('The file `core/base/gone.h`.', 'core/base/gone.h'), ('The folder `tests/gone/`.', 'tests/gone'),
+    ('Run `bash tests/gone.sh --all` twice.', 'tests/gone.sh'), ('Run `bash\ntests/gone.sh`.', 'tests/gone.sh'),
+    ('    bash experiments/gone.sh', 'experiments/gone.sh'), ('Any `offsets/gone_*.glsl`.', 'offsets/gone_*.glsl'),
+    ('In the new file `core/base/made.h`: see `core/base/made.h`.', ''), ('See [this](gone.md#part).', 'gone.md'),
+    ('See `core/base/made.h`.\n\nIn the new file `core/base/made.h`:', 'core/base/made.h'),
+    ('See `core/base/error.h`, `core/base/error`, `core/`, `offsets/NAME.glsl`, `verify/*.h`.', ''),
+    ('See [this](index.md), [that](../README.md), [there](https://example.org/gone) and [here](#gone).', ''),
+    ('Options `--report`, `{"mesh": "core"}`, `x/core/y`, and core/gone without marks.', '')]
+
+
+def put(change):
+    """Makes the tree, with this change."""
+    for name in set(os.listdir()) - {'.git'}:
+        (os.remove if os.path.isfile(name) else shutil.rmtree)(name)
+    for path, text in {**TREE, **change}.items():
+        if text is not None:
+            os.makedirs(os.path.dirname(path) or '.', exist_ok=True)
+            with open(path, 'w', encoding='utf-8') as file:
+                file.write(text + '\n')
+
+
+def changes():
+    for folders, texts, reason in INCLUDING:
+        for folder, text in itertools.product(folders.split(), texts.split()):
+            path = folder if '.' in folder else folder + '/f.cpp'
+            included = text if text[0] == '<' else f'"{text}"' if '.' in text else f'"{text}/other.h"'
+            other = folder_of(os.path.normpath(os.path.join(folder if text[0] == '.' else '', included[1:-1])))
+            why = f'the table does not let {folder_of(path)} include {other}' if reason == '=' else reason
+            yield {path: f'// a file\n#include {included}'}, why and f'{path}: {why}'
+    for text in SAME_TYPE + OTHER_TYPE:
+        yield {'verify/a.h': 'namespace farcull { struct A {}; }', 'verify/b.cpp': f'namespace farcull {{ {text} }}'}, \
+            'verify/b.cpp: defines farcull::A, and so does verify/a.h:1: a type name once' if text in SAME_TYPE else ''
+    yield {'verify/a.h': 'namespace farcull { namespace d { struct A {}; } }', 'verify/b.h': 'namespace farcull::d { class A {}; }'}, \
+        'verify/b.h: defines farcull::d::A, and so does verify/a.h:1'
+    for text, path in PAGES:
+        yield {'docs/page.md': text}, path and f'docs/page.md: {path}, which does not exist'
+    yield from CHANGED
+
+
+def self_test():
+    failed = []
+    for change, text in ({}, 'experiments/method +-> offsets.*, 0 upward'), \
+            ({'core/base/error.h': '#include "core/view/view.h"'}, r'core/view \(against the table\).*, 1 upward'):
+        put(change)
+        failed += [graph()] if not re.search(text, graph(), re.DOTALL) else []
+    for change, expected in itertools.chain(changes(), [({}, 'git')], CHANGED):
+        put(change)
+        if expected == 'git':  # from here on the top level is that of a git checkout
+            subprocess.run(['git', '-c', 'init.defaultBranch=main', 'init', '-q'], check=True)
+            continue
+        said = violations()[0]
+        place, _, reason = expected.partition(': ')
+        if not (len(said) == 1 and said[0].startswith(place + ':') and reason in said[0] if expected else not said):
+            failed.append(f'{change}: expected {expected!r}, got {said}')
+    return '\n'.join(failed) or 'layout: every rule is caught when it is broken', bool(failed)
+
+
+option, *root = [*(['--check'] if not sys.argv[1:] or sys.argv[1][0] != '-' else []), *sys.argv[1:]]
+for variable in 'GIT_DIR', 'GIT_WORK_TREE', 'GIT_INDEX_FILE':  # a git hook sets these for its own repository
+    os.environ.pop(variable, None)
+with tempfile.TemporaryDirectory() as folder_of_test:
+    os.chdir(folder_of_test if option == '--self-test' else root[0] if root else os.path.dirname(os.path.realpath(__file__)) + '/..')
+    said_of_all, status = {'--self-test': self_test, '--graph': lambda: (graph(), 0), '--check': check}[option]()
+    os.chdir('/')
+print(said_of_all)
+sys.exit(status)
