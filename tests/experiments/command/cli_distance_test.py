@@ -15,7 +15,7 @@ large.obj << {open}; f 3 1 4
 right.obj << v 2 0 0; v 3 0 0; v 2 1 0; f 1 2 3
 bad no scene | SCENE: none is named | distance
 bad one object | SCENE: only one object .*farcull distance small\.obj --self | distance small.obj
-bad one object, nearest | SCENE: only one object | distance small.obj --pairs nearest
+each SCENE: only one object | distance small.obj | --pairs nearest | --voronoi published
 bad no such pairs | --pairs: 'some' is no choice; give objects, nearest or all | {two} --pairs some
 bad all without a distance | --within: is missing | {two} --pairs all
 bad within '{within}' | --within: | {two} --within {within}
@@ -24,19 +24,17 @@ bad k of objects | --k: has no meaning without --pairs nearest | {two} --k 2
 bad nearest and self | --self: has no meaning with --pairs nearest | {two} --pairs nearest --self
 bad threads '{threads}' | --threads: | {two} --threads {threads}
 bad inside maybe | --inside: .*give yes or no | {two} --inside maybe
-bad inside of triangles | --inside: | {two} --pairs all --within 1 --inside yes
 bad no such option | --clearance: farcull distance has no such option | {two} --clearance 1
 bad no such file | none\.obj: | distance small.obj none.obj --json old.json
-bad an output that is read | --csv: | {two} --csv right.obj
+each {0}: | {two} | --inside yes --pairs all --within 1 | --csv right.obj
 bad one file twice | --csv: .*--json | {two} --csv a.out --json a.out
 bad frames of what stands still | --frames: nothing .*%d | {two} --frames 3
 bad no such diagram | --voronoi: 'some' is no choice; give published or reliable | {two} --voronoi some
 bad cells '{cells}' | --resolution: | {two} --voronoi reliable --resolution {cells}
-bad a device of distances | --device: has no meaning without --voronoi | {two} --device cpu
+each {0}: has no meaning without --voronoi | {two} | --device cpu | --resolution 64
 bad no such device | --device: 'toaster' is no device | {two} --voronoi published --device toaster
-bad cells of distances | --resolution: has no meaning without --voronoi | {two} --resolution 64
-bad a diagram and {option} | {option0}: has no meaning with --voronoi | {two} --voronoi published {*option}
-bad a diagram of one object | SCENE: only one object | distance small.obj --voronoi published
+each {0}: has no meaning with --voronoi | {two} --voronoi published | --pairs nearest | --k 2 | --within 1 | --self | --inside no
+  | --verify | --frames 3 | --certificate c.json
 many.json << {"name": "many", "objects": [{"mesh": "many.obj", "split": "groups"}]}
 bad more pairs of objects than are answered
   | scene: has 16782321 pairs of objects, and at most 4194304 .*; ask for the nearest | distance many.json
@@ -46,8 +44,7 @@ $ for size in 0 1 100 300; do head -c $size whole.json >cut$size.json; done
 bad {size} bytes of a certificate | cut{size}\.json: not JSON at byte | check cut{size}.json small.obj right.obj
 """, open=OPEN, two='distance small.obj right.obj', output=['--json', '--csv', '--certificate'],
      within=['-1', '-1e-300', 'nan', 'inf', '1e999', '', '1x', ' 1', '0x1p3'], k=NUMBERS, cells=[*NUMBERS, '16385'],
-     threads=['0', '-1', '1025', 'x', ''], size=['0', '1', '100', '300'],
-     option=['--pairs nearest', '--k 2', '--within 1', '--self', '--inside no', '--verify', '--frames 3', '--certificate c.json'])
+     threads=['0', '-1', '1025', 'x', ''], size=['0', '1', '100', '300'])
 rows(r"""
 bad more pairs than are answered | within: has (more than )?[0-9]+ pairs .*; give a smaller distance
   | distance random-soup --pairs all --within 100

@@ -8,6 +8,8 @@ before it; # begins a comment. Fields are between " | ":
    bad CASE | MESSAGE | ARGUMENTS          a bad input: status 2 within five seconds of CPU time, nothing on
                                            stdout, one line on stderr, "farcull: ", what matches MESSAGE, and a
                                            remedy after a semicolon; all files stay as they are
+   each MESSAGE | ARGUMENTS | MORE | ...   a bad input for each MORE, which are further arguments; {0} in MESSAGE is
+                                           their first word
    STATUS CASE | ARGUMENTS | CHECK...      an answer: this status; as many lines on stderr as there are checks @err;
                                            no control characters
    FILE << TEXT                            writes a file, with a line end for each "; "
@@ -72,8 +74,6 @@ def case(name, good=True, why=''):
     """Counts a case, and prints it if it failed."""
     global cases, failed
     cases += 1
-    if os.environ.get('FARCULL_CASES'):  # their names
-        print(name, file=sys.stderr)
     if not good:
         failed += 1
         print(f'FAILED {name}: {why}; stderr: {read(ERR)[:300] if os.path.exists(ERR) else ""!r}')
@@ -105,6 +105,8 @@ def start(words, cpu=None, memory=ADDRESS_SPACE, file_size=None):
     """Starts the program with these arguments; stdout goes to `out`."""
     global out
     words, environment, out = list(words), dict(os.environ), OUT
+    if os.environ.get('FARCULL_VERBOSE'):
+        print(shlex.join(words), file=sys.stderr)
     while words and re.match('[A-Z_]+=', words[0]):
         key, _, environment[key] = words.pop(0).partition('=')
     if words and words[-1].startswith('>'):
@@ -228,14 +230,16 @@ def row(line, chosen, limits):
         write(path, text.replace('; ', '\n') + '\n')
         return
     kind, rest = line.split(' ', 1)
-    fields = [field.strip() for field in rest.split(' | ')]
-    at = 2 if kind == 'bad' else 1
-    words = shlex.split(fill(fields[at], chosen, True))
-    name, *fields = [fill(field, chosen, False) for field in fields]
-    if kind == 'bad':
-        bad(name, fields[0], words, **limits)
+    fields = [field.strip() for field in re.split(r' \|(?= |$)', rest)]
+    plain, quoted = ([fill(field, chosen, how) for field in fields] for how in (False, True))
+    if kind == 'each':
+        for more in quoted[2:]:
+            words = shlex.split(quoted[1] + ' ' + more)
+            bad(' '.join(words), plain[0].replace('{0}', (more.split() or [''])[0]), words, **limits)
+    elif kind == 'bad':
+        bad(*plain[:2], shlex.split(quoted[2]), **limits)
     else:
-        good(name, int(kind), words, fields[1:], **limits)
+        good(plain[0], int(kind), shlex.split(quoted[1]), plain[2:], **limits)
 
 
 def rows(table, limits=None, **values):

@@ -6,55 +6,39 @@ from cli_lab import rows
 rows(r"""
 $ echo older >old.json
 folded.obj << {T}; v 1 1 -1; v 1 1 1; v 0 0 -1; f 1 2 3; f 1 2 4; f 5 6 7
-bad {quick} with a clearance | --clearance: .*far-pairs | run two-spheres --method {quick} --clearance 0
-bad {quick} with fragment depth | --depth: | run two-spheres --method {quick} --depth fragment
-bad {quick} with a radius | --radius: | run two-spheres --method {quick} --radius 0.5
-bad {quick} with an offset | --offset: | run two-spheres --method {quick} --offset exact
-bad {quick} with flags and 24 bits | --query: | run two-spheres --method {quick} --query flags --depth-format 24
-bad quick-cullide with self | --self: .*s-cullide | run two-spheres --method quick-cullide --self
-bad s-cullide without self | two-spheres: .*--self | run two-spheres --method s-cullide
-bad plan of s-cullide without self | two-spheres: .*--self | plan two-spheres --method s-cullide
-bad i-collide with a query | --query: | run two-spheres --method i-collide --query flags
-bad i-collide with a clearance | --clearance: | run two-spheres --method i-collide --clearance 1
-bad exact with full | --full: | run two-spheres --method exact --full
+each {0}: .*far-pairs | run two-spheres | --clearance 0 --method {quick}
+each {0}: | run two-spheres | --depth fragment --method {quick} | --radius 0.5 --method {quick} | --offset exact --method {quick}
+  | --query flags --depth-format 24 --method {quick}
+each {0}: | run two-spheres | --resolution 64 --method {objects} | --views x --method {objects} | --device software --method {objects}
+each {0}: | run two-spheres | --query flags --method i-collide | --clearance 1 --method i-collide | --full --method exact
+  | --clusters 32 --method far-pairs | --clear some --method cullide | --level faces --method cullide
+  | --clusters 8 --method cullide --level objects
 bad a value for --full | --full: | run two-spheres --full=7
+bad quick-cullide with self | --self: .*s-cullide | run two-spheres --method quick-cullide --self
+each two-spheres: .*--self | | run two-spheres --method s-cullide | plan two-spheres --method s-cullide
 bad clusters '{sizes}' | --clusters: | run two-spheres --method far --clusters {sizes}
-bad clusters with far-pairs | --clusters: | run two-spheres --method far-pairs --clusters 32
-bad {objects} with a resolution | --resolution: | run two-spheres --method {objects} --resolution 64
-bad {objects} with views | --views: | run two-spheres --method {objects} --views x
-bad {objects} with a device | --device: | run two-spheres --method {objects} --device software
 bad rounds '{rounds}' | --rounds: | run two-spheres --method cullide --rounds {rounds}
-bad a clear rule that is none | --clear: | run two-spheres --method cullide --clear some
-bad a level that is none | --level: | run two-spheres --method cullide --level faces
 bad far-pairs with {form} | {form0}: .*cullide | run two-spheres --method far-pairs {*form}
 bad compare without a use for {form} | {form0}: | compare two-spheres --methods far-pairs,exact {*form}
 bad far drawn conservatively | --conservative: .*cullide | run two-spheres --method far --conservative
 bad s-cullide of objects alone | --level: | run folded.obj --method s-cullide --self --level objects
 bad far of objects alone against themselves | --level: .*self | run cloth:400 --method far --self --level objects
-bad clusters of objects alone | --clusters: | run two-spheres --method cullide --level objects --clusters 8
 bad conservative without the extension | --conservative: .*--device native
   | run two-spheres --method cullide --conservative --device software
 bad an unknown method | --method: .*quick-cullide | run two-spheres --method quick
+bad a radius of the default | --radius: .*far-pairs; .*--method far | run two-spheres --radius 1
 bad plan without a scene | SCENE: | plan
 bad plan of nothing known | nope: | plan nope
 bad plan with frames | --frames: | plan two-spheres --frames 3
 bad plan to a full device | standard output|/dev/full | plan two-spheres --json /dev/full
 bad an unknown study | nope: .*family | experiment nope
 bad family of what stands still | --frames: nothing[ ] | experiment family two-tori --frames 2
-bad family by no method | --methods: | experiment family two-spheres --methods nope --frames 2
-bad family of no frames | --frames: | experiment family two-spheres --frames 0
-bad family at no resolution | --resolution: | experiment family two-spheres --resolution 0
-bad family with no query | --query: | experiment family two-spheres --query maybe
-bad family with auto views | --views: | experiment family two-spheres --views auto
+each {0}: | experiment family two-spheres | --methods nope --frames 2 | --frames 0 | --resolution 0 | --query maybe | --views auto
 bad family into a folder | \.: | experiment family two-spheres --frames 1 --csv .
-bad family of an unknown scene last | nosuch: | experiment family two-bunnies nosuch --frames 1000
 bad family of nothing to ask | --methods: .*--self | experiment family two-spheres --methods s-cullide --frames 1
+each nosuch: | experiment | family two-bunnies nosuch --frames 1000 | savings two-bunnies nosuch
 bad savings of nothing known | nope: | experiment savings nope
-bad savings of exact | --methods: | experiment savings far-apart --methods exact
-bad savings of an unknown scene last | nosuch: | experiment savings two-bunnies nosuch
-bad savings never repeated | --repeat: | experiment savings far-apart --repeat 0
-bad savings by no method | --methods: | experiment savings far-apart --methods nope
-bad a radius of the default | --radius: .*far-pairs; .*--method far | run two-spheres --radius 1
+each {0}: | experiment savings far-apart | --methods exact | --repeat 0 | --methods nope
 """, quick=['quick-cullide', 's-cullide'], sizes=['', '1', '0', 'x', '32,32', '16,32', '32,', '1e3'],
      objects=['i-collide', 'exact'], rounds=['', '0', '-1', 'x', '1.5'],
      form=['--rounds 1', '--clear all', '--level objects', '--conservative'])

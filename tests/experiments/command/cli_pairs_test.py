@@ -6,26 +6,21 @@ from cli_lab import case, expect, launch, read, rows, write
 rows(r"""
 $ echo older >old.json
 good.obj << {T}; f 1 2 3; f 1 2 4; f 1 3 4; f 2 3 4
-bad far-pairs beyond its resolution | --resolution: .*limit of far-pairs | run {pairs} --resolution 16385
-bad far-pairs compared beyond it | --resolutions: .*limit of far-pairs
-  | compare two-spheres --methods far-pairs --resolutions 16385
-bad far at auto | --resolution: auto .*far-pairs | run two-spheres --method far --resolution auto
-bad compare far at auto | --resolutions: auto | compare two-spheres --methods far --resolutions auto
-bad far with views auto | --views: auto .*far-pairs | run two-spheres --method far --views auto
-bad compare far with views auto | --views: auto | compare two-spheres --methods far --views auto
-bad {drawn} with a clearance | --clearance: .*far-pairs | run two-spheres --method {drawn} --clearance 0
+each --resolution: .*limit of far-pairs | | run {pairs} --resolution 16385
+each --resolutions: .*limit of far-pairs | | compare two-spheres --methods far-pairs --resolutions 16385
+each {0}: auto .*far-pairs | run two-spheres --method far | --resolution auto | --views auto
+each {0}: auto | compare two-spheres --methods far | --resolutions auto | --views auto
+each --clearance: .*far-pairs | run two-spheres --clearance 0 | --method far | --method cullide
 bad cullide with self | --self: .*far-pairs | run two-spheres --method cullide --self
 bad compare cullide with self | --methods: .*far-pairs | compare two-spheres --methods cullide,exact --self
-bad far-pairs with {option} | {option}: | run {pairs} {option} 24
+each {0}: | run {pairs} | --radius 24 | --offset 24 | --depth 24 | --depth-format 24 | --query 24 | --clearance | --frames
+each {0}: | verify {pairs} | --clearance 1 --clearance 1 | --frames 1 --frames 1
 bad clearance '{clearance}' | --clearance: | run {pairs} --clearance {clearance}
 bad compare clearance '{clearance}' | --clearance: | compare two-spheres --clearance {clearance}
 bad frames '{frames}' | --frames: | run {pairs} --frames {frames}
-bad {valued} without a value | {valued}: | run {pairs} {valued}
-bad {valued} twice | {valued}: | verify {pairs} {valued} 1 {valued} 1
 bad a value for --self | --self: | run {pairs} --self=7
-bad frames of what stands still | --frames: nothing .*%d | run two-tori --method far-pairs --frames 3
-bad frames of files without a number | --frames: nothing .*%d | run good.obj --method far-pairs --frames 3
-bad certificate of frames in {file} | --certificate: .*%04d | run {pairs} --frames 3 --certificate {file}
+each --frames: nothing .*%d | run --method far-pairs --frames 3 | two-tori | good.obj
+each {0}: .*%04d | run {pairs} --frames 3 | --certificate c.json | --certificate - | --certificate c_%4d.json
 bad certificate with a number and no frames | --certificate: .*--frames | run {pairs} --certificate c_%04d.json
 bad certificates in no folder | nowhere/c_0\.json: | run {pairs} --frames 3 --certificate nowhere/c_%d.json
 c_2.json << {"objects": [{"mesh": "cloth_%d.obj"}]}
@@ -56,9 +51,8 @@ bad cullide on a scene that collides with itself | self: cullide tests no object
   | run self.json --method cullide
 bad compare cullide on one | --methods: cullide tests no object .*far-pairs
   | compare self.json --methods cullide,exact
-""", pairs='two-spheres --method far-pairs', drawn=['far', 'cullide'], cloth='cloth_%02d.obj --method far-pairs',
-     option=['--radius', '--offset', '--depth', '--depth-format', '--query'], valued=['--clearance', '--frames'],
-     clearance=['-1', '-1e-300', 'nan', 'inf', '1e999', '', '1x', ' 1', '0x1p3'], file=['c.json', '-', 'c_%4d.json'],
+""", pairs='two-spheres --method far-pairs', cloth='cloth_%02d.obj --method far-pairs',
+     clearance=['-1', '-1e-300', 'nan', 'inf', '1e999', '', '1x', ' 1', '0x1p3'],
      frames=['0', '-1', '1.5', '', 'a', '3:2', '-1:2', '1:', ':2', '1:2:3', '1000001', '0:1000000', ' 1', '1-3',
              '99999999999999999999', '9223372036854775807:9223372036854775807', '1000000001:1000000001'],
      i=['03', '04', '05'])

@@ -14,49 +14,28 @@ bad an unknown scene | nowhere | picture nowhere -o new.png
 bad a scene that does not move | .*move | picture far-apart --frame 0 -o new.png
 bad zoom without a collision | --zoom: | picture far-apart --method exact --zoom -o new.png
 bad no output | -o: | {p}
-bad an empty output | -o: | {p} -o ''
-bad an option for the output | -o: | {p} -o --zoom
+each {0}: | {p} | -o '' | -o --zoom | --html '' | --html - | --frames 5 -o new.png | --frame x -o new.png | --frame -1 -o new.png
+  | --frame 5 --frames 5 -o new.png | --compare far:x -o new.png | --compare far --method far -o new.png
+  | --radius 1 --method cullide -o new.png | --depth fixed --method cullide -o new.png | --depth deep --method far -o new.png
+  | --resolution 0 -o new.png | --resolution 64 --method exact -o new.png | --view 0:0:0 -o new.png | --view '' -o new.png
+  | --up y --view y -o new.png | --view-depth top --method far -o new.png | --html new.html --method far --view-depth
+  | --resolutions 32,64 --method far -o new.png | --resolutions 32, --method far --html new.html
+  | --resolutions 32 --compare exact,far:64 --html new.html | --device nope --method cullide -o new.png | --nope -o new.png
 bad an output named like a mesh | -o: .*mesh | {p} -o crossing.obj
 bad a folder for the output | folder: | {p} -o folder
 bad no such folder | nofolder/new.png: | {p} -o nofolder/new.png
-bad an unknown method | --method: 'nope' | {p} --method nope -o new.png
-bad an unknown method to compare | --compare: 'nope' | {p} --compare far,nope -o new.png
+each {0}: 'nope' | {p} | --method nope -o new.png | --compare far,nope -o new.png
 bad an empty method to compare | --compare: '' | {p} --compare far, -o new.png
-bad a bad resolution to compare | --compare: | {p} --compare far:x -o new.png
 bad a resolution for exact | --compare: exact | {p} --compare exact:64 -o new.png
-bad both | --compare: | {p} --compare far --method far -o new.png
 bad seven panels | --compare: 7 | {p} --compare far,far,far,far,far,far,far -o new.png
 bad a radius of the default | --radius: .*--method far | {p} --radius 1 -o new.png
-bad a radius without far | --radius: | {p} --method cullide --radius 1 -o new.png
-bad a depth without far | --depth: | {p} --method cullide --depth fixed -o new.png
-bad an unknown depth | --depth: | {p} --method far --depth deep -o new.png
-bad a resolution without pixels | --resolution: | {p} --resolution 0 -o new.png
-bad a resolution that exact has not | --resolution: | {p} --method exact --resolution 64 -o new.png
 bad the size '{size}' | --size | {p} --size {size} -o new.png
 bad an unknown direction | --view: 'up' | {p} --view up -o new.png
-bad no direction | --view: | {p} --view 0:0:0 -o new.png
-bad an empty direction | --view: | {p} --view '' -o new.png
-bad up along the view | --up: | {p} --view y --up y -o new.png
-bad an unknown view of the method | --view-depth: | {p} --method far --view-depth top -o new.png
 bad the depth of exact | --view-depth: exact | {p} --method exact --view-depth -o new.png
-bad a frame that is none | --frame: | {p} --frame x -o new.png
-bad a frame below | --frame: | {p} --frame -1 -o new.png
-bad a frame beyond | --frame: | {p} --frame 5 --frames 5 -o new.png
-bad frames alone | --frames: | {p} --frames 5 -o new.png
-bad an empty page | --html: | {p} --html ''
-bad a page to standard output | --html: | {p} --html -
 bad a page named like a mesh | --html: .*mesh | {p} --html crossing.obj
 bad a page and a picture in one file | --html | {p} --html new.png -o new.png
-bad a page of a stored depth | --html: | {p} --method far --view-depth --html new.html
-bad resolutions without a page | --resolutions: | {p} --method far --resolutions 32,64 -o new.png
-bad no resolution | --resolutions: | {p} --method far --resolutions 32, --html new.html
-bad resolutions that no method takes | --resolutions:
-  | {p} --compare exact,far:64 --resolutions 32 --html new.html
-bad an unknown device | --device: | {p} --device nope --method cullide -o new.png
-bad an unknown option | --nope: | {p} --nope -o new.png
 bad s-cullide without self | two-spheres: | {p} --method s-cullide -o new.png
-bad standard output closed | standard output: | {p} --method exact -o - >closed
-bad standard output that nobody reads | standard output: | {p} --method exact -o - >broken
+each standard output: | {p} --method exact -o - | >closed | >broken
 bad no driver | EGL: | __EGL_VENDOR_LIBRARY_FILENAMES=/nowhere {p} --method exact -o new.png
 """, p='picture two-spheres', size=['', '100', '100x', '100xx80', 'x80', '100x80x', '61x80', '100x4097', '-100x80',
                                     '99999999999x80', '100X80'])

@@ -17,19 +17,13 @@ name, wide, deep = 'n' * 255, 'ä' * 127, './' * 2045
 rows(r"""
 $ mkdir folder && echo older >old.json
 good.obj << {T}; f 1 2 3; f 1 2 4; f 1 3 4; f 2 3 4
-bad unknown command | frob: | frob
-bad unknown option of the program | --frob: | --frob
-bad {judge} without a scene | SCENE: | {judge}
-bad {judge} with an empty name | SCENE: | {judge} ''
-bad {judge} with an unknown scene | nope: | {judge} nope
-bad {judge} with an unknown suffix | two-spheres@nope: | {judge} two-spheres@nope
-bad {judge} with two scenes | two-tori: | {judge} two-tori two-spheres
+each {0}: | | frob | --frob
+each SCENE: | {judge} | | ''
+each {0}: | {judge} | nope | two-spheres@nope | two-tori two-spheres
 bad {judge} with a scene and a mesh | two-tori: | {judge} good.obj two-tori
-bad {judge} with an unknown option | --frob: | {judge} two-spheres --frob
-bad {judge} with the device '{device}' | --device: | {judge} two-spheres --device {device}
+each {0}: | {judge} two-spheres | --frob | --device nope | --device '' | --device 99 | --device -1 | --views | --device | --json
+  | --views x --views y | --device x --device y | --json x --json y
 bad {judge} --views '{views}' | --views: | {judge} two-spheres --views {views}
-bad {judge} {place} without a value | {place}: | {judge} two-spheres {place}
-bad {judge} {place} twice | {place}: | {judge} two-spheres {place} x {place} y
 bad a command among scenes | two-spheres: | run two-spheres verify
 bad run --resolution '{number}' | --resolution: | run two-spheres --resolution {number}
 bad compare --resolutions '64,{number}' | --resolutions: | compare two-spheres --resolutions 64,{number}
@@ -39,41 +33,31 @@ bad resolution beyond the device | --resolution: .*limit of this device
 bad compared resolution beyond the device | --resolutions: .*limit of this device
   | compare two-spheres --methods far --device software --resolutions 64,2147483647 --json new.json
 bad radius '{radius}' | --radius: | run two-spheres --method far --radius {radius}
-bad {choice} unknown | {choice}: 'nope' | run two-spheres --method far {choice} nope
-bad {choice} empty | {choice}: '' | run two-spheres --method far {choice} ''
-bad {choice} without a value | {choice}: | run two-spheres --method far {choice}
-bad --method unknown | --method: 'nope' | run two-spheres --method nope
-bad --method empty | --method: '' | run two-spheres --method ''
-bad --method without a value | --method: | run two-spheres --method
-bad {option} twice | {option}: | verify two-spheres {option} far {option} far
-bad compare with an unknown method | --methods: | compare two-spheres --methods far,nope
-bad flags with 24 bits | --query: | run two-spheres --method far --query flags --depth-format 24
-bad fragment depth with cullide | --depth: | run two-spheres --method cullide --depth fragment
-bad radius with cullide | --radius: | run two-spheres --method cullide --radius 0.5
-bad depth with exact | --depth: | run two-spheres --method exact --depth fixed
+each {0}: 'nope' | run two-spheres | --method nope | {choice} nope --method far
+each {0}: '' | run two-spheres | --method '' | {choice} '' --method far
+each {0}: | run two-spheres --method far | {choice}
+each {0}: | verify two-spheres | {choice} far {choice} far
+each {0}: | verify two-spheres | --method far --method far | --no-verify
+each {0}: | run two-spheres | --method | --query flags --depth-format 24 --method far
+each {0}: | run two-spheres --method cullide | --depth fragment | --radius 0.5
+each {0}: | run two-spheres --method exact | --depth fixed
 bad a value for a flag | --no-verify: | run two-spheres --no-verify=7
-bad verify without verifying | --no-verify: | verify two-spheres --no-verify
+bad compare with an unknown method | --methods: | compare two-spheres --methods far,nope
 bad scenes with an argument | extra: no built-in scene | scenes extra
 bad scenes with two arguments | far-apart: | scenes two-tori far-apart --write new
 bad a scene that is not written | two-spheres: .*--write | scenes two-spheres
-bad writing no scene | --write: | scenes --write new
-bad writing to no folder | --write: | scenes two-spheres --write ''
-bad writing into a missing folder | missing/new: the folder cannot be made: No such
-  | scenes far-apart --write missing/new
+each {0}: | scenes | --write new | --frames 3
+each {0}: | scenes two-spheres | --write ''
+each {0}: | scenes crowd | --frames 0 --write new
+each {0}: | scenes far-apart | --json - --write new
+bad writing into a missing folder | missing/new: the folder cannot be made: No such | scenes far-apart --write missing/new
 bad writing into a file | good\.obj: the folder cannot be made | scenes far-apart --write good.obj
-bad a suite of no size | --size: | suite new --size large
-bad a suite into a folder with files | \.: is there already | suite .
-bad a suite with a seed that is none | --seed: | suite new --seed one
-bad a suite that is not there | new/suite\.txt: | suite new --check
-bad a suite that is checked for a seed | --check: | suite new --check --seed 2
-bad writing frames of a list | --frames: | scenes --frames 3
 bad writing frames of what stands still | two-tori: nothing .*moves | scenes two-tori --write new --frames 3
-bad writing no frames | --frames: | scenes crowd --write new --frames 0
-bad writing and the list | --json: | scenes far-apart --write new --json -
-bad the numbers of {numbers} | {numbers}: | run {numbers}
-bad doctor with an argument | extra: | doctor extra
-bad doctor with an unknown device | --device: | doctor --device nope
-bad doctor with device 99 | --device: | doctor --device 99
+bad a suite into a folder with files | \.: is there already | suite .
+bad a suite that is not there | new/suite\.txt: | suite new --check
+each {0}: | suite new | --size large | --seed one | --check --seed 2
+each {0}: | run | crowd:1 | crowd:400:nan | crowd:400:0.2:1 | crowd::1 | field:1e6 | two-tori:5 | shells:10:1
+each {0}: | doctor | extra | --device nope | --device 99
 bad help of nothing known | nope: no such .*terms | help nope
 bad help of two topics | terms pairs: no such[ ] | help terms pairs
 # Without arguments: the help, and then the message.
@@ -82,14 +66,11 @@ $ tail -n 1 "$err" | grep -q '^farcull: COMMAND: .*; '
 # Names as long as the system takes, though a part of the file is written under another name.
 bad a name that is too long | n+: cannot be written: File name too long | run {spheres} --json n{name}
 bad a path that is too long | [./]+x: cannot be written: File name too long | run {spheres} --json {deep}x
-""", **VALUES, device=['nope', '', '99', '-1'], place=['--views', '--device', '--json'], name=name, deep=deep,
+""", **VALUES, name=name, deep=deep, choice=['--offset', '--depth', '--depth-format', '--query'],
      views=['q', 'x,', '', 'x,x', '0:0:0', '1:1', 'nan:1:1', '1e999:0:0', '1e-400:0:1', 'x:y:z'],
      number=['0', '-5', 'abc', '1e99', '1.5', '', '99999999999999999999', '2147483648', ' 7', '7px', '0x40'],
      repeat=['0', '-5', 'abc', '1e99', '1.5', '', '99999999999999999999', ' 7', '7px', '0x40'],
-     radius=['-1', '-1e-9', 'nan', 'inf', '1e999', '4.8e38', '100001', 'big', '', '1x'],
-     choice=['--offset', '--depth', '--depth-format', '--query'],
-     option=['--method', '--offset', '--depth', '--depth-format', '--query'],
-     numbers=['crowd:1', 'crowd:400:nan', 'crowd:400:0.2:1', 'crowd::1', 'field:1e6', 'two-tori:5', 'shells:10:1'])
+     radius=['-1', '-1e-9', 'nan', 'inf', '1e999', '4.8e38', '100001', 'big', '', '1x'])
 for long in name, wide:
     rows('0 a long name | run {spheres} --json {long} --pairs {pair} | @{long} "colliding_pairs" | $ rm {long} {pair}',
          **VALUES, long=long, pair='p' + long[1:])
@@ -97,30 +78,23 @@ for long in name, wide:
 # ---- outputs
 
 rows(r"""
-bad {option} in a missing folder | missing/new: cannot be written | run {spheres} {option} missing/new
-bad {option} below a file | good\.obj/new: cannot be written | run {spheres} {option} good.obj/new
-bad {option} is a folder | folder: cannot be written | run {spheres} {option} folder
-bad {option} on a full disk | /dev/full: cannot be written | run {spheres} {option} /dev/full
-bad {option} empty | {option}: the path is empty | run {spheres} {option} ''
-bad {option} over a mesh | {option}: good\.obj | run {option} good.obj good.obj
-bad {option} before an option | {option}: | run {spheres} {option} --no-verify
-bad both outputs in one place | --pairs: | run {spheres} --json new --pairs new
-bad both outputs on stdout | --pairs: | run {spheres} --json - --pairs -
-bad {command0} --json in a missing folder | missing/new: cannot be written | {*command} --json missing/new
-bad table {to} | standard output: cannot be written | run {spheres} {to}
-bad JSON {to} | standard output: cannot be written | run {spheres} --json - {to}
-bad scenes {to} | standard output: cannot be written | scenes {to}
-bad help on a full disk | standard output: cannot be written | run --help >/dev/full
-bad compare on a closed stdout | standard output: cannot be written | compare two-spheres --resolutions 64 >closed
-bad version on a closed stdout | standard output: cannot be written | --version >closed
-bad table into a broken pipe | standard output: cannot be written: Broken pipe | run {spheres} >broken
-bad JSON into a broken pipe | standard output: cannot be written: Broken pipe | run {spheres} --json - >broken
+each missing/new: cannot be written | run {spheres} | --json missing/new | --pairs missing/new
+each good\.obj/new: cannot be written | run {spheres} | --json good.obj/new | --pairs good.obj/new
+each folder: cannot be written | run {spheres} | --json folder | --pairs folder
+each /dev/full: cannot be written | run {spheres} | --json /dev/full | --pairs /dev/full
+each {0}: the path is empty | run {spheres} | --json '' | --pairs ''
+each {0}: good\.obj | run | --json good.obj good.obj | --pairs good.obj good.obj
+each {0}: | run {spheres} | --json --no-verify | --pairs --no-verify | --pairs new --json new | --pairs - --json -
+each missing/new: cannot be written | | compare two-spheres --resolutions 64 --device software --json missing/new
+  | scenes --json missing/new | doctor --json missing/new
+each standard output: cannot be written | | run {spheres} {to} | run {spheres} --json - {to} | scenes {to} | run --help >/dev/full
+  | compare two-spheres --resolutions 64 >closed | --version >closed
+each standard output: cannot be written: Broken pipe | run {spheres} | >broken | --json - >broken
 # A table that cannot be shown takes no file with it.
 2 JSON file beside a broken pipe | run {spheres} --json new.json >broken | @err ^farcull: standard output:
   | @new.json #-1 ^}$
 $ rm new.json
-""", **VALUES, option=['--json', '--pairs'], to=['>/dev/full', '>closed'],
-     command=['compare two-spheres --resolutions 64 --device software', 'scenes', 'doctor'])
+""", **VALUES, to=['>/dev/full', '>closed'])
 if os.getuid() != 0:
     os.chmod('folder', 0o555)
     rows('bad a folder without permission | folder/new: cannot be written: Permission | run {spheres} --json folder/new',

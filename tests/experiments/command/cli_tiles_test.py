@@ -76,16 +76,13 @@ rows(r"""
   | accounted [ ]
 # What cannot be answered in tiles, and values that are none.
 bad far | --tiles: are of far-pairs | run two-spheres --tiles 1/2 --method far
-bad {option} | {option0}: cannot be answered in tiles | run two-spheres --tiles 1/2 {*option}
+each {0}: cannot be answered in tiles | run two-spheres --tiles 1/2 | --limit 5 | --frames 3 | --certificate c.json
 bad a tile that is none | .*'3/2' is no tile | run two-spheres --tiles 3/2
 bad a number that is none | .*'1/2' is no number of tiles | plan two-spheres --tiles 1/2
-bad no such object to run | .*no object is called so | run crowd --tiles 1/2 --ignore 'nobody:*'
-bad no such object to plan | .*no object is called so | plan crowd --tiles 2 --ignore 'nobody:*'
+each .*no object is called so | | run crowd --tiles 1/2 --ignore 'nobody:*' | plan crowd --tiles 2 --ignore 'nobody:*'
 $ "$farcull" run crowd --tiles 1/2 --json t.json --pairs $'u\xff.csv' 2>&1 >/dev/null | grep -qF 'no UTF-8'
 ignored.txt << tetrahedron0:*2
-bad an output of a tile that is read | .*--ignore-file
-  | run crowd --tiles 1/2 --ignore-file ignored.txt --pairs ignored.txt
-bad an output that is read | .*--ignore-file | run crowd --ignore-file ignored.txt --json ignored.txt
+each .*--ignore-file | run crowd --ignore-file ignored.txt | --tiles 1/2 --pairs ignored.txt | --json ignored.txt
 0 a tile of one object | run {mesh} --tiles 1/1 | nothing to test: the scene is one object
 # A record and a list in two folders, of which one is behind a link.
 $ mkdir -p real/deep && ln -s real/deep link
@@ -96,7 +93,7 @@ $ mkdir -p real/deep && ln -s real/deep link
 0 a promise | merge t1.json -o merged.csv --json - | "promises": true
 $ sed -i 's/"false_negatives": 0/"false_negatives": 3/; s/"promises": true/"promises": false/' t1.json
 1 missed pairs | merge t1.json -o merged.csv | @err culled pairs that collide: 3 | no promise:
-""", mesh=mesh, option=['--limit 5', '--frames 3', '--certificate c.json'])
+""", mesh=mesh)
 
 # merge: what is missing, and that nothing is written then.
 same(3, 'two-tori')
