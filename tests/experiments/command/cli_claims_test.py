@@ -39,8 +39,7 @@ $ grep -qx '  "list_sha256": "{missed}",' c.json
 1 another list | check exact.json two-spheres --pairs missed.csv
   | #0 ^not proved: missed\.csv is another list: a pair is missing$
 1 a certificate of a run that misses | check c.json two-spheres | #0 ^refuted: the pair is called culled, and it meets$
-1 a forged certificate | check forged.json two-spheres
-  | #0 ^not proved: the certificate is of another list of pairs:
+1 a forged certificate | check forged.json two-spheres | #0 ^not proved: the certificate is of another list of pairs:
 0 forged with the hash as well | check of_the_scene.json two-spheres
   | #0 ^proved: these [0-9,]+ pairs of the scene meet, and no
   | ^unattested, .* about the scene and not about the run:$ | ^  that the method was far$ | ^  which pairs the run kept
@@ -64,8 +63,7 @@ good.obj << {T}; f 1 2 3
 0 nothing for {command} | {command} pierced.obj | ! ^verified
   | ^nothing to test: the scene is one object, and an object is tested .* only with --self$
   | ^this tests it: farcull {command} pierced\.obj --self$
-0 nothing for compare | compare pierced.obj --methods far-pairs,exact
-  | ^this tests it: farcull compare pierced\.obj --self$
+0 nothing for compare | compare pierced.obj --methods far-pairs,exact | ^this tests it: farcull compare pierced\.obj --self$
 0 nothing for cullide | run pierced.obj --method cullide --device software --resolution 64
   | ^this tests it: farcull run pierced\.obj --method far-pairs --self$
 one.json << {"objects": [{"mesh": "pierced.obj"}]}
@@ -90,8 +88,7 @@ $ cp pierced.obj pierced0.obj
 0 frames | run pierced%d.obj --method far-pairs --frames 1 --json - | ~ "self_not_asked":\{"objects":1,"pairs":1,
 0 plan | plan pierced.obj --method far-pairs
   | ^not asked  whether an object meets itself: 1 pair of triangles inside pierced[ ]
-0 asked | run pierced.obj --method far-pairs --self --certificate s.json --pairs s.csv | ^colliding +1 pair[ ]
-  | ! not asked
+0 asked | run pierced.obj --method far-pairs --self --certificate s.json --pairs s.csv | ^colliding +1 pair[ ] | ! not asked
 0 check of it | check s.json pierced.obj --self --pairs s.csv | #0 ^proved: this pair of the scene meets, and no other$
 """, command=['run', 'verify', 'plan'],
      unasked=r'^not asked +whether an object meets itself: 1 pair of triangles inside pierced \(')
@@ -113,11 +110,9 @@ bad {judge} {option} {scene} | {option}: .* SCENE[ ] | {judge} s.json {option} {
 bad picture -o {scene} | -o: .* SCENE[ ] | picture s.json -o {scene}
 bad savings --json {scene} | --json: .* SCENE[ ] | experiment savings s.json --json {scene}
 bad family --csv {scene} | --csv: .* SCENE[ ] | experiment family s.json --csv {scene}
-bad {reader} over a mesh of the scene file by {mesh} | --json: .*obj, which SCENE reads
-  | {*reader} s.json --json {mesh}
+bad {reader} over a mesh of the scene file by {mesh} | --json: .*obj, which SCENE reads | {*reader} s.json --json {mesh}
 bad picture over a mesh by {mesh} | -o: .*obj, which SCENE reads | picture s.json -o {mesh}
-bad run --pairs over a mesh by {mesh} | --pairs: .*obj, which SCENE reads
-  | run sub/good.obj frame_7.obj --pairs {mesh}
+bad run --pairs over a mesh by {mesh} | --pairs: .*obj, which SCENE reads | run sub/good.obj frame_7.obj --pairs {mesh}
 bad a numbered mesh | --json: mesh_hard\.csv is frame_7\.obj, which SCENE
   | run frame_%d.obj sub/good.obj {moving} --json mesh_hard.csv
 bad a numbered mesh of a scene file | --pairs: mesh_hard\.csv is frame_7\.obj, which SCENE
@@ -127,8 +122,7 @@ bad check --json {exact} | --json: .*CERTIFICATE reads | check exact.json two-sp
 bad check over the list | --json: pairs\.csv is pairs\.csv, which --pairs reads
   | check exact.json two-spheres --pairs pairs.csv --json pairs.csv
 bad check over the scene | --json: .* SCENE[ ] | check exact.json s.json --json link.json
-bad a packaged mesh | --json: packaged\.json is .*armadillo\.off, which SCENE
-  | {meshes} run near-copy --json packaged.json
+bad a packaged mesh | --json: packaged\.json is .*armadillo\.off, which SCENE | {meshes} run near-copy --json packaged.json
 bad a packaged mesh of any scene | --json: packaged\.json is .*armadillo\.off, which SCENE
   | {meshes} experiment savings --json packaged.json
 bad a scene over the meshes that it is made of | --write: .*armadillo\.off, which SCENE reads
@@ -137,15 +131,11 @@ bad results in the report | results/results\.sqlite: leads into DIR/report | rep
 # Two outputs that are one file. A link to a file that is not there counts as that file; so does a link to such a
 # link. Standard output is one as well.
 $ ln -s "$PWD/sub/../dangling.json" chain.json
-bad two outputs, {other} | --pairs: .*where --json goes as well | run two-spheres --json new.csv --pairs {other}
-bad two outputs by a link | --certificate: .*where --json goes as well
-  | run two-spheres --json hard.json --certificate link.json
-bad the first output by a link to nowhere | --pairs: .*where --json goes as well
-  | run two-spheres --json dangling.json --pairs nowhere.json
-bad the second output by a link to nowhere | --pairs: .*where --json goes as well
-  | run two-spheres --json nowhere.json --pairs dangling.json
-bad two outputs by links to nowhere | --certificate: .*where --json goes as well
-  | run two-spheres --json chain.json --certificate dangling.json
+each --pairs: .*where --json goes as well | run two-spheres | --json new.csv --pairs {other}
+each --pairs: .*where --json goes as well | run two-spheres | --json dangling.json --pairs nowhere.json
+  | --json nowhere.json --pairs dangling.json
+each --certificate: .*where --json goes as well | run two-spheres --certificate | link.json --json hard.json
+  | dangling.json --json chain.json
 bad the table into the scene | standard output: .* SCENE[ ] | run s.json --method exact >>s.json
 $ touch both.txt
 bad the table and the record into one file | --json: .*where standard output goes as well

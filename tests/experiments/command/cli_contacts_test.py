@@ -57,8 +57,7 @@ parts.json << {"objects": [{"mesh": "parts_%d.obj", "split": "groups"}, {"mesh":
 ignores.json << {"ignore": [["*/b", "floor"]], "objects": [{"mesh": "parts_%d.obj", "split": "groups"},
   {"mesh": "floor.obj"}]}
 goes.csv << frame,object_a,triangle_a,object_b,triangle_b; 1,0,0,2,0; 2,0,0,1,0
-0 an object that goes | verify parts.json --frames 1:2 --ignore '*/b:floor' --pairs frames.csv
-  | $ cmp -s frames.csv goes.csv
+0 an object that goes | verify parts.json --frames 1:2 --ignore '*/b:floor' --pairs frames.csv | $ cmp -s frames.csv goes.csv
 bad an object that comes | --ignore: '\*/b:floor' names '\*/b', and no object is called so
   | run parts.json --frames 2:2 --ignore '*/b:floor'
 0 an object that goes, in the file | verify ignores.json --frames 1:2 --pairs file.csv | $ cmp -s file.csv goes.csv
@@ -74,8 +73,7 @@ outside.obj << v -.0003 -.0026 -.001; v -.0003 -.0026 .001; v -.0002 -.0026 .001
 folded.obj << v 0 0 0; v 3 0 0; v 3 3 0; v 0 2 0; g a; f 1 2 3; g b; f 1 3 2 4
 folded.json << {"objects": [{"mesh": "folded.obj", "split": "groups"}]}
 0 a folded polygon | run folded.json | ^folded: 2 objects, 3 triangles, 1 polygon folded: face 1 of folded/b$
-0 a folded polygon, as JSON | run folded.json --json -
-  | ~ "folded_polygons":1,"folded":\[\{"object":"folded/b","face":1\}\],
+0 a folded polygon, as JSON | run folded.json --json - | ~ "folded_polygons":1,"folded":\[\{"object":"folded/b","face":1\}\],
 0 a folded polygon of distances | distance folded.json | 1 polygon folded: face 1 of folded/b$
 
 0 a limit | verify {all} --limit 2 --pairs - --json first.json | $ cmp -s "$out" <(head -n 3 plain.csv)

@@ -59,6 +59,5 @@ $ sed -E 's/("evidence": ")[^"]*/\1{contrary}/' right.json >wrong.json
 # Twin: where the environment stays as it is, whatever we do, the program says so and answers nothing.
 rows(r"""
 bad {environment} stays | arithmetic: this thread (rounds (upward|downward|toward zero)|.*flushes)
-  | LD_PRELOAD={library} FARCULL_DISTURB={environment} FARCULL_DISTURB_STAYS=1
-  verify tiny-a.obj tiny-b.obj --method exact
+  | LD_PRELOAD={library} FARCULL_DISTURB={environment} FARCULL_DISTURB_STAYS=1 verify tiny-a.obj tiny-b.obj --method exact
 """, library=others[0], environment=environments[1:])

@@ -155,9 +155,12 @@ def spaced(pattern):
     return pattern + ' ' * pattern.endswith(':')
 
 
-def refused(name, message):
-    """The last launch answered as a bad input must."""
-    said = read(ERR)
+def bad(name, message, words, **limits):
+    """A bad input, which also leaves the folder as it was."""
+    before = snapshot()
+    launch(words, **{'cpu': CPU_SECONDS, **limits})
+    said, after = read(ERR), snapshot()
+    changed = sorted(path for path in {*before, *after} if before.get(path) != after.get(path))
     why = (f'not done after {SECONDS} s' if status == 124
            else f'not done after {CPU_SECONDS} s of CPU time' if status in (-9, -24)
            else f'status {status} instead of 2' if status != 2
@@ -165,19 +168,9 @@ def refused(name, message):
            else 'not one line on stderr' if said.count('\n') != 1 or said[-1] != '\n'
            else f"the message does not match '{message}'" if not re.match(f'farcull: (?:{spaced(message)})', said)
            else 'no remedy' if not re.search('[^ ]; [^ ]', said)
-           else 'control characters on stderr' if re.search(r'[\0-\x1f\x7f]', said[:-1]) else '')
-    return case(name, not why, why)
-
-
-def bad(name, message, words, **limits):
-    """A bad input, which also leaves the folder as it was."""
-    before = snapshot()
-    launch(words, **{'cpu': CPU_SECONDS, **limits})
-    refused(name, message)
-    after = snapshot()
-    changed = sorted(path for path in {*before, *after} if before.get(path) != after.get(path))
-    if changed:
-        case(name, False, f'the folder changed: {changed}')
+           else 'control characters on stderr' if re.search(r'[\0-\x1f\x7f]', said[:-1])
+           else f'the folder changed: {changed}' if changed else '')
+    case(name, not why, why)
 
 
 def good(name, wanted, words, checks=(), **limits):

@@ -49,20 +49,16 @@ rows(r"""
 0 the default | run two-spheres --json default.json | ^method     far-pairs; promises to miss nothing$
   | ^default    no --method: far-pairs misses nothing, and is the fastest on[ ]
   | ^           others: far, cullide, quick-cullide, s-cullide, i-collide or exact \(
-  | @default.json ^  "method": "far-pairs",$
-  | @default.json ^  "method_reason": "no --method: far-pairs misses nothing,[ ]
+  | @default.json ^  "method": "far-pairs",$ | @default.json ^  "method_reason": "no --method: far-pairs misses nothing,[ ]
 0 the default of plan | plan two-spheres | ^default    no --method: far-pairs[ ]
-0 named | run two-spheres --method far-pairs --json named.json | ! ^default
-  | @named.json ^  "method_reason": "--method",$
+0 named | run two-spheres --method far-pairs --json named.json | ! ^default | @named.json ^  "method_reason": "--method",$
 
 0 plan | plan far-apart --method far | ^draw +left out +no two objects | ^not asked +whether an object meets itself:
 0 plan of everything | plan far-apart --method far --full --no-verify | ^setup +runs[ ] | ^verify +left out[ ]
 0 plan as JSON | plan two-spheres --method far-pairs --json - | "decision": "depends"
 0 plan of self-collision | plan folded.obj --method far-pairs --self | ^self +1 object is tested against itself
-0 plan of far inside objects | plan two-spheres --method far --self
-  | ^patches +.*32 patches of at most 320 triangles
-0 far inside a small object | verify folded.obj --method far --self | ^patches .*boxes alone$
-  | promises to miss nothing$
+0 plan of far inside objects | plan two-spheres --method far --self | ^patches +.*32 patches of at most 320 triangles
+0 far inside a small object | verify folded.obj --method far --self | ^patches .*boxes alone$ | promises to miss nothing$
 
 0 quick-cullide | run crowd --method quick-cullide {small} --json - | "draws_saved": [1-9] | "promises": false
 0 cullide by occlusion queries | run two-spheres --method cullide {small} --query occlusion --depth-format 24
@@ -75,8 +71,7 @@ rows(r"""
   --resolution 64 --device native --json form.json
   | ^method     cullide at 64 px, --rounds 1 --clear all --conservative | ^agree, round 1 | @form.json "rounds": 1
   | @form.json "clear": "all" | @form.json "level": "triangles" | @form.json "conservative": true
-0 plan of a form | plan crowd --method quick-cullide --rounds 1 --level objects
-  | ^further rounds +left out +--rounds 1
+0 plan of a form | plan crowd --method quick-cullide --rounds 1 --level objects | ^further rounds +left out +--rounds 1
 0 forms of far | verify crowd --method far --rounds 1 --clear all --resolution 64
 0 compare forms | compare two-spheres --methods far,cullide,exact --resolutions 64 --rounds 1 --level objects
   --device native | ^cullide --rounds 1 --level objects[ ]
@@ -86,7 +81,6 @@ rows(r"""
   --device software | ^i-collide +- +-[ ]
 0 family | experiment family two-spheres --methods far-pairs,i-collide --frames 3 --csv - --json family.json
   | ^scene,method,offset,frame, | ^two-spheres,far-pairs,,2, | @family.json "missed": 0
-0 family for people | experiment family two-spheres --methods i-collide --frames 2
-  | ^two-spheres +10,240 +i-collide[ ]
+0 family for people | experiment family two-spheres --methods i-collide --frames 2 | ^two-spheres +10,240 +i-collide[ ]
 0 savings | experiment savings far-apart --methods i-collide --repeat 2 --json - | "same_pairs": true
 """, small='--resolution 64 --device software')

@@ -47,10 +47,8 @@ cloth_05.obj << {T}; f 1 2 3
 cloth_05.obj << v 0 0 nan; v 1 0 0; v 0 1 0; v 0 0 1; f 1 2 3; f 1 2 4
 bad a first frame that is no mesh | cloth_05\.obj:1: | run {cloth} --frames 5:5 --json old.json --pairs new.csv
 self.json << {"objects": [{"mesh": "good.obj", "self": true}, {"mesh": "good.obj"}]}
-bad cullide on a scene that collides with itself | self: cullide tests no object .*far-pairs
-  | run self.json --method cullide
-bad compare cullide on one | --methods: cullide tests no object .*far-pairs
-  | compare self.json --methods cullide,exact
+bad cullide on a scene that collides with itself | self: cullide tests no object .*far-pairs | run self.json --method cullide
+bad compare cullide on one | --methods: cullide tests no object .*far-pairs | compare self.json --methods cullide,exact
 """, pairs='two-spheres --method far-pairs', cloth='cloth_%02d.obj --method far-pairs',
      clearance=['-1', '-1e-300', 'nan', 'inf', '1e999', '', '1x', ' 1', '0x1p3'],
      frames=['0', '-1', '1.5', '', 'a', '3:2', '-1:2', '1:', ':2', '1:2:3', '1000001', '0:1000000', ' 1', '1-3',
@@ -70,8 +68,7 @@ rows(r"""
 0 far-pairs auto | run {pairs} --views auto --resolution auto --json - | ^ *"method": "far-pairs"
   | ^ *"resolution": "auto" | ^ *"clearance": 0\.0 | ^ *"promises": true | ^ *"neighbour_pairs": 0
   | ^ *"cpu": "boxes of runs decide: no view" | ^ *"self_objects": 0
-0 far-pairs by views | run {pairs} --views auto --resolution 64 --json - | ^ *"cpu": "no --device
-  | ^ *"looked": true
+0 far-pairs by views | run {pairs} --views auto --resolution 64 --json - | ^ *"cpu": "no --device | ^ *"looked": true
 folded.obj << {T}; v 1 1 -1; v 1 1 1; v 0 0 -1; f 1 2 3; f 1 2 4; f 5 6 7
 0 self-collision | verify folded.obj --method far-pairs --self --pairs - | ^0,0,0,2,0$
   | ^object_a,triangle_a,object_b,triangle_b,neighbours$
@@ -93,8 +90,7 @@ blade.obj << v 0.1 0.6 -1; v 0.1 0.6 1; v 0.1 0.7 0; v 2.1 0.6 -1; v 2.1 0.6 1; 
 1 check of it without --self | check c.json folded.obj | ^not proved: the certificate is of another scene
 0 no self-collision | verify folded.obj --method far-pairs | ^colliding  0 pairs$
 0 scene that collides with itself | verify self.json --method far-pairs
-0 compare with self | compare folded.obj --self --clearance 0.5 | ^far-pairs +- +auto
-  | ^method .* colliding  \+ neighbours[ ]
+0 compare with self | compare folded.obj --self --clearance 0.5 | ^far-pairs +- +auto | ^method .* colliding  \+ neighbours[ ]
 # Frames: a triangle that falls through another.
 fall_1.obj << v 0.1 0.1 -1.5; v 0.9 0.1 -1.5; v 0.1 0.1 -1.1; f 1 2 3
 fall_2.obj << v 0.1 0.1 0.5; v 0.9 0.1 0.5; v 0.1 0.1 0.1; f 1 2 3
@@ -118,10 +114,8 @@ $ mkdir certificates
   --certificate certificates/c_%02d.json --pairs falls.csv
   | $ [[ $(cd certificates && echo *) == 'c_01.json c_02.json c_03.json' ]]
 0 check of frames | check certificates/c_%02d.json fall.json --frames 1:3 --pairs falls.csv
-  | ^proved: in each of 3 frames these pairs of the scene meet, and no others: 1 in all$
-  | ^ +2  proved +[0-9]+ +1 +[0-9.]+$
-0 a list of frames alone | check fall.json --frames 1:3 --pairs falls.csv | ^proved: in each of 3 frames[ ]
-  | ^ +3  proved[ ]
+  | ^proved: in each of 3 frames these pairs of the scene meet, and no others: 1 in all$ | ^ +2  proved +[0-9]+ +1 +[0-9.]+$
+0 a list of frames alone | check fall.json --frames 1:3 --pairs falls.csv | ^proved: in each of 3 frames[ ] | ^ +3  proved[ ]
 $ sed '2d' falls.csv >fewer.csv
 1 a list that lacks a pair of a frame | check fall.json --frames 1:3 --pairs fewer.csv
   | ^refuted: 1 of 3 frames, the first is frame 2$ | ^  pair: fall_%d triangle 0 and good triangle 3$
@@ -141,8 +135,7 @@ $ rm certificates/c_03.json
 0 certificates of meeting | run {move} --frames 2 --certificate meet_%d.json
 $ cp near_0.json mixed_0.json && cp meet_1.json mixed_1.json
 1 certificates of two questions | check mixed_%d.json two-spheres --frames 2
-  | ^not proved: 1 of 2 frames, the first is frame 1$
-  | not proved: the certificate is of another clearance: 0, not 0\.2$
+  | ^not proved: 1 of 2 frames, the first is frame 1$ | not proved: the certificate is of another clearance: 0, not 0\.2$
 0 certificates of one question | check near_%d.json two-spheres --frames 2
   | ^proved: in each of 2 frames these pairs are at distance 0\.2 or less
 # A built-in motion goes to its last frame, so that its end can be run by itself.
@@ -181,13 +174,11 @@ rows(r"""
 1 a list that lacks a pair | check two-spheres --pairs fewer.csv | ^  pair: .* triangle {a} and .* triangle {b}$
   | ^refuted: fewer\.csv is not the list of the pairs: a pair is missing$
 0 self-collision | run folded.obj --method far-pairs --self --pairs folded.csv
-0 a list of self-collision | check folded.obj --pairs folded.csv --self
-  | ^proved: this pair of the scene meets, and no other$
+0 a list of self-collision | check folded.obj --pairs folded.csv --self | ^proved: this pair of the scene meets, and no other$
 1 and without --self | check folded.obj --pairs folded.csv | ^refuted: .*line 2: .*\(--self asks\)$
 0 two meshes | run good.obj folded.obj --method exact --pairs two.csv
 0 a list of two meshes | check good.obj folded.obj --pairs two.csv | ^proved: these [0-9]+ pairs[ ]
-bad a list that is no list | broken\.csv:3: triangle_b is 'x', .*; give a list as[ ]
-  | check two-spheres --pairs broken.csv
+bad a list that is no list | broken\.csv:3: triangle_b is 'x', .*; give a list as[ ] | check two-spheres --pairs broken.csv
 bad a list of another scene | plain\.csv:[0-9]+: object 0 has no triangle .*; give[ ]
   | check good.obj good.obj --pairs plain.csv
 bad neither certificate nor list | SCENE: is missing[ ] | check two-spheres

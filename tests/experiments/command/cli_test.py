@@ -91,8 +91,7 @@ each standard output: cannot be written | | run {spheres} {to} | run {spheres} -
   | compare two-spheres --resolutions 64 >closed | --version >closed
 each standard output: cannot be written: Broken pipe | run {spheres} | >broken | --json - >broken
 # A table that cannot be shown takes no file with it.
-2 JSON file beside a broken pipe | run {spheres} --json new.json >broken | @err ^farcull: standard output:
-  | @new.json #-1 ^}$
+2 JSON file beside a broken pipe | run {spheres} --json new.json >broken | @err ^farcull: standard output: | @new.json #-1 ^}$
 $ rm new.json
 """, **VALUES, to=['>/dev/full', '>closed'])
 if os.getuid() != 0:
