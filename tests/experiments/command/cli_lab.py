@@ -31,6 +31,7 @@ import re
 import resource
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -117,6 +118,7 @@ def start(words, cpu=None, memory=ADDRESS_SPACE, file_size=None):
     write(OUT, '')
 
     def limit():
+        signal.signal(signal.SIGINT, signal.SIG_DFL)  # which a shell has its background ignore
         for what, most in (resource.RLIMIT_AS, memory and memory * 1024), (resource.RLIMIT_CPU, cpu), \
                 (resource.RLIMIT_FSIZE, file_size):
             if most:
@@ -133,16 +135,19 @@ def start(words, cpu=None, memory=ADDRESS_SPACE, file_size=None):
     return child
 
 
-def launch(words, seconds=SECONDS, **limits):
-    """Runs the program; returns its status: 124 after so many seconds, the negative signal if one ended it."""
-    global status
-    child = start(words, **limits)
+def ended(child, seconds=SECONDS):
+    """The status: 124 after so many seconds, the negative signal if one ended it."""
     try:
-        status = child.wait(seconds)
+        return child.wait(seconds)
     except subprocess.TimeoutExpired:
         child.kill()
         child.wait()
-        status = 124
+        return 124
+
+
+def launch(words, seconds=SECONDS, **limits):
+    global status
+    status = ended(start(words, **limits), seconds)
     return status
 
 

@@ -7,7 +7,7 @@ import sqlite3
 import subprocess
 import time
 
-from cli_lab import bad, case, expect, good, launch, rows, start, work
+from cli_lab import bad, case, ended, expect, good, launch, rows, start, work
 
 # The study of the most points and the least work; every point of it by itself takes milliseconds.
 STUDY = 'experiment precision --quick --out'
@@ -63,7 +63,7 @@ def killed():
         child = start([*STUDY.split(), 'killed', '--resume'], memory=None)
         time.sleep(draw.random() * took / 5)
         child.kill()
-        kills += child.wait() == -signal.SIGKILL
+        kills += ended(child) == -signal.SIGKILL
     case('killed', kills >= 5, f'only {kills} of 10 kills met a run that was going on (seed {seed})')
     measure(f'killed (seed {seed})', 'killed --resume')
     same(f'killed (seed {seed})', 'killed')
@@ -78,7 +78,7 @@ def interrupted():
             time.sleep(0.3)
             break
     child.send_signal(signal.SIGINT)
-    case('interrupted', child.wait() == -signal.SIGINT, 'not ended by the signal')
+    case('interrupted', ended(child) == -signal.SIGINT, 'not ended by the signal')
     expect('interrupted', f'@err ^farcull: interrupted: after [0-9]+ of {points} points; .*--resume')
     measure('interrupted', 'interrupted --resume')
     same('interrupted', 'interrupted')
