@@ -1,7 +1,7 @@
 """Tables of command lines and their answers, for the tests cli_*_test.py.
    cli_NAME_test.py FARCULL [ANOTHER_FILE]
-Importing this module launches the program once per GL method, goes to an empty folder, and at the end
-prints the number of cases; the exit status is 1 if any failed.
+Importing this module launches the program once for each GL method and goes to an empty folder. At the end it prints the
+number of cases; the exit status is 1 if any failed. With FARCULL_VERBOSE set, command lines are printed as they run.
 
 rows(TABLE, NAME=VALUE...) runs a table, a case per line. A line that begins with a space goes on with the line
 before it; # begins a comment. Fields are between " | ":
