@@ -1,5 +1,4 @@
 """See layout_test.sh. The rules are the tables at the top; the self-test is a table of changes that break them."""
-import glob
 import itertools
 import os
 import re
@@ -51,11 +50,9 @@ LINES = [
 
 def reached(start, edges):
     """The start, and what the edges lead to from there."""
-    found, left = {start}, [start]
-    while left:
-        new = set(edges.get(left.pop(), ())) - found
-        found |= new
-        left.extend(new)
+    found = new = {start}
+    while new := {to for at in new for to in edges.get(at, ())} - found:
+        found = found | new
     return found
 
 
@@ -117,12 +114,12 @@ TYPE = re.compile(r'(?:^| )(?:enum class|enum struct|struct|class|union|enum) (\
 
 
 def types():
-    """Types that two files define in one namespace: to a linker they are one type, and which of its functions a program gets
-    is chance (tests/odr.sh asks the linker). Types of anonymous namespaces, nested types and specializations are no such
-    types. A name that one file defines twice stands in the branches of an #if."""
+    """Types that two files define in one namespace: to a linker they are one, and which functions a program gets is chance
+    (tests/odr.sh asks the linker). A name that one file defines twice stands in the branches of an #if."""
     place = {}
     for file in files_of(OURS, ['.h', '.cpp', '.inl']):
-        text = BLANKED.sub(lambda found: ('""' if '"' in found[0][:2] else ' ') + '\n' * found[0].count('\n'), Path(file).read_text('utf-8', 'replace'))
+        text = BLANKED.sub(lambda found: ('""' if '"' in found[0][:2] else ' ') + '\n' * found[0].count('\n'),
+                           Path(file).read_text('utf-8', 'replace'))
         scopes, blocks = [], 0
         for piece in re.finditer('([^{};]*)([{};])', text):
             words = ' '.join(re.sub(r'\[\[[^\]]*\]\]|alignas *\([^)]*\)', ' ', piece[1]).split())
@@ -143,15 +140,12 @@ def types():
 
 
 def page_paths():
-    """Paths in the pages that do not exist: paths in backticks and in indented blocks that begin with one of our folders, and
-    the targets of links. NAME and * in a path stand for any text. A path without an ending, such as verify/accounting, means
-    the files of that name with any ending. A page may name a file that it tells the reader to make: "the new file `PATH`",
-    there and below."""
-    there = {'README.md', 'CMakeLists.txt', *OURS, 'docs'}
-    for top in [*OURS, 'docs']:
-        there |= {os.path.join(folder, name) for folder, *names in os.walk(top) for name in itertools.chain(*names)}
+    """Paths in backticks and in indented blocks that begin with one of our folders, and targets of links, that do not exist.
+    NAME and * stand for any text, a path without an ending for files with any. A page may tell the reader to make a file, "the
+    new file `PATH`", and name it there and below."""
+    there = {str(path) for top in [*OURS, 'docs'] for path in Path(top).rglob('*')} | {'README.md', 'CMakeLists.txt', *OURS, 'docs'}
     there |= {re.sub(r'[.][^./]*$', '', path) for path in there}
-    for page in (page for page in [*glob.glob('README.md'), *files_of(['docs'], ['.md'])] if page.count('/') < 3):
+    for page in (page for page in [*Path().glob('README.md'), *files_of(['docs'], ['.md'])] if str(page).count('/') < 3):
         made, inside = set(), False  # a span in backticks may go on in the next line, but not further
 
         def known(path):
@@ -181,12 +175,12 @@ def top_level():
         listed = subprocess.run(['git', 'ls-files', '--cached', '--others', '--exclude-standard'], capture_output=True,
                                 check=False, text=True)
         if listed.returncode == 0:  # Git still lists a file whose removal is not committed yet
-            names = {name for name in {path.split('/')[0] for path in listed.stdout.split('\n')} & {*os.listdir()} if name[0] != '.'}
+            names = {path.split('/')[0] for path in listed.stdout.split('\n') if path[:1] != '.'} & {*os.listdir()}
     yield from (f'{name}: missing at the top level' for name in TOP if name not in names)
     yield from (f"{name}: the top level holds nothing but {' '.join(TOP)}" for name in sorted(names - set(TOP)))
 
 
-def violations():
+def check():
     files = files_of(OURS, SOURCES)
     found = list(includes(files))
     said = [f'{file}:{line}: includes {included}: {why}'
@@ -202,12 +196,7 @@ def violations():
                  for number, line in lines_of(file) if re.search(pattern, line)]
     if not found:
         said.append('no #include found: this is not the repository, or the test reads it wrongly')
-    return said, f'layout: {len(found)} includes obey the table'
-
-
-def check():
-    said, good = violations()
-    return '\n'.join(said) or good, bool(said)
+    return '\n'.join(said) or f'layout: {len(found)} includes obey the table', len(said)
 
 
 def graph():
@@ -229,7 +218,7 @@ def graph():
     upward = sum(level(to) >= level(folder) for folder in folders for to in against[folder])
     levels = range(max(map(level, folders)), -1, -1)
     texts = {folder: drawn[folder] + [f'{to} (against the table)' for to in against[folder]] for folder in folders}
-    count = sum(folder.startswith('experiments/') for folder in {os.path.dirname(file) for file in files})
+    count = len({os.path.dirname(file) for file in files if file.startswith('experiments/')})
     return '\n'.join([
         'Folders by level. A folder includes only folders of lower levels.',
         *(f"{at:5}  {', '.join(folder for folder in folders if level(folder) == at)}" for at in levels),
@@ -359,9 +348,9 @@ def self_test():
         if expected == 'git':  # from here on the top level is that of a git checkout
             subprocess.run(['git', '-c', 'init.defaultBranch=main', 'init', '-q'], check=True)
             continue
-        said = violations()[0]
+        said, count = check()
         place, _, reason = expected.partition(': ')
-        if not (len(said) == 1 and said[0].startswith(place + ':') and reason in said[0] if expected else not said):
+        if not (count == 1 and said.startswith(place + ':') and reason in said if expected else count == 0):
             failed.append(f'{change}: expected {expected!r}, got {said}')
     return '\n'.join(failed) or 'layout: every rule is caught when it is broken', bool(failed)
 
@@ -374,4 +363,4 @@ with tempfile.TemporaryDirectory() as scratch:
     message, result = {'--self-test': self_test, '--graph': lambda: (graph(), 0), '--check': check}[option]()
     os.chdir('/')
 print(message)
-sys.exit(result)
+sys.exit(result > 0)

@@ -190,10 +190,11 @@ bad bad frames | --frames: | check two-spheres --pairs plain.csv --frames 0
 # ---- memory
 
 # Triangles that lie on each other: memory for the pairs that there are, not for each pixel of each.
-write('pile.obj', 'v 0 0 0\nv 1 0 0.3\nv 0 1 0.2\n' + 'f 1 2 3\n' * 1200)
+for name in 'first.obj', 'second.obj':
+    write(name, 'v 0 0 0\nv 1 0 0.3\nv 0 1 0.2\n' + 'f 1 2 3\n' * 1200)
 for device, limit in ('cpu', 400_000), ('software', 1_000_000):
     rows(f"""
-0 coincident triangles, {device} | run pile.obj pile.obj --method far-pairs --device {device} --no-verify
+0 coincident triangles, {device} | run first.obj second.obj --method far-pairs --device {device} --no-verify
   | ^colliding  1,440,000 pairs$
 """, limits={'memory': limit})
 
