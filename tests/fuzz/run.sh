@@ -2,9 +2,9 @@
 # Fuzzes the readers of meshes and scene files and `check` of both kinds of certificates, one target after the other, with clang's
 # libFuzzer and the address and undefined behaviour sanitizers:
 #   tests/fuzz/run.sh [SECONDS]   seconds per target (default: 60)
-# It starts from tests/fuzz/corpus and from what earlier runs added to build-fuzz/corpus.
-# Exit status: 0 no error was found; 1 an error was found, and its input is named (minimize it with the
-# printed command, then add it to the corpus); 2 fuzzing did not start.
+# It starts from the archives in tests/fuzz/corpus and from what earlier runs added to build-fuzz/corpus.
+# Exit status: 0 no error was found; 1 an error was found, and its input is named (minimize it and add it to the corpus
+# with the printed commands); 2 fuzzing did not start.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=../../experiments/setup.sh
@@ -25,17 +25,20 @@ farcull_build_beside build-fuzz "fuzz_mesh fuzz_scene_file fuzz_check fuzz_dista
 
 # fuzz TARGET CORPUS: runs the target and prints its statistics; status 1 if it found an error.
 fuzz() {
-  local corpus=build-fuzz/corpus/$2 log=build-fuzz/$1.log
-  mkdir -p "$corpus" build-fuzz/findings
+  local corpus=build-fuzz/corpus/$2 seeds=build-fuzz/seeds/$2 log=build-fuzz/$1.log
+  rm -rf "$seeds"
+  mkdir -p "$corpus" "$seeds" build-fuzz/findings
+  tar -xf "tests/fuzz/corpus/$2.tar" -C "$seeds"
   echo "fuzz: $1 for $seconds s (all output: $log)"
   # The time limit finds hangs: an input of 4 KiB takes milliseconds. The targets compare every
   # allocation with the size of the input; the memory limits find allocations without operator new.
-  if ! "build-fuzz/tests/fuzz/$1" "$corpus" "tests/fuzz/corpus/$2" -dict="tests/fuzz/$2.dict" \
+  if ! "build-fuzz/tests/fuzz/$1" "$corpus" "$seeds" -dict="tests/fuzz/$2.dict" \
     -max_len=4096 -timeout=10 -malloc_limit_mb=64 -rss_limit_mb=2048 -max_total_time="$seconds" \
     -artifact_prefix="build-fuzz/findings/$1-" -print_final_stats=1 >"$log" 2>&1; then
     grep -E '^finding:|ERROR:|SUMMARY:|runtime error:|terminate called|what\(\)|written to' "$log" \
       >&2 || tail -n 20 "$log" >&2
     echo "fuzz: to minimize it: build-fuzz/tests/fuzz/$1 -minimize_crash=1 -runs=100000 FILE" >&2
+    echo "fuzz: to add it: tar -rf tests/fuzz/corpus/$2.tar -C FOLDER NAME" >&2
     return 1
   fi
   grep -E '^stat::(number_of_executed_units|slowest_unit_time_sec)' "$log"

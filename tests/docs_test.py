@@ -1,0 +1,179 @@
+"""See docs_test.sh."""
+import glob
+import os
+import re
+import shutil
+import sys
+import tempfile
+
+PARTS = ['docs/reliability.md', 'docs/budget.md']
+KIND = '(?:[Ll]emma|[Tt]heorem|[Cc]orollar|[Dd]efinition)'
+
+
+def read(path):
+    with open(path, encoding='utf-8', errors='replace') as file:
+        return file.read()
+
+
+def paper(pattern):
+    """The matches in the paper, with file and line."""
+    for part in PARTS:
+        for number, line in enumerate(read(part).split('\n'), 1):
+            yield from ((f'{part}:{number}', found) for found in re.findall(pattern, line))
+
+
+def labels():
+    """The numbered statements of the paper, in its order: "lemma 3"."""
+    return [f'{kind.lower()} {number}' for _, (kind, number) in
+            paper(r'^\*\*(Definition|Lemma|Theorem|Corollary) ([0-9]+) \(')]
+
+
+def referring():
+    """Files that may refer to the paper, each as one line without comment marks, so that a reference may go on in the next."""
+    paths = ['README.md'] + [os.path.join(folder, name) for top in ('core', 'offsets', 'verify', 'tests', 'experiments', 'docs')
+                             for folder, _, names in os.walk(top) for name in names]
+    for path in sorted(paths):
+        if path.endswith(('.h', '.cpp', '.inl', '.glsl', '.md', '.sh', '.py', '.txt', '.obj')) and \
+                not path.startswith(('tests/fuzz/', 'tests/docs_test')):
+            yield path, ' '.join(re.sub(r'^[ \t]*(///?|#)?[ \t]*', '', line) for line in read(path).split('\n'))
+
+
+def check_labels():
+    """Labels are numbered 1, 2, 3, ... for each kind, over both parts."""
+    last = {}
+    for kind, number in (label.split() for label in labels()):
+        last[kind] = last.get(kind, 0) + 1
+        if last[kind] != int(number):
+            yield f'the paper: {kind} {number} stands where {kind} {last[kind]} should'
+    if not {'lemma', 'theorem'} <= set(last):
+        yield 'the paper: it has no lemmas, or the test reads it wrongly'
+
+
+def check_references(texts):
+    """Every "lemma 3", "lemmas 1 and 2", "theorems 5 to 8" names labels of the paper."""
+    known = set(labels())
+    pattern = re.compile(rf'(?<![A-Za-z0-9_])({KIND})(?:y|ies|s)? ([0-9]+(?:(?: to |, | and )[0-9]+)*)(?![0-9a-z]|[.][0-9])')
+    for path, text in texts:
+        for found in pattern.finditer(text):
+            kind = found[1].lower().replace('corollar', 'corollary')
+            if not re.search('Higham, ?$', text[:found.start()]):
+                yield from (f'{path}: names {kind} {number}, which the paper does not have'
+                            for number in re.findall('[0-9]+', found[2]) if f'{kind} {number}' not in known)
+
+
+def check_sections(texts):
+    """Sections named in quotes after the page, as in budget.md, "double", are headings of that page."""
+    headings = {}
+    for page in glob.glob('docs/*.md') + glob.glob('docs/results/*.md'):  # of which two may have the same name
+        headings.setdefault(os.path.basename(page), set()).update(re.findall('^#+ +(.*)', read(page), re.MULTILINE))
+    for path, text in texts:
+        for page, quoted in re.findall(r'([a-z_]+[.]md)[)]?, ("[^"]+"(?:,? and "[^"]+")?)', text):
+            yield from (f'{path}: names the section "{name}", which {page} does not have' for name in quoted.split('"')[1::2]
+                        if page in headings and name not in headings[page])
+
+
+def check_tests():
+    """Every `Suite.Name` of the paper is a test; * stands for any text."""
+    tests = {f'{suite}.{name}' for path in glob.glob('tests/**/*.cpp', recursive=True) for suite, name in
+             re.findall(r'(?:TEST|TEST_F|TEST_P|RC_GTEST_PROP)\((\w+),\s*(\w+)', read(path))}
+    for place, name in paper(r'`([A-Z][A-Za-z0-9]+\.[A-Z*][A-Za-z0-9*]*)`'):
+        pattern = name.replace('.', '[.]').replace('*', r'\w*')
+        if name not in tests and not ('*' in name and any(re.fullmatch(pattern, test) for test in tests)):
+            yield f'{place}:{name}: no such test'
+
+
+def check_citations():
+    """Citations are keys of docs/references.bib."""
+    keys = re.findall(r'^@[a-z]+\{([a-z0-9]+),', read('docs/references.bib'), re.MULTILINE)
+    yield from (f'docs/references.bib: two entries {key}' for key in sorted(set(keys)) if keys.count(key) > 1)
+    for place, cited in paper(r'\[@[^]]*\]'):
+        yield from (f'{place}:{cited}: docs/references.bib has no {key}' for key in re.findall('@([a-z0-9]+)', cited)
+                    if key not in keys)
+
+
+def check_symbols():
+    """Each symbol stands once in the table of notation."""
+    table = re.search('^## Notation.*?(?=^## |\\Z)', read(PARTS[0]), re.MULTILINE | re.DOTALL)
+    rows = [row for row in re.findall(r'^\|(.*?)\|', table[0] if table else '', re.MULTILINE)
+            if row.strip() != 'symbol' and row.strip('- :')]
+    symbols = [symbol for row in rows for symbol in row.strip().split(', ')]
+    yield from (f'docs/reliability.md: the symbol {symbol} is defined twice' for symbol in sorted(set(symbols))
+                if symbols.count(symbol) > 1)
+    if len(rows) < 20:
+        yield f'docs/reliability.md: the table of notation has {len(rows)} rows, or the test reads it wrongly'
+
+
+def check_proofs():
+    """Each lemma, theorem and corollary says what it assumes, has tests and twins, and a proof that ends."""
+    for part in PARTS:
+        for statement in re.split(r'^(?=\*\*(?:Lemma|Theorem|Corollary) [0-9]+ |##)', read(part), flags=re.MULTILINE):
+            if label := re.match(r'\*\*(\w+ [0-9]+) ', statement):
+                yield from (f'{part}: {label[1]} {why}' for pattern, why in (
+                    ('[*]Assumes[:* ]', 'does not say what it assumes'), ('[*]Tests[:* ]', 'names no tests'),
+                    ('[*][Tt]wins[:*]', 'names no twins'), ('[*]Proof[.][*]', 'has no proof')) if not re.search(pattern, statement))
+                if statement.count('∎') != 1:
+                    yield f'{part}: the proof of {label[1]} does not end once'
+
+
+def check_map():
+    """Every page is linked from the map of pages, docs/README.md, or from that of results."""
+    maps = [read('docs/README.md'), read('docs/results/README.md')]
+    for page in sorted(glob.glob('docs/*.md') + glob.glob('docs/results/*.md')):
+        if page != 'docs/README.md' and f"]({page.removeprefix('docs/')})" not in maps[0] and \
+                f"]({page.removeprefix('docs/results/')})" not in maps[1]:
+            yield f'{page}: docs/README.md and docs/results/README.md do not link to it'
+
+
+def check():
+    texts = list(referring())
+    said = [*check_labels(), *check_references(texts), *check_sections(texts), *check_tests(), *check_citations(),
+            *check_symbols(), *check_proofs(), *check_map()]
+    return '\n'.join(said) or f'docs: {len(labels())} numbered statements, and what refers to them', bool(said)
+
+
+# ---- self-test: case, file, text and what replaces it (regular expressions), and what is said then
+
+ONE, TWO = PARTS
+BROKEN = [
+    ('a number left out', TWO, r'^\*\*Lemma 17 ', '**Lemma 77 ', 'lemma 77 stands where'),
+    ('a number used twice', ONE, r'^\*\*Theorem 3 ', '**Theorem 2 ', 'theorem 2 stands where'),
+    ('a lemma that is none, in a page', 'docs/extending.md', 'lemmas 1$', 'lemmas 91', 'extending.md: names lemma 91'),
+    ('a theorem that is none, in a source', 'core/cull/cull.h', 'theorem 2', 'theorem 92', 'cull.h: names theorem 92'),
+    ('a section that is gone', TWO, '^###+ One normal', '#### One value', 'names the section "One normal"'),
+    ('a section in the next line', ONE, '^### Boxes of runs', '### Runs', 'names the section "Boxes of runs"'),
+    ('a test that is none', ONE, '`Cull.ALostStoreMisses`', '`Cull.ALostStore`', 'Cull.ALostStore: no such test'),
+    ('a pattern without a test', ONE, r'`PairsEdges.\*`', '`PairsCorners.*`', r'PairsCorners.\*: no such test'),
+    ('a citation without an entry', TWO, '@higham2002', '@higham1996', 'has no higham1996'),
+    ('a symbol with two meanings', ONE, r'^\| K \| a clearance', '| M | a clearance', 'symbol M is defined twice'),
+    ('a proof without an end', TWO, ' ∎$', '', 'does not end once'),
+    ('a lemma without a twin', ONE, r'\*Twins:\* `CullideLemma', '`CullideLemma', 'names no twins'),
+    ('a page that no map names', 'docs/README.md', r'\(tiles\.md\)', '(proofs.md)', 'docs/tiles.md: docs/README.md'),
+    ('a result that no map names', 'docs/results/README.md', r'\(motion\.md\)', '(native.md)', 'motion.md: docs/README.md'),
+    ('a lemma without assumptions', TWO, r'\*Assumes:\* lemmas 16 and 17\.', '', 'does not say what it assumes')]
+
+
+def self_test(source):
+    for name in 'docs', 'core', 'offsets', 'verify', 'tests', 'experiments':
+        shutil.copytree(f'{source}/{name}', name)
+    shutil.copy(f'{source}/README.md', '.')
+    failed = [check()[0]] if check()[1] else []
+    for name, path, text, instead, wanted in BROKEN:
+        kept = read(path)
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(re.sub(text, instead.replace('\\', r'\\'), kept, flags=re.MULTILINE))
+        said, status = check()
+        if kept == read(path) or not status or not re.search(wanted, said):
+            failed.append(f"self-test: {name}: {'the file was not changed' if kept == read(path) else said}")
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(kept)
+    return '\n'.join(failed) or 'docs: every rule is caught when it is broken', bool(failed)
+
+
+repository = os.path.dirname(os.path.realpath(__file__)) + '/..'
+argument = sys.argv[1] if sys.argv[1:] else repository
+with tempfile.TemporaryDirectory() as tree:
+    os.chdir(tree if argument == '--self-test' else argument)
+    message, result = self_test(repository) if argument == '--self-test' else check()
+    os.chdir('/')
+print(message)
+sys.exit(result)

@@ -1,0 +1,153 @@
+"""What the program claims and what it may overwrite: a certificate says no more than it proves and is bound to the
+list of pairs; what was not asked is said; no output is an input."""
+import base64
+import hashlib
+import re
+
+from cli_lab import case, read, rows, write
+
+# A run that misses pairs, and the truth.
+rows(r"""
+0 a run that misses | run {missing} --certificate c.json --pairs missed.csv | \+ [1-9][0-9,]* missed$
+0 the pairs | run two-spheres --method exact --certificate exact.json --pairs pairs.csv
+""", missing='two-spheres --method quick-cullide --device software --resolution 16')
+sha, missed = (hashlib.sha256(read(name).encode()).hexdigest() for name in ('pairs.csv', 'missed.csv'))
+
+
+def forge():
+    """Bit 6 set where a culled pair meets (byte 38, which is &, becomes f), two counts mended, another method. That
+    says nothing false of the scene but for the list of pairs."""
+    text = read('c.json')
+    evidence = re.search('"evidence": "(.*)"', text)[1]
+    said = base64.b64decode(evidence)
+    lies = said.count(b'&')
+    case('forging', lies > 0, 'the run missed no pair')
+    text = text.replace(evidence, base64.b64encode(said.replace(b'&', b'f')).decode()).replace('quick-cullide', 'far')
+    for key, more in ('kept', lies), ('culled', -lies):
+        text = re.sub(f'"{key}": ([0-9]+)', lambda found: f'"{key}": {int(found[1]) + more}', text)
+    write('forged.json', text)
+    write('of_the_scene.json', re.sub('"list_sha256": "[0-9a-f]+"', f'"list_sha256": "{sha}"', text))
+
+
+forge()
+rows(r"""
+$ grep -qx '  "list_sha256": "{sha}",' exact.json
+$ grep -qx '  "list_sha256": "{missed}",' c.json
+0 a certificate of exact | check exact.json two-spheres --pairs pairs.csv
+  | #0 ^proved: these [0-9,]+ pairs of the scene meet, and no others$ | ^list .*{sha}$
+  | pairs\.csv is this list: [0-9,]+ rows$ | ^  which pairs the run kept
+1 another list | check exact.json two-spheres --pairs missed.csv
+  | #0 ^not proved: missed\.csv is another list: a pair is missing$
+1 a certificate of a run that misses | check c.json two-spheres | #0 ^refuted: the pair is called culled, and it meets$
+1 a forged certificate | check forged.json two-spheres | #0 ^not proved: the certificate is of another list of pairs:
+0 forged with the hash as well | check of_the_scene.json two-spheres
+  | #0 ^proved: these [0-9,]+ pairs of the scene meet, and no
+  | ^unattested, .* about the scene and not about the run:$ | ^  that the method was far$ | ^  which pairs the run kept
+1 and is not the list of the run | check of_the_scene.json two-spheres --pairs missed.csv
+  | #0 ^not proved: missed\.csv is another list:
+bad a list that is not there | nothing\.csv: | check exact.json two-spheres --pairs nothing.csv
+bad an empty name of a list | --pairs: | check exact.json two-spheres --pairs ''
+$ sed 's/"version": 3/"version": 2/' exact.json >older.json
+bad a certificate of another version | older\.json: version is not 3 | check older.json two-spheres
+""", sha=sha, missed=missed)
+
+# ---- what was not asked: two triangles of one object that pierce each other
+
+rows(r"""
+pierced.obj << {T}; v 0.2 0.2 -1; v 0.2 0.2 1; v 0.3 0.6 1; f 1 2 3; f 5 6 7
+good.obj << {T}; f 1 2 3
+0 run | run pierced.obj --method far-pairs --certificate p.json --json r.json | {unasked} | ^not asked .*\(--self asks\)$
+  | promises to miss nothing$ | @r.json ~ "self_not_asked":\{"objects":1,"pairs":1,"which":\[\[0,0\]\]\}
+  | @p.json ~ "not_asked":\{"objects":1,"pairs":1\}
+# One object leaves nothing to test. That is said, with the command that tests it.
+0 nothing for {command} | {command} pierced.obj | ! ^verified
+  | ^nothing to test: the scene is one object, and an object is tested .* only with --self$
+  | ^this tests it: farcull {command} pierced\.obj --self$
+0 nothing for compare | compare pierced.obj --methods far-pairs,exact | ^this tests it: farcull compare pierced\.obj --self$
+0 nothing for cullide | run pierced.obj --method cullide --device software --resolution 64
+  | ^this tests it: farcull run pierced\.obj --method far-pairs --self$
+one.json << {"objects": [{"mesh": "pierced.obj"}]}
+0 nothing in a scene file | verify one.json | ^this tests it: farcull verify one\.json --self$
+  | @r.json ^    "nothing_to_test": "the scene is one object, and
+0 plan as JSON | plan pierced.obj --json - | ^  "nothing_to_test": "the scene is one object, and
+0 something for verify | verify pierced.obj --self --json something.json | ! nothing to test
+  | ^verified: no colliding pair was culled, 1 pair accounted for$ | @something.json ^    "nothing_to_test": null,$
+one.json << {"objects": [{"mesh": "pierced.obj", "self": true}]}
+0 something in a scene file | verify one.json | ^verified:
+0 two objects | verify pierced.obj good.obj | ^verified:
+0 check | check p.json pierced.obj | #0 ^proved: no pair of the scene meets$ | {unasked}
+0 verify | verify pierced.obj --method far-pairs | {unasked}
+0 run far | run pierced.obj --method far --device software --resolution 64 | {unasked} | ^not asked .*\(--self asks\)$
+0 run cullide | run pierced.obj --method cullide --device software --resolution 64 | {unasked}
+  | ^not asked .*\(--method far-pairs --self asks\)$
+0 compare | compare pierced.obj --methods far-pairs,exact | {unasked}
+0 bench | bench pierced.obj --device cpu --repeat 1 --peers none | {unasked}
+$ cp pierced.obj pierced0.obj
+0 frames | run pierced%d.obj --method far-pairs --frames 1 | ^not asked .* 1 pair of triangles inside pierced
+  | ^this tests it: farcull run pierced%d\.obj --method far-pairs --frames 1 --self$
+0 frames | run pierced%d.obj --method far-pairs --frames 1 --json - | ~ "self_not_asked":\{"objects":1,"pairs":1,
+0 plan | plan pierced.obj --method far-pairs
+  | ^not asked  whether an object meets itself: 1 pair of triangles inside pierced[ ]
+0 asked | run pierced.obj --method far-pairs --self --certificate s.json --pairs s.csv | ^colliding +1 pair[ ] | ! not asked
+0 check of it | check s.json pierced.obj --self --pairs s.csv | #0 ^proved: this pair of the scene meets, and no other$
+""", command=['run', 'verify', 'plan'],
+     unasked=r'^not asked +whether an object meets itself: 1 pair of triangles inside pierced \(')
+
+# ---- outputs that are inputs
+
+rows(r"""
+$ mkdir -p sub meshes results/report && : >results/report/results.sqlite
+sub/good.obj << {T}; f 1 2 3
+frame_7.obj << {T}; f 1 2 4
+meshes/armadillo.off << {T}; f 1 2 3
+s.json << {"objects": [{"mesh": "sub/good.obj"}, {"mesh": "{PWD}/frame_7.obj"}]}
+moving.json << {"objects": [{"mesh": "frame_%d.obj"}]}
+$ ln -s s.json link.json && ln s.json hard.json && ln -s sub/good.obj mesh_link.json && ln frame_7.obj mesh_hard.csv
+$ ln -s meshes/armadillo.off packaged.json && ln -s nowhere.json dangling.json
+$ ln -s report/results.sqlite results/results.sqlite
+bad {command} --json {scene} | --json: .* SCENE .*; choose another place for --json | {command} s.json --json {scene}
+bad {judge} {option} {scene} | {option}: .* SCENE[ ] | {judge} s.json {option} {scene}
+bad picture -o {scene} | -o: .* SCENE[ ] | picture s.json -o {scene}
+bad savings --json {scene} | --json: .* SCENE[ ] | experiment savings s.json --json {scene}
+bad family --csv {scene} | --csv: .* SCENE[ ] | experiment family s.json --csv {scene}
+bad {reader} over a mesh of the scene file by {mesh} | --json: .*obj, which SCENE reads | {*reader} s.json --json {mesh}
+bad picture over a mesh by {mesh} | -o: .*obj, which SCENE reads | picture s.json -o {mesh}
+bad run --pairs over a mesh by {mesh} | --pairs: .*obj, which SCENE reads | run sub/good.obj frame_7.obj --pairs {mesh}
+bad a numbered mesh | --json: mesh_hard\.csv is frame_7\.obj, which SCENE
+  | run frame_%d.obj sub/good.obj {moving} --json mesh_hard.csv
+bad a numbered mesh of a scene file | --pairs: mesh_hard\.csv is frame_7\.obj, which SCENE
+  | verify moving.json {moving} --pairs mesh_hard.csv
+$ cp exact.json kept.json
+bad check --json {exact} | --json: .*CERTIFICATE reads | check exact.json two-spheres --json {exact}
+bad check over the list | --json: pairs\.csv is pairs\.csv, which --pairs reads
+  | check exact.json two-spheres --pairs pairs.csv --json pairs.csv
+bad check over the scene | --json: .* SCENE[ ] | check exact.json s.json --json link.json
+bad a packaged mesh | --json: packaged\.json is .*armadillo\.off, which SCENE | {meshes} run near-copy --json packaged.json
+bad a packaged mesh of any scene | --json: packaged\.json is .*armadillo\.off, which SCENE
+  | {meshes} experiment savings --json packaged.json
+bad a scene over the meshes that it is made of | --write: .*armadillo\.off, which SCENE reads
+  | {meshes} scenes armadillo --write meshes
+bad results in the report | results/results\.sqlite: leads into DIR/report | report results
+# Two outputs that are one file. A link to a file that is not there counts as that file; so does a link to such a
+# link. Standard output is one as well.
+$ ln -s "$PWD/sub/../dangling.json" chain.json
+each --pairs: .*where --json goes as well | run two-spheres | --json new.csv --pairs {other}
+each --pairs: .*where --json goes as well | run two-spheres | --json dangling.json --pairs nowhere.json
+  | --json nowhere.json --pairs dangling.json
+each --certificate: .*where --json goes as well | run two-spheres --certificate | link.json --json hard.json
+  | dangling.json --json chain.json
+bad the table into the scene | standard output: .* SCENE[ ] | run s.json --method exact >>s.json
+$ touch both.txt
+bad the table and the record into one file | --json: .*where standard output goes as well
+  | run s.json --method exact --json both.txt >>both.txt
+# What is allowed stays so.
+0 another file | run s.json --method exact --json kept.json --pairs pairs.csv
+0 a link to nowhere, and another file | run s.json --method exact --json dangling.json --pairs elsewhere.csv
+0 the same device twice | run s.json --method exact --json /dev/null --pairs /dev/null
+0 the same device as stdout | run s.json --method exact --json /dev/null >/dev/null
+0 frames that are not read | run frame_%d.obj sub/good.obj --method far-pairs --frames 7:7 --json kept.json
+""", command=['run', 'verify', 'plan', 'compare', 'bench'], judge=['run', 'verify'], option=['--pairs', '--certificate'],
+     scene=['s.json', './s.json', '{PWD}/s.json', 'sub/../s.json', 'link.json', 'hard.json'],
+     reader=['run', 'verify', 'plan', 'compare', 'bench', 'experiment savings'], mesh=['mesh_link.json', 'mesh_hard.csv'],
+     moving='--method far-pairs --frames 7:7', exact=['exact.json', './exact.json'], meshes='FARCULL_MESHES={PWD}/meshes',
+     other=['new.csv', './new.csv', '{PWD}/new.csv', 'sub/../new.csv'])

@@ -1,0 +1,83 @@
+"""Kinds of contact, ignored objects and limits."""
+from cli_lab import rows
+
+# ---- bad input
+
+rows(r"""
+floor.obj << v 0 0 0; v 8 0 0; v 0 8 0; f 1 2 3
+fin.obj << v 1 1 -1; v 1 1 1; v 1 3 0; f 1 2 3
+spike.obj << v 4 2 0; v 4 2 3; v 5 2 3; f 1 2 3
+sheet.obj << v 2 2 0; v 3 2 0; v 2 3 0; f 1 2 3
+bad {columns} without pairs | {columns0}: .*--pairs | run {all} {*columns}
+bad kinds '{kinds}' | --kinds: .*give some of apart,[ ] | run {all} --pairs p.csv --kinds {kinds}
+bad limit '{limit}' | --limit: .*1 or more | run {all} --limit {limit}
+bad an unknown name | --ignore: 'floor:wing' names 'wing', and no object is called so; .*floor, fin
+  | run {all} --ignore floor:wing
+bad no colon | --ignore: 'floor' has no colon | run {all} --ignore floor
+bad one object | --ignore: 'fin:fin' names one object | verify {all} --ignore fin:fin
+bad an empty pair | --ignore: a pair of names is empty | plan {all} --ignore fin:floor,
+bad no file | none\.txt: cannot be read | run {all} --ignore-file none.txt
+nothing.txt << # only a comment
+bad a file of nothing | nothing\.txt: names no pair | run {all} --ignore-file nothing.txt
+wrong.txt << floor:fin; ; floor:wing
+bad a wrong line | wrong\.txt:3: 'floor:wing' names 'wing' | run {all} --ignore-file wrong.txt
+bad a certificate with {part} | {part0}: a certificate is about all[ ] | run {all} {*part} --certificate c.json
+""", all='floor.obj fin.obj spike.obj sheet.obj', columns=['--segments', '--kinds crossing'],
+     kinds=['', 'cross', 'crossing,', ',crossing', 'Crossing', 'crossing coplanar'],
+     limit=['0', '-1', '1.5', '', 'all', '99999999999999999999'],
+     part=['--limit 1', '--ignore floor:fin', '--ignore-file wrong.txt'])
+
+# ---- good cases
+
+rows(r"""
+0 kinds | verify {all} --contacts --pairs kinds.csv | ^contacts   1 touch-vertex \+ 1 coplanar \+ 1 crossing$
+  | @kinds.csv #0 ^object_a,triangle_a,object_b,triangle_b,contact$ | @kinds.csv ^0,0,1,0,crossing$
+  | @kinds.csv ^0,0,2,0,touch-vertex$ | @kinds.csv ^0,0,3,0,coplanar$
+0 without kinds | run {all} --pairs plain.csv | $ cmp -s plain.csv <(cut -d, -f1-4 kinds.csv)
+0 a list with kinds is proved | check --pairs kinds.csv {all}
+0 segments | run {all} --segments --faces --pairs - | ^object_a,.*,contact,x0,y0,z0,x1,y1,z1,face_a,face_b$
+  | ^0,0,1,0,crossing,1,1,0,1,3,0,0,0$ | ^0,0,2,0,touch-vertex,4,2,0,4,2,0,0,0$ | ^0,0,3,0,coplanar,,,,,,,0,0$
+0 some kinds | run {all} --kinds crossing,coplanar --pairs some.csv | $ cmp -s some.csv <(grep -v touch kinds.csv)
+0 kinds of a clearance | run {all} --clearance 9 --kinds apart --pairs - | ^0,0,|^1,0,2,0,apart$
+0 kinds of frames | run two-spheres --frames 2 --contacts --json - --pairs frames.csv | ^ +"crossing": [0-9]+,$
+  | @frames.csv #0 ^frame,object_a,.*,contact$
+
+# far-pairs makes none of the ignored pairs.
+0 ignored | verify {all} --ignore 'f*:spike' --pairs ignored.csv | [ ]2 ignored \+ 0 missed$
+  | ^ignored    0 candidate pairs of 2 pairs of objects$ | $ cmp -s ignored.csv <(grep -v ',2,0$' plain.csv)
+pairs.txt << # links; floor:spike; fin:spike
+0 ignored by {method} | run {all} --method {method} --ignore-file pairs.txt --pairs by.csv | $ cmp -s ignored.csv by.csv
+$ printf '\xEF\xBB\xBFfloor:spike\r\nfin:spike\r\n' >marked.txt
+0 a byte order mark | run {all} --ignore-file marked.txt --pairs by.csv | $ cmp -s ignored.csv by.csv
+0 ignored in frames | verify two-spheres --frames 2 --ignore first:second | [ ]52,428,800 ignored \+ 0 missed$
+# An object of the first frame that is gone in the second one; and one that comes in the second.
+parts_1.obj << v 1 1 -1; v 1 1 1; v 1 3 0; g a; f 1 2 3; v 4 1 -1; v 4 1 1; v 4 3 0; g b; f 4 5 6
+parts_2.obj << v 1 1 -1; v 1 1 1; v 1 3 0; g a; f 1 2 3
+parts.json << {"objects": [{"mesh": "parts_%d.obj", "split": "groups"}, {"mesh": "floor.obj"}]}
+ignores.json << {"ignore": [["*/b", "floor"]], "objects": [{"mesh": "parts_%d.obj", "split": "groups"},
+  {"mesh": "floor.obj"}]}
+goes.csv << frame,object_a,triangle_a,object_b,triangle_b; 1,0,0,2,0; 2,0,0,1,0
+0 an object that goes | verify parts.json --frames 1:2 --ignore '*/b:floor' --pairs frames.csv | $ cmp -s frames.csv goes.csv
+bad an object that comes | --ignore: '\*/b:floor' names '\*/b', and no object is called so
+  | run parts.json --frames 2:2 --ignore '*/b:floor'
+0 an object that goes, in the file | verify ignores.json --frames 1:2 --pairs file.csv | $ cmp -s file.csv goes.csv
+bad an object that comes, in the file | ignores\.json:1: ignore\[0\] names '\*/b', and no object is called so
+  | run ignores.json --frames 2:2
+
+# A polygon whose triangles a rounded sign would put outside of it, where the triangle is.
+seven.obj << v .002 .002 0; v .004 .002 0; v .006 -.003 0; v -.006 -.006 0; v -.003 .001 0; v -.003 -.005 0
+  ; v .003 -.003 0; f 1 2 3 4 5 6 7
+outside.obj << v -.0003 -.0026 -.001; v -.0003 -.0026 .001; v -.0002 -.0026 .001; f 1 2 3
+0 a triangle outside a polygon | verify seven.obj outside.obj | ^colliding +0 pairs$
+# A polygon that crosses itself is named.
+folded.obj << v 0 0 0; v 3 0 0; v 3 3 0; v 0 2 0; g a; f 1 2 3; g b; f 1 3 2 4
+folded.json << {"objects": [{"mesh": "folded.obj", "split": "groups"}]}
+0 a folded polygon | run folded.json | ^folded: 2 objects, 3 triangles, 1 polygon folded: face 1 of folded/b$
+0 a folded polygon, as JSON | run folded.json --json - | ~ "folded_polygons":1,"folded":\[\{"object":"folded/b","face":1\}\],
+0 a folded polygon of distances | distance folded.json | 1 polygon folded: face 1 of folded/b$
+
+0 a limit | verify {all} --limit 2 --pairs - --json first.json | $ cmp -s "$out" <(head -n 3 plain.csv)
+  | @first.json "complete": false
+0 a limit in the table | run two-tori --limit 1 | ^limit      1 pair at most; .* behind the last one$
+0 a limit beyond all | run {all} --limit 4 --json - | "complete": true
+""", all='floor.obj fin.obj spike.obj sheet.obj', method=['far-pairs', 'exact', 'i-collide'])

@@ -1,0 +1,143 @@
+"""farcull distance, and its certificates: what `check` proves, and a forged one it does not."""
+from cli_lab import rows, write
+
+NUMBERS = ['0', '-1', '1.5', '', 'x', '99999999999999999999']
+OPEN = 'v -5 -5 -5; v 29 -5 -5; v -5 29 -5; v -5 -5 29; f 1 3 2; f 1 2 4; f 2 3 4'
+
+# ---- bad input
+
+write('many.obj', ''.join(f'o o{i}\nv {i} 0 0\nv {i} 1 0\nv {i} 0 1\nf -3 -2 -1\n' for i in range(5794)))
+rows(r"""
+$ echo older >old.json
+small.obj << {T}; f 1 2 3; f 1 2 4; f 1 3 4; f 2 3 4
+open.obj << {open}
+large.obj << {open}; f 3 1 4
+right.obj << v 2 0 0; v 3 0 0; v 2 1 0; f 1 2 3
+bad no scene | SCENE: none is named | distance
+bad one object | SCENE: only one object .*farcull distance small\.obj --self | distance small.obj
+each SCENE: only one object | distance small.obj | --pairs nearest | --voronoi published
+bad no such pairs | --pairs: 'some' is no choice; give objects, nearest or all | {two} --pairs some
+bad all without a distance | --within: is missing | {two} --pairs all
+bad within '{within}' | --within: | {two} --within {within}
+bad k '{k}' | --k: | {two} --pairs nearest --k {k}
+bad k of objects | --k: has no meaning without --pairs nearest | {two} --k 2
+bad nearest and self | --self: has no meaning with --pairs nearest | {two} --pairs nearest --self
+bad threads '{threads}' | --threads: | {two} --threads {threads}
+bad inside maybe | --inside: .*give yes or no | {two} --inside maybe
+bad no such option | --clearance: farcull distance has no such option | {two} --clearance 1
+bad no such file | none\.obj: | distance small.obj none.obj --json old.json
+each {0}: | {two} | --inside yes --pairs all --within 1 | --csv right.obj
+bad one file twice | --csv: .*--json | {two} --csv a.out --json a.out
+bad frames of what stands still | --frames: nothing .*%d | {two} --frames 3
+bad no such diagram | --voronoi: 'some' is no choice; give published or reliable | {two} --voronoi some
+bad cells '{cells}' | --resolution: | {two} --voronoi reliable --resolution {cells}
+each {0}: has no meaning without --voronoi | {two} | --device cpu | --resolution 64
+bad no such device | --device: 'toaster' is no device | {two} --voronoi published --device toaster
+each {0}: has no meaning with --voronoi | {two} --voronoi published | --pairs nearest | --k 2 | --within 1 | --self | --inside no
+  | --verify | --frames 3 | --certificate c.json
+many.json << {"name": "many", "objects": [{"mesh": "many.obj", "split": "groups"}]}
+bad more pairs of objects than are answered
+  | scene: has 16782321 pairs of objects, and at most 4194304 .*; ask for the nearest | distance many.json
+bad a full disk for {output} | /dev/full: cannot be written: No space left | {two} {output} /dev/full
+0 a certificate | {two} --certificate whole.json
+$ for size in 0 1 100 300; do head -c $size whole.json >cut$size.json; done
+bad {size} bytes of a certificate | cut{size}\.json: not JSON at byte | check cut{size}.json small.obj right.obj
+""", open=OPEN, two='distance small.obj right.obj', output=['--json', '--csv', '--certificate'],
+     within=['-1', '-1e-300', 'nan', 'inf', '1e999', '', '1x', ' 1', '0x1p3'], k=NUMBERS, cells=[*NUMBERS, '16385'],
+     threads=['0', '-1', '1025', 'x', ''], size=['0', '1', '100', '300'])
+rows(r"""
+bad more pairs than are answered | within: has (more than )?[0-9]+ pairs .*; give a smaller distance
+  | distance random-soup --pairs all --within 100
+""", limits={'cpu': None})
+
+# ---- good cases
+
+rows(r"""
+0 two objects | {two} --verify | ^0 small +1 right +1 +0 vertex 1 +0 vertex 0
+  | ^verified: the answers are right, no nearer pair was culled, 4 pairs accounted for$
+  | ^nearest points and exact squares: with --csv or --json$
+0 the least | distance small.obj right.obj large.obj small.obj | ^least +0, of 0 small and 3 small.*, which meet$
+  | ^0 small +2 large .* a in b$
+0 as JSON | {two} --json - | ^ +"distance": 1\.0,$ | ^ +"squared": "1/1",$ | ^ +"inside": "none"$ | ^ +"hash": "[0-9a-f]{16}"$
+0 as CSV | {two} --csv - | ^object_a,triangle_a,object_b,triangle_b,distance,squared,x_a,
+  | ^0,0,1,0,1,1/1,1,0,0,2,0,0,vertex 1,vertex 0,none$
+0 inside | distance small.obj large.obj --csv - | ,a$
+0 outside in | distance large.obj small.obj --csv - | ,b$
+0 not closed | distance small.obj open.obj --csv - | ,not closed$
+0 inside not asked | distance small.obj large.obj --inside no --csv - | ,$
+0 within less | {two} --within 0.999 --csv - | $ (($(wc -l <"$out") == 1))
+0 within as much | {two} --within 1 --csv - | ^0,0,1,0,1,
+0 that meet | distance small.obj small.obj --csv - | ^0,0,1,0,0,0/1,
+0 nearest | distance small.obj right.obj large.obj --pairs nearest --k 4000000000 --verify | ^0 small +1  1 right +1[ ]
+0 all | distance crowd --pairs all --within 0.01 --verify --csv all.csv --json all.json | ^verified:
+0 self | distance rope:2000 --self --pairs all --within 0.001 --verify | ^verified: .* pairs accounted for$
+0 threads | distance crowd --pairs nearest --k 2 --threads 1 --csv one.csv
+0 threads | distance crowd --pairs nearest --k 2 --threads 3 --csv three.csv | $ cmp -s one.csv three.csv
+moves_{i}.obj << v {i} 0 0; v 9 0 0; v 9 1 0; f 1 2 3
+0 frames | distance small.obj moves_%d.obj --frames 2:4 --verify --csv frames.csv --json frames.json | ^ +3 +1 +2[ ]
+  | @frames.csv ^frame,object_a, | @frames.csv ^4,0,0,1,0,3,9/1, | @frames.json ^    "missed": 0,$
+# Objects that appear and vanish: hints of the frame before are of other objects, or of none.
+comes_1.obj << o o1; v 2 0 0; v 9 0 1; v 9 1 0; f -3 -2 -1
+comes_2.obj << o o1; v 3 0 0; v 9 0 1; v 9 1 0; f -3 -2 -1; o o2; v 4 0 0; v 9 0 2; v 9 1 0; f -3 -2 -1
+  ; o o3; v 5 0 0; v 9 0 3; v 9 1 0; f -3 -2 -1
+comes_3.obj << o o1; v 4 0 0; v 9 0 1; v 9 1 0; f -3 -2 -1
+comes_4.obj << o o1; v 5 0 0; v 9 0 1; v 9 1 0; f -3 -2 -1; o o2; v 6 0 0; v 9 0 2; v 9 1 0; f -3 -2 -1
+comes.json << {"name": "comes", "objects": [{"mesh": "small.obj"}, {"mesh": "comes_%d.obj", "split": "groups"}]}
+0 objects that come and go, {pairs} | distance comes.json --pairs {pairs} --frames 1:4 --verify --csv {pairs}.csv
+0 frame {frame} of them alone | distance comes.json --pairs {pairs} --frames {frame}:{frame} --csv frame.csv
+  | $ [[ -s frame.csv && $(grep '^{frame},' {pairs}.csv) == "$(grep '^{frame},' frame.csv)" ]]
+# A distance beyond the largest double.
+right_end.obj << v 1.7e308 0 0; v 1.6e308 0 0; v 1.7e308 1 0; f 1 2 3
+left_end.obj << v -1.7e308 0 0; v -1.6e308 0 0; v -1.7e308 1 0; f 1 2 3
+0 beyond the doubles | distance right_end.obj left_end.obj --verify --json - --certificate ends.json | ^ +"distance": null,$
+0 beyond the doubles, proved | check ends.json right_end.obj left_end.obj
+0 frames of a built-in scene | distance two-spheres --frames 2 --inside no
+0 a diagram | {three} --voronoi published | ^0 small +1 right +1 +
+  | ^nearest +[3-6] nearest objects of 3 objects; the diagram lost [0-9]+$
+0 a diagram that loses | distance ground@tiny --voronoi published --csv lost.csv --json lost.json
+  | @lost.csv ^object,nearest,nearest_objects,distance, | @lost.json ^    "lost": [1-9]
+0 a reliable diagram | distance crowd --voronoi reliable --resolution 32 --threads 1 --json - | ^    "lost": 0,$
+0 a {form} diagram on the CPU | {three} --voronoi {form} --resolution 9 --device cpu --csv cpu-{form}.csv
+0 a {form} diagram on GL | {three} --voronoi {form} --resolution 9 --device software --csv gl.csv --json gl.json
+  | $ cmp -s <(cut -d, -f1-4,7 gl.csv) <(cut -d, -f1-4,7 cpu-{form}.csv) | @gl.json ^    "renderer":
+  | @gl.json ^    "probes": "[0-9]+ probes of[ ]
+""", two='distance small.obj right.obj', three='distance small.obj right.obj large.obj', i=['2', '3', '4'],
+     pairs=['objects', 'nearest'], frame=['1', '2', '3', '4'], form=['published', 'reliable'])
+
+# ---- certificates: two squares of two triangles each, 2 apart; a third one 3 above
+
+rows(r"""
+{height}.obj << v 0 0 {height}; v 1 0 {height}; v 0 1 {height}; v 1 1 {height}; f 1 2 3; f 2 3 4
+0 objects | distance {scene} --certificate objects.json
+0 objects | check objects.json {scene} | #0 ^proved: these 3 pairs of objects are at exactly these distances, and there are
+0 within | distance {scene} --within 3 --certificate within.json
+0 within | check within.json {scene} | #0 ^proved: these 2 pairs of objects .* no others are at distance 3 or less$
+0 nearest | distance {scene} --pairs nearest --certificate nearest.json
+0 nearest | check nearest.json {scene} | #0 ^proved: these 2 pairs of objects .* each object's nearest, and no others$
+0 all | distance {scene} --pairs all --within 3 --certificate all.json
+0 all | check all.json {scene} | #0 ^proved: these [0-9]+ pairs of triangles .* at distance 3 or less$
+0 self | distance two-tori --self --certificate self.json
+0 self | check self.json two-tori --self | #0 ^proved: these 3 pairs of objects are at exactly
+0 a built-in scene | distance far-apart --certificate far.json
+0 a built-in scene | check far.json far-apart | #0 ^proved:
+# A false distance; an entry that is not there; a text cut short; another scene.
+$ sed 's|"4/1"|"5/1"|' objects.json >forged.json
+1 forged | check forged.json {scene} | #0 ^refuted: the square of the distance in distances\[0\]
+  | ^  pair: 0 triangle 0 and 2 triangle 0$ | ^  the exact square of its distance: 4/1, so about 2$
+$ sed '/"objects":\[0,1\]/d' objects.json >shorter.json
+1 left out | check shorter.json {scene} | #0 ^refuted: the objects of these triangles are not listed$
+$ head -c 400 objects.json >cut.json
+bad cut short | cut\.json: not JSON | check cut.json {scene}
+1 another scene | check objects.json 0.obj 2.obj | #0 ^not proved: the certificate is of another scene: objects[ ]
+list.csv << object_a,triangle_a,object_b,triangle_b
+bad with a list | --pairs: | check objects.json {scene} --pairs list.csv
+bad with a clearance | --clearance: | check objects.json {scene} --clearance 1
+bad over the scene | --certificate: | distance {scene} --certificate 0.obj
+# Frames: of the squares at heights 1 and 2.
+0 frames | distance 0.obj %d.obj --frames 1:2 --certificate f_%d.json
+0 frames | check f_%d.json 0.obj %d.obj --frames 1:2 | #0 ^ *frame[ ]
+  | ^proved: in each of 2 frames the distances are exactly these
+$ cp f_1.json f_2.json
+1 another frame | check f_%d.json 0.obj %d.obj --frames 2:2 | #0 ^ *frame[ ]
+  | not proved: the certificate is of another scene: hash
+""", height=['0', '1', '2', '5'], scene='0.obj 2.obj 5.obj')

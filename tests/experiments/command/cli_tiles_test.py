@@ -1,0 +1,106 @@
+"""Tiles: the built-in scenes in tiles give the lists of one run, with every option that tiles take; the others are
+refused; and what is merged is whole or not there."""
+import glob
+import os
+import re
+import shlex
+
+from cli_lab import bash, OUT, case, good, launch, read, rows, write
+
+
+def same(tiles, scene):
+    """So many tiles, merged, against one run."""
+    bash('rm -f t[0-9]*.json *.csv')
+    words = ['run', *shlex.split(scene), '--no-verify']
+    name = f'{tiles} tiles of {scene}'
+    good(name, 0, [*words, '--pairs', 'one.csv'])
+    for k in range(1, tiles + 1):
+        good(name, 0, [*words, '--tiles', f'{k}/{tiles}', '--json', f't{k}.json', '--pairs', f't{k}.csv'])
+    good(name, 0, ['merge', *sorted(glob.glob('t[0-9]*.json')), '-o', 'merged.csv', '--json', 'whole.json'],
+         ['$ cmp -s one.csv merged.csv'])
+
+
+# The built-in scenes, the large ones of a smaller size, in 1 to 5 tiles; those of packaged meshes, where they are.
+for number, scene in enumerate('''two-spheres two-tori random-soup needles degenerate ground crowd:60 far-apart field:3000
+    crumpled:2000 rope:3000 spheres:2000 fans:2000 funnel:5000 cylinders:20 torii:500 tree-leaves:20 shells cloth:1000
+    slivers stack mixed gap'''.split()):
+    same(number % 5 + 1, scene)
+if launch(['run', 'bunny', '--no-verify']) == 0:
+    same(2, 'two-bunnies')
+    same(2, 'mannequin-devil')
+# Options that tiles take.
+for tiles, scene in (3, 'two-tori --clearance 0.05'), (4, 'cloth:1000 --self --contacts --faces'), \
+        (2, 'two-spheres --self --clearance 0.01 --segments'), (3, 'degenerate --kinds crossing,coplanar'), \
+        (3, "crowd --ignore '*1:*2,*3:*4'"), (3, 'two-spheres --views x,y'), (2, 'field:3000@seed9'):
+    same(tiles, scene)
+
+# Scenes from files, with meshes that are named several times and divided; and one that ignores pairs of its objects, some
+# of which meet no tile of the other.
+rows('0 a scene from a file | scenes crowd:40 --write crowd')
+scene = read('crowd/scene.json')
+mesh = min(path for path in glob.glob('crowd/**', recursive=True) if os.path.isfile(path) and path[-5:] != '.json')
+write('again.json', '''{"name": "again", "objects": [{"mesh": "MESH", "self": true},
+  {"mesh": "MESH", "translate": [0.1, 0, 0]}, {"mesh": "MESH", "split": "components", "scale": 1.5}]}
+'''.replace('MESH', mesh))
+write('crowd/ignores.json', scene.replace('{', '{"ignore": [["*1", "*2"], ["*3", "*4"]],', 1))
+swap = {'tetrahedron0"': 'tetrahedron1"', 'tetrahedron1"': 'tetrahedron0"'}
+write('crowd/renamed.json', re.sub('tetrahedron[01]"', lambda found: swap[found[0]], scene))
+for tiles, options in (3, 'crowd/scene.json'), (3, 'crowd/scene.json --self'), (2, 'again.json'), (3, 'crowd/ignores.json'), \
+        (2, "crowd/ignores.json --ignore '*5:*6'"):
+    same(tiles, options)
+# Tiles that ignore others are not joined, whether the scene or the command line names them. Nor is a name believed, but
+# the object: here one and the same name is of two objects.
+rows(r"""
+0 ignores, 2 | run crowd/ignores.json --no-verify --tiles 2/2 --json t2.json --pairs t2.csv
+bad tiles of other options | .*was run with other options | merge t1.json t2.json -o merged.csv
+0 ignores, 1 | run crowd/scene.json --no-verify --tiles 1/2 --json t1.json --pairs t1.csv
+bad tiles of other ignored objects | .*was run with other options | merge t1.json t2.json -o merged.csv
+0 a name | run crowd/scene.json --no-verify --ignore 'tetrahedron0:*2' --tiles 1/2 --json t1.json --pairs t1.csv
+0 a name | run crowd/renamed.json --no-verify --ignore 'tetrahedron0:*2' --tiles 2/2 --json t2.json --pairs t2.csv
+bad one name of two objects | .*was run with other options | merge t1.json t2.json -o merged.csv
+""")
+same(2, f'{mesh} {mesh}')
+
+# The plan cuts where the runs cut, and counts what they read.
+rows('0 plan --tiles 3 | plan field:30000 --tiles 3 --json plan.json | ^ *3/3[ ]')
+ENTRIES = '"(from|to|triangles|home_triangles)": ([^,\n]*)'
+for k in 1, 2, 3:
+    launch(['run', 'field:30000', '--no-verify', '--tiles', f'{k}/3', '--json', '-'])
+    tile = re.findall('\n    ' + ENTRIES, re.search('\n  "tile": {.*?\n  }', read(OUT), re.DOTALL)[0])
+    case(f'the record of tile {k}', len(tile) == 4, f'it lacks an entry: {tile}')
+    plan = re.findall('\n      ' + ENTRIES, re.search(rf'"k": {k},.*?}}', read('plan.json'), re.DOTALL)[0])
+    case(f'the plan of tile {k}', plan == tile, f'{plan} instead of {tile}')
+
+rows(r"""
+0 the table | run field:30000 --tiles 2/3 | tile       2 of 3 | pairs of other tiles are not covered | memory    [ ]
+  | accounted [ ]
+# What cannot be answered in tiles, and values that are none.
+bad far | --tiles: are of far-pairs | run two-spheres --tiles 1/2 --method far
+each {0}: cannot be answered in tiles | run two-spheres --tiles 1/2 | --limit 5 | --frames 3 | --certificate c.json
+bad a tile that is none | .*'3/2' is no tile | run two-spheres --tiles 3/2
+bad a number that is none | .*'1/2' is no number of tiles | plan two-spheres --tiles 1/2
+each .*no object is called so | | run crowd --tiles 1/2 --ignore 'nobody:*' | plan crowd --tiles 2 --ignore 'nobody:*'
+$ "$farcull" run crowd --tiles 1/2 --json t.json --pairs $'u\xff.csv' 2>&1 >/dev/null | grep -qF 'no UTF-8'
+ignored.txt << tetrahedron0:*2
+each .*--ignore-file | run crowd --ignore-file ignored.txt | --tiles 1/2 --pairs ignored.txt | --json ignored.txt
+0 a tile of one object | run {mesh} --tiles 1/1 | nothing to test: the scene is one object
+# A record and a list in two folders, of which one is behind a link.
+$ mkdir -p real/deep && ln -s real/deep link
+0 behind a link | run two-tori --tiles 1/1 --json link/t.json --pairs t.csv
+0 behind a link | merge link/t.json -o merged.csv
+# A tile that missed a pair, or promises nothing.
+0 a promise | run two-tori --tiles 1/1 --json t1.json --pairs t1.csv
+0 a promise | merge t1.json -o merged.csv --json - | "promises": true
+$ sed -i 's/"false_negatives": 0/"false_negatives": 3/; s/"promises": true/"promises": false/' t1.json
+1 missed pairs | merge t1.json -o merged.csv | @err culled pairs that collide: 3 | no promise:
+""", mesh=mesh)
+
+# merge: what is missing, and that nothing is written then.
+same(3, 'two-tori')
+rows(r"""
+$ rm merged.csv && echo none >results.sqlite
+bad a tile is missing | .*of its 3 tiles one is missing: 2 | merge t1.json t3.json -o merged.csv
+bad no tile | .*is no record of a tile, as the others are | merge t1.json results.sqlite -o merged.csv
+$ head -c 100 t2.csv >short.csv && mv short.csv t2.csv
+bad cut short | .*it was cut short | merge t1.json t2.json t3.json -o merged.csv
+""")
