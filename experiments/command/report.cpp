@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "experiments/command/commands.h"
 #include "experiments/command/options.h"
-#include "experiments/picture/page.h"
+#include "experiments/picture/picture.h"
 #include "experiments/report/report.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
