@@ -1,9 +1,9 @@
 // ProximityTrees of near_pairs.h, in a file of this name because search.h includes that header.
-// Each question is a search (core/proximity/search.h). Searches go on side by side; one that takes
-// long is divided. For the nearest objects, each object asks about the others in the order of the
-// gaps of their boxes, and stops at a gap above the k-th least upper bound so far. For all pairs
-// within a distance, each object is searched with those that follow it, by searches whose bound
-// stays the limit and that stop often, to count the pairs of all of them.
+// Each question is a search (core/proximity/scene_trees.h). Searches go on side by side; one that
+// takes long is divided. For the nearest objects, each object asks about the others in the order of
+// the gaps of their boxes, and stops at a gap above the k-th least upper bound so far. For all
+// pairs within a distance, each object is searched with those that follow it, by searches whose
+// bound stays the limit and that stop often, to count the pairs of all of them.
 #include "core/proximity/near_pairs.h"
 
 #include <algorithm>
@@ -18,7 +18,6 @@
 #include "core/base/shared_work.h"
 #include "core/proximity/bounds.h"
 #include "core/proximity/scene_trees.h"
-#include "core/proximity/search.h"
 
 namespace farcull {
 namespace {
@@ -290,13 +289,11 @@ namespace {
 void check(const Scene& scene, std::span<const ObjectPair> questions, double within,
            std::size_t hints) {
   if (!(within >= 0)) throw std::logic_error("near_pairs: within is not a distance");
-  if (hints != 0 && hints != questions.size()) {
+  if (hints != 0 && hints != questions.size())
     throw std::logic_error("near_pairs: as many hints as questions, or none");
-  }
   for (const ObjectPair& q : questions) {
-    if (q.a > q.b || q.b >= scene.objects.size()) {
+    if (q.a > q.b || q.b >= scene.objects.size())
       throw std::logic_error("near_pairs: no such pair of objects");
-    }
   }
 }
 

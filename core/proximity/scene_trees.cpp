@@ -124,9 +124,8 @@ void load_leaf(const SceneTrees& trees, std::uint32_t leaf, BlockCorners& out) {
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const Vec3 p = trees.corner(out.triangle[k], corner);
       box.add(p);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t axis = 0; axis < 3; ++axis)
         out.corner[3 * corner + axis][k] = p[static_cast<Eigen::Index>(axis)];
-      }
     }
     if (k < out.count) out.boxes.set(k, box);
   }

@@ -17,7 +17,7 @@
 #include "core/base/shared_work.h"
 #include "core/boxes/lanes-inl.h"
 #include "core/proximity/bounds.h"
-#include "core/proximity/search.h"
+#include "core/proximity/scene_trees.h"
 #include "core/proximity/triangle_pairs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -408,9 +408,7 @@ std::vector<Search> divide(Search& search) {
   }
   // The last one is looked at first, in each part as well.
   const std::size_t n = search.open.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    out[(n - 1 - k) % out.size()].open.push_back(search.open[k]);
-  }
+  for (std::size_t k = 0; k < n; ++k) out[(n - 1 - k) % out.size()].open.push_back(search.open[k]);
   search.open.clear();
   return out;
 }

@@ -159,9 +159,8 @@ bool less(const Key& a, const Key& b) { return a.lo < b.lo; }
 SweepPruneResult SweepPrune::find(const Scene& scene) { return find(scene, triangle_boxes(scene)); }
 
 SweepPruneResult SweepPrune::find(const Scene& scene, std::span<const Box> boxes) {
-  if (boxes.size() != scene.triangles.size()) {
+  if (boxes.size() != scene.triangles.size())
     throw std::logic_error("SweepPrune::find: not as many boxes as triangles");
-  }
   SweepPruneResult result;
   SweepPruneCounts& counts = result.counts;
   const std::vector<Box> of_objects = object_boxes(scene, boxes);
@@ -342,9 +341,7 @@ void SweepPrune::fill_columns(std::span<const Box> boxes) {
       for (std::size_t x = range.u0; x <= range.u1; ++x) visit(x + (y << bits_[0]));
     }
   };
-  for (const Item& item : items_) {
-    for_columns(item.range, [this](std::size_t c) { ++starts_[c]; });
-  }
+  for (const Item& item : items_) for_columns(item.range, [this](std::size_t c) { ++starts_[c]; });
   std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
   entries_.resize(total);
   for (std::size_t i = items_.size(); i-- > 0;) {  // from the back: ends become starts
@@ -375,9 +372,8 @@ std::vector<TrianglePair> SweepPrune::sweep_columns(SweepPruneCounts& counts) {
           continue;
         }
         // Each pair is reported once: in the one column that holds the larger lower ends.
-        if (std::max(e.range.u0, f.range.u0) != u || std::max(e.range.v0, f.range.v0) != v) {
+        if (std::max(e.range.u0, f.range.u0) != u || std::max(e.range.v0, f.range.v0) != v)
           continue;
-        }
         pairs.push_back({std::min(e.triangle, f.triangle), std::max(e.triangle, f.triangle)});
       }
     }

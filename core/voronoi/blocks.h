@@ -143,9 +143,8 @@ inline void require(const VoronoiOptions& options) {
     throw Error("resolution", "is " + std::to_string(options.resolution),
                 "give 1 to " + std::to_string(kVoronoiLargest));
   }
-  if (!(options.widening >= 0 && options.widening <= 1)) {
+  if (!(options.widening >= 0 && options.widening <= 1))
     throw Error("widening", "is not in 0 to 1", "leave it at 1, which the proof asks for");
-  }
 }
 
 /// Distances of cells and triangles that a device computes for a slice.

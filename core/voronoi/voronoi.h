@@ -21,15 +21,168 @@
 // the cells of each brick from these triangles.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "core/base/glsl_shim.h"
 #include "core/base/progress.h"
 #include "core/scene/scene.h"
-#include "core/voronoi/grid.h"
+
+namespace farcull {
+
+// The grid of the discrete Voronoi diagram, triangles in its units, and the distance of a point
+// from a triangle in float, between two bounds of the exact one.
+//
+// A coordinate x of the scene is x 2^exponent - lo, over `cell`, in units of the grid: the cells
+// are the unit cubes [i, i + 1]. The scaling by a power of two keeps all finite doubles in range.
+//
+// Let N be at least every coordinate of the point and of the triangle, none of which is negative,
+// and u = 2^-24. All roundings are to nearest.
+//
+// The nearest point is looked for on each edge and in the face. On an edge it is w = q + t (q' - q)
+// with a float t in [0, 1], whatever error t has; in the face it is q0 + s (q1 - q0) + t (q2 - q0)
+// with floats s, t >= 0 and s + t <= 1 (1 + u where the float sum is rounded down to 1). So there
+// is a point P of the triangle that w was meant to be. Along each axis w is off P by at most uN for
+// each difference, product and sum: with the factor 1 + u, and with uN more for c - w, n = c - w is
+// off c - P by at most 6.2 uN, which is 10.8 uN as a length. The length of n is computed with a
+// relative error of at most 2.6 u, where n is no longer than 1.7321 N: 4.6 uN. A corner was rounded
+// to float by at most 1.01 uN along each axis: 1.8 uN. So the exact distance is at most the
+// computed one + 17.2 uN.
+//
+// For a lower bound, no point of the triangle is nearer to c along n than its corners are: the
+// distance is at least the least of n . (c - q_i) / |n|. With g the computed product, its relative
+// error is 4.1 u of |n| |c - q_i|: 7.2 uN of |n|. Dividing by the computed length errs by 3.7 u of
+// the quotient, which is at most 1.74 N: 6.5 uN. With the corners' 1.8 uN: 15.5 uN. Products below
+// the normal floats err by 2^-149 each, far less than uN |n| where |n| is at least kShortest.
+//
+// So voronoi_error() = 32 uN bounds both, with room for the roundings of a few sums of distances
+// (docs/voronoi.md, lemma V6).
+
+/// The cubes [0, cells[0]] x [0, cells[1]] x [0, cells[2]] contain all triangles of the scene.
+struct VoronoiGrid {
+  int exponent = 0;
+  Vec3 lo = Vec3::Zero();
+  double cell = 1;
+  std::array<int, 3> cells = {1, 1, 1};
+
+  int longest() const;  // the largest of `cells`
+  /// A distance in units of the grid, in world units, rounded up or kept; infinite where it is too
+  /// large for a double.
+  double world(double distance) const;
+};
+
+/// The grid with `resolution` cells along the longest side of the box of all triangles.
+VoronoiGrid voronoi_grid(const Scene& scene, int resolution);
+
+/// A triangle in units of the grid: each coordinate is at most 1.01 * 2^-24 longest() off.
+struct GridTriangle {
+  std::array<std::array<float, 3>, 3> corners;
+  std::uint32_t object = 0;
+};
+std::vector<GridTriangle> grid_triangles(const Scene& scene, const VoronoiGrid& grid,
+                                         unsigned threads);
+
+/// A point in units of the grid.
+using GridPoint = std::array<float, 3>;
+
+/// 32 uN, with N cells along the longest side.
+inline float voronoi_error(int longest) { return 0x1p-19f * static_cast<float>(longest); }
+
+/// lower <= the exact distance <= upper. computed: as a diagram in float has it.
+struct GridDistance {
+  float computed;
+  float lower;
+  float upper;
+};
+
+namespace grid_distance {
+
+constexpr float kShortest = 0x1p-40f;
+
+inline GridPoint minus(const GridPoint& a, const GridPoint& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline float dot(const GridPoint& a, const GridPoint& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline GridPoint cross(const GridPoint& a, const GridPoint& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+// In [0, 1], also where the quotient is not a number.
+inline float part(float numerator, float denominator) {
+  const float t = numerator / denominator;
+  return t > 0 ? std::min(t, 1.0f) : 0.0f;
+}
+
+// The shorter of n and c - w, with its square.
+struct Shortest {
+  GridPoint n;
+  float square;
+
+  void add(const GridPoint& other) {
+    const float of_other = dot(other, other);
+    if (of_other < square) {
+      n = other;
+      square = of_other;
+    }
+  }
+};
+
+inline GridPoint to_edge(const GridPoint& c, const GridPoint& q, const GridPoint& along) {
+  const float t = part(dot(minus(c, q), along), dot(along, along));
+  return minus(c, {q[0] + t * along[0], q[1] + t * along[1], q[2] + t * along[2]});
+}
+
+// Adds the point of the face below c, if it is inside.
+inline void add_face(const GridPoint& c, const GridPoint& q, const GridPoint& e, const GridPoint& f,
+                     Shortest& shortest) {
+  const GridPoint normal = cross(e, f), from = minus(c, q);
+  const float square = dot(normal, normal);
+  const float s = dot(cross(from, f), normal) / square, t = dot(cross(e, from), normal) / square;
+  // Not so where the normal is 0 and these are no numbers.
+  if (!(s >= 0 && t >= 0 && s + t <= 1)) return;
+  GridPoint w;
+  for (std::size_t k = 0; k < 3; ++k) w[k] = q[k] + s * e[k] + t * f[k];
+  shortest.add(minus(c, w));
+}
+
+}  // namespace grid_distance
+
+/// error: voronoi_error() of the grid.
+inline GridDistance distance_of(const GridPoint& c, const GridTriangle& triangle, float error) {
+  using namespace grid_distance;
+  const auto& q = triangle.corners;
+  const GridPoint e = minus(q[1], q[0]), f = minus(q[2], q[0]);
+  const GridPoint first = to_edge(c, q[0], e);
+  Shortest shortest{first, dot(first, first)};
+  shortest.add(to_edge(c, q[0], f));
+  shortest.add(to_edge(c, q[1], minus(q[2], q[1])));
+  add_face(c, q[0], e, f, shortest);
+  const GridPoint& n = shortest.n;
+  const float length = std::sqrt(shortest.square);
+  const float along =
+      std::min({dot(n, minus(c, q[0])), dot(n, minus(c, q[1])), dot(n, minus(c, q[2]))});
+  const float lower = length >= kShortest ? along / length - error : 0.0f;
+  return {length, std::max(lower, 0.0f), length + error};
+}
+
+}  // namespace farcull
+
+// The kernel of devices compiled as C++, with bounds of its own.
+namespace farcull::voronoi_bounds {
+
+using namespace farcull::glsl;
+#include "core/voronoi/voronoi_bounds.glsl"
+
+/// 48 v N, with N cells along the longest side.
+inline float error(int longest) { return 0x1.8p-18f * static_cast<float>(longest); }
+
+}  // namespace farcull::voronoi_bounds
 
 namespace farcull {
 

@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/terminal.h"
-#include "experiments/scenes/mesh/mesh.h"
+#include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "experiments/command/options.h"
-#include "experiments/picture/page.h"
+#include "experiments/picture/picture.h"
 
 namespace farcull {
 

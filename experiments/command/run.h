@@ -7,8 +7,8 @@
 #include "experiments/command/options.h"
 #include "experiments/record/output.h"
 #include "experiments/scenes/frames.h"
-#include "experiments/scenes/ignore.h"
-#include "experiments/tiles/census.h"
+#include "experiments/scenes/scene_file.h"
+#include "experiments/tiles/run_tile.h"
 
 namespace farcull {
 

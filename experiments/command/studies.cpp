@@ -21,7 +21,7 @@
 #include "experiments/suite/reader.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
-#include "experiments/tiles/merge_tiles.h"
+#include "experiments/tiles/run_tile.h"
 
 namespace farcull {
 namespace {

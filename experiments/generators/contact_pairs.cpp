@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "experiments/generators/families.h"
+#include "experiments/generators/pair_generators.h"
 
 namespace farcull {
 namespace {
@@ -39,9 +39,7 @@ MadePair finished(RandomDraws& draws, double bits, const Corners& a, Corners b) 
   }
   const double unit = std::ldexp(1, -static_cast<int>(bits));
   MadePair out{{a, b}};
-  for (Corners* t : {&out.a, &out.b}) {
-    for (Vec3& p : *t) p *= unit;
-  }
+  each_corner(out, [&](Vec3& p) { p *= unit; });
   return out;
 }
 
@@ -165,9 +163,7 @@ MadePair coplanar_step(RandomDraws& draws, double steps) {
   const double from = std::floor(in_plane ? shift : length / 4);
   pair.b = {at(from, step, out), at(from + std::floor(length / 2), step, out),
             at(from, top + step, out)};
-  for (Corners* t : {&pair.a, &pair.b}) {
-    for (Vec3& p : *t) p *= 0x1p-48;
-  }
+  each_corner(pair, [&](Vec3& p) { p *= 0x1p-48; });
   return pair;
 }
 
@@ -188,9 +184,7 @@ MadePair duplicates(RandomDraws& draws, double units) {
     // The same but for one corner, which moves by one unit.
     if (!out.neighbours && draws.chance(2)) out.b[draws.below(3)][moved] += draws.sign();
   }
-  for (Corners* t : {&out.a, &out.b}) {
-    for (Vec3& p : *t) p *= 0x1p-50;
-  }
+  each_corner(out, [&](Vec3& p) { p *= 0x1p-50; });
   return out;
 }
 

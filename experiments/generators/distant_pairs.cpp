@@ -1,9 +1,8 @@
 // Pairs about distance (gaps on both sides of contact, distances from the origin, scales) and about
 // shape (random triangles, slivers, degenerate ones, neighbours that fold).
 #include <cmath>
-#include <cstdlib>
 
-#include "experiments/generators/families.h"
+#include "experiments/generators/pair_generators.h"
 
 namespace farcull {
 namespace {
@@ -18,13 +17,6 @@ std::vector<double> signed_powers(bool zero_each) {
     out.push_back(std::ldexp(1, -k));
     out.push_back(-std::ldexp(1, -k));
   }
-  return out;
-}
-
-/// Powers of ten from 10^first to 10^last, each the double nearest to it.
-std::vector<double> powers_of_ten(std::initializer_list<const char*> list) {
-  std::vector<double> out;
-  for (const char* text : list) out.push_back(std::strtod(text, nullptr));
   return out;
 }
 
@@ -92,31 +84,25 @@ MadePair near_pair(RandomDraws& draws) {
   }
 }
 
-template <class Function>
-MadePair each_corner(MadePair pair, const Function& function) {
-  for (Corners* t : {&pair.a, &pair.b}) {
-    for (Vec3& p : *t) p = function(p);
-  }
-  return pair;
-}
-
 /// Moved away from the origin, so that coordinates lose their last bits.
 MadePair far_away(RandomDraws& draws, double distance) {
-  const MadePair pair = near_pair(draws);
+  MadePair pair = near_pair(draws);
   Vec3 to = draws.point();
   to[draws.below(3)] = draws.sign();
-  return each_corner(pair, [&](const Vec3& p) { return Vec3(p + distance * to); });
+  each_corner(pair, [&](Vec3& p) { p += distance * to; });
+  return pair;
 }
 
 /// Scaled, half of the time by a power of two, which keeps contact exact.
 MadePair scales(RandomDraws& draws, double scale) {
-  const MadePair pair = draws.chance(3) ? gap_face(draws, 0) : near_pair(draws);
+  MadePair pair = draws.chance(3) ? gap_face(draws, 0) : near_pair(draws);
   if (draws.chance(2)) {
     int exponent = 0;
     std::frexp(scale, &exponent);
     scale = std::ldexp(1, exponent);
   }
-  return each_corner(pair, [&](const Vec3& p) { return Vec3(p * scale); });
+  each_corner(pair, [&](Vec3& p) { p *= scale; });
+  return pair;
 }
 
 /// A triangle and one that is so many times smaller, at its corner, edge or face.
@@ -168,9 +154,7 @@ MadePair slivers(RandomDraws& draws, double aspect) {
 const std::vector<double> kBits = {8, 16, 24, 32, 40, 50};
 
 MadePair in_units(MadePair pair, double bits) {
-  for (Corners* t : {&pair.a, &pair.b}) {
-    for (Vec3& p : *t) p *= std::ldexp(1, -static_cast<int>(bits));
-  }
+  each_corner(pair, [&](Vec3& p) { p *= std::ldexp(1, -static_cast<int>(bits)); });
   return pair;
 }
 
@@ -266,36 +250,33 @@ MadePair fold_vertex(RandomDraws& draws, double height) {
   return fold(draws, {p, Vec3(x, -y, 0), Vec3(x, y, 0)}, {p, Vec3(u, v, height), Vec3(s, t, top)});
 }
 
+const std::vector<double> kTo1e15 = {1,   1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                     1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+
 }  // namespace
 
 std::vector<PairFamily> distance_families() {
-  const std::vector<double> up_to_1e15 =
-      powers_of_ten({"1", "1e1", "1e2", "1e3", "1e4", "1e5", "1e6", "1e7", "1e8", "1e9", "1e10",
-                     "1e11", "1e12", "1e13", "1e14", "1e15"});
-  const std::vector<double> magnitudes =
-      powers_of_ten({"1e-150", "1e-120", "1e-100", "1e-80", "1e-60", "1e-40", "1e-30", "1e-20",
-                     "1e-15",  "1e-10",  "1e-5",   "1",     "1e5",   "1e10",  "1e15",  "1e20",
-                     "1e30",   "1e40",   "1e60",   "1e80",  "1e100", "1e120", "1e150"});
+  const std::vector<double> magnitudes = {1e-150, 1e-120, 1e-100, 1e-80, 1e-60, 1e-40, 1e-30, 1e-20,
+                                          1e-15,  1e-10,  1e-5,   1,     1e5,   1e10,  1e15,  1e20,
+                                          1e30,   1e40,   1e60,   1e80,  1e100, 1e120, 1e150};
   return {
       {"gap-face", "a corner above a face, or below it",
        "the gap, of triangles of the size 1; negative below", signed_powers(false), gap_face},
       {"gap-edge", "an edge above an edge, or below it",
        "the gap, of triangles of the size 1; negative below", signed_powers(false), gap_edge},
-      {"far-away", "moved away from the origin", "the distance, in sizes of the triangles",
-       up_to_1e15, far_away},
+      {"far-away", "moved away from the origin", "the distance, in sizes of the triangles", kTo1e15,
+       far_away},
       {"scales", "tiny and huge triangles", "the size", magnitudes, scales},
-      {"mixed-scales", "a triangle and a small one at it", "the ratio of their sizes", up_to_1e15,
+      {"mixed-scales", "a triangle and a small one at it", "the ratio of their sizes", kTo1e15,
        mixed_scales},
   };
 }
 
 std::vector<PairFamily> shape_families() {
-  const std::vector<double> aspects = {1,   1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                       1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
   return {
       {"random", "corners anywhere in a cube", "", {0}, random_pair},
       {"slivers", "long thin triangles that pass each other at about their width",
-       "length over width", aspects, slivers},
+       "length over width", kTo1e15, slivers},
       {"points", "a point and a point, a segment or a triangle", "bits of the coordinates", kBits,
        points},
       {"segments", "a segment and a segment or a triangle", "bits of the coordinates", kBits,

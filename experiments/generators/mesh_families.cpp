@@ -2,12 +2,11 @@
 // ground. Of one object that is tested against itself: cloth, ropes, soup, fans and folds.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <utility>
 
-#include "experiments/generators/families.h"
-#include "experiments/scenes/mesh/shapes.h"
+#include "experiments/generators/pair_generators.h"
+#include "experiments/scenes/mesh/scene_build.h"
 
 namespace farcull {
 namespace {
@@ -19,21 +18,11 @@ std::uint32_t index(std::size_t i) { return static_cast<std::uint32_t>(i); }
 /// A sheet of `columns` by `rows` cells whose vertex (i, j) is at place(i, j).
 template <class Place>
 SuiteObject sheet(int columns, int rows, const Place& place) {
-  SuiteObject out;
-  for (int i = 0; i <= columns; ++i) {
-    for (int j = 0; j <= rows; ++j) out.vertices.push_back(place(i, j));
-  }
-  const auto at = [&](int i, int j) {
-    return index(static_cast<std::size_t>(i) * (static_cast<std::size_t>(rows) + 1) +
-                 static_cast<std::size_t>(j));
-  };
-  for (int i = 0; i < columns; ++i) {
-    for (int j = 0; j < rows; ++j) {
-      out.add(at(i, j), at(i + 1, j), at(i + 1, j + 1));
-      out.add(at(i, j), at(i + 1, j + 1), at(i, j + 1));
-    }
-  }
-  return out;
+  Mesh mesh = shapes::surface(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows),
+                              false, [&](std::uint32_t i, std::uint32_t j) -> Vec3 {
+                                return place(static_cast<int>(i), static_cast<int>(j));
+                              });
+  return {std::move(mesh.vertices), std::move(mesh.triangles)};
 }
 
 /// The place of column i of a sheet that is folded to and fro in layers of `width` columns.
@@ -332,136 +321,56 @@ void join_vertices(SuiteObject& object) {
   object.vertices = std::move(kept);
 }
 
-double number(const char* text) { return std::strtod(text, nullptr); }
-
-/// Families of two or three objects.
-std::vector<MeshFamily> surface_families() {
-  return {
-      {"scans",
-       "two bumpy surfaces with noise",
-       "depth to which they go into each other",
-       false,
-       scans,
-       {{0.25, 3}, {0.25, 5}, {number("1e-3"), 5}, {number("1e-9"), 5}},
-       true},
-      {"far-scans",
-       "two scans far from the origin",
-       "the distance, in their radii",
-       false,
-       far_scans,
-       {{1e6, 3}, {1e10, 4}, {1e14, 4}},
-       true},
-      {"scaled-scans",
-       "tiny and huge scans",
-       "the radius",
-       false,
-       scaled_scans,
-       {{number("1e-100"), 3}, {number("1e100"), 3}},
-       false},
-      {"plates",
-       "plates of long thin triangles that lie on each other, and a bar through both",
-       "length over width of the triangles, about",
-       false,
-       plates,
-       {{64, 0}, {0x1p16, 10}, {0x1p36, 30}},
-       true},
-      {"shells",
-       "nested shells, of which the outermost crosses the one below it",
-       "the gap between two, in radii",
-       false,
-       shells,
-       {{0x1p-10, 3}, {0x1p-20, 4}, {0x1p-34, 4}},
-       true},
-      {"copies",
-       "a surface and its copy",
-       "units of 2^-52 by which the copy is moved",
-       false,
-       copies,
-       {{0, 2}, {1, 3}, {1024, 3}},
-       true},
-      {"ground",
-       "two large triangles and small ones on them",
-       "the ratio of their sizes",
-       false,
-       ground,
-       {{1e6, 1000}, {1e12, 1000}},
-       false},
-      {"sheets",
-       "a sheet above another one, touching it here and there",
-       "the gap, in cells",
-       false,
-       sheets,
-       {{0x1p-20, 40}, {0x1p-50, 40}},
-       false},
-  };
+/// A row of the table of families. small: its first member is in a small suite too.
+MeshFamily family(const char* name, const char* description, const char* parameter,
+                  decltype(MeshFamily::make) make, bool self, bool small,
+                  std::vector<MeshFamily::Member> members) {
+  return {name, description, parameter, self, make, std::move(members), small};
 }
 
-/// Families of one object that is tested against itself.
-std::vector<MeshFamily> self_families() {
-  return {
-      {"cloth",
-       "a cloth in four layers",
-       "the gap between layers, in cells",
-       true,
-       cloth,
-       {{number("1e-1"), 12}, {number("1e-3"), 48}, {number("1e-6"), 48}, {number("1e-12"), 32}},
-       true},
-      {"accordion", "a sheet folded flat", "its layers", true, accordion, {{4, 4}, {16, 6}}, true},
-      {"crumpled",
-       "a sheet whose vertices are moved",
-       "by how much at most, in cells",
-       true,
-       crumpled,
-       {{1, 20}, {2, 60}, {4, 30}},
-       true},
-      {"rope",
-       "a rope in three windings",
-       "from one winding to the next, in diameters",
-       true,
-       rope,
-       {{0.9375, 12}, {1 + 0x1p-10, 40}, {1.0625, 40}},
-       true},
-      {"soup",
-       "triangles that share no vertices",
-       "their size, in halves of the box around them",
-       true,
-       soup,
-       {{0.125, 1000}, {0.015625, 10000}, {0.5, 500}},
-       true},
-      {"fan",
-       "triangles with one corner in common",
-       "their heights above a plane",
-       true,
-       fan,
-       {{0.125, 200}, {number("1e-3"), 500}, {number("1e-9"), 500}},
-       true},
-      {"book",
-       "triangles with one edge in common",
-       "their number",
-       true,
-       book,
-       {{40, 2}, {200, 3}},
-       false},
-      {"degenerate",
-       "a sheet with segments and points among its triangles",
-       "one triangle in so many",
-       true,
-       degenerate,
-       {{4, 20}, {2, 40}},
-       true},
-  };
-}
+constexpr bool kSelf = true, kSmall = true;
 
 }  // namespace
 
 const std::vector<MeshFamily>& mesh_families() {
-  static const std::vector<MeshFamily> families = [] {
-    std::vector<MeshFamily> out = surface_families();
-    for (MeshFamily& family : self_families()) out.push_back(std::move(family));
-    std::sort(out.begin(), out.end(),
-              [](const MeshFamily& x, const MeshFamily& y) { return x.name < y.name; });
-    return out;
-  }();
+  static const std::vector<MeshFamily> families = {
+      family("accordion", "a sheet folded flat", "its layers", accordion, kSelf, kSmall,
+             {{4, 4}, {16, 6}}),
+      family("book", "triangles with one edge in common", "their number", book, kSelf, !kSmall,
+             {{40, 2}, {200, 3}}),
+      family("cloth", "a cloth in four layers", "the gap between layers, in cells", cloth, kSelf,
+             kSmall, {{1e-1, 12}, {1e-3, 48}, {1e-6, 48}, {1e-12, 32}}),
+      family("copies", "a surface and its copy", "units of 2^-52 by which the copy is moved",
+             copies, !kSelf, kSmall, {{0, 2}, {1, 3}, {1024, 3}}),
+      family("crumpled", "a sheet whose vertices are moved", "by how much at most, in cells",
+             crumpled, kSelf, kSmall, {{1, 20}, {2, 60}, {4, 30}}),
+      family("degenerate", "a sheet with segments and points among its triangles",
+             "one triangle in so many", degenerate, kSelf, kSmall, {{4, 20}, {2, 40}}),
+      family("fan", "triangles with one corner in common", "their heights above a plane", fan,
+             kSelf, kSmall, {{0.125, 200}, {1e-3, 500}, {1e-9, 500}}),
+      family("far-scans", "two scans far from the origin", "the distance, in their radii",
+             far_scans, !kSelf, kSmall, {{1e6, 3}, {1e10, 4}, {1e14, 4}}),
+      family("ground", "two large triangles and small ones on them", "the ratio of their sizes",
+             ground, !kSelf, !kSmall, {{1e6, 1000}, {1e12, 1000}}),
+      family("plates",
+             "plates of long thin triangles that lie on each other, and a bar through both",
+             "length over width of the triangles, about", plates, !kSelf, kSmall,
+             {{64, 0}, {0x1p16, 10}, {0x1p36, 30}}),
+      family("rope", "a rope in three windings", "from one winding to the next, in diameters", rope,
+             kSelf, kSmall, {{0.9375, 12}, {1 + 0x1p-10, 40}, {1.0625, 40}}),
+      family("scaled-scans", "tiny and huge scans", "the radius", scaled_scans, !kSelf, !kSmall,
+             {{1e-100, 3}, {1e100, 3}}),
+      family("scans", "two bumpy surfaces with noise", "depth to which they go into each other",
+             scans, !kSelf, kSmall, {{0.25, 3}, {0.25, 5}, {1e-3, 5}, {1e-9, 5}}),
+      family("sheets", "a sheet above another one, touching it here and there", "the gap, in cells",
+             sheets, !kSelf, !kSmall, {{0x1p-20, 40}, {0x1p-50, 40}}),
+      family("shells", "nested shells, of which the outermost crosses the one below it",
+             "the gap between two, in radii", shells, !kSelf, kSmall,
+             {{0x1p-10, 3}, {0x1p-20, 4}, {0x1p-34, 4}}),
+      family("soup", "triangles that share no vertices",
+             "their size, in halves of the box around them", soup, kSelf, kSmall,
+             {{0.125, 1000}, {0.015625, 10000}, {0.5, 500}}),
+  };
   return families;
 }
 

@@ -7,6 +7,57 @@
 #include <utility>
 
 namespace farcull {
+
+// Rotations come from quaternions with whole parts (Rodrigues' parameters), so that no sine is
+// taken.
+
+namespace {
+
+/// The rotation of the quaternion w + xi + yj + zk times its squared length.
+Frame scaled_rotation(double w, double x, double y, double z) {
+  const Vec3 first(w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y));
+  const Vec3 second(2 * (x * y - w * z), w * w - x * x + y * y - z * z, 2 * (y * z + w * x));
+  const Vec3 third(2 * (x * z + w * y), 2 * (y * z - w * x), w * w - x * x - y * y + z * z);
+  return {{first, second, third}};
+}
+
+}  // namespace
+
+void shuffle(RandomDraws& draws, DrawnPair& pair) {
+  for (std::array<Vec3, 3>* t : {&pair.a, &pair.b}) {
+    std::swap((*t)[0], (*t)[draws.below(3)]);
+    std::swap((*t)[1], (*t)[1 + draws.below(2)]);
+  }
+  if (draws.chance(2)) std::swap(pair.a, pair.b);
+}
+
+Frame straight_frame(RandomDraws& draws) {
+  Frame out{{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}};
+  std::swap(out.axis[0], out.axis[draws.below(3)]);
+  std::swap(out.axis[1], out.axis[1 + draws.below(2)]);
+  for (Vec3& axis : out.axis) axis *= draws.sign();
+  return out;
+}
+
+Frame leaning_frame(RandomDraws& draws) {
+  const double w = draws.sign();
+  const double x = draws.sign();
+  const double y = draws.sign();
+  // With four parts of one size the rotation only exchanges axes.
+  return scaled_rotation(w, x, y, 0);
+}
+
+Frame turned_frame(RandomDraws& draws) {
+  const double w = draws.whole(1, 9);
+  const double x = draws.whole(-9, 9);
+  const double y = draws.whole(-9, 9);
+  const double z = draws.whole(-9, 9);
+  Frame out = scaled_rotation(w, x, y, z);
+  const double square = w * w + x * x + y * y + z * z;
+  for (Vec3& axis : out.axis) axis /= square;
+  return out;
+}
+
 namespace {
 
 using Corners = std::array<Vec3, 3>;
@@ -180,9 +231,7 @@ DrawnPair magnitudes(RandomDraws& random) {
   };
   Vec3 factors = Vec3::Constant(scale());
   if (random.chance(2)) factors = {scale(), scale(), scale()};
-  for (Corners* t : {&pair.a, &pair.b}) {
-    for (Vec3& p : *t) p = p.cwiseProduct(factors);
-  }
+  each_corner(pair, [&](Vec3& p) { p = p.cwiseProduct(factors); });
   return pair;
 }
 
@@ -192,9 +241,7 @@ DrawnPair denormals(RandomDraws& random) {
   const int exponent = random.whole(-1074, -1030);
   if (random.chance(2)) return mapped(pair, [&](double x) { return std::ldexp(x, exponent); });
   const int axis = random.below(3);
-  for (Corners* t : {&pair.a, &pair.b}) {
-    for (Vec3& p : *t) p[axis] = std::ldexp(p[axis], exponent);
-  }
+  each_corner(pair, [&](Vec3& p) { p[axis] = std::ldexp(p[axis], exponent); });
   return pair;
 }
 
@@ -202,13 +249,9 @@ DrawnPair denormals(RandomDraws& random) {
 DrawnPair far_away(RandomDraws& random) {
   DrawnPair pair = random.chance(2) ? one_ulp(random) : contact(random);
   double size = 0;
-  for (const Corners* t : {&pair.a, &pair.b}) {
-    for (const Vec3& p : *t) size = std::max(size, p.norm());
-  }
+  each_corner(pair, [&](const Vec3& p) { size = std::max(size, p.norm()); });
   const Vec3 move = 2e9 * size * random.point();
-  for (Corners* t : {&pair.a, &pair.b}) {
-    for (Vec3& p : *t) p += move;
-  }
+  each_corner(pair, [&](Vec3& p) { p += move; });
   return pair;
 }
 

@@ -1,13 +1,83 @@
-// Pairs of triangles that are hard to decide: generators by name, for tests and for running the
-// exact oracles against each other.
+// Pairs of triangles and meshes that are hard to decide: random draws, generators of pairs by name
+// (for tests and for running the exact oracles against each other), and the families of a suite.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
-#include "experiments/generators/draws.h"
+#include "core/base/random.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
+
+// Random draws of whole coordinates, points and pairs of triangles. Whole numbers times a power of
+// two are exact, so contact that is made with them is contact of the doubles that are written.
+// Nothing here uses sines or logarithms, whose last bits differ between platforms.
+
+class RandomDraws : public RandomNumbers {
+ public:
+  using RandomNumbers::RandomNumbers;
+
+  bool chance(int of) { return below(of) == 0; }
+  /// lo .. hi, both included, a whole number of their type; |lo|, |hi| <= 2^52.
+  template <class Low, class High>
+  auto whole(Low lo, High hi) {
+    using Number = std::common_type_t<Low, High>;
+    const auto count = static_cast<std::uint64_t>(hi - lo) + 1;
+    return static_cast<Number>(lo) + static_cast<Number>(below(count));
+  }
+  /// A multiple of 2^-8 in lo .. hi, which are such too: few bits, so that a small gap fits beside
+  /// it in a double.
+  double coarse(double lo, double hi) { return whole(lo * 256, hi * 256) / 256; }
+  /// Whole coordinates in -extent .. extent.
+  Vec3 whole_point(double extent) {
+    const double x = whole(-extent, extent);
+    const double y = whole(-extent, extent);
+    const double z = whole(-extent, extent);
+    return {x, y, z};
+  }
+  /// In the cube [-1, 1]^3.
+  Vec3 point() {
+    const double x = between(-1, 1);
+    const double y = between(-1, 1);
+    const double z = between(-1, 1);
+    return {x, y, z};
+  }
+};
+
+/// Two triangles with finite coordinates; either may be degenerate. Nothing is decided about them.
+struct DrawnPair {
+  std::array<Vec3, 3> a, b;
+};
+/// Calls function(p) with each corner, those of a first.
+template <class Function>
+void each_corner(DrawnPair& pair, const Function& function) {
+  for (std::array<Vec3, 3>* t : {&pair.a, &pair.b}) {
+    for (Vec3& p : *t) function(p);
+  }
+}
+/// Brings the corners of each into any order, and a and b: predicates branch on both.
+void shuffle(RandomDraws& draws, DrawnPair& pair);
+
+/// Three axes at right angles and of equal length.
+struct Frame {
+  std::array<Vec3, 3> axis;
+
+  Vec3 at(double x, double y, double z) const { return axis[0] * x + axis[1] * y + axis[2] * z; }
+  Vec3 at(const Vec3& p) const { return at(p.x(), p.y(), p.z()); }
+};
+
+/// The axes of the coordinates, in any order and direction.
+Frame straight_frame(RandomDraws& draws);
+/// A rotation times a whole number, with whole entries of at most 4: of a quaternion with parts
+/// from -1 to 1. Not straight.
+Frame leaning_frame(RandomDraws& draws);
+/// A rotation whose entries are rounded: of a quaternion with parts from -9 to 9.
+Frame turned_frame(RandomDraws& draws);
 
 struct PairGenerator {
   std::string name;
@@ -17,5 +87,64 @@ struct PairGenerator {
 
 /// Each makes pairs that meet and pairs that do not; in every one, either is at least one in fifty.
 const std::vector<PairGenerator>& pair_generators();
+
+// The families of a suite: of pairs, and of meshes. Each makes what meets and what does not, and
+// most have a number that goes to an extreme.
+
+struct MadePair : DrawnPair {
+  bool neighbours = false;  // corners at equal positions are one vertex of a mesh
+};
+
+struct PairFamily {
+  std::string name;
+  std::string description;     // one line
+  std::string parameter;       // the meaning of its number; "" for none
+  std::vector<double> values;  // of the number; pair i has the i-th, and they come again and again
+  MadePair (*make)(RandomDraws& draws, double parameter);
+};
+
+/// In the order of the files.
+const std::vector<PairFamily>& pair_families();
+
+/// A seed for one item of a suite, from the seed of the suite, a name and a number.
+std::uint64_t seed_of_item(std::uint64_t seed, std::string_view name, std::uint64_t number);
+
+/// An object of a mesh.
+struct SuiteObject {
+  std::vector<Vec3> vertices;                           // finite
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // indices into vertices; at least one
+
+  void add(std::uint32_t i, std::uint32_t j, std::uint32_t k) { triangles.push_back({i, j, k}); }
+};
+
+/// Kinds of meshes that people have (scans, cloth, ropes, plates), or that are hard (shells, folds,
+/// fans, duplicates).
+struct MeshFamily {
+  std::string name;
+  std::string description;  // one line
+  std::string parameter;    // the meaning of its number
+  bool self = false;        // its objects are tested against themselves too
+  /// The objects; `detail` says how fine, each family counts it in its own way.
+  std::vector<SuiteObject> (*make)(RandomDraws& draws, double parameter, int detail);
+  struct Member {
+    double parameter = 0;
+    int detail = 0;
+  };
+  std::vector<Member> members;
+  bool small = false;  // the first member is in a small suite too
+};
+
+/// In the order of the names.
+const std::vector<MeshFamily>& mesh_families();
+
+/// The objects of member `index` of a family. They depend on the seed and these two alone. In a
+/// mesh that is tested against itself, vertices at one position are one vertex.
+std::vector<SuiteObject> make_suite_mesh(const MeshFamily& family, std::uint64_t seed,
+                                         std::size_t index);
+
+// Parts of pair_families(): distance_families() has gaps, distances from the origin and scales,
+// shape_families() random triangles, slivers, degenerate triangles and folds.
+std::vector<PairFamily> distance_families();
+std::vector<PairFamily> shape_families();
 
 }  // namespace farcull

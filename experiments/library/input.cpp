@@ -1,4 +1,4 @@
-// Checks what a caller gives, and copies it into a scene.
+// Checks and copies input into a scene; converts options and answers.
 #include "experiments/library/input.h"
 
 #include <algorithm>
@@ -6,7 +6,12 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 #include <string>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/scene/scene.h"
 
 namespace farcull {
 namespace {
@@ -131,6 +136,67 @@ void take(const ColliderInput& input, bool self, const std::vector<bool>& self_o
     scene.objects[o].triangle_count = end - first;
     scene.objects[o].self = self || (!self_objects.empty() && self_objects[o]);
   }
+}
+
+namespace {
+
+constexpr int kMostResolution = 16384;
+
+// The enumerations of the library have the order of those within.
+static_assert(static_cast<int>(ColliderContactKind::touch_face) ==
+              static_cast<int>(ContactKind::touch_face));
+static_assert(static_cast<int>(ColliderContacts::segments) ==
+              static_cast<int>(ContactDetail::segments));
+
+}  // namespace
+
+void check(const ColliderOptions& options) {
+  if (options.threads > kMostThreads)
+    throw Error("threads", "are more than 1024", "give a number up to 1024, or 0");
+  if (!(options.clearance >= 0) || !std::isfinite(options.clearance))
+    throw Error("clearance", "is no distance", "give a finite number, 0 or more");
+  if (options.resolution < 0 || options.resolution > kMostResolution)
+    throw Error("resolution", "is outside 0 .. 16384", "give a number of pixels, or 0");
+}
+
+ContactDetail detail_of(ColliderContacts contacts) { return static_cast<ContactDetail>(contacts); }
+
+ColliderContact given_out(const ContactShape& shape) {
+  const auto point = [](const Vec3& p) { return std::array{p.x(), p.y(), p.z()}; };
+  return {.kind = static_cast<ColliderContactKind>(shape.kind),
+          .dimension = shape.dimension,
+          .ends = {point(shape.ends[0]), point(shape.ends[1])}};
+}
+
+std::vector<ColliderContact> given_out(const std::vector<ContactShape>& shapes) {
+  std::vector<ColliderContact> out;
+  out.reserve(shapes.size());
+  for (const ContactShape& shape : shapes) out.push_back(given_out(shape));
+  return out;
+}
+
+/// The ignored pairs of a scene with so many objects.
+std::vector<ObjectPair> ignored_of(const ColliderOptions& options, std::size_t objects) {
+  std::vector<ObjectPair> out;
+  for (const auto& [a, b] : options.ignore) {
+    const std::string text = "names objects " + std::to_string(a) + " and " + std::to_string(b);
+    if (std::max(a, b) >= objects) {
+      throw Error("ignore", text + " of " + std::to_string(objects) + ", numbered from 0",
+                  "give two objects of the input in each pair");
+    }
+    if (a == b) {
+      throw Error("ignore", text + ", which are one",
+                  "give two different objects; self_objects says which are tested against "
+                  "themselves");
+    }
+    out.push_back({a, b});
+  }
+  return in_order(std::move(out));
+}
+
+const char* to_string(ColliderContactKind kind) {
+  // Of a literal, so it ends with a 0.
+  return name_of(kContactKinds.at(static_cast<std::size_t>(kind))).data();
 }
 
 }  // namespace farcull

@@ -1,4 +1,4 @@
-// What the functions of the library do with their input and with errors.
+// For the functions of the library: their input, options, answers and errors.
 #pragma once
 
 #include <atomic>
@@ -9,6 +9,8 @@
 #include "core/base/floating_point.h"
 #include "core/scene/scene.h"
 #include "experiments/library/farcull.h"
+#include "experiments/method/options.h"
+#include "verify/contact_kind.h"
 
 namespace farcull {
 
@@ -52,5 +54,16 @@ auto exclusive(const std::unique_ptr<State>& state, const char* object, const Ca
 /// for input that is not as ColliderInput says.
 void take(const ColliderInput& input, bool self, const std::vector<bool>& self_objects,
           Scene& scene);
+
+/// Throws Error naming the option that is bad, whatever the input.
+void check(const ColliderOptions& options);
+
+ContactDetail detail_of(ColliderContacts contacts);
+
+/// The ignored pairs of a scene with so many objects. Throws Error where it has them not.
+std::vector<ObjectPair> ignored_of(const ColliderOptions& options, std::size_t objects);
+
+ColliderContact given_out(const ContactShape& shape);
+std::vector<ColliderContact> given_out(const std::vector<ContactShape>& shapes);
 
 }  // namespace farcull

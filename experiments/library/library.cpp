@@ -1,28 +1,28 @@
-// The collider: input is checked and copied into a scene, which is run (experiments/method/run.h).
+// The collider, the stream and distances. Each copies its input into a scene and asks about that
+// (experiments/method/run.h, experiments/method/distances.h).
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <thread>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
+#include "core/boxes/join.h"
 #include "core/gl/base/context.h"
 #include "core/view/view.h"
-#include "experiments/library/answers.h"
 #include "experiments/library/farcull.h"
 #include "experiments/library/input.h"
+#include "experiments/method/distances.h"
 #include "experiments/method/run.h"
 
 namespace farcull {
 namespace {
 
 std::string device_of(const ColliderOptions& options) {
-  switch (options.device) {
-    case ColliderDevice::cpu:
-      return "cpu";
-    case ColliderDevice::gl:
-      return "gl";
-    case ColliderDevice::best:
-      return "";
-  }
-  return "";
+  if (options.device == ColliderDevice::cpu) return "cpu";
+  return options.device == ColliderDevice::gl ? "gl" : "";
 }
 
 RunOptions run_options(const ColliderOptions& options) {
@@ -155,6 +155,177 @@ ColliderResult Collider::find(const ColliderInput& input) {
       throw;
     }
   });
+}
+
+// The stream: candidates in order, some at a time, each decided exactly as it comes.
+
+namespace {
+
+constexpr const char* kName = "ColliderStream";
+constexpr std::size_t kPart = std::size_t{1} << 16;  // candidates at a time
+
+}  // namespace
+
+struct ColliderStream::State {
+  ColliderOptions options;
+  unsigned threads;
+  Scene scene;
+  std::optional<OrderedPairs> candidates;
+  std::vector<TrianglePair> part;
+  std::uint64_t decided = 0, given = 0;
+  bool complete = false;
+  bool failed = false;  // a call began and did not end: what it found is lost
+  std::atomic_flag used;
+
+  State(const ColliderInput& input, const ColliderOptions& of)
+      : options(of), threads(of.threads > 0 ? of.threads : std::thread::hardware_concurrency()) {
+    check(options);
+    if (options.device == ColliderDevice::gl)
+      throw Error("device", "gl is not used by a stream", "give cpu or best");
+    take(input, options.self, options.self_objects, scene);
+    candidates.emplace(scene, options.clearance, ignored_of(options, scene.objects.size()),
+                       threads);
+  }
+
+  bool next(std::vector<ColliderFound>& pairs);
+  void decide_part(std::vector<ColliderFound>& pairs);
+};
+
+bool ColliderStream::State::next(std::vector<ColliderFound>& pairs) {
+  pairs.clear();
+  if (!failed && options.limit > 0 && given == options.limit) return false;
+  if (!failed && candidates->at_end()) {
+    complete = true;
+    return false;
+  }
+  if (std::exchange(failed, true))
+    throw Error("stream", "an earlier call failed, and its pairs are lost", "make a new stream");
+  decide_part(pairs);
+  failed = false;
+  return true;
+}
+
+void ColliderStream::State::decide_part(std::vector<ColliderFound>& pairs) {
+  candidates->next(kPart, part);
+  const ExactQuestion question{
+      .clearance = options.clearance, .threads = threads, .neighbours = options.neighbours};
+  const std::uint64_t limit = part.empty() || options.limit == 0 ? 0 : options.limit - given;
+  const auto [found, count, whole] = decide(scene, part, question, limit, nullptr);
+  decided += count;
+  if (limit > 0) complete = whole && candidates->at_end();
+  const auto append = [&](const std::vector<TrianglePair>& those, bool neighbours) {
+    const std::vector<ContactShape> contacts =
+        contacts_of(scene, those, detail_of(options.contacts), threads);
+    for (std::size_t k = 0; k < those.size(); ++k) {
+      pairs.push_back({.pair = {those[k].a, those[k].b},
+                       .neighbours = neighbours,
+                       .contact = contacts.empty() ? ColliderContact() : given_out(contacts[k])});
+    }
+  };
+  append(found.pairs, false);
+  append(found.neighbour_pairs, true);
+  std::ranges::sort(pairs, {}, &ColliderFound::pair);
+  given += pairs.size();
+}
+
+ColliderStream::ColliderStream(const ColliderInput& input, const ColliderOptions& options)
+    : state_(translated([&] { return std::make_unique<State>(input, options); })) {}
+ColliderStream::~ColliderStream() = default;
+ColliderStream::ColliderStream(ColliderStream&&) noexcept = default;
+ColliderStream& ColliderStream::operator=(ColliderStream&&) noexcept = default;
+
+bool ColliderStream::next(std::vector<ColliderFound>& pairs) {
+  return exclusive(state_, kName, [&](State& state) { return state.next(pairs); });
+}
+
+std::uint64_t ColliderStream::decided() const {
+  return exclusive(state_, kName, [](const State& state) { return state.decided; });
+}
+
+bool ColliderStream::complete() const {
+  return exclusive(state_, kName, [](const State& state) { return state.complete; });
+}
+
+namespace {
+
+// The enumerations of the library have the order of those within.
+static_assert(static_cast<int>(DistanceKind::all) == static_cast<int>(DistancePairs::all));
+static_assert(static_cast<int>(DistanceInside::not_closed) ==
+              static_cast<int>(WhichInside::not_closed));
+
+DistancePairs pairs_of(DistanceKind kind) {
+  if (kind < DistanceKind::objects || kind > DistanceKind::all)
+    throw Error("kind", "is none", "give objects, nearest or all");
+  return static_cast<DistancePairs>(kind);
+}
+
+DistanceOptions checked(const DistanceFinderOptions& options) {
+  DistanceOptions out{.pairs = pairs_of(options.kind),
+                      .k = options.k,
+                      .inside = options.inside,
+                      .threads = options.threads};
+  if (options.threads > kMostThreads)
+    throw Error("threads", "are more than 1024", "give a number up to 1024, or 0");
+  if (std::isnan(options.within))
+    throw Error("within", "is no number", "give a distance, or a negative number for no limit");
+  if (options.within >= 0) out.within = options.within;
+  if (out.pairs == DistancePairs::all && !std::isfinite(out.within))
+    throw Error("within", "is not finite, which pairs of all triangles need",
+                "give a finite distance, 0 or more");
+  if (out.pairs == DistancePairs::nearest && options.k == 0)
+    throw Error("k", "is 0", "give 1 or more");
+  return out;
+}
+
+DistanceAnswer given_out(const Distance& d) {
+  const auto point = [](const Vec3& p) { return std::array{p.x(), p.y(), p.z()}; };
+  return {.object_a = d.objects.a,
+          .object_b = d.objects.b,
+          .triangle_a = d.triangles.a,
+          .triangle_b = d.triangles.b,
+          .distance = d.closest.distance,
+          .squared = d.closest.squared.text(),
+          .point_a = point(d.closest.points[0]),
+          .point_b = point(d.closest.points[1]),
+          .feature_a = to_string(d.closest.features[0]),
+          .feature_b = to_string(d.closest.features[1]),
+          .inside = static_cast<DistanceInside>(d.inside)};
+}
+
+}  // namespace
+
+struct DistanceFinder::State {
+  DistanceFinderOptions given;
+  DistanceOptions options;
+  Scene scene;  // of the last call
+  DistanceMemory memory;
+  std::atomic_flag used;
+
+  explicit State(const DistanceFinderOptions& from) : given(from), options(checked(from)) {}
+};
+
+DistanceFinder::DistanceFinder(const DistanceFinderOptions& options)
+    : state_(translated([&] { return std::make_unique<State>(options); })) {}
+DistanceFinder::DistanceFinder() : DistanceFinder(DistanceFinderOptions{}) {}
+DistanceFinder::~DistanceFinder() = default;
+DistanceFinder::DistanceFinder(DistanceFinder&&) noexcept = default;
+DistanceFinder& DistanceFinder::operator=(DistanceFinder&&) noexcept = default;
+
+std::vector<DistanceAnswer> DistanceFinder::find(const ColliderInput& input) {
+  return exclusive(state_, "DistanceFinder", [&](State& state) {
+    take(input, state.given.self, state.given.self_objects, state.scene);
+    std::vector<DistanceAnswer> out;
+    if (!nothing_asked(state.scene, state.options).empty()) return out;
+    const DistanceRecord record = distances(state.scene, state.options, {}, &state.memory);
+    out.reserve(record.distances.size());
+    for (const Distance& d : record.distances) out.push_back(given_out(d));
+    return out;
+  });
+}
+
+std::vector<DistanceAnswer> distances(const ColliderInput& input,
+                                      const DistanceFinderOptions& options) {
+  return DistanceFinder(options).find(input);
 }
 
 }  // namespace farcull

@@ -12,7 +12,6 @@
 #include "experiments/measure/harness.h"
 #include "experiments/record/fields.h"
 #include "experiments/record/tables.h"
-#include "experiments/scenes/builtin/generators.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/text_table.h"

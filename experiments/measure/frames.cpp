@@ -15,7 +15,7 @@
 #include "experiments/record/fields.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
-#include "experiments/system/interrupt.h"
+#include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {

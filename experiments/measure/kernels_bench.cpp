@@ -10,7 +10,7 @@
 #include "core/pairs/pairs.h"
 #include "experiments/peers/peer.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/mesh/shapes.h"
+#include "experiments/scenes/mesh/scene_build.h"
 #include "offsets/fit.h"
 #include "offsets/minkowski.h"
 #include "offsets/obb.h"

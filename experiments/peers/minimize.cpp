@@ -10,7 +10,6 @@
 
 #include "core/base/error.h"
 #include "experiments/peers/score.h"
-#include "experiments/suite/label.h"
 #include "experiments/suite/reader.h"
 #include "verify/exact.h"
 

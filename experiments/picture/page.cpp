@@ -1,7 +1,7 @@
 // Collects the triangles of each frame, the colliding pairs and the answers of each step, and puts
 // them into the page of web/ as compressed blocks and a text of JSON that names the blocks. A block
 // of numbers holds their differences by byte, compressed by zlib and written as Base64.
-#include "experiments/picture/page.h"
+#include "experiments/picture/picture.h"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@
 #include "embedded/page_html.h"
 #include "embedded/page_js.h"
 #include "embedded/page_view_js.h"
-#include "experiments/picture/embedded_files.h"
+#include "experiments/picture/panel.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/system/text_table.h"
@@ -141,9 +141,8 @@ Box box_of(const Scene& scene) {
 class PageMaker {
  public:
   PageMaker(const PageArguments& arguments, Lab& lab) : arguments_(arguments), lab_(lab) {
-    if (arguments.frames) {
+    if (arguments.frames)
       source_.emplace(arguments.picture.scene, *arguments.frames, arguments.picture.self);
-    }
   }
 
   // Adds the triangles, the pairs and the answers of the next frame.

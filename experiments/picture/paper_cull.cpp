@@ -11,7 +11,6 @@
 #include "core/view/view.h"
 #include "experiments/picture/paper.h"
 #include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/scenes/mesh/shapes.h"
 #include "experiments/scenes/scene_file.h"
 #include "offsets/obb.h"
 
@@ -32,7 +31,7 @@ Scene pass_scene() {
     for (const auto& s : kPassScene[o])
       list.push_back({Vec3(s[0], -2, s[1]), Vec3(s[2], -2, s[3]),
                       Vec3(0.5 * (s[0] + s[2]), 2, 0.5 * (s[1] + s[3]))});
-    scene.add(shapes::soup(list), std::string(1, static_cast<char>('A' + o)), Split::kNone, {});
+    scene.add(shapes::soup(list), std::string(1, static_cast<char>('A' + o)));
   }
   return scene.finish();
 }

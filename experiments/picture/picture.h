@@ -1,11 +1,16 @@
-// `farcull picture`: the answer of a method on a scene as a picture: which triangles collide, which
-// of these the method missed, and which it kept in vain.
+// `farcull picture`: the answer of a method on a scene, as a picture or as a page: which triangles
+// collide, which of these the method missed, and which it kept in vain.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "core/scene/scene.h"
 #include "experiments/measure/lab.h"
 #include "experiments/picture/arguments.h"
 #include "experiments/picture/panel.h"
@@ -46,5 +51,68 @@ PictureResult make_picture(const PictureArguments& arguments, Lab& lab);
 /// make_picture(), written to the path as PNG, whole or not at all; "-" is standard output. Throws
 /// Error as write_output() as well.
 PictureResult write_picture(const PictureArguments& arguments, Lab& lab, const std::string& path);
+
+// `farcull picture --html`: one file with the scene, the answers of methods on it, and all that a
+// browser needs to show them and to look around in them. Its data are text: numbers and bits,
+// compressed for a reader in JavaScript (web/page_view.js).
+
+/// Base64 of gzip of the numbers: each as its difference to the one before (the first to 0) modulo
+/// 2^32, zigzag (0, -1, 1, -2, ... become 0, 1, 2, 3, ...); then the lowest bytes of all, the next
+/// ones, and so on. Neighbours are alike, so most bytes become 0.
+std::string packed_numbers(std::span<const std::uint32_t> numbers);
+
+/// Base64 of gzip of the bytes.
+std::string packed_bytes(std::string_view bytes);
+
+/// Bits of which those of the numbers are 1, eight in a byte, the lowest first. Precondition: every
+/// number is below `count`.
+std::string bits_of(std::span<const std::uint32_t> numbers, std::size_t count);
+
+/// The coordinates of all x, then of all y, then of all z, as steps of 1/65535 of the box; those of
+/// points outside of it are moved into it. 0 in a direction in which the box has no extent.
+std::vector<std::uint32_t> quantized(std::span<const Vec3> points, const Box& box);
+
+/// At most so many triangles in a frame, so many in all frames, so many colliding pairs in a frame,
+/// and so many objects: 16 bits of a corner name its object.
+constexpr std::uint64_t kMostPageTriangles = 2'000'000, kMostPageTrianglesOfFrames = 16'000'000,
+                        kMostPagePairs = 4'000'000, kMostPageObjects = 65'536;
+
+struct PageArguments {
+  PictureArguments picture;          // the flat picture; its scene is that of the page
+  std::vector<RunOptions> steps;     // what the reader can choose among: at least one
+  std::optional<FrameRange> frames;  // of a scene that moves; empty: the frame of the picture
+};
+
+/// Resolutions that a reader can step through where none is named, px: from pixels that are large
+/// to the usual ones.
+constexpr std::array<int, 5> kPageResolutions = {32, 64, 128, 256, 512};
+
+/// The methods of the panels, each once at every resolution, ascending; one that takes none, or
+/// chooses it by the scene, as it is.
+std::vector<RunOptions> at_resolutions(const std::vector<RunOptions>& panels,
+                                       std::vector<int> resolutions);
+
+/// The answer of one method on one frame.
+struct PageStep {
+  PanelResult result;
+  std::optional<long> frame;
+};
+
+struct PageResult {
+  std::string html;
+  std::vector<PageStep> steps;  // frame by frame, in the order of the arguments
+};
+
+/// Runs the methods of the steps and writes the page. `flat`: the flat picture of the same scene,
+/// which is printed, and shown where a browser lacks WebGL 2. Throws Error where the program was
+/// built without three.js, for a scene or a motion that is too large, and as make_picture() does.
+PageResult make_page(const PageArguments& arguments, const PictureResult& flat, Lab& lab);
+
+/// Throws Error naming --html where the program was built without three.js.
+void require_three();
+
+/// Throws Error naming --html where the scene of the page, or its first frame, has more triangles
+/// or objects than a page holds: before anything is run. Throws as open_scene() does.
+void require_page_size(const PageArguments& arguments, Lab& lab);
 
 }  // namespace farcull

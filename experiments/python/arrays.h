@@ -1,20 +1,74 @@
-// Arrays of the caller as the library takes them, and its answers as arrays.
+// The compiled module: calls beside the interpreter, arrays of the caller as the library takes them
+// and answers as arrays, and the parts of the module.
 #pragma once
 
 #include <pybind11/numpy.h>
 
+#include <pybind11/pybind11.h>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/scene/scene.h"
 #include "experiments/library/farcull.h"
-#include "experiments/python/call.h"
 
 namespace farcull::python {
+
+// How the binding calls the library: beside the interpreter, which goes on and can stop it.
+
+namespace py = pybind11;
+
+/// Runs `work` in a thread of its own, without the lock of the interpreter, with the floating-point
+/// environment of the proofs. The calling thread
+/// releases the lock and looks for signals every 50 ms: where a handler of Python raises, as that
+/// of Ctrl-C does, the work is asked to stop, and its exception is thrown when the work has ended.
+/// `work` must not touch Python. What it throws is thrown here. Precondition: the lock is held.
+void beside(const std::function<void()>& work);
+
+/// The value of the work.
+template <class Work>
+auto answer_beside(const Work& work) {
+  std::optional<decltype(work())> out;
+  beside([&] { out.emplace(work()); });
+  return std::move(*out);
+}
+
+/// Marks what one call at a time may use, as long as this lives. Throws farcull.Error where it is
+/// marked: by another thread, or by a call of this one, which a signal handler interrupts.
+class Turn {
+ public:
+  Turn(std::atomic_flag& used, const char* name);
+  ~Turn() { used_.clear(); }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  std::atomic_flag& used_;
+};
+
+/// Stops all calls that are running, and waits until they have ended. Calls that begin later are
+/// stopped as well. For the end of the interpreter. Precondition: the lock is held.
+void end_calls();
+
+/// Lets a run stop between its stages.
+Progress stopping_progress();
+
+/// Throws an exception of the package, farcull.Error or farcull.InputError. input: what the caller
+/// gave is wrong.
+[[noreturn]] void raise(const std::string& where, const std::string& reason,
+                        const std::string& remedy, bool input);
+
+/// Makes exceptions of farcull those of the package: an Error is an InputError where it names a
+/// parameter, else an Error; std::bad_alloc is a MemoryError.
+void register_exceptions();
 
 /// Memory for numbers that are all written before they are read, so that nothing fills it first.
 template <class Number>
@@ -121,5 +175,22 @@ py::array_t<Value> view_of(const Value* data, std::vector<py::ssize_t> shape, py
 /// farcull.InputError naming `name`.
 std::vector<TrianglePair> pairs_of(const py::array& array, const std::string& name,
                                    std::size_t triangles);
+
+// The parts of the compiled module. Each adds its classes and functions.
+
+/// A scene that Python holds. It never changes, so arrays and records may point into it.
+struct KeptScene {
+  std::shared_ptr<const Scene> scene;
+  explicit KeptScene(Scene given) : scene(std::make_shared<const Scene>(std::move(given))) {}
+};
+
+/// What is asked of a collider or a stream, as _collide.py puts it together.
+ColliderOptions options_of(const py::dict& question);
+
+void add_collider(py::module_& module);
+void add_distances(py::module_& module);
+void add_scenes(py::module_& module);
+void add_runs(py::module_& module);
+void add_stream(py::module_& module);
 
 }  // namespace farcull::python

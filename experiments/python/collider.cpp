@@ -1,20 +1,22 @@
-// The collider and distances of the library, for one scene or for many.
+// The collider, the stream and distances of the library.
 #include <pybind11/stl.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "experiments/python/arrays.h"
-#include "experiments/python/parts.h"
 #include "verify/contact_kind.h"
 
 namespace farcull::python {
 namespace {
+
+using namespace py::literals;
 
 ColliderDevice device_of(const std::string& name) {
   if (name == "cpu") return ColliderDevice::cpu;
@@ -26,55 +28,39 @@ ColliderDevice device_of(const std::string& name) {
 py::dict report_of(const ColliderReport& report) {
   py::list views, stages;
   for (const ColliderReport::View& v : report.views) {
-    py::dict view;
-    view["name"] = v.name;
-    view["looked"] = v.looked;
-    view["reason"] = v.reason;
-    view["width"] = v.width;
-    view["height"] = v.height;
-    views.append(std::move(view));
+    views.append(py::dict("name"_a = v.name, "looked"_a = v.looked, "reason"_a = v.reason,
+                          "width"_a = v.width, "height"_a = v.height));
   }
   for (const ColliderReport::Stage& s : report.stages) {
-    py::dict stage;
-    stage["name"] = s.name;
-    stage["ran"] = s.ran;
-    stage["reason"] = s.reason;
-    stage["ms"] = s.ms;
-    stage["entered"] = s.in;
-    stage["left"] = s.out;
-    stage["unit"] = s.unit;
-    stages.append(std::move(stage));
+    stages.append(py::dict("name"_a = s.name, "ran"_a = s.ran, "reason"_a = s.reason, "ms"_a = s.ms,
+                           "entered"_a = s.in, "left"_a = s.out, "unit"_a = s.unit));
   }
-  py::dict out;
-  out["device"] = report.device;
-  out["device_reason"] = report.device_reason;
-  out["promises"] = report.promises;
-  out["promises_reason"] = report.promises_reason;
-  out["candidates_ms"] = report.candidates_ms;
-  out["exact_ms"] = report.exact_ms;
-  out["candidates"] = report.candidates;
-  out["neighbours"] = report.neighbours;
-  out["decided"] = report.decided;
-  out["contacts_ms"] = report.contacts_ms;
-  out["callers_arithmetic"] = report.callers_arithmetic;
-  out["views"] = std::move(views);
-  out["stages"] = std::move(stages);
-  return out;
+  return py::dict("device"_a = report.device, "device_reason"_a = report.device_reason,
+                  "promises"_a = report.promises, "promises_reason"_a = report.promises_reason,
+                  "candidates_ms"_a = report.candidates_ms, "exact_ms"_a = report.exact_ms,
+                  "candidates"_a = report.candidates, "neighbours"_a = report.neighbours,
+                  "decided"_a = report.decided, "contacts_ms"_a = report.contacts_ms,
+                  "callers_arithmetic"_a = report.callers_arithmetic, "views"_a = std::move(views),
+                  "stages"_a = std::move(stages));
 }
 
 py::dict result_of(const ColliderResult& result, bool kinds) {
-  py::dict out;
-  out["pairs"] = pair_array(result.pairs);
-  out["neighbour_pairs"] = pair_array(result.neighbour_pairs);
-  out["kinds"] = kinds ? py::object(kind_array(result.contacts)) : py::none();
-  out["neighbour_kinds"] = kinds ? py::object(kind_array(result.neighbour_contacts)) : py::none();
-  out["complete"] = result.complete;
-  out["report"] = report_of(result.report);
-  return out;
+  return py::dict(
+      "pairs"_a = pair_array(result.pairs),
+      "neighbour_pairs"_a = pair_array(result.neighbour_pairs),
+      "kinds"_a = kinds ? py::object(kind_array(result.contacts)) : py::none(),
+      "neighbour_kinds"_a = kinds ? py::object(kind_array(result.neighbour_contacts)) : py::none(),
+      "complete"_a = result.complete, "report"_a = report_of(result.report));
 }
 
-// A collider of one thread at a time, and of one process: a forked one has neither its threads nor
-// its device.
+// A forked process has neither the threads nor the device of what the other one made.
+void require_process(pid_t maker, const char* made) {
+  if (::getpid() == maker) return;
+  raise(made, "was made by another process, which this one was forked from",
+        "make one in each process", false);
+}
+
+// A collider of one thread at a time, and of one process.
 class KeptCollider {
  public:
   explicit KeptCollider(const ColliderOptions& options)
@@ -83,10 +69,7 @@ class KeptCollider {
   }
 
   py::dict find(const py::array& vertices, const py::array& triangles, const py::array& starts) {
-    if (::getpid() != process_) {
-      raise("Collider", "was made by another process, which this one was forked from",
-            "make one in each process", false);
-    }
+    require_process(process_, "Collider");
     const Turn turn(used_, "Collider");
     const Given given(vertices, triangles, starts);
     const ColliderResult result =
@@ -109,21 +92,8 @@ DistanceKind kind_of(const std::string& name) {
   raise("kind", "'" + name + "' is no choice", "give objects, nearest or all", true);
 }
 
-const char* name_of(DistanceInside inside) {
-  switch (inside) {
-    case DistanceInside::unknown:
-      return "unknown";
-    case DistanceInside::none:
-      return "none";
-    case DistanceInside::a:
-      return "a";
-    case DistanceInside::b:
-      return "b";
-    case DistanceInside::not_closed:
-      return "not closed";
-  }
-  return "unknown";
-}
+// In the order of DistanceInside.
+constexpr std::array kInside = {"unknown", "none", "a", "b", "not closed"};
 
 py::list distances_of(const py::array& vertices, const py::array& triangles,
                       const py::array& starts, const std::string& kind, std::size_t k,
@@ -143,15 +113,13 @@ py::list distances_of(const py::array& vertices, const py::array& triangles,
   });
   py::list out;
   for (const DistanceAnswer& d : answers) {
-    py::dict answer;
-    answer["objects"] = std::pair(d.object_a, d.object_b);
-    answer["triangles"] = std::pair(d.triangle_a, d.triangle_b);
-    answer["distance"] = d.distance;
-    answer["squared"] = d.squared;
-    answer["points"] = std::pair(py::tuple(py::cast(d.point_a)), py::tuple(py::cast(d.point_b)));
-    answer["features"] = std::pair(d.feature_a, d.feature_b);
-    answer["inside"] = name_of(d.inside);
-    out.append(std::move(answer));
+    out.append(py::dict(
+        "objects"_a = std::pair(d.object_a, d.object_b),
+        "triangles"_a = std::pair(d.triangle_a, d.triangle_b), "distance"_a = d.distance,
+        "squared"_a = d.squared,
+        "points"_a = std::pair(py::tuple(py::cast(d.point_a)), py::tuple(py::cast(d.point_b))),
+        "features"_a = std::pair(d.feature_a, d.feature_b),
+        "inside"_a = kInside.at(static_cast<std::size_t>(d.inside))));
   }
   return out;
 }
@@ -192,5 +160,90 @@ void add_collider(py::module_& module) {
 }
 
 void add_distances(py::module_& module) { module.def("distances", &distances_of); }
+
+// Pairs as they come: the stream of the library.
+
+namespace {
+
+// A stream of one thread at a time, and of one process, as a collider. What a call gives has to be
+// taken: where a signal, or a lack of memory, comes between, there is no next part, since nobody
+// would see the gap.
+class KeptStream {
+ public:
+  KeptStream(const py::array& vertices, const py::array& triangles, const py::array& starts,
+             const ColliderOptions& options)
+      : process_(::getpid()), kinds_(options.contacts != ColliderContacts::none) {
+    const Given given(vertices, triangles, starts);
+    beside([&] {
+      Copies copies;
+      stream_ = std::make_unique<ColliderStream>(given.input(copies), options);
+    });
+  }
+
+  // The pairs that follow, which may be none; None behind the last.
+  py::object next() {
+    require_process(process_, "Stream");
+    const Turn turn(used_, "Stream");
+    if (given_) {
+      raise("stream", "an earlier call was interrupted, and its pairs are lost",
+            "make a new stream; one for each thread", false);
+    }
+    given_ = true;
+    const bool more = answer_beside([&] { return stream_->next(found_); });
+    decided_ = stream_->decided();
+    complete_ = stream_->complete();
+    if (!more) {
+      given_ = false;
+      return py::none();
+    }
+    const auto count = static_cast<py::ssize_t>(found_.size());
+    py::array_t<std::int64_t> pairs({count, py::ssize_t{2}});
+    py::array_t<bool> neighbours(count);
+    py::array_t<std::uint8_t> kinds(kinds_ ? count : 0);
+    std::int64_t* pair = pairs.mutable_data();
+    bool* neighbour = neighbours.mutable_data();
+    std::uint8_t* kind = kinds.mutable_data();
+    for (const ColliderFound& one : found_) {
+      *pair++ = one.pair.a;
+      *pair++ = one.pair.b;
+      *neighbour++ = one.neighbours;
+      if (kinds_) *kind++ = static_cast<std::uint8_t>(one.contact.kind);
+    }
+    return py::make_tuple(pairs, neighbours, kinds_ ? py::object(kinds) : py::none());
+  }
+
+  void take() { given_ = false; }
+
+  // As they were after the last call, so that they can be asked while another thread calls.
+  std::uint64_t decided() const { return decided_; }
+  bool complete() const { return complete_; }
+
+ private:
+  pid_t process_;
+  bool kinds_;
+  bool given_ = false;  // a call began, and its pairs were not taken
+  std::atomic_flag used_;
+  std::unique_ptr<ColliderStream> stream_;
+  std::vector<ColliderFound> found_;
+  std::uint64_t decided_ = 0;
+  bool complete_ = false;
+};
+
+}  // namespace
+
+void add_stream(py::module_& module) {
+  py::class_<KeptStream>(module, "Stream")
+      .def(py::init([](const py::array& vertices, const py::array& triangles,
+                       const py::array& starts, const py::dict& question) {
+        return std::make_unique<KeptStream>(vertices, triangles, starts, options_of(question));
+      }))
+      .def("next", &KeptStream::next)
+      // Python looks for signals behind a call, and not behind an assignment.
+      .def_property(
+          "taken", [](const KeptStream&) { return true; },
+          [](KeptStream& stream, bool) { stream.take(); })
+      .def_property_readonly("decided", &KeptStream::decided)
+      .def_property_readonly("complete", &KeptStream::complete);
+}
 
 }  // namespace farcull::python

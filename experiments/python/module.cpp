@@ -1,9 +1,217 @@
-// The compiled module. The package farcull/ around it checks arguments, and is what people call.
+// Calls in a thread of their own, exceptions of C++ as those of Python, and the compiled module. In
+// messages, names of options become names of parameters: "--depth-format" is depth_format.
+#include "experiments/python/arrays.h"
+
+#include <cxxabi.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+
+#include "core/base/error.h"
 #include "core/base/parameter.h"
+#include "core/base/floating_point.h"
+#include "core/base/stoppable.h"
+#include "experiments/library/farcull.h"
 #include "experiments/method/options.h"
-#include "experiments/python/parts.h"
 
 namespace farcull::python {
+namespace {
+
+constexpr std::chrono::milliseconds kLook{50};  // between looks for signals
+
+// The GNU C library gives memory that is free at the top of a thread's heap back to the system
+// where it is more than twice the largest block that was mapped and freed before, at most 32 MB.
+// Until that is much, each call would ask for the same pages again, and writing to new pages took
+// half of the time of small scenes. So one block is mapped and freed, which nothing ever writes to.
+// Where the environment or mallopt() says what is given back, the library keeps to that.
+void keep_small_memory() {
+#ifdef __GLIBC__
+  static const bool done = [] {
+    constexpr std::size_t kBlock = std::size_t{31} << 20;
+    void* volatile block = std::malloc(kBlock);  // so that the pair is not left out
+    std::free(block);
+    return true;
+  }();
+  static_cast<void>(done);
+#endif
+}
+
+// The calls that are running. At the end of the interpreter they are stopped, since they would use
+// what the process takes down.
+class Running {
+ public:
+  explicit Running(StoppableCall& call) : call_(call) {
+    const std::lock_guard lock(all().mutex);
+    all().calls.insert(&call);
+    if (all().ending) call.stop();
+  }
+  ~Running() {
+    const std::lock_guard lock(all().mutex);
+    all().calls.erase(&call_);
+  }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  static void end_all() {
+    const std::lock_guard lock(all().mutex);
+    all().ending = true;
+    if (::getpid() != all().process) return;  // forked: the threads of the calls are not here
+    for (StoppableCall* call : all().calls) call->stop();
+    for (StoppableCall* call : all().calls) {
+      while (!call->wait_for(kLook)) {
+      }
+    }
+  }
+
+ private:
+  struct All {
+    std::mutex mutex;
+    std::set<StoppableCall*> calls;
+    bool ending = false;
+    pid_t process = ::getpid();
+  };
+  // Never destroyed, since a thread of the interpreter may outlive it.
+  static All& all() {
+    static All& made = *new All;
+    return made;
+  }
+
+  StoppableCall& call_;
+};
+
+// Waits a moment without the lock of the interpreter. Whether the call has ended. Where the
+// interpreter ends meanwhile, it ends threads that ask for its lock; nothing of Python may be
+// touched any more, so such a thread waits here for the end of the process.
+bool ended(StoppableCall& call) {
+  PyThreadState* const state = PyEval_SaveThread();
+  const bool ended = call.wait_for(kLook);
+  try {
+    PyEval_RestoreThread(state);
+  } catch (const abi::__forced_unwind&) {
+    for (;;) ::pause();
+  }
+  return ended;
+}
+
+// Each "--depth-format" in the text as depth_format.
+std::string as_parameters(const std::string& text) {
+  const auto letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  std::string out;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text.compare(at, 2, "--") != 0 || at + 2 >= text.size() || !letter(text[at + 2])) {
+      out += text[at];
+      continue;
+    }
+    for (at += 2; at < text.size() && (letter(text[at]) || text[at] == '-'); ++at)
+      out += text[at] == '-' ? '_' : text[at];
+    --at;
+  }
+  return out;
+}
+
+// Of the library's errors, where they name what the caller gave.
+bool is_parameter(std::string_view where) {
+  constexpr std::array<std::string_view, 14> kNames = {
+      "vertices",  "triangles",  "object_starts", "self_objects", "threads",
+      "clearance", "resolution", "views",         "neighbours",   "kind",
+      "within",    "k",          "ignore",        "limit"};
+  return std::find(kNames.begin(), kNames.end(), where) != kNames.end();
+}
+
+// The interpreter's names of the library's parameters.
+std::string parameter_of(const std::string& where) {
+  if (where == "object_starts") return "objects";
+  if (where == "self_objects") return "self";
+  return where;
+}
+
+void set(const std::string& where, const std::string& reason, const std::string& remedy,
+         bool input) {
+  const py::object type =
+      py::module_::import("farcull._errors").attr(input ? "InputError" : "Error");
+  const py::object made = type(where, reason, remedy);
+  PyErr_SetObject(type.ptr(), made.ptr());
+}
+
+void set_from(const std::string& where, const std::string& reason, const std::string& remedy) {
+  const bool option = where.starts_with("--");
+  set(option ? as_parameters(where) : parameter_of(where), as_parameters(reason),
+      as_parameters(remedy), option || is_parameter(where));
+}
+
+void translate(std::exception_ptr failure) {
+  try {
+    if (failure) std::rethrow_exception(failure);
+  } catch (const ColliderError& error) {
+    set_from(error.where, error.reason, error.remedy);
+  } catch (const Error& error) {
+    const std::string line = error.line > 0 ? ":" + std::to_string(error.line) : "";
+    set_from(error.where + line, error.reason, error.remedy);
+  } catch (const std::system_error& error) {
+    // Threads that cannot be started: each takes memory for its stack.
+    if (error.code() != std::errc::resource_unavailable_try_again) throw;
+    PyErr_SetString(PyExc_MemoryError, "farcull: no thread can be started");
+  } catch (const Stopped&) {
+    set("farcull", "the interpreter is ending", "wait for threads that call farcull", false);
+  } catch (const std::length_error&) {
+    PyErr_SetString(PyExc_MemoryError, "farcull: more than fits into memory");
+  } catch (const std::logic_error& error) {
+    set("farcull", std::string("a fault of farcull itself: ") + error.what(),
+        "report it with what was called", false);
+  }
+}
+
+}  // namespace
+
+void beside(const std::function<void()>& work) {
+  keep_small_memory();
+  StoppableCall call([&work] {
+    const FloatingPointGuard guard;
+    work();
+  });
+  const Running running(call);
+  std::optional<py::error_already_set> interrupted;
+  while (!ended(call)) {
+    if (interrupted || PyErr_CheckSignals() == 0) continue;
+    interrupted.emplace();
+    call.stop();
+  }
+  if (interrupted) throw std::move(*interrupted);
+  call.finish();
+}
+
+Turn::Turn(std::atomic_flag& used, const char* name) : used_(used) {
+  if (used_.test_and_set())
+    raise(name, "is in use by another thread or call", "make one for each thread", false);
+}
+
+void end_calls() {
+  const py::gil_scoped_release released;
+  Running::end_all();
+}
+
+Progress stopping_progress() {
+  return [](const std::string&) { stop_point(); };
+}
+
+void raise(const std::string& where, const std::string& reason, const std::string& remedy,
+           bool input) {
+  set(where, reason, remedy, input);
+  throw py::error_already_set();
+}
+
+void register_exceptions() { py::register_exception_translator(&translate); }
+
+// The compiled module. The package farcull/ around it checks arguments, and is what people call.
+
 namespace {
 
 // pybind11 and numpy keep what they know in variables of the process, which interpreters in one
@@ -32,6 +240,7 @@ void fill(py::module_& module) {
 py::module_::module_def definition;
 
 }  // namespace
+
 }  // namespace farcull::python
 
 // As PYBIND11_MODULE does it, but that asks for the interpreter first.

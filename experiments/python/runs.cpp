@@ -15,7 +15,6 @@
 #include "experiments/measure/lab.h"
 #include "experiments/picture/picture.h"
 #include "experiments/python/arrays.h"
-#include "experiments/python/parts.h"
 #include "experiments/record/check.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
@@ -24,12 +23,13 @@
 namespace farcull::python {
 namespace {
 
+using namespace py::literals;
+
 // A record, with the scene that it is about.
 struct KeptRecord {
   std::shared_ptr<const Scene> scene;
   Record record;
 
-  bool verified() const { return record.verification.has_value(); }
   // All that were missed, not the first ones alone.
   std::vector<TrianglePair> missed() const {
     const Accounting& known = record.verification.value();
@@ -64,43 +64,29 @@ KeptRecord run_of(const KeptScene& kept, const GivenOptions& given, bool verify,
   });
 }
 
-py::object kinds_of(const KeptRecord& kept, const std::vector<ContactShape>& contacts) {
-  if (kept.record.options.contacts == ContactDetail::none) return py::none();
+py::object kinds_of(const Record& record, const std::vector<ContactShape>& contacts) {
+  if (record.options.contacts == ContactDetail::none) return py::none();
   return kind_array(contacts);
 }
 
 py::dict accounting_of(const Accounting& accounting) {
-  py::dict out;
-  out["pairs_total"] = accounting.pairs_total;
-  out["ignored"] = accounting.ignored;
-  out["pairs_kept"] = accounting.pairs_kept;
-  out["certified_by_boxes"] = accounting.certified_by_boxes;
-  out["neighbours"] = accounting.neighbours;
-  out["certified_by_predicates"] = accounting.certified_by_predicates;
-  out["false_negatives"] = accounting.false_negatives;
-  out["ms"] = accounting.ms;
-  return out;
+  return py::dict("pairs_total"_a = accounting.pairs_total, "ignored"_a = accounting.ignored,
+                  "pairs_kept"_a = accounting.pairs_kept,
+                  "certified_by_boxes"_a = accounting.certified_by_boxes,
+                  "neighbours"_a = accounting.neighbours,
+                  "certified_by_predicates"_a = accounting.certified_by_predicates,
+                  "false_negatives"_a = accounting.false_negatives, "ms"_a = accounting.ms);
 }
 
 py::list views_of(const Candidates& found) {
   py::list out;
   for (const PairView& v : found.pair_views()) {
-    py::dict view;
-    view["name"] = v.name;
-    view["looked"] = v.looked;
-    view["reason"] = v.reason;
-    view["width"] = v.width;
-    view["height"] = v.height;
-    out.append(std::move(view));
+    out.append(py::dict("name"_a = v.name, "looked"_a = v.looked, "reason"_a = v.reason,
+                        "width"_a = v.width, "height"_a = v.height));
   }
   for (const ViewReport& v : found.views()) {
-    py::dict view;
-    view["name"] = v.name;
-    view["looked"] = v.drawn;
-    view["width"] = v.width;
-    view["height"] = v.height;
-    view["radius_px"] = v.radius_px;
-    out.append(std::move(view));
+    out.append(py::dict("name"_a = v.name, "looked"_a = v.drawn, "width"_a = v.width,
+                        "height"_a = v.height, "radius_px"_a = v.radius_px));
   }
   return out;
 }
@@ -146,17 +132,13 @@ py::dict check_of(const KeptScene& kept, const std::optional<std::string>& certi
         list ? std::span<const ListedPair>(list->rows) : std::span<const ListedPair>());
   });
   const CheckResult& result = check.result;
-  py::dict out;
-  out["verdict"] = to_string(result.verdict);
-  out["reason"] = result.reason;
-  out["pair"] = result.pair ? py::object(py::make_tuple(result.pair->a, result.pair->b))
-                            : py::object(py::none());
-  out["decided"] = !result.list_sha256.empty();
-  out["pairs"] = pair_array(result.meeting);
-  out["culled_meeting"] = result.culled_meeting;
-  out["unattested"] = result.unattested;
-  out["text"] = check_text(scene, check);
-  return out;
+  return py::dict("verdict"_a = to_string(result.verdict), "reason"_a = result.reason,
+                  "pair"_a = result.pair
+                                 ? py::object(py::make_tuple(result.pair->a, result.pair->b))
+                                 : py::object(py::none()),
+                  "decided"_a = !result.list_sha256.empty(), "pairs"_a = pair_array(result.meeting),
+                  "culled_meeting"_a = result.culled_meeting, "unattested"_a = result.unattested,
+                  "text"_a = check_text(scene, check));
 }
 
 py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& panels,
@@ -184,14 +166,9 @@ py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& pan
   std::memcpy(pixels.mutable_data(), image.pixels.data(), 4 * image.pixels.size());
   py::list shown;
   for (const PanelResult& p : result.panels) {
-    py::dict panel;
-    panel["title"] = p.title;
-    panel["headline"] = p.headline;
-    panel["colliding"] = p.colliding;
-    panel["missed"] = p.missed;
-    panel["kept"] = p.kept;
-    panel["device"] = p.device;
-    shown.append(std::move(panel));
+    shown.append(py::dict("title"_a = p.title, "headline"_a = p.headline,
+                          "colliding"_a = p.colliding, "missed"_a = p.missed, "kept"_a = p.kept,
+                          "device"_a = p.device));
   }
   return py::make_tuple(pixels, shown);
 }
@@ -199,60 +176,49 @@ py::tuple picture_of(const KeptScene& kept, const std::vector<GivenOptions>& pan
 }  // namespace
 
 void add_runs(py::module_& module) {
-  py::class_<KeptRecord>(module, "Record")
-      .def_property_readonly(
-          "pairs", [](const KeptRecord& k) { return pair_array(k.record.collisions.pairs); })
-      .def_property_readonly(
-          "neighbour_pairs",
-          [](const KeptRecord& k) { return pair_array(k.record.collisions.neighbour_pairs); })
-      .def_property_readonly("kinds",
-                             [](const KeptRecord& k) { return kinds_of(k, k.record.contacts); })
-      .def_property_readonly(
-          "neighbour_kinds",
-          [](const KeptRecord& k) { return kinds_of(k, k.record.neighbour_contacts); })
-      .def_property_readonly("complete", [](const KeptRecord& k) { return k.record.complete; })
-      .def_property_readonly("bits",
-                             [](py::object self) {
-                               const auto& bits = self.cast<const KeptRecord&>().record.found.bits;
-                               return view_of(bits.data(), {static_cast<py::ssize_t>(bits.size())},
-                                              self);
-                             })
-      .def_property_readonly(
-          "kept_triangles",
-          [](py::object self) {
-            const auto& kept = self.cast<const KeptRecord&>().record.found.triangles;
-            return view_of(kept.data(), {static_cast<py::ssize_t>(kept.size())}, self);
-          })
-      .def_property_readonly("candidates", [](const KeptRecord& k) { return k.record.found.count; })
-      .def_property_readonly("views", [](const KeptRecord& k) { return views_of(k.record.found); })
-      .def_property_readonly("promises", [](const KeptRecord& k) { return k.record.promise.holds; })
-      .def_property_readonly("promises_reason",
-                             [](const KeptRecord& k) { return k.record.promise.reason; })
-      .def_property_readonly("accounting",
-                             [](const KeptRecord& k) -> py::object {
-                               if (!k.verified()) return py::none();
-                               return accounting_of(*k.record.verification);
-                             })
-      .def("missed",
-           [](const KeptRecord& k) -> py::object {
-             if (!k.verified()) return py::none();
-             return pair_array(answer_beside([&] { return k.missed(); }));
-           })
-      .def("json",
-           [](const KeptRecord& k) {
-             return answer_beside([&] { return to_json(*k.scene, k.record).dump(); });
-           })
-      .def("table",
-           [](const KeptRecord& k) {
-             return answer_beside([&] { return run_table(*k.scene, k.record); });
-           })
-      .def("certificate", [](const KeptRecord& k) {
-        if (k.record.options.limit > 0 || !k.record.options.ignored.empty()) {
-          raise("certificate", "is about all colliding pairs of all objects",
-                "run without ignore and limit", true);
-        }
-        return answer_beside([&] { return to_text(certificate_of(*k.scene, k.record)); });
-      });
+  py::class_<KeptRecord> made(module, "Record");
+  const auto property = [&](const char* name, auto read) {
+    made.def_property_readonly(name, [read](const KeptRecord& k) { return read(k.record); });
+  };
+  property("pairs", [](const Record& r) { return pair_array(r.collisions.pairs); });
+  property("neighbour_pairs",
+           [](const Record& r) { return pair_array(r.collisions.neighbour_pairs); });
+  property("kinds", [](const Record& r) { return kinds_of(r, r.contacts); });
+  property("neighbour_kinds", [](const Record& r) { return kinds_of(r, r.neighbour_contacts); });
+  property("complete", [](const Record& r) { return r.complete; });
+  property("candidates", [](const Record& r) { return r.found.count; });
+  property("views", [](const Record& r) { return views_of(r.found); });
+  property("promises", [](const Record& r) { return r.promise.holds; });
+  property("promises_reason", [](const Record& r) { return r.promise.reason; });
+  property("accounting", [](const Record& r) -> py::object {
+    if (!r.verification) return py::none();
+    return accounting_of(*r.verification);
+  });
+  const auto viewed = [&](const char* name, auto numbers) {
+    made.def_property_readonly(name, [numbers](py::object self) {
+      const auto& out = self.cast<const KeptRecord&>().record.found.*numbers;
+      return view_of(out.data(), {static_cast<py::ssize_t>(out.size())}, self);
+    });
+  };
+  viewed("bits", &Candidates::bits);
+  viewed("kept_triangles", &Candidates::triangles);
+  const auto text = [&](const char* name, auto write) {
+    made.def(name,
+             [write](const KeptRecord& k) { return answer_beside([&] { return write(k); }); });
+  };
+  text("json", [](const KeptRecord& k) { return to_json(*k.scene, k.record).dump(); });
+  text("table", [](const KeptRecord& k) { return run_table(*k.scene, k.record); });
+  made.def("missed", [](const KeptRecord& k) -> py::object {
+    if (!k.record.verification) return py::none();
+    return pair_array(answer_beside([&] { return k.missed(); }));
+  });
+  made.def("certificate", [](const KeptRecord& k) {
+    if (k.record.options.limit > 0 || !k.record.options.ignored.empty()) {
+      raise("certificate", "is about all colliding pairs of all objects",
+            "run without ignore and limit", true);
+    }
+    return answer_beside([&] { return to_text(certificate_of(*k.scene, k.record)); });
+  });
   // The keywords of run(), and which are flags; method and limit are parameters of their own.
   py::dict options;
   for (const Option& option : run_options()) {

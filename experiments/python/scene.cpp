@@ -11,10 +11,8 @@
 #include "core/base/error.h"
 #include "experiments/library/input.h"
 #include "experiments/python/arrays.h"
-#include "experiments/python/parts.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/frames.h"
-#include "experiments/scenes/ignore.h"
 #include "experiments/scenes/scene_file.h"
 
 namespace farcull::python {
@@ -100,41 +98,35 @@ std::vector<std::array<std::uint32_t, 2>> pairs_named(const KeptScene& kept,
   });
 }
 
-template <class Member>
-py::list of_objects(const KeptScene& kept, Member Object::*member) {
-  py::list out;
-  for (const Object& object : kept.scene->objects) out.append(object.*member);
-  return out;
-}
-
 }  // namespace
 
 void add_scenes(py::module_& module) {
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
+  // (n, 3): a view of the vertices or triangles of a scene.
+  const auto rows = [](auto rows_of) {
+    return [rows_of](py::object self) {
+      const auto& out = (*self.cast<const KeptScene&>().scene).*rows_of;
+      return view_of(out.empty() ? nullptr : out[0].data(),
+                     {static_cast<py::ssize_t>(out.size()), 3}, self);
+    };
+  };
+  const auto each = [](auto member) {
+    return [member](const KeptScene& k) {
+      py::list out;
+      for (const Object& object : k.scene->objects) out.append(object.*member);
+      return out;
+    };
+  };
   py::class_<KeptScene>(module, "Scene")
       .def_property_readonly("name", [](const KeptScene& k) { return k.scene->name; })
-      .def_property_readonly("vertices",
-                             [](py::object self) {
-                               const Scene& scene = *self.cast<const KeptScene&>().scene;
-                               static_assert(sizeof(Vec3) == 3 * sizeof(double));
-                               return view_of(
-                                   scene.vertices.empty() ? nullptr : scene.vertices[0].data(),
-                                   {static_cast<py::ssize_t>(scene.vertices.size()), 3}, self);
-                             })
-      .def_property_readonly("triangles",
-                             [](py::object self) {
-                               const Scene& scene = *self.cast<const KeptScene&>().scene;
-                               return view_of(
-                                   scene.triangles.empty() ? nullptr : scene.triangles[0].data(),
-                                   {static_cast<py::ssize_t>(scene.triangles.size()), 3}, self);
-                             })
+      .def_property_readonly("vertices", rows(&Scene::vertices))
+      .def_property_readonly("triangles", rows(&Scene::triangles))
       .def_property_readonly("objects", &object_starts)
       .def_property_readonly("ignored",
                              [](const KeptScene& k) { return pair_array(k.scene->ignored); })
       .def("pairs_named", &pairs_named)
-      .def_property_readonly("names",
-                             [](const KeptScene& k) { return of_objects(k, &Object::name); })
-      .def_property_readonly("self",
-                             [](const KeptScene& k) { return of_objects(k, &Object::self); });
+      .def_property_readonly("names", each(&Object::name))
+      .def_property_readonly("self", each(&Object::self));
   module.def("scene_of_arrays", &from_arrays);
   module.def("scene_of_names", &from_names);
   module.def("builtin_scenes", [] {

@@ -18,7 +18,6 @@
 #include "core/base/error.h"
 #include "core/scene/scene.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/ignore.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
@@ -217,9 +216,8 @@ class SceneFile {
       require((placement.rotate->axis.array() != 0).any(), at + ".axis", "is the zero vector",
               "give a direction of any length");
     }
-    if (object.contains("translate")) {
+    if (object.contains("translate"))
       placement.translate = vec3(object["translate"], place + ".translate");
-    }
     return placement;
   }
 
@@ -256,9 +254,8 @@ class SceneFile {
     require(value.is_array() && value.size() == 3, place, "must be an array of 3 numbers",
             "write it as [X, Y, Z]");
     Vec3 v;
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i)
       v[static_cast<int>(i)] = number(value[i], fmt::format("{}[{}]", place, i));
-    }
     return v;
   }
 
@@ -370,7 +367,7 @@ SceneBuilder scene_of_meshes(const std::vector<std::string>& paths, MeshCache& m
   if (paths.size() > 3) name += fmt::format("+{} more", paths.size() - 3);
   SceneBuilder builder(clean_name(name), paths[0]);
   for (const std::string& path : paths) {
-    builder.add(meshes.get(path), mesh_stem(path), Split::kNone, {});
+    builder.add(meshes.get(path), mesh_stem(path));
     if (added) added(builder);
   }
   return builder;

@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "core/base/error.h"
-#include "experiments/generators/families.h"
+#include "experiments/generators/pair_generators.h"
 #include "experiments/measure/lab.h"
 #include "experiments/peers/minimize.h"
 #include "experiments/peers/score.h"

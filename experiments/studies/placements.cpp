@@ -14,7 +14,6 @@
 #include "experiments/method/plan.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/scenes/mesh/shapes.h"
 
 namespace farcull {
 namespace {
@@ -238,8 +237,8 @@ PlacedPatches PatchSource::place(bool grazing, double side, int resolution, std:
     ++out.placements;
   }
   SceneBuilder scene("placements", "placements");
-  scene.add(shapes::soup(one), "first", Split::kNone, {});
-  scene.add(shapes::soup(other), "second", Split::kNone, {});
+  scene.add(shapes::soup(one), "first");
+  scene.add(shapes::soup(other), "second");
   out.scene = scene.finish();
   return out;
 }

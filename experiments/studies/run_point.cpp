@@ -21,7 +21,6 @@
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/cloth/cloth.h"
 #include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/scenes/mesh/shapes.h"
 #include "experiments/studies/point.h"
 #include "verify/contact.h"
 
@@ -58,8 +57,8 @@ Scene pixel_corners() {
     for (auto* list : {&one, &other}) list->push_back({p, p, p});
   }
   SceneBuilder scene(kCorners, kCorners);
-  scene.add(shapes::soup(one), "rising", Split::kNone, {});
-  scene.add(shapes::soup(other), "falling", Split::kNone, {});
+  scene.add(shapes::soup(one), "rising");
+  scene.add(shapes::soup(other), "falling");
   return scene.finish();
 }
 
@@ -77,7 +76,7 @@ Scene clusters(const ClusteredScene& wanted) {
   SceneBuilder scene("clusters", "clusters");
   int objects = 0;
   const auto add = [&](const std::vector<Corners>& triangles) {
-    scene.add(shapes::soup(triangles), fmt::format("object{}", objects++), Split::kNone, {});
+    scene.add(shapes::soup(triangles), fmt::format("object{}", objects++));
   };
   for (int cluster = 0; cluster < kClusters; ++cluster) {
     const Vec3 corner = drawn(0, 1 - side);

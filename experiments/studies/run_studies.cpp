@@ -18,7 +18,7 @@
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/merge.h"
-#include "experiments/system/interrupt.h"
+#include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {

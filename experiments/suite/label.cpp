@@ -3,7 +3,7 @@
 // The kind follows from the common points of two triangles. Their intersection is convex, and each
 // corner of it is a corner of a triangle, a point where an edge crosses the other plane, or a point
 // where two edges cross. All of these are found as rational numbers, so nothing is rounded.
-#include "experiments/suite/label.h"
+#include "experiments/suite/reader.h"
 
 #include <fmt/format.h>
 

@@ -219,9 +219,8 @@ SuiteMeshPair parse_row(const Lines& lines, std::string_view line, const SuiteMe
   if (one_object && !mesh.self)
     lines.fail("the triangles are of one object, which is not tested against itself", kFormat);
   const std::uint32_t shared = one_object ? shared_vertices(mesh.scene, out.pair) : 0;
-  if (out.shared != shared) {
+  if (out.shared != shared)
     lines.fail(fmt::format("the triangles share {} vertices, not {}", shared, out.shared), kFormat);
-  }
   return out;
 }
 

@@ -12,10 +12,9 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "experiments/generators/families.h"
+#include "experiments/generators/pair_generators.h"
 #include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/scenes/mesh/shapes.h"
-#include "experiments/suite/label.h"
+#include "experiments/suite/reader.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {

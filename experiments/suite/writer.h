@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "experiments/generators/families.h"
+#include "experiments/generators/pair_generators.h"
 #include "experiments/suite/reader.h"
 
 namespace farcull {

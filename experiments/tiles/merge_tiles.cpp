@@ -1,6 +1,5 @@
 // The lists are sorted, and so are their pairs taken together: the least of the next lines of all
 // lists is the next line of the whole.
-#include "experiments/tiles/merge_tiles.h"
 
 #include <fmt/format.h>
 

@@ -1,22 +1,120 @@
-// A run on one tile of a scene: its pairs, in the numbers of the whole scene, and a record with
-// which `farcull merge` joins the tiles.
+// Tiles of a scene that is too large for the memory: where they are cut, a run on one of them, and
+// what `farcull merge` joins. docs/tiles.md has the proof that each pair belongs to one tile.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "core/base/hash.h"
 #include "core/base/progress.h"
+#include "core/boxes/block.h"
+#include "core/scene/scene.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
-#include "experiments/tiles/census.h"
-#include "experiments/tiles/slab.h"
+#include "experiments/scenes/scene_file.h"
 #include "verify/certificate/pair_list.h"
 
 namespace farcull {
+
+// The first reading of a scene that is too large for the memory: how many triangles it has and
+// where they lie, and from that the cuts of its tiles.
+
+/// Calls its argument with one part of a scene after the other, the same ones each time, and
+/// returns the pairs of objects that the scene ignores, as stream_scene() does.
+using SceneSource = std::function<std::vector<ObjectPair>(const TakePart&)>;
+
+/// What a reading of all parts tells. Memory: 65,536 triangles, 16 bytes for each object whose
+/// number of triangles is not that of the object before it, and the ignored pairs.
+struct Census {
+  std::string name;
+  std::uint64_t objects = 0, self_objects = 0, triangles = 0;
+  std::vector<std::string> names;   // of the objects; empty where they were not asked for
+  std::vector<ObjectPair> ignored;  // by the scene, as in_order() gives them
+  /// Grown boxes of some triangles: all of them where there are at most 65,536, else those of which
+  /// the numbers are chosen by a fixed hash. So the same scene gives the same sample everywhere.
+  std::vector<Box> sample;
+  /// size_word() of each object, and how often in a row.
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> sizes;
+
+  /// scene_hash() of the scene, up to the coordinates.
+  Fnv1a begun_hash() const;
+};
+
+/// What scene_hash() hashes of an object before it comes to the coordinates.
+std::uint64_t size_word(const Object& object);
+
+/// clearance: as of grown_box(). names: of the objects are kept. Throws what `source` throws.
+Census take_census(const SceneSource& source, double clearance, bool names = false);
+
+/// A scene of the objects by their names alone.
+Scene names_of(const Census& census);
+
+/// Where a scene is cut.
+struct Cuts {
+  int axis = 0;
+  std::vector<double> at;  // ascending, some may be equal; one fewer than tiles
+  std::size_t tiles() const { return at.size() + 1; }
+};
+
+/// Cuts for this many tiles, by a fixed rule: on each axis the quantiles of the places where the
+/// boxes of the sample begin; of the three axes the one whose fullest tile meets the fewest
+/// triangles of the sample, then the one with the fewest in all tiles, then the first. Only time
+/// and memory depend on them. Precondition: tiles >= 1.
+Cuts choose_cuts(const Census& census, std::size_t tiles);
+
+/// Triangles of a tile.
+struct TileCount {
+  std::uint64_t triangles = 0;  // that meet it
+  std::uint64_t home = 0;       // whose box begins in it: each triangle of the scene in one tile
+};
+/// One more reading of the scene: the triangles of each tile. Memory O(tiles).
+std::vector<TileCount> count_tiles(const SceneSource& source, const Cuts& cuts, double clearance);
+
+// A tile of a scene: a half-open interval of one axis. Which triangles meet it, and which pairs of
+// triangles belong to it (docs/tiles.md has the proof that each pair belongs to exactly one).
+
+/// The tile from .. to of an axis (0, 1 or 2), in world units: `from` belongs to it, `to` does not.
+struct Slab {
+  int axis = 0;
+  double from = -std::numeric_limits<double>::infinity();
+  double to = std::numeric_limits<double>::infinity();
+};
+
+/// Tile k of the cuts.size() + 1 tiles of an axis. Preconditions: the cuts ascend, some may be
+/// equal; k <= cuts.size(). The first tile begins at minus infinity, the last ends at infinity.
+inline Slab slab_of(int axis, std::span<const double> cuts, std::size_t k) {
+  Slab out{.axis = axis};
+  if (k > 0) out.from = cuts[k - 1];
+  if (k < cuts.size()) out.to = cuts[k];
+  return out;
+}
+
+/// Whether a place on the axis is in the tile. Exact: it only compares doubles.
+inline bool holds(const Slab& slab, double at) { return at >= slab.from && at < slab.to; }
+
+/// Whether a closed box has a place in the tile. Precondition: the box is not empty, and begins
+/// below infinity.
+inline bool meets(const Slab& slab, const Box& box) {
+  return box.lo[slab.axis] < slab.to && box.hi[slab.axis] >= slab.from;
+}
+
+/// Whether the pair belongs to the tile: where the later one of the two triangles' boxes begins,
+/// each grown by half the clearance (core/boxes/block.h).
+inline bool owns(const Slab& slab, const Scene& scene, const TrianglePair& pair, double clearance) {
+  return holds(slab, std::max(grown_box(scene, pair.a, clearance).lo[slab.axis],
+                              grown_box(scene, pair.b, clearance).lo[slab.axis]));
+}
 
 /// Tile k of n, 1 <= k <= n.
 struct TileNumber {
@@ -39,7 +137,7 @@ struct TileScene {
 };
 
 /// Reads all parts of the scene and keeps the triangles whose boxes, grown by half the clearance,
-/// meet the tile: every pair that belongs to the tile (slab.h) is one of these triangles. Memory
+/// meet the tile: every pair that belongs to the tile is one of these triangles. Memory
 /// O(largest part + triangles that meet the tile). Throws Error naming the scene where it differs
 /// from the census in an object's number of triangles or self, and where 2^31 or more triangles and
 /// objects meet the tile; and what `source` throws.
@@ -106,5 +204,31 @@ std::string tiles_table(const Census& census, const Cuts& cuts,
 /// The same for programs.
 nlohmann::ordered_json tiles_json(const Census& census, const Cuts& cuts,
                                   const std::vector<TileCount>& counts);
+
+// Joins what runs on all tiles of a scene have found.
+
+/// Whether `farcull merge` takes the file for the record of a tile: its name ends in .json.
+bool is_tile_record(const std::string& path);
+
+struct MergedTiles {
+  std::uint64_t tiles = 0;
+  std::uint64_t rows = 0;             // of the list
+  std::uint64_t false_negatives = 0;  // of all accountings
+  bool verified = false;              // every tile has an accounting
+  bool promises = true;               // every tile promises to miss nothing (docs/record.md)
+  std::string json;                   // the record of the whole: counts and times, docs/tiles.md
+};
+
+/// Reads the records that `farcull run --tiles K/N --json FILE --pairs LIST` wrote and the lists
+/// beside them, and writes the list of the whole scene to `out`: byte for byte that of one run. A
+/// file appears there only when everything was read to its end and proved whole. The lists are
+/// merged from their beginnings on, so the memory is at most 64 MiB, or 4 KiB for each list, and
+/// the records. Throws Error naming the file where a record or a list is missing, is none, or was
+/// cut short or changed since; where a tile is there twice or not at all; where two records differ
+/// in scene, number of tiles, cuts, options, columns or commit; where the tiles do not hold all
+/// triangles of the scene; and where `out` cannot be written or is a file that is read.
+/// other: a path to which the caller will write, which must not be a file that is read either.
+MergedTiles merge_tiles(const std::vector<std::string>& records, const std::string& out,
+                        const std::string& other = "");
 
 }  // namespace farcull

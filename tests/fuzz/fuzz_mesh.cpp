@@ -7,7 +7,6 @@
 #include <set>
 #include <string_view>
 
-#include "experiments/scenes/mesh/builder.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"

@@ -143,9 +143,8 @@ GlDevice describe(EGLDeviceEXT device, int index) {
   out.index = index;
   out.extensions = text(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS));
   out.kind = has_word(out.extensions, "EGL_MESA_device_software") ? "software" : "hardware";
-  if (has_word(out.extensions, "EGL_EXT_device_drm")) {
+  if (has_word(out.extensions, "EGL_EXT_device_drm"))
     out.drm = text(eglQueryDeviceStringEXT(device, EGL_DRM_DEVICE_FILE_EXT));
-  }
   return out;
 }
 
@@ -216,9 +215,8 @@ std::string open(EGLDeviceEXT device, EglContext& out) {
   if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, out.context))
     return with_cause("its context cannot be made current");
   GLint strategy = GL_NO_RESET_NOTIFICATION;
-  if (epoxy_has_gl_extension("GL_KHR_robustness") || epoxy_gl_version() >= 45) {
+  if (epoxy_has_gl_extension("GL_KHR_robustness") || epoxy_gl_version() >= 45)
     glGetIntegerv(GL_RESET_NOTIFICATION_STRATEGY, &strategy);
-  }
   out.reset_detection = strategy == GL_LOSE_CONTEXT_ON_RESET;
   return "";
 }

@@ -143,7 +143,7 @@ class GlClock {
 };
 
 // The echo (assumption A7): a device says back what a program read and the sum of what was sent, so
-// that lost commands are seen. core/gl/base/echo.glsl has the same arithmetic.
+// that lost commands are seen. kEchoGlsl is the same arithmetic for shaders.
 
 /// Mixes a word with its place: a bijection of the word, after which a change of any bit may change
 /// every bit (the finalizer of MurmurHash3). So changes of a few words do not cancel in a sum, as
@@ -154,6 +154,17 @@ inline std::uint32_t gl_mixed(std::uint32_t word, std::uint32_t place) {
   mixed = (mixed ^ mixed >> 13) * 0xc2b2ae35u;
   return mixed ^ mixed >> 16;
 }
+
+/// For shaders that write a hash of the values they read: FAR_ADD adds a mixed word to `sum`.
+inline constexpr char kEchoGlsl[] = R"glsl(
+uint far_mixed(uint word, uint place) {
+  uint mixed = word ^ place * 0x9e3779b9u;
+  mixed = (mixed ^ mixed >> 16) * 0x85ebca6bu;
+  mixed = (mixed ^ mixed >> 13) * 0xc2b2ae35u;
+  return mixed ^ mixed >> 16;
+}
+#define FAR_ADD(place, word) sum += far_mixed((word), (place));
+)glsl";
 
 /// The sum of words, each mixed with its place.
 struct GlEcho {

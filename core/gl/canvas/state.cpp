@@ -11,7 +11,6 @@
 #include "embedded/canvas_frag.h"
 #include "embedded/canvas_vert.h"
 #include "embedded/canvas_work_comp.h"
-#include "embedded/echo_glsl.h"
 
 namespace farcull {
 namespace {
@@ -73,7 +72,7 @@ CanvasReport::CanvasReport(const GlContext& context, std::size_t block, std::siz
                    {"FAR_STEP " + std::to_string(step_number),
                     "FAR_PROGRAM " + std::to_string(step_number + 1) + "u",
                     "FAR_BATCH " + std::to_string(kBatches[step_number]) + "u"},
-                   {{GL_COMPUTE_SHADER, {embedded::echo_glsl, embedded::canvas_work_comp}}});
+                   {{GL_COMPUTE_SHADER, {kEchoGlsl, embedded::canvas_work_comp}}});
   }
 }
 
@@ -220,7 +219,7 @@ CanvasProgram CanvasState::program(const std::string& name,
   if (mode == DepthMode::fragment) defines.push_back("FAR_PROXY");
   CanvasProgram out;
   out.name = gl_program(name, defines,
-                        {{GL_VERTEX_SHADER, {embedded::echo_glsl, embedded::canvas_vert}},
+                        {{GL_VERTEX_SHADER, {kEchoGlsl, embedded::canvas_vert}},
                          {GL_FRAGMENT_SHADER, {solid, embedded::canvas_frag}}});
   out.number = gl_number();
   glProgramUniform1ui(out.name, glGetUniformLocation(out.name, "u_program"), out.number);

@@ -135,9 +135,8 @@ void PairFinder::divide(const Portion& portion, std::uint64_t emitted, std::size
     throw Error("GL pairs", "one work item has more pairs than fit its memory",
                 "use {device} cpu or a larger {resolution}");
   }
-  for (std::uint32_t k = 0; k < parts; ++k) {
+  for (std::uint32_t k = 0; k < parts; ++k)
     left_.push_back({portion.k + k * portion.of, static_cast<std::uint32_t>(parts) * portion.of});
-  }
 }
 
 // Room for the pairs of the part and for work items of further tests.

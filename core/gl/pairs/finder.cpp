@@ -256,9 +256,8 @@ void GlPairs::forget() {
 std::string GlPairs::name() const { return context_.info().renderer; }
 
 std::vector<TrianglePair> GlPairs::raw_pairs(const PairTask& task, PairCounts& counts) {
-  if (task.width < 1 || task.height < 1 || task.width > 65536 || task.height > 65536) {
+  if (task.width < 1 || task.height < 1 || task.width > 65536 || task.height > 65536)
     throw std::logic_error("GlPairs: a window of no pixels, or of more than 65536 along a side");
-  }
   if (takes_too_much(task)) {
     counts = {};
     counts.given_up = true;

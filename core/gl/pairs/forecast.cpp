@@ -167,9 +167,8 @@ std::optional<PairForecast> first_guess(const PairTask& task, std::size_t memory
   std::size_t entries = 0;
   for (const std::size_t of_level : guess.entries) entries += of_level;
   // An entry with at most 256 others in its cell has no further tests.
-  if (cells.largest > static_cast<int>(kUnit)) {
+  if (cells.largest > static_cast<int>(kUnit))
     guess.more = std::min(entries * (static_cast<std::size_t>(cells.largest) / kUnit), kMostUnits);
-  }
   // More pairs than this cost a second pass of the tests, but a device need not have the memory.
   const std::size_t most = std::min(memory / 2, block) / sizeof(TrianglePair);
   guess.pairs = std::min(kPairsOfEntry * entries, most - std::min<std::size_t>(most, 1));

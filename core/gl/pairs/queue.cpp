@@ -1,13 +1,12 @@
 // Runs the programs of FAR pairs. Each dispatch counts its finished work items and leaves an echo
 // of the numbers and buffers that it read; both are compared when totals are read.
-#include "core/gl/pairs/queue.h"
+#include "core/gl/pairs/finder.h"
 
 #include <algorithm>
 #include <bit>
 #include <stdexcept>
 
 #include "core/base/error.h"
-#include "embedded/echo_glsl.h"
 #include "embedded/interval_glsl.h"
 #include "embedded/pair_arrays_comp.h"
 #include "embedded/pair_common_glsl.h"
@@ -151,9 +150,8 @@ GLint limit_of(GLenum name) {
 
 PairQueue::PairQueue(const GlContext& context, const GlPairOptions& options)
     : context_(context), block_(static_cast<std::size_t>(context.info().max_storage_block)) {
-  if (options.storage_limit > 0) {
+  if (options.storage_limit > 0)
     block_ = std::min(block_, static_cast<std::size_t>(options.storage_limit));
-  }
   block_ -= kTagBytes;
   const GLint bindings = std::min(limit_of(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS),
                                   limit_of(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS));
@@ -177,7 +175,7 @@ const PairQueue::Program& PairQueue::program(std::size_t which) {
   const Source& source = kSources[which];
   GlProgram made = gl_program(source.name, defines_of(source, static_cast<std::uint32_t>(which)),
                               {{GL_COMPUTE_SHADER,
-                                {source.defines, interval_glsl, pair_common_glsl, echo_glsl,
+                                {source.defines, interval_glsl, pair_common_glsl, kEchoGlsl,
                                  source.before, source.text, pair_main_glsl}}});
   GLint blocks = 0;
   glGetProgramInterfaceiv(made, GL_SHADER_STORAGE_BLOCK, GL_ACTIVE_RESOURCES, &blocks);

@@ -10,10 +10,30 @@
 #include "core/base/error.h"
 #include "core/gl/base/objects.h"
 #include "core/view/view.h"
-#include "embedded/picture_glsl.h"
 
 namespace farcull {
 namespace {
+
+// Triangles that are shaded on the CPU. A corner: x, y and depth in normalized device coordinates,
+// and its colour, RGBA8 in 32 bits.
+constexpr char kTriangles[] = R"glsl(
+#ifdef FAR_VERTEX
+layout(std430, binding = 0) readonly buffer Corners { uvec4 corners[]; };
+
+flat out vec4 v_colour;
+
+void main() {
+  uvec4 corner = corners[gl_VertexID];
+  v_colour = unpackUnorm4x8(corner.w);
+  gl_Position = vec4(uintBitsToFloat(corner.xyz), 1.0);
+}
+#else
+flat in vec4 v_colour;
+out vec4 o_colour;
+
+void main() { o_colour = v_colour; }
+#endif
+)glsl";
 
 // Light comes over the left shoulder of who looks; x right, y up, depth away.
 const Vec3 kLight = Vec3(-0.45, 0.60, -0.66).normalized();
@@ -165,10 +185,9 @@ Image draw_picture(const GlContext& context, const Scene& scene, const Window& w
     throw Error("GL picture", "the device has no room for " + size,
                 "choose a smaller picture or another {device}");
   }
-  const GlProgram program =
-      gl_program("picture", {},
-                 {{GL_VERTEX_SHADER, {"#define FAR_VERTEX\n", embedded::picture_glsl}},
-                  {GL_FRAGMENT_SHADER, {embedded::picture_glsl}}});
+  const GlProgram program = gl_program("picture", {},
+                                       {{GL_VERTEX_SHADER, {"#define FAR_VERTEX\n", kTriangles}},
+                                        {GL_FRAGMENT_SHADER, {kTriangles}}});
   const GlVertexArray vertex_array = gl_make<GlVertexArray>(glGenVertexArrays);
   const GlBuffer buffer = gl_make<GlBuffer>(glGenBuffers);
   const GlTexture colours = gl_texture(GL_RGBA8, width, height);

@@ -6,7 +6,6 @@
 #include "embedded/canvas_frag.h"
 #include "embedded/probe_frag.h"
 #include "embedded/probe_memory_comp.h"
-#include "embedded/probe_solid_frag.h"
 
 namespace farcull::probe {
 namespace {
@@ -241,7 +240,7 @@ ProbeResult single_pixel_queries(const GlContext& context, const ProbeOptions& o
   for (const auto& [width, height] : {std::pair{512, 512}, {side, 64}, {64, side}}) {
     Target target(width, height, DepthBuffer::float32);
     const GlProgram program =
-        proxy_program("query", {embedded::probe_solid_frag, embedded::canvas_frag}, {ask_define()});
+        proxy_program("query", {kDepthSolid, embedded::canvas_frag}, {ask_define()});
     std::vector<Proxy> proxies;
     for (std::size_t i = 0; i < kQueries; ++i) {
       const double x = random.below(width) - 0.5 * width, y = random.below(height) - 0.5 * height;

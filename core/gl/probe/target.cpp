@@ -8,7 +8,6 @@
 #include "core/base/error.h"
 #include "core/gl/probe/target.h"
 #include "embedded/canvas_vert.h"
-#include "embedded/probe_solid_frag.h"
 
 namespace farcull {
 
@@ -265,8 +264,6 @@ Window window(int width, int height, double depth) {
   out.lo = -out.hi;
   return out;
 }
-
-SolidProgram depth_solid() { return {"probe", embedded::probe_solid_frag, nullptr}; }
 
 int largest_side(const GlContext& context) {
   const GlInfo& info = context.info();

@@ -147,8 +147,17 @@ std::vector<std::uint32_t> words_of(const GlBuffer& buffer, std::size_t words);
 
 /// The shape that GlCanvas sees.
 Window window(int width, int height, double depth = 100);
-/// A canvas's solid with the depths of `quad`.
-SolidProgram depth_solid();
+/// A solid without a shape, hit everywhere, with the entry and exit depths of `quad`: s0 = (-, -,
+/// entry, exit).
+inline constexpr char kDepthSolid[] = R"glsl(
+bool solid_interval(vec2 c, vec4 s0, vec4 s1, vec4 s2, vec4 s3, vec4 s4, FAR_OUT(float) entry,
+                    FAR_OUT(float) exit) {
+  entry = s0.z;
+  exit = s0.w;
+  return true;
+}
+)glsl";
+inline SolidProgram depth_solid() { return {"probe", kDepthSolid, nullptr}; }
 
 /// How often what is repeated `n` times is done.
 inline int rounds(const ProbeOptions& options, int n) { return options.brief ? (n + 2) / 3 : n; }

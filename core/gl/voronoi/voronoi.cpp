@@ -13,8 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/gl/base/objects.h"
-#include "core/voronoi/grid.h"
-#include "embedded/echo_glsl.h"
+#include "core/voronoi/voronoi.h"
 #include "embedded/voronoi_bounds_glsl.h"
 #include "embedded/voronoi_frag.h"
 #include "embedded/voronoi_vert.h"
@@ -71,9 +70,8 @@ class GlVoronoi : public VoronoiDevice {
     }
     on_.program = gl_program(
         "voronoi", {},
-        {{GL_VERTEX_SHADER, {embedded::echo_glsl, embedded::voronoi_vert}},
-         {GL_FRAGMENT_SHADER,
-          {embedded::echo_glsl, embedded::voronoi_bounds_glsl, embedded::voronoi_frag}}});
+        {{GL_VERTEX_SHADER, {kEchoGlsl, embedded::voronoi_vert}},
+         {GL_FRAGMENT_SHADER, {kEchoGlsl, embedded::voronoi_bounds_glsl, embedded::voronoi_frag}}});
     on_.vertex_array = gl_make<GlVertexArray>(glGenVertexArrays);
     on_.list.reserve(16 + 16 * std::max<std::size_t>(options.list, 1), block_);
     check_gl("Voronoi diagram");

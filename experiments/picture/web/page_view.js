@@ -454,7 +454,7 @@ async function bytesOf(name) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-// Numbers of 32 bits, stored as differences by byte (experiments/picture/page.h).
+// Numbers of 32 bits, stored as differences by byte (experiments/picture/picture.h).
 async function numbersOf(name) {
   const bytes = await bytesOf(name), n = bytes.length / 4;
   const out = new Uint32Array(n);

@@ -32,29 +32,9 @@ from ._runs import Check, Picture, Plan, Record, check, picture, plan
 from ._scenes import Frames, Scene, builtin_scenes
 
 __all__ = [
-    "Check",
-    "Collider",
-    "Distance",
-    "Error",
-    "Frames",
-    "InputError",
-    "KINDS",
-    "Part",
-    "Picture",
-    "Plan",
-    "Record",
-    "Report",
-    "Result",
-    "Scene",
-    "Stream",
-    "builtin_scenes",
-    "check",
-    "collide",
-    "distances",
-    "join",
-    "picture",
-    "plan",
-    "stream",
+    "Check", "Collider", "Distance", "Error", "Frames", "InputError", "KINDS", "Part", "Picture",
+    "Plan", "Record", "Report", "Result", "Scene", "Stream", "builtin_scenes", "check", "collide",
+    "distances", "join", "picture", "plan", "stream",
 ]
 
 del _farcull

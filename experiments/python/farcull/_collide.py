@@ -62,13 +62,8 @@ class Result:
 
 
 def _question(
-    self: Union[bool, Sequence[bool]],
-    clearance: float,
-    neighbours: bool,
-    threads: int,
-    kinds: bool,
-    ignore: Optional[ArrayLike],
-    limit: Optional[int],
+    self: Union[bool, Sequence[bool]], clearance: float, neighbours: bool, threads: int,
+    kinds: bool, ignore: Optional[ArrayLike], limit: Optional[int],
 ) -> "_farcull.Question":
     """What a collider and a stream are asked, checked."""
     all_objects, each = _arguments.selves(self)
@@ -111,25 +106,15 @@ class Collider:
 
     # The first parameter is positional, so that `self` can be a name of an option.
     def __init__(
-        collider,
-        /,
-        *,
-        self: Union[bool, Sequence[bool]] = False,
-        clearance: float = 0.0,
-        neighbours: bool = True,
-        device: str = "cpu",
-        threads: int = 0,
-        kinds: bool = False,
-        ignore: Optional[ArrayLike] = None,
-        limit: Optional[int] = None,
-        views: str = "auto",
+        collider, /, *, self: Union[bool, Sequence[bool]] = False, clearance: float = 0.0,
+        neighbours: bool = True, device: str = "cpu", threads: int = 0, kinds: bool = False,
+        ignore: Optional[ArrayLike] = None, limit: Optional[int] = None, views: str = "auto",
         resolution: int = 0,
     ) -> None:
         question = _question(self, clearance, neighbours, threads, kinds, ignore, limit)
         collider._selves = question["all_objects"], question["self_objects"]
         collider._collider = _farcull.Collider(
-            question,
-            device=_arguments.choice("device", device, ("cpu", "gl", "best")),
+            question, device=_arguments.choice("device", device, ("cpu", "gl", "best")),
             views=_arguments.text("views", views),
             resolution=_arguments.integer("resolution", resolution, 0, 16384),
         )
@@ -154,17 +139,9 @@ class Collider:
 
 
 def collide(
-    V: ArrayLike,
-    F: ArrayLike,
-    objects: Any = None,
-    self: Union[bool, Sequence[bool]] = False,
-    clearance: float = 0.0,
-    neighbours: bool = True,
-    device: str = "cpu",
-    threads: int = 0,
-    kinds: bool = False,
-    ignore: Optional[ArrayLike] = None,
-    limit: Optional[int] = None,
+    V: ArrayLike, F: ArrayLike, objects: Any = None, self: Union[bool, Sequence[bool]] = False,
+    clearance: float = 0.0, neighbours: bool = True, device: str = "cpu", threads: int = 0,
+    kinds: bool = False, ignore: Optional[ArrayLike] = None, limit: Optional[int] = None,
 ) -> Result:
     """All pairs of triangles that collide: of different objects, and of one that is tested against
     itself. The parameters are those of :class:`Collider`, but for its ``views`` and ``resolution``, and
@@ -173,14 +150,8 @@ def collide(
     For many frames, keep a Collider.
     """
     collider = Collider(
-        self=self,
-        clearance=clearance,
-        neighbours=neighbours,
-        device=device,
-        threads=threads,
-        kinds=kinds,
-        ignore=ignore,
-        limit=limit,
+        self=self, clearance=clearance, neighbours=neighbours, device=device, threads=threads,
+        kinds=kinds, ignore=ignore, limit=limit,
     )
     return collider.find(V, F, objects)
 
@@ -227,16 +198,9 @@ class Stream:
 
 
 def stream(
-    V: ArrayLike,
-    F: ArrayLike,
-    objects: Any = None,
-    self: Union[bool, Sequence[bool]] = False,
-    clearance: float = 0.0,
-    neighbours: bool = True,
-    threads: int = 0,
-    kinds: bool = False,
-    ignore: Optional[ArrayLike] = None,
-    limit: Optional[int] = None,
+    V: ArrayLike, F: ArrayLike, objects: Any = None, self: Union[bool, Sequence[bool]] = False,
+    clearance: float = 0.0, neighbours: bool = True, threads: int = 0, kinds: bool = False,
+    ignore: Optional[ArrayLike] = None, limit: Optional[int] = None,
 ) -> Stream:
     """The pairs of :func:`collide`, neighbours among them, some at a time and in the order of the
     rows: where they are too many for the memory, or the first ones are wanted at once. ::
@@ -300,15 +264,9 @@ class Distance:
 
 
 def distances(
-    V: ArrayLike,
-    F: ArrayLike,
-    objects: Any = None,
-    kind: str = "objects",
-    k: int = 1,
-    within: Union[float, None] = None,
-    self: Union[bool, Sequence[bool]] = False,
-    inside: bool = True,
-    threads: int = 0,
+    V: ArrayLike, F: ArrayLike, objects: Any = None, kind: str = "objects", k: int = 1,
+    within: Union[float, None] = None, self: Union[bool, Sequence[bool]] = False,
+    inside: bool = True, threads: int = 0,
 ) -> List[Distance]:
     """How far objects are apart, exactly, with the points that are nearest.
 
@@ -336,15 +294,8 @@ def distances(
     if which != "nearest" and wanted != 1:
         raise InputError("k", f"has no meaning with kind {which}", "leave it out, or give kind='nearest'")
     answers = _farcull.distances(
-        _arguments.array("vertices", V),
-        triangles,
-        starts,
-        which,
-        wanted,
-        -1.0 if limit is None else limit,
-        all_objects,
-        each,
-        _arguments.flag("inside", inside),
+        _arguments.array("vertices", V), triangles, starts, which, wanted,
+        -1.0 if limit is None else limit, all_objects, each, _arguments.flag("inside", inside),
         _arguments.threads(threads),
     )
     return [Distance(**answer) for answer in answers]

@@ -123,25 +123,13 @@ class Record:
 
 
 def run(
-    scene: "Scene",
-    method: str,
-    /,
-    *,
-    verify: bool = True,
-    threads: int = 0,
-    kinds: bool = False,
-    ignore: Optional[Any] = None,
-    limit: Optional[int] = None,
-    **options: Any,
+    scene: "Scene", method: str, /, *, verify: bool = True, threads: int = 0, kinds: bool = False,
+    ignore: Optional[Any] = None, limit: Optional[int] = None, **options: Any,
 ) -> Record:
     made = _farcull.run(
-        _scene(scene),
-        _options(method, options),
-        _arguments.flag("verify", verify),
-        _arguments.threads(threads),
-        _arguments.flag("kinds", kinds),
-        _arguments.ignored(ignore, scene._scene),
-        _arguments.limit(limit),
+        _scene(scene), _options(method, options), _arguments.flag("verify", verify),
+        _arguments.threads(threads), _arguments.flag("kinds", kinds),
+        _arguments.ignored(ignore, scene._scene), _arguments.limit(limit),
     )
     return Record(made, scene, method)
 
@@ -158,24 +146,15 @@ class Plan:
 
 
 def plan(
-    scene: "Scene",
-    /,
-    method: str = "far-pairs",
-    *,
-    threads: int = 0,
-    ignore: Optional[Any] = None,
-    limit: Optional[int] = None,
-    **options: Any,
+    scene: "Scene", /, method: str = "far-pairs", *, threads: int = 0, ignore: Optional[Any] = None,
+    limit: Optional[int] = None, **options: Any,
 ) -> Plan:
     """What :meth:`Scene.run` would do with these options. Opens no device. A limit changes no plan,
     since it stops what comes behind the culling; ``kinds`` is no part of one."""
     given = _options(method, options)
     made = _scene(scene)
     text, table = _farcull.plan(
-        made,
-        given,
-        _arguments.threads(threads),
-        _arguments.ignored(ignore, made),
+        made, given, _arguments.threads(threads), _arguments.ignored(ignore, made),
         _arguments.limit(limit),
     )
     return Plan(json.loads(text), table)
@@ -203,9 +182,7 @@ class Check:
 
 
 def check(
-    scene: "Scene",
-    certificate: Optional[str] = None,
-    pairs: Optional[ArrayLike] = None,
+    scene: "Scene", certificate: Optional[str] = None, pairs: Optional[ArrayLike] = None,
     clearance: Optional[float] = None,
 ) -> Check:
     """Proves or refutes a certificate, a list of pairs, or both, with integers alone.
@@ -243,17 +220,9 @@ class Picture:
 
 
 def picture(
-    scene: "Scene",
-    methods: Sequence[Union[str, Dict[str, Any]]] = ("far-pairs",),
-    *,
-    view: str = "",
-    up: str = "",
-    zoom: bool = False,
-    depth_view: Optional[str] = None,
-    width: int = 900,
-    height: int = 760,
-    device: str = "",
-    threads: int = 0,
+    scene: "Scene", methods: Sequence[Union[str, Dict[str, Any]]] = ("far-pairs",), *,
+    view: str = "", up: str = "", zoom: bool = False, depth_view: Optional[str] = None,
+    width: int = 900, height: int = 760, device: str = "", threads: int = 0,
 ) -> Picture:
     """Draws which triangles collide, which of them a method missed, and which it kept in vain.
 
@@ -271,15 +240,11 @@ def picture(
         options = dict(one) if isinstance(one, dict) else {"method": one}
         panels.append(_options(options.pop("method", "far-pairs"), options))
     pixels, shown = _farcull.picture(
-        _scene(scene),
-        panels,
-        _arguments.text("view", view),
-        _arguments.text("up", up),
+        _scene(scene), panels, _arguments.text("view", view), _arguments.text("up", up),
         _arguments.flag("zoom", zoom),
         None if depth_view is None else _arguments.text("depth_view", depth_view),
         _arguments.integer("width", width, 1, 10**6),
-        _arguments.integer("height", height, 1, 10**6),
-        _arguments.text("device", device),
+        _arguments.integer("height", height, 1, 10**6), _arguments.text("device", device),
         _arguments.threads(threads),
     )
     return Picture(pixels, shown)

@@ -46,12 +46,8 @@ class Scene:
 
     @staticmethod
     def from_arrays(
-        V: ArrayLike,
-        F: ArrayLike,
-        objects: Any = None,
-        self: Union[bool, Sequence[bool]] = False,
-        name: str = "arrays",
-        names: Optional[Sequence[str]] = None,
+        V: ArrayLike, F: ArrayLike, objects: Any = None, self: Union[bool, Sequence[bool]] = False,
+        name: str = "arrays", names: Optional[Sequence[str]] = None,
     ) -> "Scene":
         """A scene of arrays, which are those of :func:`collide` and are copied. ``names``: of the
         objects; else they are "0", "1" and so on. Raises InputError as :func:`collide`."""
@@ -62,13 +58,8 @@ class Scene:
             raise InputError("names", "are one text", "give a list of texts")
         return Scene._of(
             _farcull.scene_of_arrays(
-                _arguments.array("vertices", V),
-                triangles,
-                starts,
-                _arguments.text("name", name),
-                [_arguments.text("names", one) for one in names or []],
-                all_objects,
-                each,
+                _arguments.array("vertices", V), triangles, starts, _arguments.text("name", name),
+                [_arguments.text("names", one) for one in names or []], all_objects, each,
             )
         )
 
@@ -138,10 +129,7 @@ class Frames:
     """
 
     def __init__(
-        collection,
-        /,
-        *names: Union[str, "os.PathLike[str]"],
-        frames: Union[int, Tuple[int, int]],
+        collection, /, *names: Union[str, "os.PathLike[str]"], frames: Union[int, Tuple[int, int]],
         self: bool = False,
     ) -> None:
         most = 10**9

@@ -1,16 +1,18 @@
-// Scenes for benchmarks: a field of any size, and needles whose boxes overlap by the million.
-// Blobs of the field are drawn one after the other, so a part of it needs nothing of those before
-// it but the state of the random numbers.
+// Scenes for benchmarks: a field of any size, and needles whose boxes overlap by the million. Blobs
+// of the field are drawn one after the other, so a part of it needs nothing of those before it but
+// the state of the random numbers. And scenes that go to an extreme by a number: slivers of any
+// aspect, gaps of any number of ulps, stacks of sheets at any distance, triangles of any ratio of
+// sizes.
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "experiments/scenes/builtin/generators.h"
+#include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/scenes/mesh/shapes.h"
 
 namespace farcull {
 
@@ -148,36 +150,169 @@ void stream_field(const SceneParameters& parameters, std::uint64_t seed, const s
 
 std::vector<BuiltinScene> bench_scenes() {
   return {
-      drawn({.name = "needles-layers",
-             .description = "two layers of oblique needles, 4700 x 0.002: 44,946,746 boxes "
-                            "overlap, 1501 collide",
-             .objects = 2,
-             .triangles = 32000,
-             .costly = true},
-            5,
-            [](std::uint64_t seed) {
-              return layers_of_needles("needles-layers", {frame_of({3, 2.6, 2.2})}, {20000, 12000},
-                                       seed);
-            }),
-      drawn({.name = "needles-crossed",
-             .description = "the same in two oblique directions at once: 2,856,139 boxes overlap, "
-                            "625 collide",
-             .objects = 2,
-             .triangles = 10000,
-             .costly = true},
-            6,
-            [](std::uint64_t seed) {
-              return layers_of_needles("needles-crossed",
-                                       {frame_of({3, 2.6, 2.2}), frame_of({-2.3, 2.9, 1.7})},
-                                       {5000, 5000}, seed);
-            }),
-      drawn({.name = "field",
-             .description = "blobs spread evenly, some colliding with neighbours",
-             .objects = 31,
-             .triangles = 9920,
-             .size = SceneSize{"triangles", 1000, 1'000'000'000, 10'000},
-             .motion = "each object drifts by up to its diagonal and back"},
-            7, make_field),
+      entry(
+          "needles-layers", 5,
+          [](std::uint64_t seed) {
+            return layers_of_needles("needles-layers", {frame_of({3, 2.6, 2.2})}, {20000, 12000},
+                                     seed);
+          },
+          "two layers of oblique needles, 4700 x 0.002: 44,946,746 boxes overlap, 1501 collide", 2,
+          32000, "", {}, {}, kCostly),
+      entry(
+          "needles-crossed", 6,
+          [](std::uint64_t seed) {
+            return layers_of_needles("needles-crossed",
+                                     {frame_of({3, 2.6, 2.2}), frame_of({-2.3, 2.9, 1.7})},
+                                     {5000, 5000}, seed);
+          },
+          "the same in two oblique directions at once: 2,856,139 boxes overlap, 625 collide", 2,
+          10000, "", {}, {}, kCostly),
+      entry("field", 7, make_field, "blobs spread evenly, some colliding with neighbours", 31, 9920,
+            "each object drifts by up to its diagonal and back",
+            {"triangles", 1000, 1'000'000'000, 10'000}),
+  };
+}
+
+// Scenes that go to an extreme by a number: slivers of any aspect, gaps of any number of ulps,
+// stacks of sheets at any distance, triangles of any ratio of sizes.
+
+namespace {
+
+// Some direction across another one, of length 1.
+Vec3 across(const Vec3& along, Random& random) {
+  for (;;) {
+    const Vec3 out = along.cross(random.direction());
+    if (out.norm() > 0.1) return out / out.norm();
+  }
+}
+
+// Its longest side 1 long, its height over that side 1 / aspect, in any direction.
+Corners sliver(double aspect, Random& random) {
+  const Vec3 along = random.direction();
+  const Vec3 start = -0.5 * along;
+  return {start, start + along,
+          start + random.between(0.3, 0.7) * along + across(along, random) / aspect};
+}
+
+// Equilateral, about the origin, in any direction.
+Corners equilateral(double side, Random& random) {
+  const Vec3 along = random.direction();
+  const Vec3 other = across(along, random);
+  const double high = side * std::sqrt(0.75);
+  return {-0.5 * side * along - high / 3 * other, 0.5 * side * along - high / 3 * other,
+          2 * high / 3 * other};
+}
+
+Vec3 normal_of(const Corners& corners) {
+  return (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+}
+
+}  // namespace
+
+BuiltScene make_slivers(const SceneParameters& parameters, std::uint64_t seed) {
+  const double aspect = parameters.second;
+  Random random(seed);
+  std::vector<Corners> first, second;
+  for (std::uint64_t i = 0; i < parameters.size; ++i) {
+    first.push_back(shifted(sliver(aspect, random), random.in_cube(1)));
+    // Three in four cross the sliver of the first object, the fourth passes it at twice its height.
+    const Corners other = sliver(aspect, random);
+    const Vec3 from = inner_point(other, random);
+    Vec3 to = inner_point(first.back(), random);
+    if (i % 4 == 3) to += 2 / aspect * random.direction();
+    second.push_back(shifted(other, to - from));
+  }
+  return {two_objects("slivers", "first", soup(first), "second", soup(second)), {}};
+}
+
+BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed) {
+  const double small = 1 / parameters.second;
+  Random random(seed);
+  std::vector<Corners> large, little;
+  for (std::uint64_t i = 0; i < parameters.size; ++i) {
+    large.push_back(shifted(equilateral(1, random), random.in_cube(1)));
+    // Eight small ones at each large one: every other crosses it, the rest stand off by two of
+    // their sides.
+    for (int k = 0; k < 8; ++k) {
+      Vec3 at = inner_point(large.back(), random);
+      if (k % 2 == 1) at += 2 * small * normal_of(large.back());
+      little.push_back(shifted(equilateral(small, random), at));
+    }
+  }
+  return {two_objects("mixed", "large", soup(large), "small", soup(little)), {}};
+}
+
+// The sheets lie in the slope z = x/4 + y/8, and their places and tilts are multiples of an eighth
+// of the gap, a power of two from 2^-47 to 2^-3: of at most 2^10 sheets every sum is exact in
+// double.
+BuiltScene make_stack(const SceneParameters& parameters) {
+  const double gap = stack_gap(parameters.second);
+  constexpr std::uint32_t kCells = 8;  // of a sheet, along a side
+  const Mesh shape = grid(kCells);
+  SceneBuilder scene("stack", "stack");
+  for (std::uint64_t s = 0; s < parameters.size; ++s) {
+    const bool crosses = s % 4 == 3;
+    Mesh placed = shape;
+    for (Vec3& p : placed.vertices) {
+      const double tilt = crosses ? 1.5 * (1 - 2 * p.x()) : 0;
+      p.z() = (0.25 * p.x() + 0.125 * p.y()) + (static_cast<double>(s) + tilt) * gap;
+    }
+    scene.add(placed, (crosses ? "crossing" : "sheet") + std::to_string(s));
+  }
+  return {scene.finish(), {}};
+}
+
+double stack_gap(double wanted) { return std::exp2(std::round(std::log2(wanted))); }
+
+// All coordinates are in [1/2, 1), where an ulp is 2^-53, and multiples of it: every number here is
+// exact.
+BuiltScene make_gap(const SceneParameters& parameters) {
+  const double gap = std::nearbyint(parameters.second) * 0x1p-53;
+  std::uint64_t side = 1;
+  while (side * side * side < parameters.size) ++side;
+  const double cell = 0.5 / static_cast<double>(std::bit_ceil(side));
+  std::vector<Corners> lower, upper;
+  for (std::uint64_t i = 0; i < parameters.size; ++i) {
+    const Vec3 corner = Vec3::Constant(0.5) + cell * Vec3(static_cast<double>(i % side),
+                                                          static_cast<double>(i / side % side),
+                                                          static_cast<double>(i / side / side));
+    // Eighths of the cell along two axes; along the third quarters of it from below its middle, in
+    // a slope, since what is parallel to a view has no image in it.
+    const auto axis = static_cast<int>(i % 3);
+    const auto at = [&](double u, double v, double rise, double by) {
+      Vec3 p = corner;
+      p[(axis + 1) % 3] += u / 8 * cell;
+      p[(axis + 2) % 3] += v / 8 * cell;
+      p[axis] += (0.375 + rise / 4 + u / 32 + v / 64) * cell + by;
+      return p;
+    };
+    if (i / 3 % 2 == 0) {  // a vertex over a face
+      lower.push_back({at(1, 1, 0, 0), at(7, 1, 0, 0), at(1, 7, 0, 0)});
+      upper.push_back({at(3, 3, 0, gap), at(6, 1, 1, gap), at(1, 6, 1, gap)});
+    } else {  // an edge over an edge, across it
+      lower.push_back({at(1, 4, 0, 0), at(7, 4, 0, 0), at(4, 4, -1, 0)});
+      upper.push_back({at(4, 1, 0, gap), at(4, 7, 0, gap), at(4, 4, 1, gap)});
+    }
+  }
+  return {two_objects("gap", "lower", soup(lower), "upper", soup(upper)), {}};
+}
+
+std::vector<BuiltinScene> extreme_scenes() {
+  return {
+      entry("slivers", 14, make_slivers, "slivers of one aspect, most crossing another one", 2, 400,
+            "", {"slivers in each object", 1, 100'000, 200},
+            {"aspect, longest side over height", 2, 1e12, 1e6}),
+      entry("stack", 0, make_stack,
+            "parallel sheets closely above each other, every fourth crossing its neighbours at an "
+            "angle as small",
+            16, 2048, "", {"sheets", 2, 1000, 16},
+            {"distance of neighbours in their widths", 1e-14, 0.1, 1e-9}),
+      entry("mixed", 15, make_mixed,
+            "large triangles, each with small ones that pierce it or do not", 2, 450, "",
+            {"large triangles", 1, 10'000, 50}, {"ratio of their sides", 1, 1e12, 1e6}),
+      entry("gap", 0, make_gap, "vertices above faces and edges above edges by a number of ulps", 2,
+            432, "", {"pairs", 1, 4096, 216},
+            {"number of ulps; 0: they touch, below: they cross", -1e13, 1e13, 1}),
   };
 }
 

@@ -7,9 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "experiments/scenes/builtin/generators.h"
+#include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/scenes/mesh/shapes.h"
 
 namespace farcull {
 
@@ -230,45 +229,24 @@ BuiltScene make_spheres(const SceneParameters& parameters, std::uint64_t seed) {
 
 std::vector<BuiltinScene> contact_scenes() {
   return {
-      drawn({.name = "crumpled",
-             .description = "a sheet of cloth crumpled to a ball, against itself: 57,243 pairs = "
-                            "57,043 + 200 of neighbours collide",
-             .objects = 1,
-             .triangles = 91'592,
-             .size = SceneSize{"triangles", 1000, 100'000'000, 92'000},
-             .costly = true},
-            16, make_crumpled),
-      drawn({.name = "rope",
-             .description = "a rope of three strands wound around a ring, against itself, where "
-                            "nothing collides",
-             .objects = 1,
-             .triangles = 79'488,
-             .size = SceneSize{"triangles", 2000, 100'000'000, 80'000},
-             .costly = true},
-            17, make_rope),
-      drawn({.name = "spheres",
-             .description = "spheres of 320 triangles, settled in a heap: 23,513 pairs collide",
-             .objects = 458,
-             .triangles = 146'560,
-             .size = SceneSize{"triangles", 1000, 100'000'000, 146'560},
-             .costly = true},
-            18, make_spheres),
-      drawn({.name = "fans",
-             .description = "a plug in its socket, triangulated in fans and slivers: 30,979,610 "
-                            "boxes overlap, 1164 collide",
-             .objects = 2,
-             .triangles = 31'112,
-             .size = SceneSize{"triangles", 2000, 10'000'000, 31'000},
-             .costly = true},
-            19, make_fans),
-      drawn({.name = "funnel",
-             .description = "a cloth that hangs in a funnel in pleats, against itself as well, "
-                            "where nothing collides",
-             .objects = 2,
-             .triangles = 29'832,
-             .size = SceneSize{"triangles", 5000, 100'000'000, 30'000},
-             .costly = true},
-            20, make_funnel),
+      entry("crumpled", 16, make_crumpled,
+            "a sheet of cloth crumpled to a ball, against itself: 57,243 pairs = 57,043 + 200 of "
+            "neighbours collide",
+            1, 91'592, "", {"triangles", 1000, 100'000'000, 92'000}, {}, kCostly),
+      entry("rope", 17, make_rope,
+            "a rope of three strands wound around a ring, against itself, where nothing collides",
+            1, 79'488, "", {"triangles", 2000, 100'000'000, 80'000}, {}, kCostly),
+      entry("spheres", 18, make_spheres,
+            "spheres of 320 triangles, settled in a heap: 23,513 pairs collide", 458, 146'560, "",
+            {"triangles", 1000, 100'000'000, 146'560}, {}, kCostly),
+      entry("fans", 19, make_fans,
+            "a plug in its socket, triangulated in fans and slivers: 30,979,610 boxes overlap, "
+            "1164 collide",
+            2, 31'112, "", {"triangles", 2000, 10'000'000, 31'000}, {}, kCostly),
+      entry("funnel", 20, make_funnel,
+            "a cloth that hangs in a funnel in pleats, against itself as well, where nothing "
+            "collides",
+            2, 29'832, "", {"triangles", 5000, 100'000'000, 30'000}, {}, kCostly),
   };
 }
 

@@ -5,9 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "experiments/scenes/builtin/generators.h"
+#include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/scenes/mesh/shapes.h"
 
 namespace farcull {
 
@@ -132,9 +131,7 @@ constexpr double kReachOfCloth = 1.5;  // beyond the corners of the square, sqrt
 // Mean of cos(swing sin(u)): the Bessel function J0, which falls from 1 to 0 on [0, 2.4].
 double advance(double swing) {
   double sum = 0;
-  for (std::uint32_t k = 0; k < kSteps; ++k) {
-    sum += std::cos(swing * std::sin(kTurn * k / kSteps));
-  }
+  for (std::uint32_t k = 0; k < kSteps; ++k) sum += std::cos(swing * std::sin(kTurn * k / kSteps));
   return sum / kSteps;
 }
 
@@ -249,14 +246,12 @@ BuiltScene make_crumpled(const SceneParameters& parameters, std::uint64_t seed) 
   Random random(seed);
   const Lattice sheet = crumple(random);
   const std::uint32_t cells = cells_for(parameters.size);
-  Mesh mesh = grid(cells);
   std::vector<Weights> at;
   for (std::uint32_t i = 0; i <= cells; ++i)
     at.push_back(weights_at(static_cast<double>(i) / cells, sheet.spans));
-  for (std::uint32_t i = 0; i <= cells; ++i) {
-    for (std::uint32_t j = 0; j <= cells; ++j)
-      mesh.vertices[i * (cells + 1) + j] = value(sheet, at[i], at[j]);
-  }
+  const Mesh mesh = surface(cells, cells, false, [&](std::uint32_t i, std::uint32_t j) {
+    return value(sheet, at[i], at[j]);
+  });
   SceneBuilder builder("crumpled", "crumpled");
   builder.add(mesh, "sheet", Split::kNone, {}, true);
   return {builder.finish(), {}};
@@ -290,7 +285,7 @@ BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed) {
   const Mesh around = funnel_around(mesh.vertices, 0.002);
   SceneBuilder builder("funnel", "funnel");
   builder.add(mesh, "cloth", Split::kNone, {}, true);
-  builder.add(around, "funnel", Split::kNone, {});
+  builder.add(around, "funnel");
   return {builder.finish(), {}};
 }
 

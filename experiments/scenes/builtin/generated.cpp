@@ -4,9 +4,8 @@
 #include <numbers>
 #include <utility>
 
-#include "experiments/scenes/builtin/generators.h"
+#include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/scenes/mesh/shapes.h"
 
 namespace farcull {
 
@@ -55,7 +54,7 @@ Scene make_random_soup(std::uint64_t seed) {
       const double size = random.over_octaves(10);
       for (Vec3& p : corners) p = centre + size * random.in_ball();
     }
-    scene.add(soup(list), "soup" + std::to_string(object), Split::kNone, {});
+    scene.add(soup(list), "soup" + std::to_string(object));
   }
   return scene.finish();
 }
@@ -130,10 +129,10 @@ BuiltScene make_needles(const SceneParameters& parameters, std::uint64_t seed) {
     fourth.push_back(shifted(other, to - from));
   }
   SceneBuilder scene("needles", "needles");
-  scene.add(soup(first), "first", Split::kNone, {});
-  scene.add(soup(second), "second", Split::kNone, {});
-  scene.add(soup(third), "along axes", Split::kNone, {});
-  scene.add(soup(fourth), "along axes too", Split::kNone, {});
+  scene.add(soup(first), "first");
+  scene.add(soup(second), "second");
+  scene.add(soup(third), "along axes");
+  scene.add(soup(fourth), "along axes too");
   BuiltScene built{scene.finish(), {}};
   built.motion = turning_and_sliding(built.scene);
   return built;
@@ -236,57 +235,25 @@ Scene make_far_apart() {
 
 std::vector<BuiltinScene> generated_scenes() {
   return {
-      made({.name = "two-spheres",
-            .description = "two interpenetrating spheres",
-            .objects = 2,
-            .triangles = 10240,
-            .motion = "both breathe while waves run along them"},
-           make_two_spheres, pulse),
-      made({.name = "two-tori",
-            .description = "two linked tori whose tubes cross",
-            .objects = 2,
-            .triangles = 20000},
-           make_two_tori),
-      drawn({.name = "random-soup",
-             .description = "random triangles with sizes over three decades, many crossing",
-             .objects = 8,
-             .triangles = 4000},
-            1, make_random_soup),
-      drawn(
-          {.name = "needles",
-           .description =
-               "slivers of aspect up to 2e6 that cross or pass each other closely, oblique in two "
-               "objects and along the axes in two",
-           .objects = 4,
-           .triangles = 1100,
-           .size = SceneSize{"slivers in each oblique object", 8, 1'000'000, 400},
-           .motion = "one oblique object turns, one along the axes slides along them"},
-          2, make_needles),
-      made({.name = "degenerate",
-            .description =
-                "points, segments, slivers and exact contacts of every kind, also missed by 2^-40",
-            .objects = 2,
-            .triangles = 138},
-           make_degenerate),
-      drawn({.name = "ground",
-             .description = "bumpy blobs on a ground of two triangles a thousand times larger",
-             .objects = 6,
-             .triangles = 6402},
-            3, make_ground),
-      drawn({.name = "crowd",
-             .description = "tetrahedra and blobs in a box, some colliding",
-             .objects = 400,
-             .triangles = 9200,
-             .size = SceneSize{"objects", 2, 1'000'000, 400},
-             .second =
-                 SceneSecond{"density in objects per unit of volume", 1e-3, 10, kUsualCrowdDensity},
-             .motion = "each object drifts by up to its diagonal and back"},
-            4, make_crowd),
-      made({.name = "far-apart",
-            .description = "two spheres far from each other",
-            .objects = 2,
-            .triangles = 2560},
-           make_far_apart),
+      entry("two-spheres", 0, moved(make_two_spheres, pulse), "two interpenetrating spheres", 2,
+            10240, "both breathe while waves run along them"),
+      entry("two-tori", 0, make_two_tori, "two linked tori whose tubes cross", 2, 20000),
+      entry("random-soup", 1, make_random_soup,
+            "random triangles with sizes over three decades, many crossing", 8, 4000),
+      entry("needles", 2, make_needles,
+            "slivers of aspect up to 2e6 that cross or pass each other closely, oblique in two "
+            "objects and along the axes in two",
+            4, 1100, "one oblique object turns, one along the axes slides along them",
+            {"slivers in each oblique object", 8, 1'000'000, 400}),
+      entry("degenerate", 0, make_degenerate,
+            "points, segments, slivers and exact contacts of every kind, also missed by 2^-40", 2,
+            138),
+      entry("ground", 3, make_ground,
+            "bumpy blobs on a ground of two triangles a thousand times larger", 6, 6402),
+      entry("crowd", 4, make_crowd, "tetrahedra and blobs in a box, some colliding", 400, 9200,
+            "each object drifts by up to its diagonal and back", {"objects", 2, 1'000'000, 400},
+            {"density in objects per unit of volume", 1e-3, 10, kUsualCrowdDensity}),
+      entry("far-apart", 0, make_far_apart, "two spheres far from each other", 2, 2560),
   };
 }
 

@@ -1,19 +1,18 @@
 // Puts together the entries of built-in scenes, and moves objects as they are: each motion keeps
 // the vertices at rest and writes those of an instant.
-#include "experiments/scenes/builtin/generators.h"
+#include "experiments/scenes/builtin/scenes.h"
 
 #include <cmath>
 #include <memory>
 
 #include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/scenes/mesh/shapes.h"
 
 namespace farcull {
 
 Scene two_objects(const std::string& name, const char* first, const Mesh& one, const char* second,
                   const Mesh& other, const Placement& placement) {
   SceneBuilder scene(name, name);
-  scene.add(one, first, Split::kNone, {});
+  scene.add(one, first);
   scene.add(other, second, Split::kNone, placement);
   return scene.finish();
 }
@@ -24,33 +23,26 @@ BuiltScene halfway(BuiltScene built) {
   return built;
 }
 
-BuiltinScene made(BuiltinScene entry, Scene (*make)(), Motion (*moved)(const Scene&)) {
-  entry.build = [make, moved](const SceneParameters&) {
+SceneMaker moved(Scene (*make)(), Motion (*motion)(const Scene&)) {
+  return [make, motion](const SceneParameters&) {
     BuiltScene built{make(), {}};
-    if (moved != nullptr) built.motion = moved(built.scene);
+    built.motion = motion(built.scene);
     return built;
   };
-  return entry;
 }
 
-BuiltinScene taking(BuiltinScene entry, BuiltScene (*build)(const SceneParameters&)) {
-  entry.build = build;
-  return entry;
-}
-
-BuiltinScene drawn(BuiltinScene entry, std::uint64_t seed,
-                   BuiltScene (*make)(const SceneParameters&, std::uint64_t)) {
-  entry.build = [make, seed](const SceneParameters& p) { return make(p, p.seed.value_or(seed)); };
-  entry.seed = seed;
-  return entry;
-}
-
-BuiltinScene drawn(BuiltinScene entry, std::uint64_t seed, Scene (*make)(std::uint64_t)) {
-  entry.build = [make, seed](const SceneParameters& p) {
-    return BuiltScene{make(p.seed.value_or(seed)), {}};
-  };
-  entry.seed = seed;
-  return entry;
+BuiltinScene entry(const char* name, std::uint64_t seed, const SceneMaker& make,
+                   const char* description, std::uint32_t objects, std::uint32_t triangles,
+                   const char* motion, const SceneSize& size, const SceneSecond& second,
+                   bool costly, bool topology_changes) {
+  BuiltinScene out{name, description, objects, triangles, motion};
+  if (size.most > 0) out.size = size;
+  if (!second.what.empty()) out.second = second;
+  out.costly = costly;
+  out.topology_changes = topology_changes;
+  if (seed > 0) out.seed = seed;
+  out.build = [make, seed](const SceneParameters& p) { return make(p, p.seed.value_or(seed)); };
+  return out;
 }
 
 namespace {

@@ -13,10 +13,9 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "experiments/scenes/builtin/generators.h"
+#include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/scenes/mesh/shapes.h"
 
 namespace farcull {
 
@@ -86,7 +85,7 @@ Scene with_copy(const std::string& name, const char* file, const char* first, co
 
 Scene self_colliding(const std::string& name, const char* file) {
   SceneBuilder builder(name, name);
-  builder.add(packaged(file), name, Split::kNone, {});
+  builder.add(packaged(file), name);
   Scene scene = builder.finish();
   for (Object& object : scene.objects) object.self = true;
   return scene;
@@ -253,63 +252,38 @@ BuiltScene make_breaking_dragon(const SceneParameters& parameters, std::uint64_t
 
 std::vector<BuiltinScene> packaged_scenes() {
   std::vector<BuiltinScene> out = {
-      made({.name = "two-bunnies",
-            .description = "two interpenetrating Stanford bunnies",
-            .objects = 2,
-            .triangles = 150816,
-            .motion = "one passes through the other"},
-           make_two_bunnies, pass_through),
-      made({.name = "armadillo-elephant",
-            .description = "armadillo and elephant of one size in one place",
-            .objects = 2,
-            .triangles = 140928},
-           make_armadillo_elephant),
-      made({.name = "dragon-bunny",
-            .description = "dragon and bunny of one size in one place",
-            .objects = 2,
-            .triangles = 95402},
-           make_dragon_bunny),
-      made({.name = "near-copy",
-            .description = "armadillo and its copy moved by 1e-9 of its diagonal",
-            .objects = 2,
-            .triangles = 104000},
-           [] { return with_copy("near-copy", kArmadillo, "armadillo", "copy", 1e-9); }),
-      made({.name = "bunnies-far-apart",
-            .description = "two bunnies ten diagonals from each other",
-            .objects = 2,
-            .triangles = 150816},
-           [] { return with_copy("bunnies-far-apart", kBunny, "first", "second", 10); }),
-      made({.name = "mannequin-devil",
-            .description =
-                "a mannequin with horns; inside it 1,643 pairs = 1,581 + 62 of neighbours collide",
-            .objects = 1,
-            .triangles = 25888},
-           [] { return self_colliding("mannequin-devil", kMannequin); }),
-      made({.name = "armadillo",
-            .description = "the armadillo against itself, where nothing collides",
-            .objects = 1,
-            .triangles = 52000},
-           [] { return self_colliding("armadillo", kArmadillo); }),
-      made({.name = "bunny",
-            .description = "the Stanford bunny against itself, where nothing collides",
-            .objects = 1,
-            .triangles = 75408},
-           [] { return self_colliding("bunny", kBunny); }),
-      taking({.name = "bunny-dragon",
-              .description = "bunny and dragon, its triangles divided (CULLIDE, FAR)",
-              .objects = 2,
-              .triangles = 325'408,
-              .size = SceneSize{"triangles of the dragon", kPackagedDragon, 100'000'000, 250'000},
-              .motion = "the bunny falls through the dragon"},
-             make_bunny_dragon),
-      drawn({.name = "breaking-dragon",
-             .description = "a dragon that breaks into 200 pieces (CULLIDE)",
-             .objects = 121,
-             .triangles = 250'000,
-             .size = SceneSize{"triangles", kPackagedDragon, 100'000'000, 250'000},
-             .motion = "pieces come off, become objects, fly apart, turn and fall",
-             .topology_changes = true},
-            13, make_breaking_dragon),
+      entry("two-bunnies", 0, moved(make_two_bunnies, pass_through),
+            "two interpenetrating Stanford bunnies", 2, 150816, "one passes through the other"),
+      entry("armadillo-elephant", 0, make_armadillo_elephant,
+            "armadillo and elephant of one size in one place", 2, 140928),
+      entry("dragon-bunny", 0, make_dragon_bunny, "dragon and bunny of one size in one place", 2,
+            95402),
+      entry(
+          "near-copy", 0,
+          [] { return with_copy("near-copy", kArmadillo, "armadillo", "copy", 1e-9); },
+          "armadillo and its copy moved by 1e-9 of its diagonal", 2, 104000),
+      entry(
+          "bunnies-far-apart", 0,
+          [] { return with_copy("bunnies-far-apart", kBunny, "first", "second", 10); },
+          "two bunnies ten diagonals from each other", 2, 150816),
+      entry(
+          "mannequin-devil", 0, [] { return self_colliding("mannequin-devil", kMannequin); },
+          "a mannequin with horns; inside it 1,643 pairs = 1,581 + 62 of neighbours collide", 1,
+          25888),
+      entry(
+          "armadillo", 0, [] { return self_colliding("armadillo", kArmadillo); },
+          "the armadillo against itself, where nothing collides", 1, 52000),
+      entry(
+          "bunny", 0, [] { return self_colliding("bunny", kBunny); },
+          "the Stanford bunny against itself, where nothing collides", 1, 75408),
+      entry("bunny-dragon", 0, make_bunny_dragon,
+            "bunny and dragon, its triangles divided (CULLIDE, FAR)", 2, 325'408,
+            "the bunny falls through the dragon",
+            {"triangles of the dragon", kPackagedDragon, 100'000'000, 250'000}),
+      entry("breaking-dragon", 13, make_breaking_dragon,
+            "a dragon that breaks into 200 pieces (CULLIDE)", 121, 250'000,
+            "pieces come off, become objects, fly apart, turn and fall",
+            {"triangles", kPackagedDragon, 100'000'000, 250'000}, {}, false, kChanges),
   };
   for (BuiltinScene& scene : out) scene.needs_meshes = true;
   return out;

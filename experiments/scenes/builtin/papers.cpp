@@ -10,10 +10,9 @@
 #include <string>
 #include <utility>
 
-#include "experiments/scenes/builtin/generators.h"
+#include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/cloth/cloth.h"
 #include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/scenes/mesh/shapes.h"
 
 namespace farcull {
 
@@ -56,8 +55,7 @@ template <class Deformed>
 BuiltScene on_their_ways(const std::string& name, const std::string& object, const Mesh& shape,
                          std::vector<Way> ways, Deformed deformed) {
   SceneBuilder builder(name, name);
-  for (std::size_t o = 0; o < ways.size(); ++o)
-    builder.add(shape, object + std::to_string(o), Split::kNone, {});
+  for (std::size_t o = 0; o < ways.size(); ++o) builder.add(shape, object + std::to_string(o));
   BuiltScene built{builder.finish(), {}};
   built.motion = [shape = shape.vertices, ways = std::move(ways), deformed](
                      const Instant& now, Scene& out, FrameNotes&) {
@@ -218,11 +216,11 @@ BuiltScene make_tree_leaves(const SceneParameters& parameters, std::uint64_t see
   Random random(seed);
   SceneBuilder builder("tree-leaves", "tree-leaves");
   const Mesh tree = make_tree(random);
-  builder.add(tree, "tree", Split::kNone, {});
+  builder.add(tree, "tree");
   const Mesh shape = make_leaf();
   std::vector<Leaf> leaves;
   for (std::uint64_t i = 0; i < parameters.size; ++i) {
-    builder.add(shape, "leaf" + std::to_string(i), Split::kNone, {});
+    builder.add(shape, "leaf" + std::to_string(i));
     Leaf leaf;
     const double turn = kTurn * random.unit();
     const double far = 1.6 * std::sqrt(random.unit());  // from the trunk
@@ -290,9 +288,8 @@ BuiltScene make_shells(const SceneParameters& parameters, std::uint64_t seed) {
   const std::size_t grid = at(kCells, kCells) + 1;
   const std::uint64_t stacked = parameters.size - parameters.size / 4;
   SceneBuilder builder("shells", "shells");
-  for (std::uint64_t s = 0; s < parameters.size; ++s) {
-    builder.add(shape, (s < stacked ? "sheet" : "crossing") + std::to_string(s), Split::kNone, {});
-  }
+  for (std::uint64_t s = 0; s < parameters.size; ++s)
+    builder.add(shape, (s < stacked ? "sheet" : "crossing") + std::to_string(s));
   Random random(seed);
   std::vector<double> phases(parameters.size);
   for (double& phase : phases) phase = random.unit();
@@ -394,47 +391,27 @@ BuiltScene make_cloth(const SceneParameters& parameters) {
 
 std::vector<BuiltinScene> paper_scenes() {
   return {
-      drawn({.name = "cylinders",
-             .description = "open cylinders of 200 triangles in a room (CULLIDE)",
-             .objects = 100,
-             .triangles = 20000,
-             .size = SceneSize{"cylinders", 2, 100'000, 100},
-             .motion = "each goes its own way, turns, bends and breathes"},
-            9, make_cylinders),
-      drawn({.name = "torii",
-             .description = "six torii in a room (CULLIDE)",
-             .objects = 6,
-             .triangles = 120'000,
-             .size = SceneSize{"triangles of each torus", 72, 2'000'000, 20'000},
-             .motion = "each goes its own way and turns while waves run around it",
-             .costly = true},
-            10, make_torii),
-      drawn({.name = "tree-leaves",
-             .description = "a tree of 4,000 triangles and leaves of 200 (FAR)",
-             .objects = 201,
-             .triangles = 44'000,
-             .size = SceneSize{"leaves", 1, 100'000, 200},
-             .motion = "the leaves fall and turn through the branches",
-             .costly = true},
-            11, make_tree_leaves),
-      drawn({.name = "shells",
-             .description = "open non-manifold sheets, three in four of them stacked at gaps of "
-                            "2^-34 of their width, the others through them at angles as small",
-             .objects = 16,
-             .triangles = 11'136,
-             .size = SceneSize{"sheets", 4, 10'000, 16},
-             .motion = "waves run through the stack while the others tilt"},
-            12, make_shells),
-      taking({.name = "cloth",
-              .description = "a cloth above a sphere, against itself as well (FAR)",
-              .objects = 2,
-              .triangles = 25'120,
-              .size = SceneSize{"triangles of the cloth", 8, 200'000, 20'000},
-              .second = SceneSecond{"stiffness in N/m", 1e2, 1e8, 1e4},
-              .motion = "it falls on the sphere and folds over itself; a frame is a time step "
-                        "(FARCULL_CLOTH=DIR keeps them)",
-              .costly = true},
-             make_cloth),
+      entry("cylinders", 9, make_cylinders, "open cylinders of 200 triangles in a room (CULLIDE)",
+            100, 20000, "each goes its own way, turns, bends and breathes",
+            {"cylinders", 2, 100'000, 100}),
+      entry("torii", 10, make_torii, "six torii in a room (CULLIDE)", 6, 120'000,
+            "each goes its own way and turns while waves run around it",
+            {"triangles of each torus", 72, 2'000'000, 20'000}, {}, kCostly),
+      entry("tree-leaves", 11, make_tree_leaves,
+            "a tree of 4,000 triangles and leaves of 200 (FAR)", 201, 44'000,
+            "the leaves fall and turn through the branches", {"leaves", 1, 100'000, 200}, {},
+            kCostly),
+      entry("shells", 12, make_shells,
+            "open non-manifold sheets, three in four of them stacked at gaps of 2^-34 of their "
+            "width, the others through them at angles as small",
+            16, 11'136, "waves run through the stack while the others tilt",
+            {"sheets", 4, 10'000, 16}),
+      entry("cloth", 0, make_cloth, "a cloth above a sphere, against itself as well (FAR)", 2,
+            25'120,
+            "it falls on the sphere and folds over itself; a frame is a time step "
+            "(FARCULL_CLOTH=DIR keeps them)",
+            {"triangles of the cloth", 8, 200'000, 20'000}, {"stiffness in N/m", 1e2, 1e8, 1e4},
+            kCostly),
   };
 }
 

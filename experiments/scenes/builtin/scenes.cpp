@@ -14,7 +14,6 @@
 #include "core/base/text.h"
 #include "core/view/view.h"
 #include "experiments/scenes/mesh/scene_build.h"
-#include "experiments/scenes/mesh/shapes.h"
 #include "experiments/scenes/mesh/text.h"
 
 namespace farcull {
@@ -50,15 +49,12 @@ double second_of(const BuiltinScene& entry, const std::string& name, const std::
 SceneParameters parameters_of(const BuiltinScene& entry, const std::string& name) {
   const std::vector<std::string> words = split_list(name.substr(0, name.find('@')), ':');
   SceneParameters out = entry.usual();
-  if (words.size() > 1 && !entry.size) {
+  if (words.size() > 1 && !entry.size)
     throw Error(name, entry.name + " comes in one size", "leave out what follows the colon");
-  }
-  if (words.size() > 2 && !entry.second) {
+  if (words.size() > 2 && !entry.second)
     throw Error(name, entry.name + " takes one number", "leave out what follows the second colon");
-  }
-  if (words.size() > 3) {
+  if (words.size() > 3)
     throw Error(name, entry.name + " takes two numbers", "leave out what follows the third colon");
-  }
   if (words.size() > 1) out.size = size_of(entry, name, words[1]);
   if (words.size() > 2) out.second = second_of(entry, name, words[2]);
   return out;
@@ -136,9 +132,8 @@ SceneRequest parse_scene_name(const std::string& name) {
     const auto& known = scene_suffixes();
     const auto found = std::find_if(known.begin(), known.end(),
                                     [&](const SceneSuffix& s) { return s.suffix == word; });
-    if (found == known.end()) {
+    if (found == known.end())
       throw Error(name, quote_token(word) + " is no suffix of scenes", "use " + suffix_names());
-    }
     out.suffixes.push_back(&*found);
   }
   return out;

@@ -7,11 +7,13 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "core/scene/scene.h"
-#include "experiments/scenes/mesh/mesh.h"
+#include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/mesh/scene_build.h"
 
 namespace farcull {
 
@@ -64,16 +66,16 @@ struct BuiltScene {
 
 struct BuiltinScene {
   std::string name;
-  std::string description = {};            // one line
+  std::string description;                 // one line
   std::uint32_t objects = 0;               // of the usual size
   std::uint32_t triangles = 0;             // of the usual size
-  bool needs_meshes = false;               // made of the packaged meshes, see mesh_folder()
+  std::string motion = {};                 // one line; empty: nothing moves
   std::optional<SceneSize> size = {};      // empty: of one size
   std::optional<SceneSecond> second = {};  // empty: no second number
-  std::string motion = {};                 // one line; empty: nothing moves
-  bool topology_changes = false;           // triangles and objects differ between frames
+  bool costly = false;            // of its usual size it is for farcull bench, not every test
+  bool topology_changes = false;  // triangles and objects differ between frames
+  bool needs_meshes = false;      // made of the packaged meshes, see mesh_folder()
   std::optional<std::uint64_t> seed = {};  // what it was drawn with; empty: nothing in it is random
-  bool costly = false;  // of its usual size it is for farcull bench, not every test
   std::function<BuiltScene(const SceneParameters&)> build = {};  // Scene::name is name
 
   SceneParameters usual() const;
@@ -198,5 +200,81 @@ Mesh packaged(const char* file);
 /// the scene, bit by bit.
 void stream_field(const SceneParameters& parameters, std::uint64_t seed, const std::string& name,
                   const std::function<void(Scene& part)>& take);
+
+// The generators of built-in scenes: each file gives the entries of its scenes. Generated scenes
+// are drawn with core/base/random.h and fixed seeds, so that every platform makes the same doubles.
+
+/// Between neighbours in the stack of the scene "shells", all over their surface.
+inline constexpr double kShellGap = 0x1p-34;
+
+/// size: slivers of each object; second: aspect, the longest side over the height above it.
+BuiltScene make_slivers(const SceneParameters& parameters, std::uint64_t seed);
+/// size: sheets; second: from one to the next, in their widths, see stack_gap(). Every fourth leans
+/// and crosses both neighbours.
+BuiltScene make_stack(const SceneParameters& parameters);
+/// The nearest power of two (in its exponent), so that no height of the stack is rounded.
+double stack_gap(double wanted);
+/// size: large triangles, with eight small ones at each; second: ratio of their sides.
+BuiltScene make_mixed(const SceneParameters& parameters, std::uint64_t seed);
+/// size: pairs; second: ulps of their coordinates, the nearest whole number, by which a vertex
+/// stands above a face, or an edge above an edge: they collide where it is 0 or less.
+BuiltScene make_gap(const SceneParameters& parameters);
+
+/// The scenes of the same names in contact_scenes(). size: triangles.
+BuiltScene make_crumpled(const SceneParameters& parameters, std::uint64_t seed);
+BuiltScene make_rope(const SceneParameters& parameters, std::uint64_t seed);
+BuiltScene make_spheres(const SceneParameters& parameters, std::uint64_t seed);
+BuiltScene make_fans(const SceneParameters& parameters, std::uint64_t seed);
+BuiltScene make_funnel(const SceneParameters& parameters, std::uint64_t seed);
+
+/// A scene of two objects, the second one placed.
+Scene two_objects(const std::string& name, const char* first, const Mesh& one, const char* second,
+                  const Mesh& other, const Placement& placement = {});
+/// The scene as its motion has it halfway.
+BuiltScene halfway(BuiltScene built);
+
+/// Makes a scene from a function of any of these arguments: none, the seed, the parameters, or both
+/// of these; it returns a Scene or a BuiltScene.
+class SceneMaker {
+ public:
+  template <class Make>
+  SceneMaker(Make make) {
+    make_ = [make](const SceneParameters& p, std::uint64_t seed) -> BuiltScene {
+      if constexpr (std::is_invocable_v<Make>)
+        return {make(), {}};
+      else if constexpr (std::is_invocable_v<Make, std::uint64_t>)
+        return {make(seed), {}};
+      else if constexpr (std::is_invocable_v<Make, const SceneParameters&>)
+        return make(p);
+      else
+        return make(p, seed);
+    };
+  }
+  BuiltScene operator()(const SceneParameters& p, std::uint64_t seed) const {
+    return make_(p, seed);
+  }
+
+ private:
+  std::function<BuiltScene(const SceneParameters&, std::uint64_t)> make_;
+};
+/// `motion` of the scene without frames.
+SceneMaker moved(Scene (*make)(), Motion (*motion)(const Scene&));
+
+inline constexpr bool kCostly = true, kChanges = true;
+/// A row of the table of scenes: its members as BuiltinScene has them. seed: that of the scene,
+/// where the name gives none; 0 where nothing in it is random.
+BuiltinScene entry(const char* name, std::uint64_t seed, const SceneMaker& make,
+                   const char* description, std::uint32_t objects, std::uint32_t triangles,
+                   const char* motion = "", const SceneSize& size = {},
+                   const SceneSecond& second = {}, bool costly = false,
+                   bool topology_changes = false);
+
+/// `rest` is the scene without frames, whose objects share no vertex. The second object comes from
+/// beside the first, goes through it and leaves on the other side.
+Motion pass_through(const Scene& rest);
+/// All objects breathe, out of step, while waves run along them.
+Motion pulse(const Scene& rest);
+/// Each object goes its own way, by up to its diagonal, and comes back.
+Motion drift(const Scene& rest);
 
 }  // namespace farcull

@@ -22,9 +22,7 @@
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
-#include "experiments/scenes/cloth/model.h"
-#include "experiments/scenes/cloth/solver.h"
-#include "experiments/scenes/mesh/shapes.h"
+#include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {
@@ -105,9 +103,8 @@ ClothState Cloth::state() const {
 
 void Cloth::restore(const ClothState& state) {
   State& s = *state_;
-  if (state.positions.size() != s.x.size() || state.velocities.size() != s.x.size()) {
+  if (state.positions.size() != s.x.size() || state.velocities.size() != s.x.size())
     throw std::logic_error("Cloth::restore: not three numbers for each vertex");
-  }
   s.move_to(state.positions);
   s.velocity = state.velocities;
   s.report = state.report;

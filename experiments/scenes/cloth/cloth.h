@@ -10,13 +10,309 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "core/scene/scene.h"
-#include "experiments/scenes/cloth/settings.h"
+
+namespace farcull {
+
+// The numbers that describe a cloth and its simulation.
+
+/// All numbers finite and in SI units.
+struct ClothSettings {
+  std::uint64_t triangles = 20000;  // of the cloth, 8 to 200,000: 2 m^2 for the nearest m
+  double stiffness = 1e4;           // of the spring along an edge, N/m; > 0
+  double side = 1;                  // of the square at rest, m; > 0
+  double density = 0.2;             // kg/m^2; > 0
+  double buckling_load = 1;         // an edge of length l gives way at a thrust of this times l,
+                                    // N/m; >= 0
+  double bending_rigidity = 2e-5;   // N m; >= 0
+  double gravity = 9.81;            // along -z, m/s^2; >= 0
+  double drag = 0.1;                // of the air, per area and speed, N s/m^3; >= 0
+  double radius = 0.15;             // of the sphere about the origin, m; 0: there is no contact,
+                                    // and the object "sphere" has no triangles
+  double contact_modulus = 1e6;     // pressure per depth of the sphere's surface, N/m^3; > 0
+  double friction = 0.3;            // Coulomb's coefficient between cloth and sphere; >= 0
+  double stick_speed = 0.01;        // below it friction falls linearly to 0, m/s; > 0
+  double height = 0.02;             // of the cloth above the sphere at the start, m; >= 0
+  double time_step = 0.01;          // s; > 0
+  double tolerance = 1e-3;          // of the residual, as a part of the weight of the largest
+                                    // vertex mass (at 9.81 m/s^2); > 0
+  int max_iterations = 400;         // factorizations in a step, at most; >= 0
+  std::uint64_t seed = 1;           // of the unevenness that breaks the symmetry at the start
+};
+
+}  // namespace farcull
+
+// The minimum of a step of the cloth: Newton's method, and interior points where that creeps; the
+// matrix of both is factored by dense fronts.
+namespace farcull::cloth {
+
+// The cloth as springs, hinges and masses, and the convex function whose minimum is a time step.
+// docs/cloth.md has the equations and the proof of the energy bound; the names here are its names.
+//
+// Positions, velocities and forces are vectors of 3 numbers per vertex: x0 y0 z0 x1 y1 z1 ...
+
+inline constexpr double kStandardGravity = 9.81;  // m/s^2, of a weight as a unit of force
+
+/// A spring along an edge. But for the smooth start below, its force is stiffness * (l - length)
+/// while that is at least -buckling_load * l, and -buckling_load * l where it is shorter: it
+/// buckles.
+struct Spring {
+  std::array<std::uint32_t, 2> vertices;
+  double length = 0;  // at rest, m
+};
+
+/// A spring without length across an edge, between a point of the edge and one of the segment
+/// between the opposite corners; at rest these coincide. Energy: stiffness / 2 * |w|^2, with w the
+/// sum of weight * vertex; the weights sum to 0.
+struct Hinge {
+  std::array<std::uint32_t, 4> vertices;
+  std::array<double, 4> weights;
+  double stiffness = 0;  // N/m
+};
+
+struct Model {
+  ClothSettings settings;
+  std::uint32_t cells = 0;  // m, along a side
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<double> area;  // per vertex, m^2: a third of its triangles
+  std::vector<double> mass;  // per vertex, kg
+  double crimp = 0;          // of all smooth springs, J
+  std::vector<Spring> springs;
+  std::vector<Hinge> hinges;
+  Eigen::VectorXd rest;  // where it starts, m
+};
+
+/// Throws Error naming "cloth" if a setting is out of range.
+Model make_model(const ClothSettings& settings);
+
+struct Energies {
+  double kinetic = 0;
+  double elastic = 0;
+  double bending = 0;
+  double gravitational = 0;
+  double contact = 0;
+};
+/// The energies of a state, J. The contact is with the sphere itself, not with planes.
+Energies energies(const Model& model, const Eigen::VectorXd& x, const Eigen::VectorXd& velocity);
+
+/// One step from x0 with velocity v0: minimize
+///   sum m/(2 h^2) |x - x0 - h v0|^2 + drag area/(2 h) |x - x0|^2      inertia, air
+///   + sum S(k + T, l - l*) - T d0.d                                   springs; l* = k L/(k + T)
+///   + bending(x) + sum m g z
+///   + sum S(c, R - n.x) + mu N H(|P (x - x0)|)                        contact, friction
+/// with S = smooth_energy, d an edge and l = |d|, d0 the same at x0, n = x0/|x0|, P = I - n n', c =
+/// contact_stiffness, N the contact force at x0 and H Huber's function: s^2/(2 e) for s <= e = h
+/// stick_speed, s - e/2 above. Strictly convex.
+struct Step {
+  const Model& model;
+  Eigen::VectorXd x0;
+  Eigen::VectorXd v0;
+  std::vector<Vec3> normal;      // per vertex; 0 where there is no contact at all
+  std::vector<double> friction;  // per vertex: mu N, newtons
+  double stretch = 0;            // k + T, N/m
+};
+/// Precondition: sizes are those of the model. The model must outlive the step.
+Step make_step(const Model& model, const Eigen::VectorXd& x0, const Eigen::VectorXd& v0);
+
+/// N. `result` gets the size of x.
+void gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result);
+
+/// A spring of stiffness c on a length e, with a smooth start: the force f > 0 with
+/// f (f/c - e) = crimp, which is c e far above 0 and crimp/-e far below. Newtons.
+double smooth_force(double c, double crimp, double e);
+/// Its derivative by e, and the energy whose derivative it is.
+double smooth_stiffness(double c, double crimp, double e);
+double smooth_energy(double c, double crimp, double e);
+
+/// l*, where the convex spring begins, m.
+double slack_length(const Model& model, std::size_t spring);
+/// Stiffness of the sphere's surface at a vertex, N/m.
+double contact_stiffness(const Model& model, std::size_t vertex);
+
+/// The part of the gradient that is not of springs or contact, thrust and friction included.
+void soft_gradient(const Step& step, const Eigen::VectorXd& x, Eigen::VectorXd& result);
+
+/// The Hessian has a block for each pair of vertices of a spring or a hinge and for each vertex.
+using Block = Eigen::Matrix3d;
+/// The blocks that do not depend on x: inertia, air and bending. A pair may come several times, in
+/// either order; the blocks of a vertex with itself are whole.
+void for_constant_blocks(
+    const Model& model, const std::function<void(std::uint32_t, std::uint32_t, const Block&)>& add);
+/// The Hessian of one spring with respect to either end; of the mixed derivatives it is the
+/// negative. Positive semidefinite.
+Block spring_block(const Step& step, std::size_t spring, const Eigen::VectorXd& x);
+/// Contributions of contact and of friction to the block of a vertex. Positive semidefinite.
+Block contact_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x);
+Block friction_block(const Step& step, std::uint32_t vertex, const Eigen::VectorXd& x);
+
+/// A grid of side x side vertices cut in half again and again by lines two vertices wide. Vertices
+/// that are at most two rows and two columns apart are on one side of a line, or one is on it.
+struct Dissection {
+  struct Part {
+    std::uint32_t begin = 0;  // its places are begin to end - 1
+    std::uint32_t end = 0;
+    std::uint32_t parent = 0;  // index of the part that cuts it off; of the last: its own
+  };
+  std::vector<std::uint32_t> places;  // per vertex, row by row
+  std::vector<Part> parts;            // by their places; parents come after what they cut off
+};
+Dissection dissect(std::uint32_t side);
+
+class Factor {
+ public:
+  /// The pattern of `matrix`: the lower triangle of a symmetric matrix of 3 x 3 blocks (of which
+  /// the diagonal ones are lower triangles), compressed, in the order of places. It couples only
+  /// vertices that are at most two rows and two columns apart.
+  Factor(const Dissection& dissection, const Eigen::SparseMatrix<double>& matrix);
+
+  /// False iff the matrix, which has the pattern, is not positive definite in double.
+  bool factorize(const Eigen::SparseMatrix<double>& matrix);
+  /// Precondition: factorize() was last true. In the order of places.
+  void solve_in_place(Eigen::VectorXd& x) const;
+
+ private:
+  struct Front {
+    std::uint32_t begin = 0;  // places that are eliminated here
+    std::uint32_t end = 0;
+    std::uint32_t parent = 0;
+    std::vector<std::uint32_t> rows;   // later places that these are coupled to, ascending
+    std::vector<std::uint32_t> above;  // per row: its index among begin ... end, rows of the parent
+    Eigen::MatrixXd panel;             // columns of the factor: of begin ... end; above the rest
+    Eigen::MatrixXd update;            // what they leave to the parent, lower triangle
+  };
+  void assemble(const Eigen::SparseMatrix<double>& matrix, Front& front);
+  static void extend(const Front& child, Front& parent);
+
+  std::vector<Front> fronts_;
+  std::vector<std::vector<std::uint32_t>> children_;
+  std::vector<std::uint32_t> index_;  // scratch, per place: its index in the front at hand
+};
+
+/// A point of the cone t >= |d|, or of its dual, which is the same cone.
+struct ConePoint {
+  double t = 0;
+  Vec3 d = Vec3::Zero();
+};
+/// t^2 - |d|^2.
+double determinant(const ConePoint& u);
+/// The largest a with u + a du in the cone; infinite if there is no largest one. u is inside.
+double reach(const ConePoint& u, const ConePoint& du);
+
+class Interior {
+ public:
+  /// Inside, from the positions. `complementarity`: of each spring and contact at first, J.
+  /// The step must outlive it.
+  Interior(const Step& step, const Eigen::VectorXd& x, double complementarity);
+
+  /// Mean of the complementarities, J.
+  double complementarity() const;
+
+  /// The equations of the next direction, which aims at complementarity `target`. Per spring and
+  /// vertex, what the unknown parts add to the matrix and, for d or x, to the force.
+  void linearize(const Eigen::VectorXd& x, double target);
+  const Block& spring_block(std::size_t spring) const { return springs_[spring].block; }
+  const Vec3& spring_force(std::size_t spring) const { return springs_[spring].force; }
+  Block contact_block(std::size_t vertex) const;
+  Vec3 contact_force(std::size_t vertex) const;
+
+  /// Goes along the direction as far as it may, the positions with it, and returns the part of it
+  /// that was gone, at most 1. Precondition: linearize() came before, at x.
+  double move(const Eigen::VectorXd& direction, Eigen::VectorXd& x);
+
+ private:
+  struct SpringState {
+    double length = 0;  // l*
+    ConePoint u;
+    ConePoint z;
+    ConePoint du;
+    ConePoint dz;
+    double across = 0;  // of the scaling: t with t, and stiffness
+    double right = 0;   // of the equation of t
+    Vec3 mixed;         // of the scaling: t with d
+    Block whole;        // of the scaling: d with d
+    Block block;        // of the matrix, t eliminated
+    Vec3 force;         // of the right hand side
+  };
+  struct ContactState {
+    double stiffness = 0;
+    double s = 0;
+    double f = 0;
+    double ds = 0;
+    double df = 0;
+    double scaling = 0;  // f/s
+    double block = 0;
+    double force = 0;
+    double right = 0;
+    bool is_there = false;
+  };
+
+  const Step& step_;
+  double target_ = 0;
+  std::vector<SpringState> springs_;
+  std::vector<ContactState> contacts_;  // per vertex
+};
+
+struct Minimum {
+  Eigen::VectorXd x;
+  Eigen::VectorXd gradient;  // of the step's function at x, N
+  double residual = 0;       // largest force on a vertex in it, N; infinite where one is not finite
+  int iterations = 0;        // factorizations
+  bool converged = false;    // residual <= tolerance(x)
+  std::string reason = {};   // why it did not converge
+};
+
+/// Keeps from step to step the pattern of the matrix, which is that of the model, and whether the
+/// last step needed interior points. The model must outlive it.
+class Solver {
+ public:
+  explicit Solver(const Model& model);
+
+  /// Minimizes from x0: by Newton's method with a search along each direction; if that gets stuck,
+  /// by interior points and Newton's method from where they end.
+  Minimum minimize(const Step& step);
+
+  /// Whether the last step needed interior points: all that a step leaves to the next one.
+  bool was_stiff() const { return was_stiff_; }
+  void set_was_stiff(bool was_stiff) { was_stiff_ = was_stiff; }
+
+  /// N: the setting, and what the rounding of the positions themselves leaves.
+  double tolerance(const Eigen::VectorXd& x) const;
+
+  /// The Hessian at x: the lower triangle, in the order of places().
+  const Eigen::SparseMatrix<double>& hessian(const Step& step, const Eigen::VectorXd& x);
+  /// Per vertex: its place in the matrix, in blocks of 3.
+  const std::vector<std::uint32_t>& places() const { return dissection_.places; }
+
+ private:
+  using Slot = std::array<int, 3>;  // per column of a block: where its first value is stored
+  Slot slot(std::uint32_t a, std::uint32_t b) const;
+  void assemble(const std::function<Block(std::size_t)>& of_spring,
+                const std::function<Block(std::uint32_t)>& of_vertex);
+  bool solve(const Eigen::VectorXd& right, Eigen::VectorXd& result);
+  bool newton(const Step& step, int iterations, int creeps, Minimum& best);
+  void interior(const Step& step, Minimum& best);
+
+  const Model& model_;
+  Dissection dissection_;
+  Eigen::SparseMatrix<double> matrix_;
+  std::vector<double> constant_;    // values of the matrix that no x changes
+  std::vector<Slot> vertex_slots_;  // per vertex
+  std::vector<Slot> spring_slots_;  // per spring: of its two ends
+  bool was_stiff_ = false;
+  Factor factor_;
+};
+
+}  // namespace farcull::cloth
 
 namespace farcull {
 

@@ -1,5 +1,5 @@
 // Numbers the grid by nested dissection, then factors part by part with dense matrices of Eigen.
-#include "experiments/scenes/cloth/solver.h"
+#include "experiments/scenes/cloth/cloth.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -99,16 +99,14 @@ Factor::Factor(const Dissection& dissection, const Eigen::SparseMatrix<double>& 
 
 void Factor::assemble(const Eigen::SparseMatrix<double>& matrix, Front& front) {
   const std::uint32_t own = front.end - front.begin;
-  for (std::uint32_t place = front.begin; place < front.end; ++place) {
+  for (std::uint32_t place = front.begin; place < front.end; ++place)
     index_[place] = place - front.begin;
-  }
   for (std::uint32_t r = 0; r < front.rows.size(); ++r) index_[front.rows[r]] = own + r;
   front.panel.setZero();
   front.update.setZero();
   for (Eigen::Index c = 0; c < front.panel.cols(); ++c) {
-    for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, 3 * front.begin + c); it; ++it) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, 3 * front.begin + c); it; ++it)
       front.panel(3 * index_[it.row() / 3] + it.row() % 3, c) = it.value();
-    }
   }
 }
 
@@ -152,17 +150,15 @@ void Factor::solve_in_place(Eigen::VectorXd& x) const {
     auto mine = x.segment(3 * front.begin, own);
     front.panel.topRows(own).triangularView<Eigen::Lower>().solveInPlace(mine);
     rest.noalias() = front.panel.bottomRows(front.update.rows()) * mine;
-    for (std::size_t r = 0; r < front.rows.size(); ++r) {
+    for (std::size_t r = 0; r < front.rows.size(); ++r)
       x.segment<3>(3 * front.rows[r]) -= rest.segment<3>(3 * r);
-    }
   }
   for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
     const Eigen::Index own = front->panel.cols();
     auto mine = x.segment(3 * front->begin, own);
     rest.resize(front->update.rows());
-    for (std::size_t r = 0; r < front->rows.size(); ++r) {
+    for (std::size_t r = 0; r < front->rows.size(); ++r)
       rest.segment<3>(3 * r) = x.segment<3>(3 * front->rows[r]);
-    }
     mine.noalias() -= front->panel.bottomRows(front->update.rows()).transpose() * rest;
     front->panel.topRows(own).triangularView<Eigen::Lower>().transpose().solveInPlace(mine);
   }

@@ -1,6 +1,6 @@
 // Builds springs, hinges and masses of the cloth, and evaluates the terms of a time step with their
 // derivatives.
-#include "experiments/scenes/cloth/model.h"
+#include "experiments/scenes/cloth/cloth.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "experiments/scenes/mesh/shapes.h"
+#include "experiments/scenes/mesh/scene_build.h"
 
 namespace farcull::cloth {
 namespace {
@@ -293,9 +293,8 @@ void for_constant_blocks(
     const std::function<void(std::uint32_t, std::uint32_t, const Block&)>& add) {
   const ClothSettings& s = model.settings;
   const double h = s.time_step;
-  for (std::uint32_t v = 0; v < model.mass.size(); ++v) {
+  for (std::uint32_t v = 0; v < model.mass.size(); ++v)
     add(v, v, (model.mass[v] / (h * h) + s.drag * model.area[v] / h) * Block::Identity());
-  }
   for (const Hinge& hinge : model.hinges) {
     for (int a = 0; a < 4; ++a) {
       for (int b = 0; b <= a; ++b) {

@@ -1,6 +1,6 @@
 // Assembles the Hessian into a fixed pattern, and minimizes by Newton's method with a line search,
 // or by interior points: Nesterov and Todd's scaling of each cone, and steps that stay inside.
-#include "experiments/scenes/cloth/solver.h"
+#include "experiments/scenes/cloth/cloth.h"
 
 #include <fmt/format.h>
 
@@ -190,9 +190,8 @@ Eigen::SparseMatrix<double> pattern(const Model& model, const std::vector<std::u
     }
   };
   for_constant_blocks(model, couple);
-  for (const Spring& spring : model.springs) {
+  for (const Spring& spring : model.springs)
     couple(spring.vertices[0], spring.vertices[1], Block::Zero());
-  }
   const auto size = static_cast<Eigen::Index>(3 * model.mass.size());
   Eigen::SparseMatrix<double> matrix(size, size);
   matrix.setFromTriplets(entries.begin(), entries.end());
@@ -218,9 +217,8 @@ Solver::Solver(const Model& model)
       factor_(dissection_, matrix_) {
   constant_.assign(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros());
   for (std::uint32_t v = 0; v < model.mass.size(); ++v) vertex_slots_.push_back(slot(v, v));
-  for (const Spring& spring : model.springs) {
+  for (const Spring& spring : model.springs)
     spring_slots_.push_back(slot(spring.vertices[0], spring.vertices[1]));
-  }
 }
 
 Solver::Slot Solver::slot(std::uint32_t a, std::uint32_t b) const {
@@ -279,14 +277,12 @@ double Solver::tolerance(const Eigen::VectorXd& x) const {
 bool Solver::solve(const Eigen::VectorXd& right, Eigen::VectorXd& result) {
   if (!factor_.factorize(matrix_)) return false;
   Eigen::VectorXd permuted(right.size());
-  for (std::size_t v = 0; v < places().size(); ++v) {
+  for (std::size_t v = 0; v < places().size(); ++v)
     permuted.segment<3>(3 * places()[v]) = right.segment<3>(3 * v);
-  }
   factor_.solve_in_place(permuted);
   result.resize(right.size());
-  for (std::size_t v = 0; v < places().size(); ++v) {
+  for (std::size_t v = 0; v < places().size(); ++v)
     result.segment<3>(3 * v) = permuted.segment<3>(3 * places()[v]);
-  }
   return true;
 }
 
@@ -367,9 +363,8 @@ void Solver::interior(const Step& step, Minimum& best) {
       force.segment<3>(3 * b) += interior.spring_force(i);
       force.segment<3>(3 * a) -= interior.spring_force(i);
     }
-    for (std::uint32_t v = 0; v < model_.mass.size(); ++v) {
+    for (std::uint32_t v = 0; v < model_.mass.size(); ++v)
       force.segment<3>(3 * v) += interior.contact_force(v);
-    }
     if (!solve(-force, p)) return;
     const double way = interior.move(p, x);
     aim = way > 0.8 ? 0.1 : way > 0.3 ? 0.4 : 0.9;

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "experiments/scenes/mesh/builder.h"
+#include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
 
 namespace farcull {
@@ -88,9 +88,8 @@ Property read_property(TextReader& in) {
   if (ahead.token() == "list") {
     in.token();
     property.count = read_type(in);
-    if (!is_integer(*property.count)) {
+    if (!is_integer(*property.count))
       in.fail("a list whose length is not an integer", "declare its length as uchar or int");
-    }
   }
   property.type = read_type(in);
   property.name = in.token();
@@ -99,9 +98,8 @@ Property read_property(TextReader& in) {
 }
 
 Header read_header(TextReader& in) {
-  if (!in.next_line() || in.token() != "ply") {
+  if (!in.next_line() || in.token() != "ply")
     in.fail("the file does not begin with 'ply'", "give a PLY file");
-  }
   Header header;
   std::set<std::string> names;
   bool has_format = false;
@@ -172,9 +170,8 @@ class BinaryBody {
   void end() {}
   double coordinate(Type type, std::string_view what) {
     const double value = take(type);
-    if (!std::isfinite(value)) {
+    if (!std::isfinite(value))
       fail(fmt::format("{} of a vertex is not finite", what), "correct the mesh where it was made");
-    }
     return value;
   }
   // Every integer type of PLY fits into a double.

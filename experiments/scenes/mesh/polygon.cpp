@@ -1,6 +1,6 @@
 // Ear clipping (Meisters: Polygons have ears, 1975) with exact signs: a rounded sign with a bound
 // on its error first, and where that leaves a doubt, a sum without rounding.
-#include "experiments/scenes/mesh/builder.h"
+#include "experiments/scenes/mesh/load.h"
 
 #include <algorithm>
 #include <bit>
@@ -343,9 +343,8 @@ Triangulation triangulate(std::span<const Vec3> polygon, std::vector<Triangle>& 
   }
   // The rest is convex or a triangle, or has no ear since it is degenerate or crosses itself: a
   // fan.
-  for (std::uint32_t k = ring.next[i]; ring.next[k] != i; k = ring.next[k]) {
+  for (std::uint32_t k = ring.next[i]; ring.next[k] != i; k = ring.next[k])
     triangles.push_back({i, k, ring.next[k]});
-  }
   bool whole = false;
   if (!plane.has_area) {
     whole = collinear(corners);

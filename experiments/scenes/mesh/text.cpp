@@ -76,25 +76,20 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
   const auto too_large = [&] {
     return Error(path, fmt::format("holds more than {} bytes", max_bytes), "split it");
   };
-  if (path.find('\0') != std::string::npos) {
+  if (path.find('\0') != std::string::npos)
     throw Error(clean_name(path), "the path contains a NUL byte", remedy);
-  }
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (status.type() == std::filesystem::file_type::not_found) {
+  if (status.type() == std::filesystem::file_type::not_found)
     throw Error(path, "the file does not exist", remedy);
-  }
   if (error) throw Error(path, "cannot be opened: " + error.message(), remedy);
   if (std::filesystem::is_directory(status)) throw Error(path, "is a directory", remedy);
   // A pipe or a device may never end.
-  if (!std::filesystem::is_regular_file(status)) {
+  if (!std::filesystem::is_regular_file(status))
     throw Error(path, "is not a regular file", "copy its contents to a file and name that");
-  }
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                              &std::fclose);
-  if (!file) {
-    throw Error(path, std::string("cannot be opened: ") + std::strerror(errno), remedy);
-  }
+  if (!file) throw Error(path, std::string("cannot be opened: ") + std::strerror(errno), remedy);
   const std::uintmax_t claimed = std::filesystem::file_size(path, error);
   if (!error && claimed > max_bytes) throw too_large();
 
@@ -106,9 +101,8 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
     bytes.append(chunk, n);
     if (bytes.size() > max_bytes) throw too_large();
   }
-  if (std::ferror(file.get())) {
+  if (std::ferror(file.get()))
     throw Error(path, std::string("cannot be read: ") + std::strerror(errno), remedy);
-  }
   return bytes;
 }
 
@@ -262,12 +256,10 @@ std::int64_t TextReader::integer(std::string_view what) {
   const char* const begin =
       text.data() + (text.starts_with('+') && text.size() > 1 && is_digit(text[1]));
   const auto [stop, status] = std::from_chars(begin, end, value);
-  if (status == std::errc::result_out_of_range) {
+  if (status == std::errc::result_out_of_range)
     fail(fmt::format("{} is {}, beyond any index", what, quote_token(text)), "correct the number");
-  }
-  if (status != std::errc() || stop != end) {
+  if (status != std::errc() || stop != end)
     fail(fmt::format("{} is {}, not an integer", what, quote_token(text)), "write an integer");
-  }
   return value;
 }
 

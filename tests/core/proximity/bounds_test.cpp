@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/proximity/search.h"
+#include "core/proximity/scene_trees.h"
 #include "tests/core/base/rational.h"
 #include "tests/core/base/trials.h"
 #include "tests/core/proximity/near_lab.h"

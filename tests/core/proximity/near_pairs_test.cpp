@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/native/lanes.h"
-#include "core/proximity/search.h"
+#include "core/proximity/scene_trees.h"
 #include "tests/core/base/rational.h"
 #include "tests/core/base/trials.h"
 #include "tests/core/proximity/near_lab.h"

@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "core/voronoi/grid.h"
 #include "tests/core/base/rational.h"
 #include "tests/core/base/trials.h"
 #include "tests/core/voronoi/voronoi_slices_lab.h"

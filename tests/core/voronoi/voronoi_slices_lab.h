@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/voronoi/grid.h"
 #include "core/voronoi/voronoi.h"
 #include "tests/core/base/rational.h"
 #include "tests/core/voronoi/voronoi_lab.h"

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/voronoi/grid.h"
 #include "tests/core/base/rational.h"
 #include "tests/core/base/trials.h"
 #include "tests/core/voronoi/voronoi_lab.h"

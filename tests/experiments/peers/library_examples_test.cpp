@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "experiments/suite/label.h"
+#include "experiments/suite/reader.h"
 
 namespace farcull {
 namespace {

@@ -1,6 +1,6 @@
 // The compressed data of pages: read back as web/page_view.js reads them, they are what was
 // written.
-#include "experiments/picture/page.h"
+#include "experiments/picture/picture.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

@@ -1,7 +1,7 @@
 // The steps that a reader of a page can choose among.
 #include <gtest/gtest.h>
 
-#include "experiments/picture/page.h"
+#include "experiments/picture/picture.h"
 
 namespace farcull {
 namespace {

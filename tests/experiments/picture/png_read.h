@@ -8,7 +8,7 @@
 #include <cstring>
 #include <string>
 
-#include "experiments/picture/sheet.h"
+#include "experiments/picture/panel.h"
 
 namespace farcull {
 

@@ -1,5 +1,5 @@
 // PNG there and back, and the lettering.
-#include "experiments/picture/sheet.h"
+#include "experiments/picture/panel.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Names of ignored objects, as the command line and files give them.
-#include "experiments/scenes/ignore.h"
+#include "experiments/scenes/scene_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-#include "experiments/scenes/scene_write.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // against the labels of the suite, which other programs decide by enumerating points.
 #include <gtest/gtest.h>
 
-#include "experiments/suite/label.h"
+#include "experiments/suite/reader.h"
 #include "experiments/suite/writer.h"
 #include "verify/contact_kind.h"
 #include "verify/exact.h"

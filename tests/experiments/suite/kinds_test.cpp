@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "experiments/generators/families.h"
-#include "experiments/suite/label.h"
+#include "experiments/generators/pair_generators.h"
+#include "experiments/suite/reader.h"
 #include "experiments/suite/writer.h"
 
 namespace farcull {

@@ -5,10 +5,10 @@
 #include <cstdlib>
 #include <set>
 
-#include "experiments/generators/families.h"
+#include "experiments/generators/pair_generators.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
-#include "experiments/suite/label.h"
+#include "experiments/suite/reader.h"
 #include "tests/experiments/suite/suite_lab.h"
 
 namespace farcull {

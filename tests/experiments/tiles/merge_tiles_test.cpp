@@ -1,6 +1,5 @@
 // What is merged is the list of one run; whatever is missing, doubled, foreign or cut short is
 // refused, and then no file is written.
-#include "experiments/tiles/merge_tiles.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
 // Each pair of triangles whose boxes overlap belongs to exactly one tile, and both triangles meet
 // that tile (docs/tiles.md). Twins with one word of the definitions changed lose or repeat pairs.
-#include "experiments/tiles/slab.h"
+#include "experiments/tiles/run_tile.h"
 
 #include <gtest/gtest.h>
 

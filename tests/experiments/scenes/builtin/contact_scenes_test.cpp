@@ -8,7 +8,6 @@
 #include <map>
 #include <set>
 
-#include "experiments/scenes/builtin/generators.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "verify/exact.h"
 

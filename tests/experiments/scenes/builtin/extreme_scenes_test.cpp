@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/scenes/builtin/generators.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "verify/exact.h"
 

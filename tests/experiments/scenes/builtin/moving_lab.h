@@ -10,7 +10,7 @@
 
 #include "core/pairs/backend.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/mesh/shapes.h"
+#include "experiments/scenes/mesh/scene_build.h"
 
 namespace farcull::lab {
 

@@ -1,6 +1,5 @@
 // What a step of the cloth is made of: derivatives against differences, the inequalities that the
 // bound of the energy rests on, and the factorization.
-#include "experiments/scenes/cloth/model.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +9,8 @@
 #include <memory>
 #include <utility>
 
-#include "experiments/scenes/cloth/solver.h"
-#include "experiments/scenes/mesh/shapes.h"
+#include "experiments/scenes/cloth/cloth.h"
+#include "experiments/scenes/mesh/scene_build.h"
 
 namespace farcull::cloth {
 namespace {

@@ -11,7 +11,6 @@
 #include <limits>
 #include <vector>
 
-#include "experiments/scenes/cloth/model.h"
 #include "tests/experiments/system/error_of.h"
 #include "verify/exact.h"
 

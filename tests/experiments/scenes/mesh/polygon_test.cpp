@@ -1,6 +1,6 @@
 // Polygons cut into triangles: their areas, compared as rationals. FARCULL_POLYGONS gives the
 // number of random polygons.
-#include "experiments/scenes/mesh/builder.h"
+#include "experiments/scenes/mesh/load.h"
 
 #include <gtest/gtest.h>
 
