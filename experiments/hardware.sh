@@ -161,12 +161,12 @@ fi
 for scene in two-bunnies armadillo-elephant dragon-bunny near-copy bunnies-far-apart; do
   step "reliability-$scene" 3 "missed pairs of $scene, and of its copies" bash experiments/reliability.sh "$scene"
 done
-mapfile -t runs < <(bash experiments/reliability_pairs.sh --list)
+mapfile -t runs < <(bash experiments/reliability.sh pairs --list)
 for run in "${runs[@]}"; do
-  step "pairs-$(safe "$run")" 3 "missed pairs of far-pairs, $run" bash experiments/reliability_pairs.sh "$run"
+  step "pairs-$(safe "$run")" 3 "missed pairs of far-pairs, $run" bash experiments/reliability.sh pairs "$run"
 done
 for scene in "${moving[@]}"; do
-  step "motion-$scene" 3 "missed pairs in 100 frames of $scene" bash experiments/reliability_motion.sh "$scene"
+  step "motion-$scene" 3 "missed pairs in 100 frames of $scene" bash experiments/reliability.sh motion "$scene"
 done
 for scene in armadillo-elephant needles-layers needles-crossed "mannequin-devil --self" "armadillo --self" "bunny --self" \
   tree-leaves field:100000 crumpled rope spheres fans funnel; do

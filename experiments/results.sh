@@ -1,26 +1,53 @@
 #!/usr/bin/env bash
-# Makes docs/results/studies.md and all its figures: installs what is missing, builds, measures every study
-# (or continues where an earlier call ended), makes the report, and copies page, figures and pictures
-# into docs/results. About twenty minutes on two cores without a GPU; the page was measured on such a
-# machine.
-#   bash experiments/results.sh [OPTIONS OF farcull experiment all]
-# Exit status: 0; 1 if a method that promises missed a pair; 2 if the measurements did not complete.
+# Makes a page of docs/results with its figures: installs what is missing, builds, measures (or continues where an earlier call
+# ended), makes the report, and copies page, figures and pictures into docs/results.
+#   bash experiments/results.sh [OPTIONS]            studies.md: every study of `farcull experiment all`. About twenty minutes on
+#                                                    two cores without a GPU; the page was measured on such a machine.
+#   bash experiments/results.sh cloth [OPTIONS]      cloth.md: 500 frames of a cloth of 20,000 triangles at each of four
+#                                                    stiffnesses, every frame accounted for pair by pair by far-pairs, and every
+#                                                    tenth by far. Hours on one core. --quick: 200 triangles, 12 frames, seconds.
+#   bash experiments/results.sh proximity [OPTIONS]  proximity.md: potential neighbour sets, what a grid loses of them, and the
+#                                                    distances of libraries (docs/experiments.md). Minutes on one core.
+# OPTIONS are those of `farcull experiment`. With --quick cloth and proximity copy nothing. A measurement can be ended at any time;
+# the same call goes on. Each commit has a store of its own under build/, since a store refuses rows of another commit; frames of
+# the cloth that were simulated are files in build/cloth/states, from which a new commit accounts anew.
+# Exit status: 0; 1 if a method that promises missed a pair or lost a neighbour, or a distance was not exact; 2 if the measurements
+# did not complete.
 set -euo pipefail
 
 # shellcheck source-path=SCRIPTDIR source=setup.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
 cd "$farcull_root"
 
+study=all page=studies title="Results of the studies"
+if [[ ${1-} == cloth || ${1-} == proximity ]]; then
+  study=$1 page=$1 title="Results of the study $1"
+  shift
+fi
 farcull_setup
 farcull_build farcull
-bash experiments/meshes.sh || echo "results: points on packaged meshes will be left out"
-
-# Each commit has a store of its own, since a store refuses rows of another commit.
 commit=$(build/farcull --version)
-out=build/results-${commit##* }
+commit=${commit##* }
+out=build/results-$commit
+case $study in
+  all) bash experiments/meshes.sh || echo "results: points on packaged meshes will be left out" ;;
+  cloth)
+    out=build/cloth/$commit
+    export FARCULL_CLOTH=${FARCULL_CLOTH:-$farcull_root/build/cloth/states}
+    ;;
+  proximity) out=build/proximity/$commit ;;
+esac
+quick=
+if [[ $study != all && " $* " == *" --quick "* ]]; then quick=yes; fi
+if [[ $study == proximity && $quick ]]; then out+=-quick; fi
 status=0
-build/farcull experiment all --out "$out" --resume "$@" || status=$?
+build/farcull experiment "$study" --out "$out" --resume "$@" || status=$?
 if ((status > 1)); then exit "$status"; fi
 build/farcull report "$out"
-farcull_keep_report studies "Results of the studies" "$out/report"
+# The page of one study is copied where it has all points of the full size, and no promise was broken.
+if [[ $study == all ]] || { ((status == 0)) && [[ ! $quick ]]; }; then
+  call=${0##*/}
+  if [[ $study != all ]]; then call+=" $study"; fi
+  farcull_keep_report "$page" "$title" "$out/report" "$call"
+fi
 exit "$status"

@@ -249,13 +249,13 @@ farcull_build_beside() {
   echo "build: ${targets[*]} done in $((SECONDS - started)) s (${log%/*}/)"
 }
 
-# farcull_keep_report NAME TITLE REPORT: the page of a report becomes docs/results/NAME.md, with the
+# farcull_keep_report NAME TITLE REPORT [CALL]: the page of a report becomes docs/results/NAME.md, with the
 # figures and pictures that it shows. Those that no page there shows are removed.
 farcull_keep_report() {
   local results=$farcull_root/docs/results file
   mkdir -p "$results/figures" "$results/pictures"
   {
-    printf '# %s\n\nMade again by\n\n    bash experiments/%s\n\n' "$2" "${0##*/}"
+    printf '# %s\n\nMade again by\n\n    bash experiments/%s\n\n' "$2" "${4:-${0##*/}}"
     printf 'Device, driver, commit and CPU are [at the end](#where-it-was-measured). The load of the machine'
     printf ' was %s when this page was made.\n' "$(cut -d ' ' -f 3 /proc/loadavg)"
     tail -n +2 "$3/results.md"

@@ -9,7 +9,6 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/scene/scene.h"
-#include "experiments/command/commands.h"
 #include "experiments/command/options.h"
 #include "experiments/measure/bench.h"
 #include "experiments/method/run.h"
@@ -21,15 +20,6 @@
 
 namespace farcull {
 namespace {
-
-template <class Value>
-Value number_in(const char* option, const std::string& text, Value least, Value most,
-                const std::string& remedy) {
-  const std::optional<Value> value = parse_number<Value>(text);
-  if (!value || !(*value >= least) || !(*value <= most))
-    throw Error(option, "'" + text + "' is none", remedy);
-  return *value;
-}
 
 std::string peers_text() {
   std::string with = "Peers here:";
@@ -63,61 +53,56 @@ class BenchCommand {
 };
 
 CLI::App* BenchCommand::add_to(CLI::App& app) {
-  CLI::App* command =
-      add_command(app, "bench", "times beside other libraries, from triangles to pairs");
-  add_scene(*command, scene_);
-  const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
-    add_option(*command, name, text, type, help);
-  };
-  add_flag(*command, "--self", self_,
-           "every object is tested against itself as well, but\n"
-           "for triangles that share a vertex position");
-  add("--peers", peers_, "LIST", "all, none, or names by commas; default all");
-  add("--methods", methods_, "LIST", "of far-pairs,far,exact; all or none; default all");
-  add("--threads", threads_, "N", "cores for each of them; default all there are");
-  add("--repeat", repeat_, "N", "runs of each after a cold one; default 5");
-  add("--limit", limit_, "SECONDS",
-      "who takes longer in the cold run is not repeated;\ndefault 60");
-  add("--device", device_, "DEVICE",
-      "for methods on GL, as for farcull run, or cpu for\nnone of them; default where there is "
-      "one");
-  add("--distances", distances_, "PAIRS",
-      "times of distance queries instead: objects, every two\nobjects; or nearest, each with "
-      "the nearest other one.\nPeers are then "
-      "fcl-double,fcl-float,cgal-aabb,embree-points");
-  add("--within", within_, "DISTANCE",
-      "with --distances: farther ones need not be found;\nin world units, default all");
-  add("--json", outputs_.json, "FILE", kJsonHelp);
-  add_footer(*command, [] {
-    return "Examples:\n"
-           "  farcull bench two-bunnies\n"
-           "  farcull bench needles-layers --threads 1 --peers fcl-obbrss,embree-low\n"
-           "  farcull bench field:1000000 --peers none --methods far-pairs --json field.json\n"
-           "  farcull bench bunnies-far-apart --distances objects\n\n" +
-           peers_text() +
-           "farcull help terms explains the columns; docs/bench.md says what is\n"
-           "measured. Exit status 1: two of them disagree about a pair.";
-  });
-  return command;
+  return add_command(
+      app, "bench", "times beside other libraries, from triangles to pairs",
+      {scene_row(scene_),
+       {"--self", &self_, "",
+        "every object is tested against itself as well, but\n"
+        "for triangles that share a vertex position"},
+       {"--peers", &peers_, "LIST", "all, none, or names by commas; default all"},
+       {"--methods", &methods_, "LIST", "of far-pairs,far,exact; all or none; default all"},
+       {"--threads", &threads_, "N", "cores for each of them; default all there are"},
+       {"--repeat", &repeat_, "N", "runs of each after a cold one; default 5"},
+       {"--limit", &limit_, "SECONDS",
+        "who takes longer in the cold run is not repeated;\ndefault 60"},
+       {"--device", &device_, "DEVICE",
+        "for methods on GL, as for farcull run, or cpu for\nnone of them; default where there is "
+        "one"},
+       {"--distances", &distances_, "PAIRS",
+        "times of distance queries instead: objects, every two\nobjects; or nearest, each with "
+        "the nearest other one.\nPeers are then "
+        "fcl-double,fcl-float,cgal-aabb,embree-points"},
+       {"--within", &within_, "DISTANCE",
+        "with --distances: farther ones need not be found;\nin world units, default all"},
+       {"--json", &outputs_.json, "FILE", kJsonHelp}},
+      [] {
+        return "Examples:\n"
+               "  farcull bench two-bunnies\n"
+               "  farcull bench needles-layers --threads 1 --peers fcl-obbrss,embree-low\n"
+               "  farcull bench field:1000000 --peers none --methods far-pairs --json field.json\n"
+               "  farcull bench bunnies-far-apart --distances objects\n\n" +
+               peers_text() +
+               "farcull help terms explains the columns; docs/bench.md says what is\n"
+               "measured. Exit status 1: two of them disagree about a pair.";
+      });
 }
 
 BenchOptions BenchCommand::parse() const {
   BenchOptions options;
-  if (peers_) options.peers = *peers_;
-  if (methods_) options.methods = *methods_;
+  options.peers = peers_.value_or(options.peers);
+  options.methods = methods_.value_or(options.methods);
   options.threads = usable_cores();
-  if (threads_) {
+  if (threads_)
     options.threads =
-        number_in<unsigned>("--threads", *threads_, 1, 1 << 16, "give a number from 1");
-  }
+        number_of<unsigned>("--threads", *threads_, "none", 1, 1 << 16, "give a number from 1");
   if (repeat_)
-    options.repeat = number_in<int>("--repeat", *repeat_, 1, 1'000'000, "give 1 or more");
-  if (limit_) {
-    options.limit_s = number_in<double>("--limit", *limit_, 0, 1e9, "give seconds, 0 to 1e9");
-  }
+    options.repeat = number_of<int>("--repeat", *repeat_, "none", 1, 1'000'000, "give 1 or more");
+  if (limit_)
+    options.limit_s =
+        number_of<double>("--limit", *limit_, "none", 0, 1e9, "give seconds, 0 to 1e9");
   options.device = device_of(device_);
   options.self = self_;
-  options.seed = scene_.size() == 1 ? builtin_seed(scene_[0]) : std::nullopt;
+  options.seed = seed_of(scene_);
   if (!distances_) validate(options);  // whose peers are others
   if (!is_cpu(options.device)) {
     RunOptions run;
@@ -132,22 +117,16 @@ DistanceBenchOptions BenchCommand::parse_distances(const BenchOptions& options) 
                            .threads = options.threads,
                            .repeat = options.repeat,
                            .limit_s = options.limit_s};
-  if (*distances_ == "nearest") {
-    out.question.task = DistanceTask::nearest;
-  } else if (*distances_ != "objects") {
-    throw Error("--distances", "'" + *distances_ + "' is none", "give objects or nearest");
-  }
+  out.question.task = static_cast<DistanceTask>(word_of(
+      "--distances", distances_, {"objects", "nearest"}, "none", "give objects or nearest"));
   if (within_) {
     out.question.within =
-        number_in<double>("--within", *within_, 0, std::numeric_limits<double>::max(),
+        number_of<double>("--within", *within_, "none", 0, std::numeric_limits<double>::max(),
                           "give a distance in world units, 0 or more");
   }
-  const auto refuse = [](bool given, const char* option) {
-    if (given) throw Error(option, "says nothing about distances", "leave it or --distances out");
-  };
-  refuse(self_, "--self");
-  refuse(methods_.has_value(), "--methods");
-  refuse(device_.has_value(), "--device");
+  refuse_given(
+      {{"--self", self_}, {"--methods", methods_.has_value()}, {"--device", device_.has_value()}},
+      "says nothing about distances", "leave it or --distances out");
   return out;
 }
 
@@ -155,8 +134,7 @@ int BenchCommand::run() {
   const BenchOptions options = parse();
   if (within_ && !distances_)
     throw Error("--within", "is a limit of distances", "add --distances objects, or leave it out");
-  if (std::find(scene_.begin(), scene_.end(), "") != scene_.end())
-    throw Error("SCENE", "a name is empty", "name mesh files, a scene file or a built-in scene");
+  check_scene(scene_);
   const Outputs outputs = checked(outputs_, scene_files(scene_));
   confine_to_cores(options.threads);
   TerminalProgress terminal;
@@ -164,9 +142,7 @@ int BenchCommand::run() {
   if (progress) progress("reading the scene");
   Scene scene = load_scene(scene_);
   require_nothing_ignored(scene, "farcull bench");
-  if (options.self) {
-    for (Object& object : scene.objects) object.self = true;
-  }
+  if (options.self) make_self(scene);
   if (distances_) {
     const DistanceBenchOptions of_distances = parse_distances(options);
     const DistanceBenchResult result = bench_distances(scene, of_distances, progress);

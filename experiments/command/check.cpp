@@ -18,6 +18,7 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/scene/scene.h"
+#include "experiments/command/options.h"
 #include "experiments/measure/frames.h"
 #include "experiments/record/check.h"
 #include "experiments/scenes/builtin/scenes.h"
@@ -285,29 +286,39 @@ int run_check(const CheckArguments& arguments) {
   return arguments.frames ? check_frames(arguments, given) : check_one(arguments, given);
 }
 
+namespace {
+
+class CheckCommand {
+ public:
+  CLI::App* add_to(CLI::App& app);
+  int run();
+
+ private:
+  CheckArguments arguments_;
+  Text json_, pairs_, clearance_, frames_;
+};
+
 CLI::App* CheckCommand::add_to(CLI::App& app) {
-  CLI::App* command =
-      add_command(app, "check", "prove or refute a certificate of a run, or a list of pairs");
-  add_option(*command, "CERTIFICATE", arguments_.certificate, "",
-             "as written by run or distance --certificate; may be\nleft out before SCENE to check "
-             "--pairs alone");
-  add_option(*command, "SCENE", arguments_.scene, "", kSceneHelp);
-  add_flag(*command, "--self", arguments_.self,
-           "every object was tested against itself, as by\nfarcull run --self");
-  add_option(*command, "--pairs", pairs_, "FILE",
-             "a list of pairs as farcull run --pairs writes it:\n"
-             "is it right and complete? Columns are found by their\n"
-             "names; rows may be in any order");
-  add_option(*command, "--clearance", clearance_, "D",
-             "the list is of pairs at this distance or less, in\n"
-             "world units; default 0, or that of the certificate");
-  add_option(*command, "--frames", frames_, "N|A:B",
-             "check these frames, as of farcull run --frames: with\n"
-             "a number (%d or %04d) in the name of CERTIFICATE and\n"
-             "a column `frame` in the list");
-  add_option(*command, "--json", json_, "FILE", kJsonHelp);
-  add_footer(
-      *command,
+  return add_command(
+      app, "check", "prove or refute a certificate of a run, or a list of pairs",
+      {{"CERTIFICATE", &arguments_.certificate, "",
+        "as written by run or distance --certificate; may be\nleft out before SCENE to check "
+        "--pairs alone"},
+       {"SCENE", &arguments_.scene, "", kSceneHelp},
+       {"--self", &arguments_.self, "",
+        "every object was tested against itself, as by\nfarcull run --self"},
+       {"--pairs", &pairs_, "FILE",
+        "a list of pairs as farcull run --pairs writes it:\n"
+        "is it right and complete? Columns are found by their\n"
+        "names; rows may be in any order"},
+       {"--clearance", &clearance_, "D",
+        "the list is of pairs at this distance or less, in\n"
+        "world units; default 0, or that of the certificate"},
+       {"--frames", &frames_, "N|A:B",
+        "check these frames, as of farcull run --frames: with\n"
+        "a number (%d or %04d) in the name of CERTIFICATE and\n"
+        "a column `frame` in the list"},
+       {"--json", &json_, "FILE", kJsonHelp}},
       "Examples:\n"
       "  farcull run two-spheres --certificate c.json --pairs pairs.csv\n"
       "  farcull check c.json two-spheres --pairs pairs.csv\n"
@@ -323,7 +334,6 @@ CLI::App* CheckCommand::add_to(CLI::App& app) {
       "for another scene; 2: what cannot be read. Nothing is proved about the run: neither its\n"
       "method nor which pairs it kept. The file of a certificate, and its proof:\n"
       "docs/certificate.md.");
-  return command;
 }
 
 int CheckCommand::run() {
@@ -359,5 +369,9 @@ int CheckCommand::run() {
   to.json = checked({.json = json_}, inputs).json.value_or("");
   return run_check(to);
 }
+
+}  // namespace
+
+Command add_check(CLI::App& app) { return declare<CheckCommand>(app); }
 
 }  // namespace farcull

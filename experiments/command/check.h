@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "experiments/command/options.h"
 #include "experiments/scenes/frames.h"
 
 namespace farcull {
@@ -25,17 +24,5 @@ struct CheckArguments {
 /// scene or the list cannot be read, and where the list is of frames and none are named, or the
 /// contrary.
 int run_check(const CheckArguments& arguments);
-
-/// Declares the command on the program's options; run() runs it.
-class CheckCommand {
- public:
-  CLI::App* add_to(CLI::App& app);
-  /// The exit status of run_check(). Throws Error where the arguments are bad.
-  int run();
-
- private:
-  CheckArguments arguments_;
-  Text json_, pairs_, clearance_, frames_;
-};
 
 }  // namespace farcull

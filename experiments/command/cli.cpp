@@ -1,7 +1,5 @@
 // Declares the commands, parses the command line and dispatches. Each command has a file of its
 // own.
-#include "experiments/command/cli.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -16,16 +14,7 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/parameter.h"
-#include "experiments/command/check.h"
-#include "experiments/command/commands.h"
-#include "experiments/command/compare.h"
-#include "experiments/command/completion.h"
-#include "experiments/command/distance.h"
-#include "experiments/command/help.h"
-#include "experiments/command/manual.h"
 #include "experiments/command/options.h"
-#include "experiments/command/picture.h"
-#include "experiments/command/run.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {
@@ -115,30 +104,12 @@ int dispatch(int argc, char** argv) {
   CLI::App app("farcull: collision culling that never misses.", "farcull");
   describe(app);
 
-  RunCommand run(RunCommand::Kind::run), verify(RunCommand::Kind::verify),
-      plan(RunCommand::Kind::plan);
-  CompareCommand compare;
-  DistanceCommand distance;
-  CheckCommand check;
-  PictureCommand picture;
-  HelpCommand help;
-  CompletionCommand completion;
-  ManualCommand manual;
   std::vector<Command> commands;  // in the order of the help
-  const auto add = [&](auto&... command) {
-    (commands.push_back({command.add_to(app), [&command] { return command.run(); }}), ...);
-  };
-  add(run, verify, plan, compare, distance);
-  commands.push_back(add_bench(app));
-  commands.push_back(add_doctor(app));
-  add(check);
-  commands.push_back(add_experiment(app));
-  commands.push_back(add_merge(app));
-  add(picture);
-  commands.push_back(add_report(app));
-  commands.push_back(add_scenes(app));
-  commands.push_back(add_suite(app));
-  add(help, completion, manual);
+  for (Command (*const add)(CLI::App&) :
+       {add_run, add_verify, add_plan, add_compare, add_distance, add_bench, add_doctor, add_check,
+        add_experiment, add_merge, add_picture, add_report, add_scenes, add_suite, add_help,
+        add_completion, add_manual})
+    commands.push_back(add(app));
 
   try {
     app.parse(argc, argv);

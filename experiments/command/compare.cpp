@@ -1,38 +1,49 @@
 // Reads the options, runs the methods side by side and prints their table.
-#include "experiments/command/compare.h"
+#include "experiments/measure/compare.h"
 
 #include <nlohmann/json.hpp>
 
-#include "experiments/record/tables.h"
+#include "experiments/command/options.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {
+namespace {
+
+class CompareCommand {
+ public:
+  CLI::App* add_to(CLI::App& app);
+  int run() const;
+
+ private:
+  CompareArguments arguments_;
+  MethodOptions options_;
+  Outputs outputs_;
+};
 
 CLI::App* CompareCommand::add_to(CLI::App& app) {
-  CLI::App* command = add_command(app, "compare", "methods and resolutions side by side");
-  add_scene(*command, arguments_.scene);
-  add_option(*command, "--methods", arguments_.methods, "LIST",
-             "separated by commas;\ndefault far,cullide,far-pairs,exact");
-  add_option(*command, "--resolutions", arguments_.resolutions, "LIST",
-             "separated by commas;\ndefault 128,256,512,1024,2048; for far-pairs auto;\n"
-             "far-pairs: with a number views decide");
-  add_option(*command, "--offsets", arguments_.offsets, "LIST",
-             "for far, separated by commas: obb, exact;\ndefault obb");
-  add_option(*command, "--repeat", arguments_.repeat, "N",
-             "runs of each, the one with the median time is shown;\ndefault 1");
-  options_.add_to(*command, {"views", "rounds", "clear", "level", "conservative", "device", "self",
-                             "clearance"});
-  add_option(*command, "--json", outputs_.json, "FILE", kJsonHelp);
-  add_footer(*command,
-             "Examples:\n"
-             "  farcull compare two-tori\n"
-             "  farcull compare two-bunnies --methods far,exact --resolutions 256,512 --repeat 5\n"
-             "  farcull compare two-tori --methods cullide,far --rounds 1 --clear all\n"
-             "  farcull compare mannequin-devil --methods far-pairs,exact --self\n\n"
-             "farcull help terms explains the columns, farcull help methods the methods.\n\n"
-             "Exit status 1: a method that promises missed a pair.");
-  return command;
+  return add_command(
+      app, "compare", "methods and resolutions side by side",
+      Rows{scene_row(arguments_.scene),
+           {"--methods", &arguments_.methods, "LIST",
+            "separated by commas;\ndefault far,cullide,far-pairs,exact"},
+           {"--resolutions", &arguments_.resolutions, "LIST",
+            "separated by commas;\ndefault 128,256,512,1024,2048; for far-pairs auto;\n"
+            "far-pairs: with a number views decide"},
+           {"--offsets", &arguments_.offsets, "LIST",
+            "for far, separated by commas: obb, exact;\ndefault obb"},
+           {"--repeat", &arguments_.repeat, "N",
+            "runs of each, the one with the median time is shown;\ndefault 1"}} +
+          options_.rows({"views", "rounds", "clear", "level", "conservative", "device", "self",
+                         "clearance"}) +
+          Rows{{"--json", &outputs_.json, "FILE", kJsonHelp}},
+      "Examples:\n"
+      "  farcull compare two-tori\n"
+      "  farcull compare two-bunnies --methods far,exact --resolutions 256,512 --repeat 5\n"
+      "  farcull compare two-tori --methods cullide,far --rounds 1 --clear all\n"
+      "  farcull compare mannequin-devil --methods far-pairs,exact --self\n\n"
+      "farcull help terms explains the columns, farcull help methods the methods.\n\n"
+      "Exit status 1: a method that promises missed a pair.");
 }
 
 int CompareCommand::run() const {
@@ -72,5 +83,9 @@ int CompareCommand::run() const {
   }
   return kExitDone;
 }
+
+}  // namespace
+
+Command add_compare(CLI::App& app) { return declare<CompareCommand>(app); }
 
 }  // namespace farcull

@@ -4,7 +4,7 @@
 #include <exception>
 
 #include "core/base/floating_point.h"
-#include "experiments/command/compare.h"
+#include "experiments/command/options.h"
 #include "experiments/system/output_file.h"
 
 int main(int argc, char** argv) {
@@ -16,8 +16,7 @@ int main(int argc, char** argv) {
   try {
     const FloatingPointGuard guard;
     CLI::App app("farcull: collision culling that never misses.", "farcull");
-    CompareCommand compare;
-    compare.add_to(app);
+    const Command compare = add_compare(app);
     app.require_subcommand(1);
     CLI11_PARSE(app, argc, argv);
     return compare.run();

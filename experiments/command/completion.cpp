@@ -1,8 +1,6 @@
 // A script is a table and a function that reads it. The table has a line for each word of each
 // command, and for each option or argument with a value how that is completed. The functions differ
 // by shell: all find the command among the words so far, and pass over the values of its options.
-#include "experiments/command/completion.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <functional>
 
 #include "core/base/error.h"
+#include "experiments/command/declare.h"
 #include "experiments/method/options.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/system/output_file.h"
@@ -46,6 +45,30 @@ std::string line_of(std::string help) {
 
 std::string joined(const std::vector<std::string>& words, const char* between = " ") {
   return fmt::format("{}", fmt::join(words, between));
+}
+
+// What a value can be.
+struct CompletedValues {
+  std::vector<std::string> words;
+  bool files = false;   // any file
+  bool meshes = false;  // files that a scene is read from
+  bool folders = false;
+};
+
+// By DeclaredOption::type: the words that an enumeration such as "fragment|fixed" names, what is
+// known by name (METHOD, SCENE, FILE, ...), nothing for numbers and other types.
+CompletedValues completed_values(const std::string& type) {
+  for (const Option& option : run_options()) {
+    if (type == option.type && !option.words.empty()) return {.words = option.words};
+  }
+  if (type == "AXIS") return {.words = {"x", "y", "z"}};
+  if (type == "SHELL") return {.words = {"bash", "zsh", "fish"}};
+  if (type == "SCENE") return {.words = scene_names(), .meshes = true};
+  if (type == "NAME") return {.words = scene_names()};
+  if (type == "FILE" || type == "CERTIFICATE") return {.words = {}, .files = true};
+  if (type == "DIR") return {.words = {}, .folders = true};
+  if (type == "SHARDS") return {.words = {}, .files = true};
+  return {.words = alternatives(type)};
 }
 
 // How a value is completed, in one word of the table: "words w1 w2", with "files", "meshes" or
@@ -285,22 +308,7 @@ complete -c farcull -f
   return out;
 }
 
-}  // namespace
-
-CompletedValues completed_values(const std::string& type) {
-  for (const Option& option : run_options()) {
-    if (type == option.type && !option.words.empty()) return {.words = option.words};
-  }
-  if (type == "AXIS") return {.words = {"x", "y", "z"}};
-  if (type == "SHELL") return {.words = {"bash", "zsh", "fish"}};
-  if (type == "SCENE") return {.words = scene_names(), .meshes = true};
-  if (type == "NAME") return {.words = scene_names()};
-  if (type == "FILE" || type == "CERTIFICATE") return {.words = {}, .files = true};
-  if (type == "DIR") return {.words = {}, .folders = true};
-  if (type == "SHARDS") return {.words = {}, .files = true};
-  return {.words = alternatives(type)};
-}
-
+// The script that a shell reads. Throws Error naming SHELL for one that is not known.
 std::string completion_script(const DeclaredCommand& program, const std::string& shell) {
   if (shell == "bash") return bash_script(program);
   if (shell == "zsh") return zsh_script(program);
@@ -308,23 +316,30 @@ std::string completion_script(const DeclaredCommand& program, const std::string&
   throw Error("SHELL", quoted(shell) + " is no shell that is known here", "give bash, zsh or fish");
 }
 
-CLI::App* CompletionCommand::add_to(CLI::App& app) {
-  program_ = &app;
-  CLI::App* command =
-      add_command(app, "completion", "what a shell needs to complete farcull's words");
-  add_required(*command, "SHELL", shell_, "bash, zsh or fish");
-  add_footer(*command,
-             "Examples:\n"
-             "  source <(farcull completion bash)\n"
-             "  farcull completion zsh >~/.zfunc/_farcull\n"
-             "  farcull completion fish >~/.config/fish/completions/farcull.fish\n\n"
-             "`cmake --install` puts all three in place.");
-  return command;
-}
+class CompletionCommand {
+ public:
+  CLI::App* add_to(CLI::App& app) {
+    program_ = &app;
+    return add_command(app, "completion", "what a shell needs to complete farcull's words",
+                       {{"SHELL", &shell_, "", "bash, zsh or fish", Need::must}},
+                       "Examples:\n"
+                       "  source <(farcull completion bash)\n"
+                       "  farcull completion zsh >~/.zfunc/_farcull\n"
+                       "  farcull completion fish >~/.config/fish/completions/farcull.fish\n\n"
+                       "`cmake --install` puts all three in place.");
+  }
+  int run() const {
+    write_help(completion_script(declared(*program_), shell_));
+    return 0;
+  }
 
-int CompletionCommand::run() const {
-  write_help(completion_script(declared(*program_), shell_));
-  return 0;
-}
+ private:
+  const CLI::App* program_ = nullptr;
+  std::string shell_;
+};
+
+}  // namespace
+
+Command add_completion(CLI::App& app) { return declare<CompletionCommand>(app); }
 
 }  // namespace farcull

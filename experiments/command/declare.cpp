@@ -2,6 +2,7 @@
 #include "experiments/command/declare.h"
 
 #include <CLI/CLI.hpp>
+#include <type_traits>
 #include <utility>
 
 namespace farcull {
@@ -35,56 +36,37 @@ DeclaredCommand declared(const CLI::App& app, const std::string& parents) {
 
 DeclaredCommand declared(const CLI::App& app) { return declared(app, ""); }
 
-CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& title) {
-  return parent.add_subcommand(name, title);
+CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& title,
+                      const Rows& options, const Footer& footer) {
+  CLI::App* command = parent.add_subcommand(name, title);
+  for (const OptionRow& row : options) {
+    CLI::Option* option = nullptr;
+    std::visit(
+        [&](auto* value) {
+          using Value = std::decay_t<decltype(*value)>;
+          if constexpr (std::is_same_v<Value, bool>) {
+            command->add_flag(row.name, *value, row.help)->disable_flag_override();
+          } else if constexpr (std::is_same_v<Value, BareOption>) {
+            option = command->add_option_function<std::vector<std::string>>(
+                row.name,
+                [value](const std::vector<std::string>& words) {
+                  *value = {true, words.empty() ? "" : words.front()};
+                },
+                row.help);
+            option->expected(0, 1);
+          } else {
+            option = command->add_option(row.name, *value, row.help);
+          }
+        },
+        row.value);
+    if (option != nullptr) option->type_name(row.type)->required(row.need == Need::must);
+  }
+  command->footer("");  // that of the parent, which comes behind a function's text otherwise
+  std::visit([&](const auto& text) { command->footer(text); }, footer);
+  return command;
 }
 
 void allow_one_command(CLI::App& command) { command.require_subcommand(0, 1); }
-
-void add_footer(CLI::App& command, const std::string& text) { command.footer(text); }
-
-void add_footer(CLI::App& command, std::function<std::string()> text) {
-  command.footer("");  // that of the parent, which comes behind the text otherwise
-  command.footer(std::move(text));
-}
-
-void add_option(CLI::App& command, const char* name, Text& value, const char* type,
-                const std::string& help) {
-  command.add_option(name, value, help)->type_name(type);
-}
-
-void add_option(CLI::App& command, const char* name, std::string& value, const char* type,
-                const std::string& help) {
-  command.add_option(name, value, help)->type_name(type);
-}
-
-void add_option(CLI::App& command, const char* name, std::uint64_t& value, const char* type,
-                const std::string& help) {
-  command.add_option(name, value, help)->type_name(type);
-}
-
-void add_option(CLI::App& command, const char* name, std::vector<std::string>& values,
-                const char* type, const std::string& help) {
-  command.add_option(name, values, help)->type_name(type);
-}
-
-void add_required(CLI::App& command, const char* name, std::string& value, const char* help) {
-  command.add_option(name, value, help)->required()->type_name("");
-}
-
-void add_required(CLI::App& command, const char* name, std::vector<std::string>& values,
-                  const char* help) {
-  command.add_option(name, values, help)->required()->type_name("");
-}
-
-CLI::Option* add_bare_option(CLI::App& command, const char* name, std::vector<std::string>& values,
-                             const char* type, const char* help) {
-  return command.add_option(name, values, help)->type_name(type)->expected(0, 1);
-}
-
-void add_flag(CLI::App& command, const char* name, bool& value, const std::string& help) {
-  command.add_flag(name, value, help)->disable_flag_override();
-}
 
 std::string help_of(const CLI::App& app, const std::vector<std::string>& names) {
   const CLI::App* command = &app;
@@ -105,7 +87,5 @@ std::string help_of(const CLI::App& app, const std::vector<std::string>& names) 
 }
 
 bool given(const CLI::App& command) { return command.parsed(); }
-
-bool given(const CLI::Option& option) { return option.count() > 0; }
 
 }  // namespace farcull

@@ -1,18 +1,22 @@
-// Reads the options of `farcull distance`, then asks once or frame by frame.
-#include "experiments/command/distance.h"
+// Reads the options of `farcull distance`, then asks once or frame by frame; with --voronoi it asks
+// a discrete Voronoi diagram for potential neighbours instead.
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cfloat>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/base/count.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/scene/scene.h"
+#include "experiments/command/options.h"
 #include "experiments/measure/frames.h"
+#include "experiments/measure/potential_neighbours.h"
+#include "experiments/method/distances.h"
 #include "experiments/record/distances.h"
 #include "experiments/record/fields.h"
 #include "experiments/scenes/mesh/load.h"
@@ -47,22 +51,6 @@ constexpr const char* kDistanceExamples =
 // The keys of a record that each frame has of its own; the others hold for all frames.
 constexpr const char* kOfFrame[] = {"pairs",  "nearest",      "counts",
                                     "stages", "verification", "time_ms"};
-
-DistancePairs parse_pairs(const std::string& text) {
-  if (text == "objects") return DistancePairs::objects;
-  if (text == "nearest") return DistancePairs::nearest;
-  if (text == "all") return DistancePairs::all;
-  throw Error("--pairs", "'" + text + "' is no choice", "give objects, nearest or all");
-}
-
-double parse_within(const std::string& text) {
-  const std::optional<double> value = parse_number<double>(text);
-  if (!value || !std::isfinite(*value) || *value < 0) {
-    throw Error("--within", "'" + text + "' is no distance",
-                "give a finite distance in world units, 0 or more");
-  }
-  return *value;
-}
 
 /// The output of the frames, one after the other, and their sums.
 class Frames {
@@ -143,69 +131,145 @@ class Frames {
   DistanceAccounting sum_;
 };
 
-}  // namespace
+// Options that go with --voronoi alone.
+class DiagramArguments {
+ public:
+  Rows rows() {
+    return {{"--voronoi", &diagram_, "FORM",
+             "which objects may be nearest by a discrete Voronoi\n"
+             "diagram, and which nearest ones it loses, instead of\n"
+             "distances: published or reliable (docs/voronoi.md)"},
+            {"--resolution", &resolution_, "N",
+             "with --voronoi: cells of the diagram along the\n"
+             "longest side of the scene; default 64"},
+            {"--device", &device_, "DEVICE",
+             "with --voronoi: native (alias cpu) or a GL device:\n"
+             "gl, software, hardware or a number that farcull doctor\n"
+             "lists; default native"}};
+  }
+  // Whether --voronoi was given. Throws Error where another of these was given without it.
+  bool asked() const {
+    if (diagram_) return true;
+    refuse_given({{"--resolution", resolution_.has_value()}, {"--device", device_.has_value()}},
+                 "has no meaning without --voronoi",
+                 "add --voronoi published or reliable, or leave it out");
+    return false;
+  }
+  // threads: 0 for as many as there are cores. Throws Error naming the option that is bad.
+  DiagramOptions parse(unsigned threads) const {
+    DiagramOptions out{.threads = threads, .device = device_of(device_)};
+    const bool reliable = word_of("--voronoi", diagram_, {"published", "reliable"}, "no choice",
+                                  "give published or reliable") == 1;
+    if (reliable) out.form = DiagramForm::reliable;
+    if (resolution_) {
+      out.resolution =
+          number_of<int>("--resolution", *resolution_, "no number of cells", 1, kVoronoiLargest,
+                         fmt::format("give 1 to {}", kVoronoiLargest));
+    }
+    return out;
+  }
+
+ private:
+  Text diagram_, resolution_, device_;
+};
+
+// Writes the record of the scene to the outputs. The exit status: 1 the reliable form lost a
+// nearest object.
+int run_diagram(const std::vector<std::string>& words, const DiagramOptions& options,
+                const Outputs& outputs) {
+  TerminalProgress terminal;
+  const Progress progress = terminal.callback();
+  if (progress) progress("reading the scene");
+  const Scene scene = load_scene(words);
+  require_nothing_ignored(scene, "farcull distance");
+  const std::string nothing = nothing_asked(scene, {.pairs = DistancePairs::nearest});
+  if (!nothing.empty()) throw Error("SCENE", nothing, "name two objects or more");
+  const DiagramRecord record = potential_neighbours(scene, options, progress);
+  terminal.clear();
+  if (outputs.csv) write_output(*outputs.csv, diagram_csv(scene, record));
+  if (outputs.json) write_json(diagram_json(scene, record, seed_of(words)), *outputs.json);
+  if (!outputs.to_stdout()) write_output("-", diagram_table(scene, record));
+  const DiagramTotals totals = totals_of(record);
+  if (options.form == DiagramForm::published || totals.lost == 0) return kExitDone;
+  complain_broken("the reliable diagram lost " +
+                  counted(totals.lost, "nearest object", "nearest objects"));
+  return kExitBroken;
+}
+
+class DistanceCommand {
+ public:
+  CLI::App* add_to(CLI::App& app);
+  int run() const;
+
+ private:
+  DistanceOptions parse() const;
+  unsigned threads() const;
+  void require_question(const Scene& scene, const DistanceOptions& options) const;
+  int run_once(const DistanceOptions& options, const Outputs& outputs) const;
+  int run_frames(const DistanceOptions& options, const Outputs& outputs, FrameRange range) const;
+
+  std::vector<std::string> scene_;
+  Text pairs_, k_, within_, inside_, threads_, frames_;
+  bool self_ = false, verify_ = false;
+  DiagramArguments diagram_;
+  Outputs outputs_;
+};
 
 CLI::App* DistanceCommand::add_to(CLI::App& app) {
-  CLI::App* command =
-      add_command(app, "distance", "how far objects are apart, and where they are nearest");
-  add_scene(*command, scene_);
-  const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
-    add_option(*command, name, text, type, help);
-  };
-  add("--pairs", pairs_, "WHICH",
-      "objects: the nearest triangles of every two objects;\n"
-      "nearest: of each object and its K nearest others;\n"
-      "all: all pairs of triangles within D; default objects");
-  add("--k", k_, "K", "with --pairs nearest: how many others; default 1");
-  add("--within", within_, "D",
-      "nothing farther apart is answered, in world units;\n--pairs all needs it");
-  add_flag(*command, "--self", self_,
-           "the triangles of one object as well, those that share\n"
-           "a vertex position left out");
-  add("--inside", inside_, "yes|no",
-      "no: leave out whether an object lies inside another;\ndefault yes");
-  add("--threads", threads_, "N", "of the CPU; default as many as there are cores");
-  add_flag(
-      *command, "--verify", verify_,
-      "check each answer by other code, and of each pair that\nit is no nearer than the answers");
-  add("--frames", frames_, "N|A:B", "as for farcull run: of a scene that moves");
-  add("--json", outputs_.json, "FILE", kJsonHelp);
-  add("--csv", outputs_.csv, "FILE",
-      "write the pairs as CSV to this file; - for standard\noutput, without the table");
-  add("--certificate", outputs_.certificate, "FILE",
-      "write evidence of each distance to this file, for\n"
-      "farcull check; with --frames a number (%d or %04d) in it");
-  diagram_.add_to(*command);
-  add_footer(*command, kDistanceExamples);
-  return command;
+  return add_command(
+      app, "distance", "how far objects are apart, and where they are nearest",
+      Rows{scene_row(scene_),
+           {"--pairs", &pairs_, "WHICH",
+            "objects: the nearest triangles of every two objects;\n"
+            "nearest: of each object and its K nearest others;\n"
+            "all: all pairs of triangles within D; default objects"},
+           {"--k", &k_, "K", "with --pairs nearest: how many others; default 1"},
+           {"--within", &within_, "D",
+            "nothing farther apart is answered, in world units;\n--pairs all needs it"},
+           {"--self", &self_, "",
+            "the triangles of one object as well, those that share\n"
+            "a vertex position left out"},
+           {"--inside", &inside_, "yes|no",
+            "no: leave out whether an object lies inside another;\ndefault yes"},
+           {"--threads", &threads_, "N", "of the CPU; default as many as there are cores"},
+           {"--verify", &verify_, "",
+            "check each answer by other code, and of each pair that\nit is no nearer than the "
+            "answers"},
+           {"--frames", &frames_, "N|A:B", "as for farcull run: of a scene that moves"},
+           {"--json", &outputs_.json, "FILE", kJsonHelp},
+           {"--csv", &outputs_.csv, "FILE",
+            "write the pairs as CSV to this file; - for standard\noutput, without the table"},
+           {"--certificate", &outputs_.certificate, "FILE",
+            "write evidence of each distance to this file, for\n"
+            "farcull check; with --frames a number (%d or %04d) in it"}} +
+          diagram_.rows(),
+      kDistanceExamples);
 }
 
 DistanceOptions DistanceCommand::parse() const {
   DistanceOptions out;
-  if (pairs_) out.pairs = parse_pairs(*pairs_);
+  out.pairs = static_cast<DistancePairs>(word_of("--pairs", pairs_, {"objects", "nearest", "all"},
+                                                 "no choice", "give objects, nearest or all"));
   if (k_) {
     if (out.pairs != DistancePairs::nearest)
       throw Error("--k", "has no meaning without --pairs nearest", "add that, or leave --k out");
-    const std::optional<std::uint32_t> k = parse_number<std::uint32_t>(*k_);
-    if (!k || *k == 0)
-      throw Error("--k", "'" + *k_ + "' is no number of objects", "give 1 or more");
-    out.k = *k;
+    out.k = number_of<std::uint32_t>("--k", *k_, "no number of objects", 1, UINT32_MAX,
+                                     "give 1 or more");
   }
-  if (within_) out.within = parse_within(*within_);
+  if (within_) {
+    out.within = number_of<double>("--within", *within_, "no distance", 0, DBL_MAX,
+                                   "give a finite distance in world units, 0 or more");
+  }
   if (out.pairs == DistancePairs::all && !within_)
     throw Error("--within", "is missing, which --pairs all needs",
                 "give a distance in world units, as in --within 0.01");
   if (self_ && out.pairs == DistancePairs::nearest)
     throw Error("--self", "has no meaning with --pairs nearest: no object is its own neighbour",
                 "leave it out, or use --pairs objects or all");
-  if (inside_) {
-    if (*inside_ != "yes" && *inside_ != "no")
-      throw Error("--inside", "'" + *inside_ + "' is no choice", "give yes or no");
-    if (*inside_ == "yes" && out.pairs == DistancePairs::all)
-      throw Error("--inside", "yes has no meaning with --pairs all",
-                  "leave it out, or use --pairs objects or nearest");
-    out.inside = *inside_ == "yes";
-  }
+  out.inside = word_of("--inside", inside_, {"yes", "no"}, "no choice", "give yes or no") == 0;
+  if (inside_ && out.inside && out.pairs == DistancePairs::all)
+    throw Error("--inside", "yes has no meaning with --pairs all",
+                "leave it out, or use --pairs objects or nearest");
   out.threads = threads();
   out.verify = verify_;
   return out;
@@ -213,23 +277,8 @@ DistanceOptions DistanceCommand::parse() const {
 
 unsigned DistanceCommand::threads() const {
   if (!threads_) return 0;
-  const std::optional<unsigned> threads = parse_number<unsigned>(*threads_);
-  if (!threads || *threads == 0 || *threads > kMostThreads)
-    throw Error("--threads", "'" + *threads_ + "' is no number of threads",
-                fmt::format("give 1 to {}", kMostThreads));
-  return *threads;
-}
-
-// With --voronoi no distances are answered.
-void DistanceCommand::require_no_distances() const {
-  for (const auto& [option, given] :
-       {std::pair("--pairs", pairs_.has_value()), std::pair("--k", k_.has_value()),
-        std::pair("--within", within_.has_value()), std::pair("--self", self_),
-        std::pair("--inside", inside_.has_value()), std::pair("--verify", verify_),
-        std::pair("--frames", frames_.has_value()),
-        std::pair("--certificate", outputs_.certificate.has_value())}) {
-    if (given) throw Error(option, "has no meaning with --voronoi", "leave one of the two out");
-  }
+  return number_of<unsigned>("--threads", *threads_, "no number of threads", 1, kMostThreads,
+                             fmt::format("give 1 to {}", kMostThreads));
 }
 
 void DistanceCommand::require_question(const Scene& scene, const DistanceOptions& options) const {
@@ -248,7 +297,15 @@ void DistanceCommand::require_question(const Scene& scene, const DistanceOptions
 
 int DistanceCommand::run() const {
   if (diagram_.asked()) {
-    require_no_distances();
+    refuse_given({{"--pairs", pairs_.has_value()},
+                  {"--k", k_.has_value()},
+                  {"--within", within_.has_value()},
+                  {"--self", self_},
+                  {"--inside", inside_.has_value()},
+                  {"--verify", verify_},
+                  {"--frames", frames_.has_value()},
+                  {"--certificate", outputs_.certificate.has_value()}},
+                 "has no meaning with --voronoi", "leave one of the two out");
     const DiagramOptions options = diagram_.parse(threads());
     check_scene(scene_);
     return run_diagram(scene_, options, checked(outputs_, scene_files(scene_, {})));
@@ -311,5 +368,9 @@ int DistanceCommand::run_frames(const DistanceOptions& options, const Outputs& o
   complain_broken(verdict_text(frames.sum()));
   return kExitBroken;
 }
+
+}  // namespace
+
+Command add_distance(CLI::App& app) { return declare<DistanceCommand>(app); }
 
 }  // namespace farcull

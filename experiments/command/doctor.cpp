@@ -1,42 +1,494 @@
-// Reads the options; experiments/lemma/doctor has the probes.
-#include "experiments/lemma/doctor.h"
-#include "experiments/command/commands.h"
+// Probes the native canvas (each probe counts what may not happen at all, so its bound is 0) and
+// the device, measures FAR pairs on both back ends, and prints what it found.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <vector>
+
+#include "commit.h"
+#include "core/base/error.h"
+#include "core/base/floating_point.h"
+#include "core/base/stopwatch.h"
+#include "core/base/terminal.h"
+#include "core/gl/base/context.h"
+#include "core/gl/canvas/canvas.h"
+#include "core/gl/probe/probe.h"
+#include "core/native/canvas.h"
+#include "core/native/lanes.h"
 #include "experiments/command/options.h"
+#include "experiments/lemma/lemma.h"
+#include "experiments/method/device_verdict.h"
+#include "experiments/method/kernel_probes.h"
+#include "experiments/method/run.h"
+#include "experiments/record/fields.h"
+#include "experiments/record/output.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/system/output_file.h"
+#include "offsets/fit.h"
+#include "offsets/minkowski.h"
+#include "offsets/obb.h"
+#include "verify/kernel_check.h"
 
 namespace farcull {
 namespace {
 
+constexpr std::size_t kCases = 6000;
+constexpr std::uint64_t kPoints = 60'000;
+constexpr std::uint64_t kSeed = 1;
+
+using Check = void (*)(const SolidCase&, const SolidAnswer&, bool ordinary, KernelTally&);
+using Fatten = Solid (*)(const KernelTriangle&);
+using Adversarial = Solid (*)(std::uint64_t seed, std::uint64_t index, float cx, float cy);
+
+struct Kernel {
+  const char* name;
+  SolidProgram program;
+  Fatten fatten;
+  Adversarial adversarial;
+  Check check;
+};
+
+std::vector<Kernel> kernels() {
+  return {{"oriented boxes", obb_fattener().solid,
+           [](const KernelTriangle& t) { return obb_of(t.corners, t.radius); }, adversarial_box,
+           check_box},
+          {"exact offsets", minkowski_fattener().solid,
+           [](const KernelTriangle& t) {
+             return minkowski_solid(t.corners[0], t.corners[1], t.corners[2], t.radius);
+           },
+           adversarial_minkowski, check_minkowski}};
+}
+
+bool same(const SolidAnswer& a, const SolidAnswer& b) {
+  const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
+  return a.hit == b.hit &&
+         (!a.hit || (bits(a.entry) == bits(b.entry) && bits(a.exit) == bits(b.exit)));
+}
+
+SolidAnswer on_lanes(const SolidProgram& program, const SolidCase& c) {
+  SolidAnswer answer{};
+  std::uint8_t hit = 0;
+  program.lines_native({&c.solid, 1, &c.cx, &c.cy, &hit, &answer.entry, &answer.exit});
+  answer.hit = hit != 0;
+  return answer;
+}
+
+// Half of the solids are fattened triangles, half are made of floats directly.
+ProbeResult probe_kernel(const Kernel& kernel, const std::string& target) {
+  KernelTally tally;
+  std::uint64_t different = 0;
+  for (std::size_t i = 0; i < kCases; ++i) {
+    SolidCase c{static_cast<float>(i % 97) - 48.5f, static_cast<float>(i % 89) - 44.5f, {}};
+    bool ordinary = false;
+    if (i % 2 == 0) {
+      const KernelTriangle t = kernel_triangle(kSeed, i, c.cx, c.cy);
+      ordinary = t.ordinary;
+      c.solid = kernel.fatten(t);
+    } else {
+      c.solid = kernel.adversarial(kSeed, i, c.cx, c.cy);
+    }
+    const SolidAnswer answer = on_lanes(kernel.program, c);
+    SolidAnswer scalar{};
+    scalar.hit = kernel.program.interval(c.cx, c.cy, c.solid, scalar.entry, scalar.exit);
+    kernel.check(c, answer, ordinary, tally);
+    different += !same(answer, scalar);
+  }
+  return {.assumption = "A4",
+          .name = fmt::format("{}, lanes of {}", kernel.name, target),
+          .measured = static_cast<double>(tally.lost + different),
+          .unit = "lost or other bits",
+          .samples = tally.checked,
+          .pass = tally.checked > 0 && tally.lost == 0 && different == 0,
+          .note = {}};
+}
+
+// Lemmas 1 and 2 on the native canvas, with both offsets.
+std::vector<ProbeResult> lemma_probes() {
+  LemmaSettings settings;
+  settings.points = kPoints;
+  settings.seed = kSeed;
+  settings.displace = true;
+  settings.radius = [](const Budget& budget, double) { return budget.radius(); };
+  LemmaRow sum;
+  for (const Fattener& fattener : {obb_fattener(), minkowski_fattener()}) {
+    NativeCanvas canvas(fattener.mode, fattener.solid);
+    const LemmaRow total = lemma_total(lemma_experiment(canvas, fattener, settings));
+    sum.points += total.points;
+    sum.no_sample += total.no_sample;
+    sum.not_bounding += total.not_bounding;
+  }
+  const auto result = [&sum](const char* assumption, const char* name, std::uint64_t found) {
+    return ProbeResult{.assumption = assumption,
+                       .name = name,
+                       .measured = static_cast<double>(found),
+                       .unit = "points",
+                       .samples = sum.points,
+                       .pass = sum.points > 0 && found == 0,
+                       .note = {}};
+  };
+  return {result("A3", "points of triangles whose pixel got no sample", sum.no_sample),
+          result("A5", "points that their samples do not bound", sum.not_bounding)};
+}
+
+using Json = nlohmann::ordered_json;
+
+// The device that GlContext takes for this option: the list knows why the others were passed over.
+std::optional<int> choose(const std::vector<GlDevice>& devices, const std::string& device) {
+  for (const std::string kind : {"hardware", "software"}) {
+    for (const GlDevice& d : devices) {
+      const bool named = device == std::to_string(d.index);
+      if (d.usable && d.kind == kind && (named || device.empty() || device == kind)) return d.index;
+    }
+  }
+  return std::nullopt;
+}
+
+Json devices_json(const std::vector<GlDevice>& devices) {
+  return json_list(devices, [](const GlDevice& d) {
+    Json out = {{"number", d.index},
+                {"kind", d.kind},
+                {"usable", d.usable},
+                {"problem", json_if(!d.usable, d.problem)}};
+    out.update(FARCULL_JSON(d, vendor, renderer, version, drm));
+    return out;
+  });
+}
+
+// A number of the table: whole where it is whole, else three digits.
+std::string number(double x) {
+  if (x == std::floor(x) && std::abs(x) < 1e9) return fmt::format("{:.0f}", x);
+  return fmt::format("{:.3g}", x);
+}
+
+std::string devices_table(const std::vector<GlDevice>& devices, int chosen) {
+  std::string out = "devices:\n";
+  for (const GlDevice& d : devices) {
+    out += fmt::format("{} {}  {:<8}  {}\n", d.index == chosen ? '*' : ' ', d.index, d.kind,
+                       d.usable ? d.renderer : "not usable: " + d.problem);
+  }
+  return out;
+}
+
+std::string threads_text(const GlInfo& gl) {
+  if (gl.kind != "software") return "none on the CPU: the device is hardware";
+  const int threads = driver_threads(gl.renderer);
+  return threads == 0 ? "0 of the driver: it draws in the calling thread"
+                      : std::to_string(threads) + " of the driver: assumption A10 fails";
+}
+
+std::string limits_table(const GlInfo& gl, int resolution) {
+  return fmt::format(
+      "\nchosen: {}\n"
+      "  vendor            {}\n"
+      "  OpenGL            {}\n"
+      "  GLSL              {}\n"
+      "  subpixel bits     {}\n"
+      "  largest texture   {}\n"
+      "  largest viewport  {}\n"
+      "  resolution limit  {}\n"
+      "  compute groups    {}\n"
+      "  storage block     {} bytes\n"
+      "  reset detection   {}\n"
+      "  threads           {}\n",
+      gl.renderer, gl.vendor, gl.version, gl.glsl, gl.subpixel_bits, gl.max_texture_size,
+      gl.max_viewport, resolution, gl.max_compute_groups, gl.max_storage_block,
+      gl.reset_detection ? "yes" : "no: a reset is seen by lost commands alone (A7)",
+      threads_text(gl));
+}
+
+Json limits_json(const GlInfo& gl, int resolution) {
+  Json out = FARCULL_JSON(gl, subpixel_bits, max_texture_size, max_viewport);
+  out["max_resolution"] = resolution;
+  out.update(FARCULL_JSON(gl, max_compute_groups, max_storage_block, reset_detection));
+  out["threads"] = threads_json(gl);
+  return out;
+}
+
+// The floating-point environment, found out by arithmetic: the caller's, and the one in force.
+std::string arithmetic_line(const FloatingPoint& callers) {
+  return fmt::format("\narithmetic of the host: {}; the caller's: {}\n",
+                     to_string(floating_point()),
+                     callers == kProved ? "the same" : to_string(callers) + " (set aside)");
+}
+
+std::string probes_table(const std::vector<ProbeResult>& probes) {
+  std::string out = fmt::format("\n    {:<52} {:>9} {:>9}  {:<20} {:>9}\n", "probe", "measured",
+                                "bound", "", "samples");
+  int failed = 0;
+  for (const ProbeResult& p : probes) {
+    out += fmt::format("{:<3} {:<52} {:>9} {:>9}  {:<20} {:>9}  {}\n", p.assumption, p.name,
+                       number(p.measured), number(p.bound), p.unit, p.samples,
+                       p.pass ? "pass" : "FAIL");
+    if (!p.note.empty()) out += fmt::format("      {}\n", p.note);
+    failed += !p.pass;
+  }
+  out += failed == 0
+             ? fmt::format("\nall {} probes pass\n", probes.size())
+             : fmt::format(
+                   "\n{} of {} probes FAIL: what relies on them promises nothing on this device\n",
+                   failed, probes.size());
+  return out;
+}
+
+// Both verdicts rest on results of one run of the probes.
+struct Verdicts {
+  DeviceVerdict drawing, pairs;
+};
+
+Verdicts keep(const GlInfo& device, const std::vector<ProbeResult>& probes, double ms) {
+  std::vector<ProbeResult> drawing, pairs;
+  for (const ProbeResult& p : probes) {
+    if (p.drawing) drawing.push_back(p);
+    if (p.pairs) pairs.push_back(p);
+  }
+  return {keep_verdict(device, Reliance::drawing, drawing, ms),
+          keep_verdict(device, Reliance::pairs, pairs, ms)};
+}
+
+std::string verdicts_text(const Verdicts& verdicts) {
+  const auto line = [](const char* who, const DeviceVerdict& v, Reliance reliance) {
+    return fmt::format("{}: {}; {}\n", who, to_string(v, reliance),
+                       !v.file.empty()  ? "kept in " + v.file
+                       : v.note.empty() ? "not kept"
+                                        : "not kept: " + v.note);
+  };
+  return "\n" + line("far", verdicts.drawing, Reliance::drawing) +
+         line("far-pairs", verdicts.pairs, Reliance::pairs);
+}
+
+Json probes_json(const std::vector<ProbeResult>& probes) {
+  return json_list(probes, [](const ProbeResult& p) {
+    Json out = FARCULL_JSON(p, assumption, name, pass, measured, bound, unit, samples, note);
+    if (!std::isfinite(p.measured)) out["measured"] = "infinite";  // which has no number in JSON
+    return out;
+  });
+}
+
+// FAR pairs by both back ends on one scene that views decide: which is faster on this machine.
+struct PairAdvice {
+  double cpu_ms = 0;  // median of several runs after a first one
+  double gl_ms = 0;
+  bool equal = false;   // the same candidates
+  std::string problem;  // why the device cannot run it
+  bool gl_is_faster() const { return problem.empty() && gl_ms < cpu_ms; }
+};
+constexpr const char* kPairScene = "needles-layers";
+
+PairAdvice advise(const std::string& device) {
+  const Scene scene = make_builtin_scene(kPairScene);
+  std::vector<TrianglePair> candidates;
+  const auto measure = [&](const std::string& on) {
+    const RunOptions options{.method = Method::far_pairs, .device = on};
+    Session session(on, 0, Say());
+    constexpr int kRuns = 5;
+    std::vector<double> ms;
+    for (int run = 0; run <= kRuns; ++run) {
+      const Stopwatch start;
+      Candidates found = find(scene, plan(scene, options), session);
+      if (found.pair_views().empty()) {
+        throw std::logic_error("doctor: no view was looked along, so nothing was compared");
+      }
+      candidates = std::move(found.pairs);
+      ms.push_back(start.ms());
+    }
+    // The first run compiles and allocates.
+    std::nth_element(ms.begin() + 1, ms.begin() + 1 + kRuns / 2, ms.end());
+    return ms[1 + kRuns / 2];
+  };
+  PairAdvice out;
+  out.cpu_ms = measure("cpu");
+  const std::vector<TrianglePair> by_cpu = candidates;
+  try {
+    out.gl_ms = measure(device.empty() ? "gl" : device);
+    out.equal = candidates == by_cpu;
+  } catch (const Error& error) {
+    out.problem = error.what();
+  }
+  return out;
+}
+
+std::string advice_text(const PairAdvice& advice, const std::string& renderer) {
+  std::string out = fmt::format("\nFAR pairs on {}: cpu {:.1f} ms, ", kPairScene, advice.cpu_ms);
+  if (!advice.problem.empty()) {
+    out += fmt::format("not on this device ({})", advice.problem);
+  } else {
+    out += fmt::format("{} {:.1f} ms{}", renderer, advice.gl_ms,
+                       advice.equal ? ""
+                                    : "; other candidates, since its arithmetic differs, which the "
+                                      "proofs allow");
+  }
+  return out +
+         fmt::format("\nrecommended: {}\n", advice.gl_is_faster() ? "this device" : "--device cpu");
+}
+
+Json advice_json(const PairAdvice& advice) {
+  const bool ran = advice.problem.empty();
+  return {{"scene", kPairScene},
+          {"cpu_ms", advice.cpu_ms},
+          {"gl_ms", json_if(ran, advice.gl_ms)},
+          {"equal_candidates", json_if(ran, advice.equal)},
+          {"problem", text_json(advice.problem)},
+          {"recommended", advice.gl_is_faster() ? "gl" : "cpu"}};
+}
+
+// For each of lane_targets() the kernels of both offsets: answers that lose a part of the exact
+// solid, and answers that differ from those of the scalar text. Then points of triangles that got
+// no sample, or samples that do not bound them. The instruction set that was in use is in use
+// afterwards.
+std::vector<ProbeResult> native_probes() {
+  struct Restore {
+    std::string target = lane_target();
+    ~Restore() { use_lane_target(target); }
+  };
+  std::vector<ProbeResult> out;
+  {
+    const Restore restore;
+    for (const std::string& target : lane_targets()) {
+      use_lane_target(target);
+      for (const Kernel& kernel : kernels()) out.push_back(probe_kernel(kernel, target));
+    }
+  }
+  for (ProbeResult& r : lemma_probes()) out.push_back(std::move(r));
+  return out;
+}
+
+// The native canvas, which needs no device.
+struct NativeFindings {
+  std::vector<ProbeResult> probes;
+  bool pass = true;
+};
+
+NativeFindings look_at_native() {
+  NativeFindings out{.probes = native_probes()};
+  for (const ProbeResult& p : out.probes) out.pass = out.pass && p.pass;
+  return out;
+}
+
+std::string native_text(const NativeFindings& found) {
+  std::string others;
+  for (const std::string& target : lane_targets()) {
+    if (target != lane_target()) others += (others.empty() ? "" : ", ") + target;
+  }
+  return fmt::format("native: the cores of the CPU, lanes of {}{}\n{}", lane_target(),
+                     others.empty() ? "" : " (also probed: " + others + ")",
+                     probes_table(found.probes));
+}
+
+Json native_json(const NativeFindings& found) {
+  return {{"lanes", lane_targets()},
+          {"max_resolution", native_limits().max_resolution},
+          {"probes", probes_json(found.probes)},
+          {"pass", found.pass}};
+}
+
+struct DoctorArguments {
+  std::string device, json;
+};
+
+void write_report(Json report, bool pass, const DoctorArguments& arguments) {
+  report["pass"] = pass;
+  report["commit"] = FARCULL_COMMIT;
+  write_output(arguments.json, report.dump(2) + "\n");
+}
+
+// The findings on a machine without OpenGL, or with --device cpu.
+int doctor_without_gl(const DoctorArguments& arguments, const NativeFindings& native) {
+  if (!arguments.json.empty()) {
+    write_report(
+        {{"native", native_json(native)},
+         {"floating_point", floating_point_json(callers_floating_point(), floating_point())}},
+        native.pass, arguments);
+  }
+  if (arguments.json != "-")
+    write_output("-", native_text(native) + arithmetic_line(callers_floating_point()));
+  return native.pass ? 0 : 1;
+}
+
 class DoctorCommand {
  public:
-  CLI::App* add_to(CLI::App& app);
+  CLI::App* add_to(CLI::App& app) {
+    return add_command(
+        app, "doctor", "the devices, and whether each keeps the assumptions",
+        {{"--device", &device_, "DEVICE", kDeviceHelp}, {"--json", &json_, "FILE", kJsonHelp}},
+        "Examples:\n  farcull doctor\n  farcull doctor --device native\n"
+        "  farcull doctor --device software --json -\n\n"
+        "What the probes find is kept for later runs, in $XDG_CACHE_HOME/farcull or\n"
+        "~/.cache/farcull: far on OpenGL promises where all of A1 to A10 pass, far-pairs\n"
+        "where A4, A7, A8 and A10 do. A run without such a verdict on its device, driver and build "
+        "makes\n"
+        "one itself.\n\n"
+        "Exit status 1: the native canvas or the device breaks an assumption; what relies on it\n"
+        "promises nothing.");
+  }
+  // 0: every assumption holds on the native canvas and on the chosen device; 1: one does not.
+  // Without OpenGL the native canvas is all that is looked at.
   int run() const;
 
  private:
   Text device_, json_;
 };
 
-CLI::App* DoctorCommand::add_to(CLI::App& app) {
-  CLI::App* command =
-      add_command(app, "doctor", "the devices, and whether each keeps the assumptions");
-  add_option(*command, "--device", device_, "DEVICE", kDeviceHelp);
-  add_option(*command, "--json", json_, "FILE", kJsonHelp);
-  add_footer(
-      *command,
-      "Examples:\n  farcull doctor\n  farcull doctor --device native\n"
-      "  farcull doctor --device software --json -\n\n"
-      "What the probes find is kept for later runs, in $XDG_CACHE_HOME/farcull or\n"
-      "~/.cache/farcull: far on OpenGL promises where all of A1 to A10 pass, far-pairs\n"
-      "where A4, A7, A8 and A10 do. A run without such a verdict on its device, driver and build "
-      "makes\n"
-      "one itself.\n\n"
-      "Exit status 1: the native canvas or the device breaks an assumption; what relies on it\n"
-      "promises nothing.");
-  return command;
-}
-
 int DoctorCommand::run() const {
-  return doctor_command(
-      {.device = device_of(device_), .json = checked({.json = json_}, {}).json.value_or("")});
+  const DoctorArguments arguments{.device = device_of(device_),
+                                  .json = checked({.json = json_}, {}).json.value_or("")};
+  const FloatingPointGuard guard;
+  if (!arguments.json.empty()) check_output(arguments.json);
+  if (is_cpu(arguments.device)) return doctor_without_gl(arguments, look_at_native());
+  // Before the probes of the native canvas, which take seconds: a device that is not there is
+  // refused at once.
+  const std::vector<GlDevice> devices = GlContext::list_devices();
+  const std::optional<int> chosen = choose(devices, arguments.device);
+  if (!chosen && arguments.device.empty()) {
+    if (arguments.json != "-")
+      write_output("-", devices_table(devices, -1) +
+                            "no device offers what farcull needs of OpenGL: "
+                            "everything runs on the cores of the CPU\n\n");
+    return doctor_without_gl(arguments, look_at_native());
+  }
+  // The context throws an Error if nothing fits.
+  const GlContext context(chosen ? std::to_string(*chosen) : arguments.device);
+  const NativeFindings native = look_at_native();
+  const GlInfo& gl = context.info();
+  const int resolution = gl_canvas(context, DepthMode::fixed, {})->limits().max_resolution;
+  const bool people = arguments.json != "-";
+  if (people)
+    write_output("-", native_text(native) + "\n" + devices_table(devices, chosen.value_or(-1)) +
+                          limits_table(gl, resolution) + arithmetic_line(callers_floating_point()));
+
+  const bool terminal = is_terminal(stderr);
+  const Stopwatch probing;
+  const std::vector<ProbeResult> probes =
+      all_probes(context, [terminal](const std::string& assumption) {
+        if (terminal) std::fprintf(stderr, "\r\033[Kprobing %s ...", assumption.c_str());
+      });
+  if (terminal) std::fprintf(stderr, "\r\033[K");
+  const Verdicts verdicts = keep(gl, probes, probing.ms());
+
+  const PairAdvice advice = advise(arguments.device);
+
+  const bool pass =
+      native.pass && std::ranges::all_of(probes, [](const ProbeResult& p) { return p.pass; });
+  if (!arguments.json.empty()) {
+    Json report = {
+        {"native", native_json(native)},
+        {"devices", devices_json(devices)},
+        {"chosen", json_of(chosen)},
+        {"gl", gl_json(gl)},
+        {"limits", limits_json(gl, resolution)},
+        {"floating_point", floating_point_json(callers_floating_point(), floating_point())},
+        {"probes", probes_json(probes)},
+        {"verdict_files", {{"drawing", verdicts.drawing.file}, {"pairs", verdicts.pairs.file}}},
+        {"far_pairs", advice_json(advice)}};
+    write_report(std::move(report), pass, arguments);
+  }
+  if (people)
+    write_output("-",
+                 probes_table(probes) + verdicts_text(verdicts) + advice_text(advice, gl.renderer));
+  return pass ? 0 : 1;
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include "core/base/stopwatch.h"
 #include "core/base/text.h"
 #include "core/native/lanes.h"
-#include "experiments/command/commands.h"
 #include "experiments/command/options.h"
 #include "experiments/lemma/lemma.h"
 #include "experiments/method/run.h"
@@ -144,16 +143,13 @@ void validate(const LemmaArguments& arguments) {
                 "give 1 to 1e12");
   }
   const std::string& canvas = arguments.canvas;
-  if (canvas != "" && canvas != "native" && canvas != "gl" && canvas != "worst") {
-    throw Error("--canvas", "'" + canvas + "' is no canvas", "give native, gl or worst");
-  }
+  if (!canvas.empty())
+    word_of("--canvas", canvas, {"native", "gl", "worst"}, "no canvas", "give native, gl or worst");
   if (!arguments.device.empty() && canvas != "" && canvas != "gl") {
     throw Error("--device", "the " + canvas + " canvas needs no device",
                 "leave --device out, or use --canvas gl");
   }
-  if (arguments.offset != "obb" && arguments.offset != "exact") {
-    throw Error("--offset", "'" + arguments.offset + "' is no offset", "give obb or exact");
-  }
+  word_of("--offset", arguments.offset, {"obb", "exact"}, "no offset", "give obb or exact");
   if (!arguments.csv.empty() && arguments.sweep.empty()) {
     throw Error("--csv", "there is a table to write only with --sweep",
                 "add --sweep 0.5:1.1:0.01, or use --json");
@@ -274,29 +270,26 @@ class LemmaCommand {
 };
 
 CLI::App* LemmaCommand::add_to(CLI::App& experiment) {
-  CLI::App* command = add_command(
-      experiment, "lemma", "the reliability lemmas on a canvas, decided in exact arithmetic");
-  add_option(*command, "--points", arguments_.points, "N", "points in all; default 100000");
-  add_option(*command, "--radius", arguments_.radius, "RADIUS",
-             "budget, published, or a factor on the budget;\ndefault budget");
-  add_option(*command, "--sweep", arguments_.sweep, "SWEEP",
-             "instead: factors FROM:TO:STEP, as in 0.5:1.1:0.01");
-  add_option(*command, "--canvas", arguments_.canvas, "native|gl|worst",
-             "native (the cores of the CPU), gl (a device), or worst\n(as bad as the assumptions "
-             "allow); default gl where\n--device is given or hardware answers, else native");
-  add_option(*command, "--offset", arguments_.offset, "OFFSET", "obb or exact; default obb");
-  add_option(*command, "--seed", arguments_.seed, "N", "of the points; default 1");
-  add_option(*command, "--device", device_, "DEVICE", kDeviceHelp);
-  add_option(*command, "--json", outputs_.json, "FILE", kJsonHelp);
-  add_option(*command, "--csv", outputs_.csv, "FILE",
-             "write the sweep as CSV to this file; - for standard\noutput");
-  add_footer(*command,
-             "Examples:\n"
-             "  farcull experiment lemma --points 1000000 --radius budget\n"
-             "  farcull experiment lemma --radius published\n"
-             "  farcull experiment lemma --canvas worst --sweep 0.5:1.1:0.01 --csv sweep.csv\n\n"
-             "Exit status 1: a violation at the budget radius or beyond.");
-  return command;
+  return add_command(
+      experiment, "lemma", "the reliability lemmas on a canvas, decided in exact arithmetic",
+      {{"--points", &arguments_.points, "N", "points in all; default 100000"},
+       {"--radius", &arguments_.radius, "RADIUS",
+        "budget, published, or a factor on the budget;\ndefault budget"},
+       {"--sweep", &arguments_.sweep, "SWEEP", "instead: factors FROM:TO:STEP, as in 0.5:1.1:0.01"},
+       {"--canvas", &arguments_.canvas, "native|gl|worst",
+        "native (the cores of the CPU), gl (a device), or worst\n(as bad as the assumptions "
+        "allow); default gl where\n--device is given or hardware answers, else native"},
+       {"--offset", &arguments_.offset, "OFFSET", "obb or exact; default obb"},
+       {"--seed", &arguments_.seed, "N", "of the points; default 1"},
+       {"--device", &device_, "DEVICE", kDeviceHelp},
+       {"--json", &outputs_.json, "FILE", kJsonHelp},
+       {"--csv", &outputs_.csv, "FILE",
+        "write the sweep as CSV to this file; - for standard\noutput"}},
+      "Examples:\n"
+      "  farcull experiment lemma --points 1000000 --radius budget\n"
+      "  farcull experiment lemma --radius published\n"
+      "  farcull experiment lemma --canvas worst --sweep 0.5:1.1:0.01 --csv sweep.csv\n\n"
+      "Exit status 1: a violation at the budget radius or beyond.");
 }
 
 // Prints the rows; writes --json and --csv.

@@ -1,3 +1,3 @@
-#include "experiments/command/cli.h"
+#include "experiments/command/declare.h"
 
 int main(int argc, char** argv) { return farcull::command_line(argc, argv); }

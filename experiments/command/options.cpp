@@ -1,46 +1,112 @@
-// Checks values and places of output before a command runs.
+// Checks values and places of output before a command runs. Two paths are one file where device and
+// inode are equal, links followed. A file that is still to be made is known by its folder's device
+// and inode, and its name.
 #include "experiments/command/options.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include "core/base/error.h"
 #include "core/base/parameter.h"
 #include "core/base/terminal.h"
-#include "core/base/text.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
+#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/shell_word.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {
+namespace {
 
-void add_scene(CLI::App& command, std::vector<std::string>& scene) {
-  add_required(command, "SCENE", scene, kSceneHelp);
+namespace fs = std::filesystem;
+
+constexpr const char* kStandardOutput = "standard output";
+
+// The file of a path. A file that is still to be made is known by its folder and its name.
+struct Identity {
+  dev_t device = 0;
+  ino_t inode = 0;
+  std::string name;      // empty where the file exists
+  bool regular = false;  // or still to be made
+
+  using Key = std::tuple<dev_t, ino_t, std::string>;
+  Key key() const { return {device, inode, name}; }
+};
+
+// The file that writing to the path makes: a link to a file that is not there leads on to that
+// file. Beyond kMostLinks, where the system gives up, whatever is left.
+fs::path made_by(fs::path path) {
+  constexpr int kMostLinks = 40;
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
+    const fs::path target = fs::read_symlink(path, error);
+    if (error) break;
+    path = path.parent_path() / target;  // the target alone where it is absolute
+  }
+  return path;
 }
 
-void MethodOptions::add_to(CLI::App& command, const std::vector<std::string>& names) {
+std::optional<Identity> identity_of(const std::string& path) {
+  struct stat status = {};
+  const int found = path == "-" ? ::fstat(STDOUT_FILENO, &status) : ::stat(path.c_str(), &status);
+  if (found == 0) return Identity{status.st_dev, status.st_ino, "", S_ISREG(status.st_mode)};
+  if (path == "-") return std::nullopt;
+  const fs::path file = made_by(path);
+  const std::string folder = file.parent_path().empty() ? "." : file.parent_path().string();
+  if (::stat(folder.c_str(), &status) != 0) return std::nullopt;
+  return Identity{status.st_dev, status.st_ino, file.filename().string(), true};
+}
+
+// Whether a built-in scene, whatever its numbers and suffixes, is made of packaged meshes.
+bool needs_meshes(const std::string& name) {
+  const BuiltinScene* const scene = find_builtin_scene(name);
+  return scene != nullptr && scene->needs_meshes;
+}
+
+std::string shown(const NamedFile& file) { return file.path == "-" ? kStandardOutput : file.path; }
+
+// Certificates are of one scene each.
+void require_number(const std::string& certificate, bool frames) {
+  if (is_numbered(certificate) == frames) return;
+  if (frames) {
+    throw Error("--certificate", "'" + certificate + "' has no place for the number of the frame",
+                "put %d or %04d there, as in certificate_%04d.json: each frame has a file of its "
+                "own");
+  }
+  throw Error("--certificate", "'" + certificate + "' has a place for the number of a frame",
+              "say which frames with --frames N or --frames FIRST:LAST, or name one file");
+}
+
+}  // namespace
+
+OptionRow scene_row(std::vector<std::string>& scene) {
+  return {"SCENE", &scene, "", kSceneHelp, Need::must};
+}
+
+Rows MethodOptions::rows(const std::vector<std::string>& names) {
+  Rows out;
   for (const Option& option : run_options()) {
     Text& text = texts_[option.name];
     bool& flag = flags_[option.name];
     if (!names.empty() && std::ranges::find(names, option.name) == names.end()) continue;
-    const std::string word = option_word(option.name);
-    if (*option.type == 0) {
-      add_flag(command, word.c_str(), flag, spelled(option.help));
-    } else {
-      add_option(command, word.c_str(), text, option.type, spelled(option.help));
-    }
+    const char* word = words_.emplace_back(option_word(option.name)).c_str();
+    out.push_back({word, &text, option.type, spelled(option.help)});
+    if (*option.type == 0) out.back().value = &flag;
   }
+  return out;
 }
 
 GivenOptions MethodOptions::given() const {
@@ -99,25 +165,91 @@ void TerminalProgress::show(std::string line) {
   shown_ = true;
 }
 
+std::vector<std::string> numbered_files(const std::string& path,
+                                        const std::optional<FrameRange>& range) {
+  if (!range || !is_numbered(path)) return {path};
+  std::vector<std::string> out;
+  for (long frame = range->first; frame <= range->last; ++frame)
+    out.push_back(numbered(path, frame));
+  return out;
+}
+
+std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
+                                   const std::optional<FrameRange>& range) {
+  std::vector<NamedFile> out;
+  const auto add = [&](const std::string& path) { out.push_back({"SCENE", path}); };
+  const auto add_mesh = [&](const std::string& path) {
+    for (const std::string& file : numbered_files(path, range)) add(file);
+  };
+  const auto add_packaged = [&] {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(mesh_folder(), error)) {
+      if (has_mesh_extension(entry.path().string())) add(entry.path().string());
+    }
+  };
+  if (arguments.empty()) add_packaged();
+  for (const std::string& argument : arguments) {
+    if (is_builtin_scene(argument)) {
+      if (needs_meshes(argument)) add_packaged();
+    } else if (is_scene_file(argument)) {
+      add(argument);
+      for (const std::string& mesh : meshes_of_scene_file(argument)) add_mesh(mesh);
+    } else {
+      add_mesh(argument);
+    }
+  }
+  return out;
+}
+
+void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs) {
+  std::map<Identity::Key, const NamedFile*> written;  // the first output of each file
+  for (const NamedFile& output : outputs) {
+    const std::optional<Identity> identity = identity_of(output.path);
+    if (identity && identity->regular && identity->name.empty())
+      written.try_emplace(identity->key(), &output);
+  }
+  if (written.empty()) return;
+  for (const NamedFile& input : inputs) {
+    const std::optional<Identity> read = identity_of(input.path);
+    if (!read) continue;
+    const auto found = written.find(read->key());
+    if (found == written.end()) continue;
+    const NamedFile& output = *found->second;
+    throw Error(output.by,
+                shown(output) + " is " + input.path + ", which " + input.by +
+                    " reads, and would be overwritten",
+                "choose another place for " + output.by);
+  }
+}
+
+void require_apart(const std::vector<NamedFile>& inputs, std::vector<NamedFile> outputs) {
+  const bool named = std::any_of(outputs.begin(), outputs.end(),
+                                 [](const NamedFile& file) { return file.path == "-"; });
+  if (!named) outputs.insert(outputs.begin(), {kStandardOutput, "-"});
+  std::map<Identity::Key, const NamedFile*> files;
+  const NamedFile* standard_output = nullptr;
+  for (const NamedFile& output : outputs) {
+    const std::optional<Identity> identity = identity_of(output.path);
+    const NamedFile* other = nullptr;
+    if (identity && identity->regular) {
+      const auto [place, is_new] = files.try_emplace(identity->key(), &output);
+      if (!is_new) other = place->second;
+    }
+    if (output.path == "-") {
+      if (standard_output != nullptr) other = standard_output;
+      standard_output = &output;
+    }
+    if (other == nullptr) continue;
+    throw Error(output.by,
+                shown(output) + " is " + shown(*other) + ", where " + other->by + " goes as well",
+                "give each output a place of its own");
+  }
+  require_not_read(inputs, outputs);
+}
+
 bool Outputs::to_stdout() const {
   return json == "-" || pairs == "-" || certificate == "-" || csv == "-" || picture == "-";
 }
-
-namespace {
-
-// Certificates are of one scene each.
-void require_number(const std::string& certificate, bool frames) {
-  if (is_numbered(certificate) == frames) return;
-  if (frames) {
-    throw Error("--certificate", "'" + certificate + "' has no place for the number of the frame",
-                "put %d or %04d there, as in certificate_%04d.json: each frame has a file of its "
-                "own");
-  }
-  throw Error("--certificate", "'" + certificate + "' has a place for the number of a frame",
-              "say which frames with --frames N or --frames FIRST:LAST, or name one file");
-}
-
-}  // namespace
 
 Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
                 const std::optional<FrameRange>& frames) {
@@ -156,6 +288,21 @@ Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
   for (const std::string& file : to_try) check_output(file);
   if (!outputs.to_stdout()) check_output("-");
   return outputs;
+}
+
+std::size_t word_of(const char* option, const Text& text, const std::vector<std::string>& words,
+                    const std::string& what, const std::string& remedy) {
+  if (!text) return 0;
+  const auto at = std::ranges::find(words, *text);
+  if (at == words.end()) throw Error(option, "'" + *text + "' is " + what, remedy);
+  return static_cast<std::size_t>(at - words.begin());
+}
+
+void refuse_given(const std::vector<std::pair<const char*, bool>>& options,
+                  const std::string& reason, const std::string& remedy) {
+  for (const auto& [option, given] : options) {
+    if (given) throw Error(option, reason, remedy);
+  }
 }
 
 void check_scene(const std::vector<std::string>& scene) {

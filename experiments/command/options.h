@@ -1,25 +1,56 @@
-// Options, outputs and progress that several commands share.
+// Options, files, outputs and progress that several commands share.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/cull/cull.h"
 #include "experiments/command/declare.h"
-#include "experiments/command/files.h"
 #include "experiments/method/run.h"
 #include "experiments/record/tables.h"
+#include "experiments/scenes/frames.h"
 
 namespace farcull {
 
 inline constexpr const char* kVersion = "farcull 0.1";
 inline constexpr int kExitDone = 0, kExitBroken = 1, kExitBad = 2;  // exit statuses
 
-/// Declares SCENE, which has to be given.
-void add_scene(CLI::App& command, std::vector<std::string>& scene);
+/// A file as the command line names it.
+struct NamedFile {
+  std::string by;    // the option or argument: "--json", "SCENE"
+  std::string path;  // "-": standard output
+};
+
+/// The files of a path: with a range one for each frame where the path has a number, else itself.
+std::vector<std::string> numbered_files(const std::string& path,
+                                        const std::optional<FrameRange>& range);
+
+/// The files that load_scene() and, with a range, FrameSource read for these arguments: the scene
+/// file and the meshes that it names, or the mesh files, numbered ones for each frame; for a
+/// built-in scene of packaged meshes, and for no arguments (all built-in scenes), the meshes of
+/// mesh_folder(). By SCENE. Throws nothing where a file cannot be read: whoever reads the scene
+/// says so.
+std::vector<NamedFile> scene_files(const std::vector<std::string>& arguments,
+                                   const std::optional<FrameRange>& range = {});
+
+/// Throws Error naming both options where an output is one of the inputs: by device and inode,
+/// links followed.
+void require_not_read(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs);
+
+/// The same for all outputs of a command, among which is standard output, wherever it goes; and
+/// where two outputs are one file, which does not have to exist yet. Anything but a
+/// regular file (a terminal, /dev/null) may be an output several times, but "-" only once.
+void require_apart(const std::vector<NamedFile>& inputs, std::vector<NamedFile> outputs);
+
+/// SCENE, which has to be given.
+OptionRow scene_row(std::vector<std::string>& scene);
 
 /// The one line of a failure, on standard error. A path may hold anything, so control characters do
 /// not get through.
@@ -69,6 +100,21 @@ struct Outputs {
 Outputs checked(Outputs outputs, const std::vector<NamedFile>& inputs,
                 const std::optional<FrameRange>& frames = {});
 
+/// A number from `least` to `most`. Throws Error naming the option: "'TEXT' is WHAT".
+template <class Value>
+Value number_of(const char* option, const std::string& text, const std::string& what, Value least,
+                Value most, const std::string& remedy) {
+  const std::optional<Value> value = parse_number<Value>(text);
+  if (value && *value >= least && *value <= most) return *value;
+  throw Error(option, "'" + text + "' is " + what, remedy);
+}
+/// Which of the words the text is; 0 where it was not given. Throws Error as number_of() does.
+std::size_t word_of(const char* option, const Text& text, const std::vector<std::string>& words,
+                    const std::string& what, const std::string& remedy);
+/// Throws Error naming the first option that was given.
+void refuse_given(const std::vector<std::pair<const char*, bool>>& options,
+                  const std::string& reason, const std::string& remedy);
+
 /// Throws Error where a name of the scene is empty.
 void check_scene(const std::vector<std::string>& scene);
 /// The seed of the scene, where it is a random built-in one.
@@ -77,8 +123,8 @@ std::optional<std::uint64_t> seed_of(const std::vector<std::string>& scene);
 /// Options of the methods on a command line, as the table has them (experiments/method/options.h).
 class MethodOptions {
  public:
-  /// Declares options of the table, in its order: those of these names, all where none is named.
-  void add_to(CLI::App& command, const std::vector<std::string>& names = {});
+  /// Options of the table, in its order: those of these names, all where none is named.
+  Rows rows(const std::vector<std::string>& names = {});
   /// Those that were given.
   GivenOptions given() const;
   /// The value that was given, and whether one was.
@@ -89,6 +135,7 @@ class MethodOptions {
   // Of every option of the table, at places that do not change.
   std::map<std::string, Text> texts_;
   std::map<std::string, bool> flags_;
+  std::deque<std::string> words_;
 };
 /// Reads an option where its text was given.
 void take_given(const char* name, const Text& text, RunOptions& options);

@@ -82,49 +82,40 @@ std::string size_text(std::size_t bytes) {
 }  // namespace
 
 CLI::App* PictureCommand::add_to(CLI::App& app) {
-  CLI::App* command =
-      add_command(app, "picture", "what a method finds and misses, as a picture (PNG) or a page");
-  add_options(*command);
-  return command;
-}
-
-void PictureCommand::add_options(CLI::App& app) {
-  CLI::App* command = &app;
-  add_required(*command, "SCENE", scene_, kSceneHelp);
-  const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
-    add_option(*command, name, text, type, help);
-  };
-  add("-o,--output", output_, "FILE", "where the PNG goes; - for standard output");
-  add("--method", method_, "METHOD", "as farcull run takes it; default far-pairs");
-  add("--compare", compare_, "LIST",
-      "several methods, a panel each, by commas, each perhaps\nwith a resolution: "
-      "cullide:128,far:128");
-  add("--resolution", resolution_, "N", "px, as farcull run takes it");
-  add("--radius", radius_, "RADIUS", "for far: budget, published, or a factor");
-  add("--offset", offset_, "OFFSET", "for far: obb or exact; default obb");
-  add("--depth", depth_, "fragment|fixed", "for far; default fragment");
-  add_option(*command, "--device", device_, "DEVICE", help_of_option("device"));
-  add_flag(*command, "--self", self_, help_of_option("self"));
-  add("--frame", frame_, "F", "of a scene that moves");
-  add("--frames", frames_, "N|A:B",
-      "of the motion that F is one of; default 30 of a\nbuilt-in scene. With --html and without "
-      "--frame: the\nframes that the reader steps through");
-  add("--view", view_, "DIR",
-      "direction that the picture looks along, as in -z or\n-1:-1:-2; default -0.45:-0.35:-0.82");
-  add("--up", up_, "AXIS", "upwards in the picture; default y");
-  add_flag(*command, "--zoom", zoom_, "show only where something collides");
-  depth_view_option_ = add_bare_option(*command, "--view-depth", depth_view_, "[VIEW]",
-                                       "instead: the depth that the method stores in one of\nits "
-                                       "views (default z; --view-depth=-z for -z), and\n"
-                                       "what that view culls");
-  add("--html", html_, "FILE",
-      "a page to look into the answers: one file that opens in\nany browser and needs no network");
-  add("--resolutions", resolutions_, "LIST",
-      "with --html: px, by commas, that the reader steps\nthrough, of methods without a resolution "
-      "of their own;\ndefault 32,64,128,256,512");
-  add("--size", size_, "WxH", "px of a panel; default 900x760");
-  add_footer(
-      *command,
+  return add_command(
+      app, "picture", "what a method finds and misses, as a picture (PNG) or a page",
+      {{"SCENE", &scene_, "", kSceneHelp, Need::must},
+       {"-o,--output", &output_, "FILE", "where the PNG goes; - for standard output"},
+       {"--method", &method_, "METHOD", "as farcull run takes it; default far-pairs"},
+       {"--compare", &compare_, "LIST",
+        "several methods, a panel each, by commas, each perhaps\nwith a resolution: "
+        "cullide:128,far:128"},
+       {"--resolution", &resolution_, "N", "px, as farcull run takes it"},
+       {"--radius", &radius_, "RADIUS", "for far: budget, published, or a factor"},
+       {"--offset", &offset_, "OFFSET", "for far: obb or exact; default obb"},
+       {"--depth", &depth_, "fragment|fixed", "for far; default fragment"},
+       {"--device", &device_, "DEVICE", help_of_option("device")},
+       {"--self", &self_, "", help_of_option("self")},
+       {"--frame", &frame_, "F", "of a scene that moves"},
+       {"--frames", &frames_, "N|A:B",
+        "of the motion that F is one of; default 30 of a\nbuilt-in scene. With --html and without "
+        "--frame: the\nframes that the reader steps through"},
+       {"--view", &view_, "DIR",
+        "direction that the picture looks along, as in -z or\n-1:-1:-2; default -0.45:-0.35:-0.82"},
+       {"--up", &up_, "AXIS", "upwards in the picture; default y"},
+       {"--zoom", &zoom_, "", "show only where something collides"},
+       {"--view-depth", &depth_view_, "[VIEW]",
+        "instead: the depth that the method stores in one of\nits "
+        "views (default z; --view-depth=-z for -z), and\n"
+        "what that view culls"},
+       {"--html", &html_, "FILE",
+        "a page to look into the answers: one file that opens in\nany browser and needs no "
+        "network"},
+       {"--resolutions", &resolutions_, "LIST",
+        "with --html: px, by commas, that the reader steps\nthrough, of methods without a "
+        "resolution "
+        "of their own;\ndefault 32,64,128,256,512"},
+       {"--size", &size_, "WxH", "px of a panel; default 900x760"}},
       "Examples:\n"
       "  farcull picture two-bunnies --method cullide --resolution 128 -o missed.png\n"
       "  farcull picture two-bunnies --compare cullide,far --resolution 256 -o compare.png\n"
@@ -164,10 +155,7 @@ PictureArguments PictureCommand::arguments() const {
   }
   out.view = view_.value_or("");
   out.up = up_.value_or("");
-  if (given(*depth_view_option_)) {
-    const std::string given = depth_view_.empty() ? "" : depth_view_.front();
-    out.depth_view = given.empty() ? "z" : given;
-  }
+  if (depth_view_.given) out.depth_view = depth_view_.value.empty() ? "z" : depth_view_.value;
 
   RunOptions usual = usual_options();
   if (method_ && compare_)
@@ -284,5 +272,7 @@ int PictureCommand::run() const {
   }
   return status;
 }
+
+Command add_picture(CLI::App& app) { return declare<PictureCommand>(app); }
 
 }  // namespace farcull

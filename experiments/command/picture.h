@@ -21,15 +21,13 @@ class PictureCommand {
   PageArguments page_arguments(const PictureArguments& picture) const;
 
  private:
-  void add_options(CLI::App& command);
   /// The options that all panels share.
   RunOptions usual_options() const;
 
   std::vector<std::string> scene_;
   Text method_, compare_, resolution_, radius_, offset_, depth_, device_, frame_, frames_, view_,
       up_, size_, output_, html_, resolutions_;
-  std::vector<std::string> depth_view_;
-  CLI::Option* depth_view_option_ = nullptr;
+  BareOption depth_view_;
   bool self_ = false, zoom_ = false;
 };
 

@@ -14,7 +14,6 @@
 #include "core/base/error.h"
 #include "core/canvas/canvas.h"
 #include "core/view/regions.h"
-#include "experiments/command/commands.h"
 #include "experiments/command/options.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/run_studies.h"
@@ -39,14 +38,12 @@ class ReportCommand {
 
 CLI::App* ReportCommand::add_to(CLI::App& app) {
   folder_ = kResultsFolder;
-  CLI::App* command = add_command(app, "report", "figures, tables and a page of what was measured");
-  add_option(*command, "DIR", folder_, "",
-             fmt::format("the folder of the results; default {}", kResultsFolder));
-  add_option(*command, "--device", device_, "DEVICE", kDeviceHelp);
-  add_flag(*command, "--no-pictures", no_pictures_,
-           "leave out the pictures of scenes, for which methods are\nrun");
-  add_footer(
-      *command,
+  return add_command(
+      app, "report", "figures, tables and a page of what was measured",
+      {{"DIR", &folder_, "", fmt::format("the folder of the results; default {}", kResultsFolder)},
+       {"--device", &device_, "DEVICE", kDeviceHelp},
+       {"--no-pictures", &no_pictures_, "",
+        "leave out the pictures of scenes, for which methods are\nrun"}},
       "Writes DIR/report: index.html, one page that needs nothing else; figures as SVG and PDF "
       "with\n"
       "their numbers as CSV; tables as CSV and LaTeX. An earlier report there is replaced. It "
@@ -56,7 +53,6 @@ CLI::App* ReportCommand::add_to(CLI::App& app) {
       "Examples:\n"
       "  farcull experiment all --quick && farcull report\n"
       "  farcull report results");
-  return command;
 }
 
 // The path of the store in the folder. Throws Error where there is none: with what to do where

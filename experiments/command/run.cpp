@@ -1,32 +1,32 @@
 // Reads the options of the three commands, then plans or runs.
-#include "experiments/command/run.h"
-
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/scene/scene.h"
+#include "experiments/command/options.h"
 #include "experiments/measure/frames.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
-#include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/frames.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/shell_word.h"
 #include "experiments/system/text_table.h"
+#include "experiments/tiles/run_tile.h"
 
 namespace farcull {
 namespace {
 
 std::vector<ContactKind> parse_kinds(const std::string& list) {
   std::vector<ContactKind> out;
-  for (std::size_t begin = 0; begin <= list.size();) {
-    const std::size_t end = std::min(list.find(',', begin), list.size());
-    const std::string name = list.substr(begin, end - begin);
+  for (const std::string& name : split_list(list)) {
     const std::optional<ContactKind> kind = parse_contact_kind(name);
     if (!kind) {
       std::string known;
@@ -35,122 +35,163 @@ std::vector<ContactKind> parse_kinds(const std::string& list) {
       throw Error("--kinds", "'" + name + "' is no kind of contact", "give some of " + known);
     }
     out.push_back(*kind);
-    begin = end + 1;
   }
   return out;
 }
 
-constexpr const char* kRunExamples =
-    "Examples:\n"
-    "  farcull run two-spheres\n"
-    "  farcull run bunny.off dragon.off --method cullide --resolution 256\n"
-    "  farcull run cloth.obj --self --pairs pairs.csv\n"
-    "  farcull run a.obj b.obj --clearance 0.001\n"
-    "  farcull run a.obj b.obj --pairs pairs.csv --kinds crossing,coplanar --segments\n"
-    "  farcull run robot.json --ignore 'link*:base,hand:cup' --limit 100\n"
-    "  farcull run 'cloth_%04d.obj' body.obj --frames 1:100 --no-verify\n"
-    "  farcull run two-spheres --frames 10 --certificate c_%04d.json\n"
-    "  farcull run field:3000000 --tiles 2/4 --json t2.json --pairs t2.csv\n"
-    "  farcull run scene.json --json - | jq .verification\n"
-    "  farcull run two-spheres --method far --radius published --depth fixed --depth-format 24\n"
-    "  farcull run two-tori --method cullide --rounds 1 --views x,-x,y,-y,z,-z\n\n"
-    "farcull help methods: which method does what; farcull help terms: the words of the\n"
-    "table; farcull help pairs: the columns of --pairs.\n\n"
-    "Exit status 1: a method that promises missed a pair. i-collide and far-pairs promise,\n"
-    "and far at the budget radius or more with fragment depth; on OpenGL only where the\n"
-    "probes of the device pass (farcull doctor), but the status is 1 all the same.\n"
-    "farcull verify asks it of every method.";
-constexpr const char* kVerifyExamples =
-    "Examples:\n"
-    "  farcull verify two-spheres\n"
-    "  farcull verify two-spheres --method cullide --resolution 64\n"
-    "  farcull verify two-spheres --frames 30\n"
-    "  farcull verify scene.json --json record.json\n\n"
-    "The last lines are the verdict and the classes of all pairs (farcull help terms). On a\n"
-    "terminal the verdict is green or red, unless NO_COLOR is set.\n\n"
-    "Exit status 1: a culled pair intersects, whatever the method.";
-constexpr const char* kPlanExamples =
-    "Examples:\n"
-    "  farcull plan two-bunnies\n"
-    "  farcull plan two-bunnies --method far --offset exact\n"
-    "  farcull plan bunnies-far-apart --json -\n"
-    "  farcull plan field:3000000 --tiles 4\n\n"
-    "The same scene and options give the same plan. farcull run --full leaves nothing out.";
+// Name, title and end of the help of each command, by RunCommand::Kind.
+constexpr std::array<std::array<const char*, 3>, 3> kCommands = {
+    {{"run", "cull a scene, test what is left, account for every pair",
+      "Examples:\n"
+      "  farcull run two-spheres\n"
+      "  farcull run bunny.off dragon.off --method cullide --resolution 256\n"
+      "  farcull run cloth.obj --self --pairs pairs.csv\n"
+      "  farcull run a.obj b.obj --clearance 0.001\n"
+      "  farcull run a.obj b.obj --pairs pairs.csv --kinds crossing,coplanar --segments\n"
+      "  farcull run robot.json --ignore 'link*:base,hand:cup' --limit 100\n"
+      "  farcull run 'cloth_%04d.obj' body.obj --frames 1:100 --no-verify\n"
+      "  farcull run two-spheres --frames 10 --certificate c_%04d.json\n"
+      "  farcull run field:3000000 --tiles 2/4 --json t2.json --pairs t2.csv\n"
+      "  farcull run scene.json --json - | jq .verification\n"
+      "  farcull run two-spheres --method far --radius published --depth fixed --depth-format 24\n"
+      "  farcull run two-tori --method cullide --rounds 1 --views x,-x,y,-y,z,-z\n\n"
+      "farcull help methods: which method does what; farcull help terms: the words of the\n"
+      "table; farcull help pairs: the columns of --pairs.\n\n"
+      "Exit status 1: a method that promises missed a pair. i-collide and far-pairs promise,\n"
+      "and far at the budget radius or more with fragment depth; on OpenGL only where the\n"
+      "probes of the device pass (farcull doctor), but the status is 1 all the same.\n"
+      "farcull verify asks it of every method."},
+     {"verify", "run; status 1 if any culled pair intersects",
+      "Examples:\n"
+      "  farcull verify two-spheres\n"
+      "  farcull verify two-spheres --method cullide --resolution 64\n"
+      "  farcull verify two-spheres --frames 30\n"
+      "  farcull verify scene.json --json record.json\n\n"
+      "The last lines are the verdict and the classes of all pairs (farcull help terms). On a\n"
+      "terminal the verdict is green or red, unless NO_COLOR is set.\n\n"
+      "Exit status 1: a culled pair intersects, whatever the method."},
+     {"plan", "what run would do, what it would leave out, and why",
+      "Examples:\n"
+      "  farcull plan two-bunnies\n"
+      "  farcull plan two-bunnies --method far --offset exact\n"
+      "  farcull plan bunnies-far-apart --json -\n"
+      "  farcull plan field:3000000 --tiles 4\n\n"
+      "The same scene and options give the same plan. farcull run --full leaves nothing out."}}};
 
-}  // namespace
+namespace fs = std::filesystem;
 
-CLI::App* RunCommand::add_to(CLI::App& app) {
-  const auto declare = [&](const char* name, const char* title, const char* examples) {
-    CLI::App* command = add_command(app, name, title);
-    add_footer(*command, examples);
-    return command;
-  };
-  CLI::App* command = nullptr;
-  switch (kind_) {
-    case Kind::run:
-      command =
-          declare("run", "cull a scene, test what is left, account for every pair", kRunExamples);
-      break;
-    case Kind::verify:
-      command = declare("verify", "run; status 1 if any culled pair intersects", kVerifyExamples);
-      break;
-    case Kind::plan:
-      command =
-          declare("plan", "what run would do, what it would leave out, and why", kPlanExamples);
-      break;
-  }
-  add_scene(*command, scene_);
-  options_.add_to(*command);
-  if (kind_ != Kind::verify)
-    add_flag(*command, "--no-verify", no_verify_, "leave out the accounting of all pairs");
-  if (kind_ == Kind::plan) {
-    add_option(*command, "--tiles", tiles_, "N",
-               "where run --tiles K/N cuts the scene, how many\ntriangles each tile has and about "
-               "how much memory it\ntakes");
-    add_option(*command, "--json", outputs_.json, "FILE", kJsonHelp);
-  } else {
-    add_outputs(*command);
-  }
-  return command;
+// The path of the file, relative to the folder of the record.
+std::string beside(const std::string& file, const std::string& record) {
+  // Of folders behind links, `..` is not the one that the path names.
+  const fs::path folder = fs::weakly_canonical(fs::absolute(record).parent_path());
+  const fs::path path = fs::absolute(file);
+  return (fs::weakly_canonical(path.parent_path()) / path.filename())
+      .lexically_proximate(folder)
+      .string();
 }
 
-void RunCommand::add_outputs(CLI::App& command) {
-  const auto add = [&](const char* name, Text& text, const char* type, const char* help) {
-    add_option(command, name, text, type, help);
-  };
-  add("--frames", frames_, "N|A:B",
-      "run N frames (0 to N-1), or those numbered A to B, of\n"
-      "meshes with %d or %04d in their names, or of a\n"
-      "built-in scene that moves (see farcull scenes), where\n"
-      "30:59 is the second half of 60");
-  if (kind_ == Kind::run) {
-    add("--tiles", tiles_, "K/N",
-        "only the Kth of N parts of the scene, which is read\ntwice and never held; far-pairs "
-        "only. "
-        "With --json and\n--pairs farcull merge joins all parts");
+// A record is UTF-8.
+void require_text(const std::string& option, const std::string& file) {
+  try {
+    static_cast<void>(nlohmann::json(file).dump());
+  } catch (const nlohmann::json::exception&) {
+    throw Error(option, "the name of the file is no UTF-8, and the record has to hold it",
+                "choose another name");
   }
-  add("--pairs", outputs_.pairs, "FILE",
-      "write the colliding pairs as CSV to this file (- for\n"
-      "standard output, without the table): object_a,\n"
-      "triangle_a, object_b, triangle_b, all counted from 0,\n"
-      "triangles within their object; with --self also\n"
-      "neighbours, 0 or 1 (see farcull help pairs)");
-  add_flag(command, "--faces", faces_, kFacesHelp);
-  add_flag(command, "--contacts", contacts_,
-           "how the triangles of each pair meet: counts in the table\n"
-           "and the record, a column `contact` in the file of\n"
-           "--pairs (see farcull help pairs)");
-  add_flag(command, "--segments", segments_,
-           "with --pairs: the same, and the ends of what the two\n"
-           "triangles have in common");
-  add("--kinds", kinds_, "LIST",
-      "with --pairs: the same, and pairs of these kinds alone,\n"
-      "as in crossing,coplanar");
-  add("--json", outputs_.json, "FILE", kJsonHelp);
-  add("--certificate", outputs_.certificate, "FILE",
-      "write evidence for every pair to this file, for\n"
-      "`farcull check`; with --frames one for each, with %d\n"
-      "or %04d in the name");
+}
+
+// Verify asks the guarantee of every method; plan prints what run would do.
+class RunCommand {
+ public:
+  enum class Kind { run, verify, plan };
+  explicit RunCommand(Kind kind) : kind_(kind) {}
+  CLI::App* add_to(CLI::App& app);
+  int run() const;
+
+ private:
+  // The options of the method. Throws Error where one is bad, or options do not go together.
+  RunOptions parse() const;
+  Rows plan_rows();
+  Rows output_rows();
+  // Throws Error where an output cannot say what another option asks.
+  void refuse_outputs() const;
+  PairColumns columns() const;
+  std::vector<IgnoredNames> ignored() const;
+  // What the command reads, which no output may overwrite.
+  std::vector<NamedFile> read_files(const std::optional<FrameRange>& range = {}) const;
+  // The command line that tests a scene of one object.
+  std::string with_self() const;
+  // Of verify: the verdict, green or red on a terminal; else empty.
+  std::string verdict_line(const Accounting& accounting) const;
+  SceneSource source() const;
+  // Throws Error where an option cannot be answered tile by tile.
+  void refuse_with_tiles(const RunOptions& options) const;
+  int run_tile(const RunOptions& options) const;
+  int plan_tiles(const RunOptions& options) const;
+  int plan(const RunOptions& options) const;
+  int run_once(const RunOptions& options, const Outputs& outputs) const;
+  int run_frames(const RunOptions& options, const Outputs& outputs, FrameRange range) const;
+
+  Kind kind_;
+  std::vector<std::string> scene_;
+  MethodOptions options_;
+  Text frames_, kinds_, tiles_;
+  Outputs outputs_;
+  bool no_verify_ = false, faces_ = false, contacts_ = false, segments_ = false;
+};
+
+CLI::App* RunCommand::add_to(CLI::App& app) {
+  Rows rows = Rows{scene_row(scene_)} + options_.rows();
+  if (kind_ != Kind::verify)
+    rows.push_back({"--no-verify", &no_verify_, "", "leave out the accounting of all pairs"});
+  const auto& [name, title, examples] = kCommands[static_cast<std::size_t>(kind_)];
+  return add_command(app, name, title, rows + (kind_ == Kind::plan ? plan_rows() : output_rows()),
+                     examples);
+}
+
+Rows RunCommand::plan_rows() {
+  return {{"--tiles", &tiles_, "N",
+           "where run --tiles K/N cuts the scene, how many\ntriangles each tile has and about "
+           "how much memory it\ntakes"},
+          {"--json", &outputs_.json, "FILE", kJsonHelp}};
+}
+
+Rows RunCommand::output_rows() {
+  Rows rows = {{"--frames", &frames_, "N|A:B",
+                "run N frames (0 to N-1), or those numbered A to B, of\n"
+                "meshes with %d or %04d in their names, or of a\n"
+                "built-in scene that moves (see farcull scenes), where\n"
+                "30:59 is the second half of 60"},
+               {"--pairs", &outputs_.pairs, "FILE",
+                "write the colliding pairs as CSV to this file (- for\n"
+                "standard output, without the table): object_a,\n"
+                "triangle_a, object_b, triangle_b, all counted from 0,\n"
+                "triangles within their object; with --self also\n"
+                "neighbours, 0 or 1 (see farcull help pairs)"},
+               {"--faces", &faces_, "", kFacesHelp},
+               {"--contacts", &contacts_, "",
+                "how the triangles of each pair meet: counts in the table\n"
+                "and the record, a column `contact` in the file of\n"
+                "--pairs (see farcull help pairs)"},
+               {"--segments", &segments_, "",
+                "with --pairs: the same, and the ends of what the two\n"
+                "triangles have in common"},
+               {"--kinds", &kinds_, "LIST",
+                "with --pairs: the same, and pairs of these kinds alone,\n"
+                "as in crossing,coplanar"},
+               {"--json", &outputs_.json, "FILE", kJsonHelp},
+               {"--certificate", &outputs_.certificate, "FILE",
+                "write evidence for every pair to this file, for\n"
+                "`farcull check`; with --frames one for each, with %d\n"
+                "or %04d in the name"}};
+  if (kind_ != Kind::run) return rows;
+  rows.insert(
+      rows.begin() + 1,
+      {"--tiles", &tiles_, "K/N",
+       "only the Kth of N parts of the scene, which is read\ntwice and never held; far-pairs "
+       "only. "
+       "With --json and\n--pairs farcull merge joins all parts"});
+  return rows;
 }
 
 RunOptions RunCommand::parse() const {
@@ -202,7 +243,7 @@ std::vector<NamedFile> RunCommand::read_files(const std::optional<FrameRange>& r
 }
 
 std::string RunCommand::with_self() const {
-  std::string command = kind_ == Kind::run ? "run" : kind_ == Kind::verify ? "verify" : "plan";
+  std::string command = kCommands[static_cast<std::size_t>(kind_)][0];
   command = command_with("farcull " + command, scene_);
   if (const Text& method = options_.text("method")) {
     const bool can = tests_self(parse_method(*method));
@@ -323,5 +364,87 @@ int RunCommand::run_frames(const RunOptions& options, const Outputs& outputs,
   complain_broken(result.broken);
   return kExitBroken;
 }
+
+// `farcull run --tiles K/N` and `farcull plan --tiles N`.
+
+SceneSource RunCommand::source() const {
+  return [this](const TakePart& take) {
+    return stream_scene(scene_, [&](Scene& part) {
+      if (options_.has("self")) make_self(part);
+      take(part);
+    });
+  };
+}
+
+void RunCommand::refuse_with_tiles(const RunOptions& options) const {
+  const auto refuse = [](const std::string& option, bool given, const std::string& why) {
+    if (!given) return;
+    throw Error(option, "cannot be answered in tiles: " + why,
+                "leave " + option + " or --tiles out");
+  };
+  if (options.method != Method::far_pairs) {
+    throw Error("--tiles",
+                "are of far-pairs: " + to_string(options.method) + " looks at all of a scene",
+                "leave --tiles out, or use --method far-pairs");
+  }
+  refuse("--frames", frames_.has_value(), "a tile is of a scene that stands still");
+  refuse("--certificate", outputs_.certificate.has_value(), "a certificate is about a whole scene");
+  refuse("--limit", options_.has("limit"), "no tile knows how many pairs the others have");
+}
+
+int RunCommand::run_tile(const RunOptions& options) const {
+  TileQuestion question{.options = options, .tile = parse_tile(*tiles_)};
+  refuse_with_tiles(options);
+  refuse_outputs();
+  const Outputs outputs = checked(outputs_, read_files());
+  const PairColumns chosen = columns();
+  if (outputs.pairs && outputs.json) require_text("--pairs", *outputs.pairs);
+  if (const std::vector<IgnoredNames> names = ignored(); !names.empty())
+    question.ignored = [names](const Scene& scene) { return ignored_objects(scene, names); };
+  TerminalProgress terminal;
+  const Progress progress = terminal.callback();
+  Session session(options.device);
+  const TileRun tile = farcull::run_tile(source(), question, session, progress);
+  terminal.clear();
+  std::optional<TileList> list;
+  if (outputs.pairs) {
+    list = TileList{.text = tile_list(tile, chosen), .file = {}, .columns = chosen};
+    write_output(*outputs.pairs, list->text);
+    const bool both = outputs.json && *outputs.json != "-" && *outputs.pairs != "-";
+    if (both) list->file = beside(*outputs.pairs, *outputs.json);
+    if (!both) list.reset();
+  }
+  if (outputs.json) write_json(tile_json(tile, list ? &*list : nullptr), *outputs.json);
+  if (!outputs.to_stdout())
+    write_output("-", run_table(tile.part.scene, tile.record) + tile_lines(tile) +
+                          nothing_note(nothing_to_test(tile.census), with_self()));
+  if (!broken(tile.record, false)) return kExitDone;
+  complain_broken(missed(tile.record));
+  return kExitBroken;
+}
+
+int RunCommand::plan_tiles(const RunOptions& options) const {
+  const std::size_t tiles = parse_tiles(*tiles_);
+  refuse_with_tiles(options);
+  const Outputs outputs = checked(outputs_, read_files());
+  TerminalProgress terminal;
+  if (const Progress progress = terminal.callback()) progress("reading the scene");
+  const std::vector<IgnoredNames> names = ignored();
+  const Census census = take_census(source(), options.clearance, !names.empty());
+  if (!names.empty())
+    ignored_objects(names_of(census), names);  // throws if a name matches no object
+  const Cuts cuts = choose_cuts(census, tiles);
+  const std::vector<TileCount> counts = count_tiles(source(), cuts, options.clearance);
+  terminal.clear();
+  if (outputs.json) write_json(tiles_json(census, cuts, counts), *outputs.json);
+  if (!outputs.to_stdout()) write_output("-", tiles_table(census, cuts, counts));
+  return kExitDone;
+}
+
+}  // namespace
+
+Command add_run(CLI::App& app) { return declare<RunCommand>(app, RunCommand::Kind::run); }
+Command add_verify(CLI::App& app) { return declare<RunCommand>(app, RunCommand::Kind::verify); }
+Command add_plan(CLI::App& app) { return declare<RunCommand>(app, RunCommand::Kind::plan); }
 
 }  // namespace farcull

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "experiments/command/commands.h"
 #include "experiments/command/options.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/frames.h"
@@ -88,23 +87,21 @@ class ScenesCommand {
 };
 
 CLI::App* ScenesCommand::add_to(CLI::App& app) {
-  CLI::App* command =
-      add_command(app, "scenes", "the built-in scenes with their sizes; one of them as meshes");
-  add_option(*command, "NAME", name_, "", "the scene to write, with its numbers and suffixes");
-  add_option(*command, "--write", folder_, "DIR",
-             "write the scene as meshes, one an object, and\nscene.json into this folder, "
-             "which is made if its\nparent is there; files of these names are replaced");
-  add_option(*command, "--frames", frames_, "N|A:B",
-             "with --write: N frames (0 to N-1) or those numbered\nA to B of a scene that "
-             "moves, for\nfarcull run DIR/scene.json --frames N|A:B");
-  add_option(*command, "--json", outputs_.json, "FILE", kJsonHelp);
-  add_footer(*command,
-             "Examples:\n"
-             "  farcull scenes\n"
-             "  farcull run crowd@ground\n"
-             "  farcull scenes crowd:3000:0.2 --write crowd\n"
-             "  farcull scenes tree-leaves --write leaves --frames 60");
-  return command;
+  return add_command(
+      app, "scenes", "the built-in scenes with their sizes; one of them as meshes",
+      {{"NAME", &name_, "", "the scene to write, with its numbers and suffixes"},
+       {"--write", &folder_, "DIR",
+        "write the scene as meshes, one an object, and\nscene.json into this folder, "
+        "which is made if its\nparent is there; files of these names are replaced"},
+       {"--frames", &frames_, "N|A:B",
+        "with --write: N frames (0 to N-1) or those numbered\nA to B of a scene that "
+        "moves, for\nfarcull run DIR/scene.json --frames N|A:B"},
+       {"--json", &outputs_.json, "FILE", kJsonHelp}},
+      "Examples:\n"
+      "  farcull scenes\n"
+      "  farcull run crowd@ground\n"
+      "  farcull scenes crowd:3000:0.2 --write crowd\n"
+      "  farcull scenes tree-leaves --write leaves --frames 60");
 }
 
 int ScenesCommand::run() const {

@@ -11,7 +11,6 @@
 
 #include "core/base/error.h"
 #include "core/view/view.h"
-#include "experiments/command/commands.h"
 #include "experiments/command/options.h"
 #include "experiments/peers/runner.h"
 #include "experiments/studies/merge.h"
@@ -91,36 +90,36 @@ class StudiesCommand {
 
 void StudiesCommand::add_to(CLI::App& experiment) {
   const auto declare = [&](const std::string& name, const std::string& title) {
-    CLI::App* command = add_command(experiment, name, title);
-    add_option(*command, "--out", out_, "DIR",
-               fmt::format("folder of the results, one SQLite file; default\n{}", kResultsFolder));
-    add_flag(*command, "--quick", quick_, "a smaller grid of the same shape: minutes, not hours");
-    add_option(*command, "--seed", seed_, "N", "of what is random in the grid; default 1");
-    add_flag(*command, "--resume", resume_, "go on with what is in the folder");
-    add_option(*command, "--shard", shard_, "K/N",
-               "measure the Kth of N parts; default the variables of\nSlurm's array jobs and "
-               "Open MPI, else everything");
-    add_option(*command, "--device", device_, "DEVICE", kDeviceHelp);
-    add_option(*command, "--devices", devices_, "LIST|all",
-               "measure on each of these devices, as in\nnative,software, or on all that answer; "
-               "the first one\ninto DIR, what may differ on the others into DIR/on-DEVICE");
+    Rows rows = {
+        {"--out", &out_, "DIR",
+         fmt::format("folder of the results, one SQLite file; default\n{}", kResultsFolder)},
+        {"--quick", &quick_, "", "a smaller grid of the same shape: minutes, not hours"},
+        {"--seed", &seed_, "N", "of what is random in the grid; default 1"},
+        {"--resume", &resume_, "", "go on with what is in the folder"},
+        {"--shard", &shard_, "K/N",
+         "measure the Kth of N parts; default the variables of\nSlurm's array jobs and "
+         "Open MPI, else everything"},
+        {"--device", &device_, "DEVICE", kDeviceHelp},
+        {"--devices", &devices_, "LIST|all",
+         "measure on each of these devices, as in\nnative,software, or on all that answer; "
+         "the first one\ninto DIR, what may differ on the others into DIR/on-DEVICE"}};
     if (name == "libraries") {
-      add_option(*command, "--suite", suite_, "DIR",
-                 "ask about this suite, which may be without labels,\n"
-                 "instead of the one that farcull suite makes");
-      add_option(*command, "--contestants", contestants_, "NAMES",
-                 "ask these alone, as in far,far-pairs,exact; default all.\n"
-                 "Methods of farcull run on native unless --device is given");
+      rows = rows + Rows{{"--suite", &suite_, "DIR",
+                          "ask about this suite, which may be without labels,\n"
+                          "instead of the one that farcull suite makes"},
+                         {"--contestants", &contestants_, "NAMES",
+                          "ask these alone, as in far,far-pairs,exact; default all.\n"
+                          "Methods of farcull run on native unless --device is given"}};
     }
-    add_footer(*command,
-               fmt::format("Examples:\n"
-                           "  farcull experiment {0} --quick\n"
-                           "  farcull experiment {0} --out results --resume\n"
-                           "  farcull experiment {0} --out results --shard 2/4\n\n"
-                           "Then: farcull report DIR; for shards farcull merge DIR first.\n"
-                           "Exit status 1: a method that promises missed a pair.",
-                           name));
-    commands_.push_back(command);
+    commands_.push_back(
+        add_command(experiment, name, title, rows,
+                    fmt::format("Examples:\n"
+                                "  farcull experiment {0} --quick\n"
+                                "  farcull experiment {0} --out results --resume\n"
+                                "  farcull experiment {0} --out results --shard 2/4\n\n"
+                                "Then: farcull report DIR; for shards farcull merge DIR first.\n"
+                                "Exit status 1: a method that promises missed a pair.",
+                                name)));
   };
   for (const Study& study : studies()) declare(study.name, study.title);
   declare("all", "all of these studies but cloth, libraries and\nproximity, one after the other");
@@ -247,27 +246,25 @@ class MergeCommand {
 };
 
 CLI::App* MergeCommand::add_to(CLI::App& app) {
-  CLI::App* command =
-      add_command(app, "merge", "join what shards of an experiment, or tiles of a scene, gave");
-  add_option(*command, "SHARDS", sources_, "",
-             fmt::format("the folder of the shards, or their files; default\n{}. Or the records "
-                         "(--json) of\nall tiles of a scene, with their lists beside them",
-                         kResultsFolder));
-  add_option(*command, "-o,--out", out_, "FILE",
-             "the file to write; default results.sqlite, or of tiles\npairs.csv, in the folder of "
-             "the first file");
-  add_option(*command, "--json", json_, "FILE", "of tiles: write the record of the whole");
-  add_footer(*command,
-             "Examples:\n"
-             "  farcull merge results\n"
-             "  farcull merge node1/results-1-of-2.sqlite node2/results-2-of-2.sqlite -o "
-             "results.sqlite\n"
-             "  farcull merge tile-*.json -o pairs.csv --json whole.json\n\n"
-             "Refuses shards that are there twice, points without a row, and shards of different\n"
-             "commits, grids, seeds or versions of a library. Of tiles: refuses a tile that is\n"
-             "missing or there twice, other scenes, cuts, options or commits, and a list that was\n"
-             "cut short or changed. Exit status 1: an accounting of a tile found a missed pair.");
-  return command;
+  return add_command(
+      app, "merge", "join what shards of an experiment, or tiles of a scene, gave",
+      {{"SHARDS", &sources_, "",
+        fmt::format("the folder of the shards, or their files; default\n{}. Or the records "
+                    "(--json) of\nall tiles of a scene, with their lists beside them",
+                    kResultsFolder)},
+       {"-o,--out", &out_, "FILE",
+        "the file to write; default results.sqlite, or of tiles\npairs.csv, in the folder of "
+        "the first file"},
+       {"--json", &json_, "FILE", "of tiles: write the record of the whole"}},
+      "Examples:\n"
+      "  farcull merge results\n"
+      "  farcull merge node1/results-1-of-2.sqlite node2/results-2-of-2.sqlite -o "
+      "results.sqlite\n"
+      "  farcull merge tile-*.json -o pairs.csv --json whole.json\n\n"
+      "Refuses shards that are there twice, points without a row, and shards of different\n"
+      "commits, grids, seeds or versions of a library. Of tiles: refuses a tile that is\n"
+      "missing or there twice, other scenes, cuts, options or commits, and a list that was\n"
+      "cut short or changed. Exit status 1: an accounting of a tile found a missed pair.");
 }
 
 int MergeCommand::run_tiles() const {

@@ -3,7 +3,6 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "experiments/command/commands.h"
 #include "experiments/command/options.h"
 #include "experiments/suite/writer.h"
 #include "experiments/system/output_file.h"
@@ -14,13 +13,11 @@ namespace {
 
 SuiteSettings settings_of(const Text& size, const Text& seed) {
   SuiteSettings out;
-  if (size && *size != "small" && *size != "full")
-    throw Error("--size", "'" + *size + "' is no size", "give small or full");
-  if (size && *size == "full") out.size = SuiteSize::full;
-  if (!seed) return out;
-  const std::optional<std::uint64_t> number = parse_number<std::uint64_t>(*seed);
-  if (!number) throw Error("--seed", "'" + *seed + "' is no whole number", "give 0 or more");
-  out.seed = *number;
+  if (word_of("--size", size, {"small", "full"}, "no size", "give small or full") == 1)
+    out.size = SuiteSize::full;
+  if (seed)
+    out.seed = number_of<std::uint64_t>("--seed", *seed, "no whole number", 0, UINT64_MAX,
+                                        "give 0 or more");
   return out;
 }
 
@@ -64,24 +61,22 @@ class SuiteCommand {
 };
 
 CLI::App* SuiteCommand::add_to(CLI::App& app) {
-  CLI::App* command =
-      add_command(app, "suite", "labelled triangle pairs and meshes, to test any library with");
-  add_required(*command, "DIR", folder_, "the folder to write, which must not exist or be empty");
-  add_option(*command, "--size", size_, "small|full",
-             "small: 10,070 pairs and 12 meshes, seconds (default);\nfull: 1,007,000 pairs and "
-             "44 meshes, minutes");
-  add_option(*command, "--seed", seed_, "N", "seed of all draws; default 1");
-  add_flag(*command, "--check", check_,
-           "read the suite in DIR, compare its sums and decide\nevery label anew");
-  add_footer(*command,
-             "Examples:\n"
-             "  farcull suite pairs-and-meshes\n"
-             "  farcull suite pairs-and-meshes --check\n"
-             "  farcull suite large --size full\n\n"
-             "Every label is decided by two exact programs that share no code, CGAL's predicates\n"
-             "and integers; a disagreement ends the command. The files depend on the size and the\n"
-             "seed alone. docs/suite.md has the format.");
-  return command;
+  return add_command(
+      app, "suite", "labelled triangle pairs and meshes, to test any library with",
+      {{"DIR", &folder_, "", "the folder to write, which must not exist or be empty", Need::must},
+       {"--size", &size_, "small|full",
+        "small: 10,070 pairs and 12 meshes, seconds (default);\nfull: 1,007,000 pairs and "
+        "44 meshes, minutes"},
+       {"--seed", &seed_, "N", "seed of all draws; default 1"},
+       {"--check", &check_, "",
+        "read the suite in DIR, compare its sums and decide\nevery label anew"}},
+      "Examples:\n"
+      "  farcull suite pairs-and-meshes\n"
+      "  farcull suite pairs-and-meshes --check\n"
+      "  farcull suite large --size full\n\n"
+      "Every label is decided by two exact programs that share no code, CGAL's predicates\n"
+      "and integers; a disagreement ends the command. The files depend on the size and the\n"
+      "seed alone. docs/suite.md has the format.");
 }
 
 int SuiteCommand::run() const {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,7 +15,7 @@
 #include "core/base/stage.h"
 #include "core/proximity/near_pairs.h"
 #include "core/scene/scene.h"
-#include "experiments/method/which_inside.h"
+#include "verify/certificate/integer_inside.h"
 #include "verify/closest.h"
 #include "verify/distance_accounting.h"
 
@@ -24,6 +25,32 @@ namespace farcull {
 /// nearest others. all: every pair of triangles within a distance, of different objects, and of one
 /// that is `self` where they are no neighbours.
 using DistancePairs = DistanceQuestion::Kind;
+
+/// Which of two objects that do not meet lies inside the other: all of its points do, so that of an
+/// object of several parts each part does. unknown: not asked, or the objects collide. not_closed:
+/// the box of one lies in that of the other, which has no inside (verify/inside.h).
+using WhichInside = InsideClaim;
+
+/// Answers about insides for one scene, which has to stay as it is. What is found out about an
+/// object is kept.
+class Insides {
+ public:
+  explicit Insides(const Scene& scene);
+  ~Insides();
+  Insides(const Insides&) = delete;
+  Insides& operator=(const Insides&) = delete;
+
+  /// Precondition: the objects differ, have triangles and share no point. May be called by several
+  /// threads at once.
+  WhichInside which(std::uint32_t a, std::uint32_t b) const;
+
+ private:
+  struct OfObject;
+  bool contains(std::uint32_t outer, std::uint32_t inner, bool& not_closed) const;
+
+  const Scene& scene_;
+  std::unique_ptr<OfObject[]> objects_;
+};
 
 struct DistanceOptions {
   DistancePairs pairs = DistancePairs::objects;

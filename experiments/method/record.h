@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "core/base/floating_point.h"
 #include "experiments/method/candidates.h"
 #include "experiments/method/options.h"
@@ -21,6 +22,7 @@ struct RunTimes {
   double exact = 0;     // exact predicates on the candidates
   double total = 0;     // of all stages but the verification and the kinds of contact
   double contacts = 0;  // kinds of contact
+  FARCULL_FIELDS(setup, cull, exact, total, contacts)
 };
 
 /// Whether a miss would break a guarantee.

@@ -23,9 +23,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json claims_json(const Certificate::Claims& claims) {
-  return {{"box_pairs", claims.box_pairs},   {"kept", claims.kept},
-          {"culled", claims.culled},         {"separated", claims.separated},
-          {"neighbours", claims.neighbours}, {"meeting", claims.meeting}};
+  return FARCULL_JSON(claims, box_pairs, kept, culled, separated, neighbours, meeting);
 }
 
 Json checked_scene_json(const Scene& scene) {
@@ -43,7 +41,7 @@ Json list_json(const Scene& scene, const SceneCheck& check) {
   out["given_is_found"] = differ.none();
   out["lines"] = differ.listed;
   out["wrong"] = {{"lines", differ.wrong},
-                  {"first", differ.wrong > 0 ? Json(differ.wrong_line) : Json(nullptr)},
+                  {"first", json_if(differ.wrong > 0, differ.wrong_line)},
                   {"reason", text_json(differ.wrong_reason)},
                   {"pair", pair_json(scene, differ.wrong_pair)}};
   out["missing"] = {{"pairs", differ.missing}, {"first", pair_json(scene, differ.missing_pair)}};
@@ -157,9 +155,7 @@ std::string proved_text(const Scene& scene, const SceneCheck& check) {
     out = "these " + grouped(pairs) + " pairs of the scene " +
           (near.empty() ? "meet" : "are " + near) + ", and no others";
   }
-  const bool self = std::any_of(scene.objects.begin(), scene.objects.end(),
-                                [](const Object& object) { return object.self; });
-  return !near.empty() && self ? out + " (neighbours only where they meet)" : out;
+  return !near.empty() && has_self(scene) ? out + " (neighbours only where they meet)" : out;
 }
 
 std::string verdict_text(const Scene& scene, const SceneCheck& check) {
@@ -216,8 +212,7 @@ nlohmann::ordered_json check_json(const Scene& scene, const SceneCheck& check) {
           {"scene", checked_scene_json(scene)},
           {"clearance", check.clearance},
           {"verdict", to_string(result.verdict)},
-          {"proves",
-           result.verdict == Verdict::proved ? Json(proved_text(scene, check)) : Json(nullptr)},
+          {"proves", json_if(result.verdict == Verdict::proved, proved_text(scene, check))},
           {"reason", text_json(result.reason)},
           {"pair", pair_json(scene, result.pair)},
           {"list", list_json(scene, check)},
@@ -253,7 +248,7 @@ Json FrameVerdicts::json(long wanted) const {
           {"refuted", of(Verdict::refuted)},
           {"not_proved", of(Verdict::not_proved)},
           {"verdict", to_string(verdict)},
-          {"first", verdict == Verdict::proved ? Json(nullptr) : Json(*bad)}};
+          {"first", json_if(verdict != Verdict::proved, bad)}};
 }
 
 std::string FrameVerdicts::text(const std::string& proved) const {
@@ -358,15 +353,14 @@ Json check_json(const Scene& scene, const CheckedDistances& check) {
           {"scene", checked_scene_json(scene)},
           {"query",
            {{"pairs", to_string(c.pairs)},
-            {"k", c.pairs == Pairs::nearest ? Json(c.k) : Json(nullptr)},
-            {"within", std::isfinite(c.within) ? Json(c.within) : Json(nullptr)}}},
+            {"k", json_if(c.pairs == Pairs::nearest, c.k)},
+            {"within", json_if(std::isfinite(c.within), c.within)}}},
           {"verdict", to_string(result.verdict)},
-          {"proves", proved ? Json(proved_text(check)) : Json(nullptr)},
+          {"proves", json_if(proved, proved_text(check))},
           {"reason", text_json(result.reason)},
           {"pair", pair_json(scene, result.pair)},
           {"squared", text_json(result.squared)},
-          {"distance",
-           result.pair && std::isfinite(result.distance) ? Json(result.distance) : Json(nullptr)},
+          {"distance", json_if(result.pair && std::isfinite(result.distance), result.distance)},
           {"listed", c.distances.size()},
           {"decided", result.decided},
           {"neighbours", result.neighbours},

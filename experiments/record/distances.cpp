@@ -20,18 +20,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kRowsShown = 24;
 
-const char* name_of(DistancePairs pairs) {
-  switch (pairs) {
-    case DistancePairs::objects:
-      return "objects";
-    case DistancePairs::nearest:
-      return "nearest";
-    case DistancePairs::all:
-      return "all";
-  }
-  return "";
-}
-
 /// Triangles as numbers within their objects, from 0.
 std::array<std::uint32_t, 2> within_objects(const Scene& scene, const Distance& d) {
   return {d.triangles.a - scene.objects[d.objects.a].first_triangle,
@@ -51,7 +39,7 @@ Json pair_json(const Scene& scene, const Distance& d) {
           {"features", {to_string(c.features[0]), to_string(c.features[1])}},
           {"triangles", {s, t}},
           {"faces", {scene.source_face[d.triangles.a], scene.source_face[d.triangles.b]}},
-          {"inside", d.inside == WhichInside::unknown ? Json(nullptr) : Json(to_string(d.inside))}};
+          {"inside", text_json(inside_text(d.inside))}};
 }
 
 std::uint32_t other_of(const Distance& d, std::uint32_t object) {
@@ -86,20 +74,10 @@ std::string place_text(const Scene& scene, const Distance& d, int side) {
   return fmt::format("{} {}", within_objects(scene, d)[side], to_string(d.closest.features[side]));
 }
 
-std::string inside_text(const Distance& d) {
-  switch (d.inside) {
-    case WhichInside::a:
-      return "a in b";
-    case WhichInside::b:
-      return "b in a";
-    case WhichInside::not_closed:
-      return "not closed";
-    case WhichInside::none:
-      return "no";
-    case WhichInside::unknown:
-      return "-";  // they meet
-  }
-  return "";
+std::string inside_cell(const Distance& d) {
+  constexpr std::array kTexts = {"-", "no", "a in b", "b in a",
+                                 "not closed"};  // unknown: they meet
+  return kTexts.at(static_cast<std::size_t>(d.inside));
 }
 
 std::string distance_text(const Distance& d) { return fmt::format("{}", d.closest.distance); }
@@ -132,7 +110,7 @@ std::string pairs_table(const Scene& scene, const std::vector<Distance>& distanc
     std::vector<std::string> row{object_text(scene, d.objects.a), object_text(scene, d.objects.b),
                                  distance_text(d), place_text(scene, d, 0),
                                  place_text(scene, d, 1)};
-    if (inside) row.push_back(inside_text(d));
+    if (inside) row.push_back(inside_cell(d));
     table.add(row);
   }
   return table.text() + more_line(distances.size(), shown);
@@ -186,43 +164,25 @@ std::string accounting_lines(const Scene& scene, const DistanceRecord& record) {
   return out;
 }
 
-DistanceCertificate::Pairs pairs_of(DistancePairs pairs) {
-  switch (pairs) {
-    case DistancePairs::objects:
-      return DistanceCertificate::Pairs::objects;
-    case DistancePairs::nearest:
-      return DistanceCertificate::Pairs::nearest;
-    case DistancePairs::all:
-      break;
-  }
-  return DistanceCertificate::Pairs::all;
-}
-
 }  // namespace
 
 Json distances_json(const Scene& scene, const DistanceRecord& record,
                     std::optional<std::uint64_t> seed) {
   const DistanceOptions& o = record.options;
-  Json pairs = Json::array();
-  for (const Distance& d : record.distances) pairs.push_back(pair_json(scene, d));
-  Json names = Json::array();
-  for (const Object& object : scene.objects) names.push_back(object.name);
   return {{"scene", scene_json(scene, record.degenerate_triangles, record.scene_hash)},
-          {"objects", names},
-          {"pairs_asked", name_of(o.pairs)},
-          {"k", o.pairs == DistancePairs::nearest ? Json(o.k) : Json(nullptr)},
+          {"objects", json_list(scene.objects, [](const Object& object) { return object.name; })},
+          {"pairs_asked", to_string(static_cast<DistanceCertificate::Pairs>(o.pairs))},
+          {"k", json_if(o.pairs == DistancePairs::nearest, o.k)},
           {"within", o.within},
           {"inside_asked", o.inside},
-          {"pairs", pairs},
+          {"pairs",
+           json_list(record.distances, [&](const Distance& d) { return pair_json(scene, d); })},
           {"nearest", nearest_json(scene, record)},
-          {"counts",
-           {{"box_pairs", record.counts.box_pairs},
-            {"triangle_pairs", record.counts.triangle_pairs},
-            {"kept", record.counts.kept}}},
+          {"counts", FARCULL_JSON(record.counts, box_pairs, triangle_pairs, kept)},
           {"stages", stages_json(record.trace)},
           {"verification", verification_json(scene, record.verification)},
           {"time_ms", {{"total", record.ms}}},
-          {"seed", seed ? Json(*seed) : Json(nullptr)},
+          {"seed", json_of(seed)},
           {"commit", FARCULL_COMMIT}};
 }
 
@@ -241,7 +201,7 @@ std::string distances_rows(const Scene& scene, const DistanceRecord& record,
                        c.squared.text());
     for (const Vec3& p : c.points) out += fmt::format(",{},{},{}", p.x(), p.y(), p.z());
     out += fmt::format(",{},{},{}\n", to_string(c.features[0]), to_string(c.features[1]),
-                       d.inside == WhichInside::unknown ? "" : to_string(d.inside));
+                       inside_text(d.inside));
   }
   return out;
 }
@@ -297,7 +257,7 @@ std::string distances_table(const Scene& scene, const DistanceRecord& record) {
 DistanceCertificate certificate_of(const Scene& scene, const DistanceRecord& record) {
   DistanceCertificate out;
   out.scene = {scene.name, scene.objects.size(), scene.triangles.size(), record.scene_hash};
-  out.pairs = pairs_of(record.options.pairs);
+  out.pairs = static_cast<DistanceCertificate::Pairs>(record.options.pairs);
   if (record.options.pairs == DistancePairs::nearest) out.k = record.options.k;
   out.within = record.options.within;
   out.distances.reserve(record.distances.size());
@@ -305,7 +265,7 @@ DistanceCertificate certificate_of(const Scene& scene, const DistanceRecord& rec
     out.distances.push_back(
         entry_of(scene, d.triangles, d.closest.squared.text(),
                  {number_of(d.closest.features[0]), number_of(d.closest.features[1])}));
-    out.distances.back().inside = claim_of(d.inside);
+    out.distances.back().inside = d.inside;
   }
   return out;
 }

@@ -52,9 +52,33 @@ std::string csv_of(const Value& row) {
   return out;
 }
 
+/// An object of these members of a struct, by their names and in this order.
+#define FARCULL_JSON(value, ...)                                                \
+  [&] {                                                                         \
+    nlohmann::ordered_json out;                                                 \
+    const auto& of = value;                                                     \
+    NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(FARCULL_JSON_MEMBER, __VA_ARGS__)) \
+    return out;                                                                 \
+  }()
+#define FARCULL_JSON_MEMBER(name) out[#name] = ::farcull::json_of(of.name);
+
+/// The objects that `one` makes of the values.
+template <class Values, class One>
+nlohmann::ordered_json json_list(const Values& values, const One& one) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  for (const auto& value : values) out.push_back(one(value));
+  return out;
+}
+
+/// The value where it counts, else null.
+template <class Value>
+nlohmann::ordered_json json_if(bool counts, const Value& value) {
+  return counts ? json_of(value) : nlohmann::ordered_json(nullptr);
+}
+
 /// Null for a text that says nothing.
 inline nlohmann::ordered_json text_json(const std::string& text) {
-  return text.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(text);
+  return json_if(!text.empty(), text);
 }
 
 }  // namespace farcull

@@ -24,59 +24,40 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json view_json(const ViewReport& view) {
-  Json budget = Json::object();
+  Json out = FARCULL_JSON(view, name, drawn, width, height, pixel_size, depth_step_px);
+  Json& budget = out["budget"] = Json::object();
   for (const BudgetTerm& term : view.budget.terms()) budget[term.name] = term.px;
   budget["radius_px"] = view.radius_px;
-  return {{"name", view.name},
-          {"drawn", view.drawn},
-          {"width", view.width},
-          {"height", view.height},
-          {"pixel_size", view.pixel_size},
-          {"depth_step_px", view.depth_step_px},
-          {"budget", budget}};
+  return out;
 }
 
 Json view_json(const PairView& view) {
   const PairCounts& c = view.counts;
-  const auto or_null = [](double ms) { return ms < 0 ? Json(nullptr) : Json(ms); };
-  return {{"name", view.name},
-          {"looked", view.looked},
-          {"reason", view.reason},
-          {"width", view.width},
-          {"height", view.height},
-          {"pixel_size", view.pixel_size},
-          {"widening_px", view.widening_px},
-          {"listed", c.listed},
-          {"entries", c.entries},
-          {"crowded", c.crowded},
-          {"large", c.large},
-          {"tests", c.tests},
-          {"bands", c.bands},
-          {"undrawable", c.undrawable},
-          {"dispatches", c.dispatches},
-          {"readbacks", c.readbacks},
-          {"redone", c.redone},
-          {"mark_ms", c.mark_ms},
-          {"list_ms", c.list_ms},
-          {"pair_ms", c.pair_ms},
-          {"mark_device_ms", or_null(c.mark_device_ms)},
-          {"list_device_ms", or_null(c.list_device_ms)},
-          {"pair_device_ms", or_null(c.pair_device_ms)}};
+  Json out = FARCULL_JSON(view, name, looked, reason, width, height, pixel_size, widening_px);
+  out.update(FARCULL_JSON(c, listed, entries, crowded, large, tests, bands, undrawable, dispatches,
+                          readbacks, redone, mark_ms, list_ms, pair_ms));
+  out["mark_device_ms"] = json_if(c.mark_device_ms >= 0, c.mark_device_ms);
+  out["list_device_ms"] = json_if(c.list_device_ms >= 0, c.list_device_ms);
+  out["pair_device_ms"] = json_if(c.pair_device_ms >= 0, c.pair_device_ms);
+  return out;
+}
+
+template <class Value>
+Json json_or_null(const Value& value) {
+  if constexpr (std::is_same_v<Value, std::monostate>)
+    return nullptr;
+  else
+    return value;
 }
 
 // Work of a GL device in drawing.
 Json device_work_json(const CanvasWork& work) {
   if (work.passes == 0) return nullptr;
-  return {{"passes", work.passes},
-          {"draw_calls", work.draws},
-          {"dispatches", work.dispatches},
-          {"state_changes", work.state_changes},
-          {"queries", work.queries},
-          {"readbacks", work.readbacks},
-          {"waits", work.waits},
-          {"uploaded_bytes", work.uploaded_bytes},
-          {"downloaded_bytes", work.downloaded_bytes},
-          {"device_ms", json_of(work.known_ms())}};
+  Json out = {{"passes", work.passes}, {"draw_calls", work.draws}};
+  out.update(FARCULL_JSON(work, dispatches, state_changes, queries, readbacks, waits,
+                          uploaded_bytes, downloaded_bytes));
+  out["device_ms"] = json_of(work.known_ms());
+  return out;
 }
 
 Json budget_json(const std::vector<ViewReport>& views) {
@@ -85,40 +66,34 @@ Json budget_json(const std::vector<ViewReport>& views) {
 }
 
 Json device_json(const Record& record) {
-  if (record.found.device.cpu) {
-    Json out = {{"cpu", record.found.device.note}};
-    if (draws(record.options.method)) {
-      out["lanes"] = record.found.device.lanes;
-      out["depth_bits"] = record.found.device.depth_bits;
-    }
+  const UsedDevice& used = record.found.device;
+  if (used.cpu) {
+    Json out = {{"cpu", used.note}};
+    if (draws(record.options.method)) out.update(FARCULL_JSON(used, lanes, depth_bits));
     return out;
   }
-  if (!record.found.device.gl) return {{"none", record.found.device.note}};
-  const GlInfo& device = *record.found.device.gl;
-  Json out = gl_json(device);
-  out["subpixel_bits"] = device.subpixel_bits;
-  out["depth_bits"] = record.found.device.depth_bits;
-  out["reset_detection"] = device.reset_detection;
-  out["threads"] = threads_json(device);
-  out["reason"] = record.found.device.note;
-  if (chooses_views(record.options.method)) out.erase("depth_bits");
+  if (!used.gl) return {{"none", used.note}};
+  Json out = gl_json(*used.gl);
+  out["subpixel_bits"] = used.gl->subpixel_bits;
+  if (!chooses_views(record.options.method)) out["depth_bits"] = used.depth_bits;
+  out["reset_detection"] = used.gl->reset_detection;
+  out["threads"] = threads_json(*used.gl);
+  out["reason"] = used.note;
   return out;
 }
 
 Json environment_json(const FloatingPoint& floating_point) {
-  return {{"rounding", to_string(floating_point.rounding)},
-          {"flushes_results", floating_point.flushes_results},
-          {"flushes_operands", floating_point.flushes_operands}};
+  return FARCULL_JSON(floating_point, rounding, flushes_results, flushes_operands);
 }
 
 Json verdict_json(const Record& record) {
   if (!record.promise.verdict) return nullptr;
   const DeviceVerdict& v = *record.promise.verdict;
-  return {{"holds", v.holds},           {"probes", v.probes},
-          {"failed", v.failed},         {"made", v.made},
-          {"remembered", v.remembered}, {"ms", v.ms},
-          {"file", text_json(v.file)},  {"problem", text_json(v.problem)},
-          {"note", text_json(v.note)}};
+  Json out = FARCULL_JSON(v, holds, probes, failed, made, remembered, ms);
+  out["file"] = text_json(v.file);
+  out["problem"] = text_json(v.problem);
+  out["note"] = text_json(v.note);
+  return out;
 }
 
 std::uint64_t self_objects(const Scene& scene) {
@@ -131,8 +106,9 @@ Json verification_json(const Scene& scene, const Record& record) {
   const std::optional<Accounting>& accounting = record.verification;
   if (!accounting) return nullptr;
   Json out = json_of(*accounting);
-  out["touching"] = record.missed ? Json(record.missed->touching) : Json(nullptr);
-  out["penetrating"] = record.missed ? Json(record.missed->penetrating) : Json(nullptr);
+  const ContactCounts missed = record.missed.value_or(ContactCounts{});
+  out["touching"] = json_if(record.missed.has_value(), missed.touching);
+  out["penetrating"] = json_if(record.missed.has_value(), missed.penetrating);
   out["examples"] = pairs_json(scene, accounting->examples);
   out["ms"] = accounting->ms;
   return out;
@@ -189,13 +165,10 @@ std::vector<std::string> assumptions_about(const GlInfo& device) {
 
 }  // namespace
 
-Json gl_json(const GlInfo& gl) {
-  return {
-      {"vendor", gl.vendor}, {"renderer", gl.renderer}, {"version", gl.version}, {"glsl", gl.glsl}};
-}
+Json gl_json(const GlInfo& gl) { return FARCULL_JSON(gl, vendor, renderer, version, glsl); }
 
 Json threads_json(const GlInfo& gl) {
-  return gl.kind == "software" ? Json(driver_threads(gl.renderer)) : Json(nullptr);
+  return json_if(gl.kind == "software", driver_threads(gl.renderer));
 }
 
 Json pair_json(const Scene& scene, const TrianglePair& pair) {
@@ -210,9 +183,7 @@ Json pair_json(const Scene& scene, const TrianglePair& pair) {
 }
 
 Json pairs_json(const Scene& scene, const std::vector<TrianglePair>& pairs) {
-  Json out = Json::array();
-  for (const TrianglePair& pair : pairs) out.push_back(pair_json(scene, pair));
-  return out;
+  return json_list(pairs, [&](const TrianglePair& pair) { return pair_json(scene, pair); });
 }
 
 nlohmann::ordered_json floating_point_json(const FloatingPoint& callers,
@@ -243,35 +214,13 @@ Json scene_json(const Scene& scene, std::uint64_t degenerate_triangles, const st
 }
 
 Json stages_json(const std::vector<Stage>& trace) {
-  Json stages = Json::array();
-  for (const Stage& s : trace) {
-    stages.push_back({{"name", name_of(s)},
-                      {"ran", s.ran},
-                      {"depends", s.depends},
-                      {"reason", reason_of(s)},
-                      {"ms", s.ms},
-                      {"in", s.in},
-                      {"out", s.out},
-                      {"unit", to_string(s.unit)},
-                      {"draws", s.draws},
-                      {"queries", s.queries},
-                      {"draws_saved", s.draws_saved},
-                      {"queries_saved", s.queries_saved}});
-  }
-  return stages;
+  return json_list(trace, [](const Stage& s) {
+    Json out = {
+        {"name", name_of(s)}, {"ran", s.ran}, {"depends", s.depends}, {"reason", reason_of(s)}};
+    out.update(FARCULL_JSON(s, ms, in, out, unit, draws, queries, draws_saved, queries_saved));
+    return out;
+  });
 }
-
-namespace {
-
-Json value_json(const OptionValue& value) {
-  if (const auto* text = std::get_if<std::string>(&value)) return *text;
-  if (const auto* flag = std::get_if<bool>(&value)) return *flag;
-  if (const auto* whole = std::get_if<int>(&value)) return *whole;
-  if (const auto* real = std::get_if<double>(&value)) return *real;
-  return nullptr;
-}
-
-}  // namespace
 
 nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
   const RunOptions& o = record.options;
@@ -282,7 +231,8 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
               {"method", to_string(o.method)},
               {"method_reason", method_reason(o)}};
   for (const Option& option : run_options()) {
-    if (option.value) out[option.name] = value_json(option.value(o));
+    if (!option.value) continue;
+    std::visit([&](const auto& value) { out[option.name] = json_or_null(value); }, option.value(o));
   }
   if (record.found.device.cpu) out["query"] = nullptr;
   const Json rest = {
@@ -305,16 +255,11 @@ nlohmann::ordered_json to_json(const Scene& scene, const Record& record) {
       {"neighbours", record.collisions.neighbours},
       {"contacts", contacts_json(record)},
       {"ignored", ignored_json(record)},
-      {"limit", o.limit > 0 ? Json(o.limit) : Json(nullptr)},
+      {"limit", json_if(o.limit > 0, o.limit)},
       {"decided_pairs", record.decided},
       {"complete", record.complete},
       {"verification", verification_json(scene, record)},
-      {"time_ms",
-       {{"setup", record.ms.setup},
-        {"cull", record.ms.cull},
-        {"exact", record.ms.exact},
-        {"total", record.ms.total},
-        {"contacts", record.ms.contacts}}},
+      {"time_ms", json_of(record.ms)},
       {"seed", json_of(o.seed)},
       {"commit", FARCULL_COMMIT}};
   out.update(rest);
@@ -414,9 +359,7 @@ std::string plan_table(const Scene& scene, const Plan& plan) {
   for (const Stage& stage : plan.stages())
     table.add({name_of(stage), decision_of(stage), reason_of(stage)});
   const RunOptions& options = plan.options;
-  const auto self =
-      static_cast<std::uint64_t>(std::count_if(scene.objects.begin(), scene.objects.end(),
-                                               [](const Object& object) { return object.self; }));
+  const std::uint64_t self = self_objects(scene);
   const std::string tested = self == 0 ? ""
                                        : fmt::format("self       {} tested against {}\n",
                                                      counted(self, "object is", "objects are"),
@@ -429,11 +372,6 @@ std::string plan_table(const Scene& scene, const Plan& plan) {
 }
 
 Json plan_json(const Scene& scene, const Plan& plan) {
-  Json list = Json::array();
-  for (const Stage& stage : plan.stages()) {
-    list.push_back(
-        {{"step", name_of(stage)}, {"decision", decision_of(stage)}, {"reason", reason_of(stage)}});
-  }
   return {{"scene", scene.name},
           {"objects", scene.objects.size()},
           {"triangles", scene.triangles.size()},
@@ -442,7 +380,11 @@ Json plan_json(const Scene& scene, const Plan& plan) {
           {"method_reason", method_reason(plan.options)},
           {"form", form_text(plan.options)},
           {"full", plan.options.full},
-          {"steps", list}};
+          {"steps", json_list(plan.stages(), [](const Stage& stage) {
+             return Json{{"step", name_of(stage)},
+                         {"decision", decision_of(stage)},
+                         {"reason", reason_of(stage)}};
+           })}};
 }
 
 }  // namespace farcull

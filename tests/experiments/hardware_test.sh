@@ -12,7 +12,7 @@ root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
 # FAKE_FAIL, FAKE_REFUSE, FAKE_SLEEP: a word of the calls that end with 1, with 2, or take 30 seconds.
 tree=$work/tree
 mkdir -p "$tree/experiments" "$tree/build" "$work/bin"
-cp "$root"/experiments/{setup,hardware,reliability,reliability_pairs,reliability_motion}.sh "$tree/experiments/"
+cp "$root"/experiments/{setup,hardware,reliability}.sh "$tree/experiments/"
 echo 'exit 0' >"$tree/experiments/meshes.sh"
 echo test >"$tree/packed"
 cat >"$tree/build/farcull" <<'FAKE'

@@ -1,5 +1,5 @@
 // Whether one of two objects lies inside the other, decided in integers. For the checker of
-// distances and the accounting: it knows neither verify/inside nor experiments/method/which_inside.
+// distances and the accounting: it knows neither verify/inside nor experiments/method/distances.
 // docs/certificate.md has the proof.
 //
 // A mesh is *closed* if every edge, by the positions of its ends, belongs to an even number of its

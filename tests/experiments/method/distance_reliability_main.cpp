@@ -1,5 +1,5 @@
 // Distances of full scenes and of many small ones against the truth in rational numbers: a part of
-// experiments/reliability_distances.sh. Prints a row of a table for each question, and exits with 1
+// experiments/reliability.sh distances. Prints a row of a table for each question, and exits with 1
 // if an answer is wrong.
 //   farcull_distance_reliability SCENE DIAGONALS [bit|pair]
 //   farcull_distance_reliability random FIRST COUNT [bit|pair]

@@ -1,5 +1,5 @@
 // Which of two objects lies inside the other.
-#include "experiments/method/which_inside.h"
+#include "experiments/method/distances.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "experiments/method/which_inside.h"
+#include "experiments/method/distances.h"
 #include "tests/core/base/trials.h"
 #include "tests/verify/reference.h"
 #include "verify/certificate/integer_distance.h"
@@ -130,7 +130,7 @@ TEST(IntegerInside, IsThatOfTetrahedraOfWholeNumbers) {
     const InsideClaim yes = swapped ? InsideClaim::a : InsideClaim::b;
     const auto found = IntegerInside(scene).which(0, 1);
     ASSERT_EQ(found, expected ? yes : InsideClaim::none) << n;
-    ASSERT_EQ(found, claim_of(Insides(scene).which(0, 1))) << n;
+    ASSERT_EQ(found, Insides(scene).which(0, 1)) << n;
     (expected ? in : out) += 1;
     twin_wrong += naive != expected;
   }
