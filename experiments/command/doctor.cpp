@@ -40,29 +40,6 @@ constexpr std::size_t kCases = 6000;
 constexpr std::uint64_t kPoints = 60'000;
 constexpr std::uint64_t kSeed = 1;
 
-using Check = void (*)(const SolidCase&, const SolidAnswer&, bool ordinary, KernelTally&);
-using Fatten = Solid (*)(const KernelTriangle&);
-using Adversarial = Solid (*)(std::uint64_t seed, std::uint64_t index, float cx, float cy);
-
-struct Kernel {
-  const char* name;
-  SolidProgram program;
-  Fatten fatten;
-  Adversarial adversarial;
-  Check check;
-};
-
-std::vector<Kernel> kernels() {
-  return {{"oriented boxes", obb_fattener().solid,
-           [](const KernelTriangle& t) { return obb_of(t.corners, t.radius); }, adversarial_box,
-           check_box},
-          {"exact offsets", minkowski_fattener().solid,
-           [](const KernelTriangle& t) {
-             return minkowski_solid(t.corners[0], t.corners[1], t.corners[2], t.radius);
-           },
-           adversarial_minkowski, check_minkowski}};
-}
-
 bool same(const SolidAnswer& a, const SolidAnswer& b) {
   const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
   return a.hit == b.hit &&
@@ -78,7 +55,7 @@ SolidAnswer on_lanes(const SolidProgram& program, const SolidCase& c) {
 }
 
 // Half of the solids are fattened triangles, half are made of floats directly.
-ProbeResult probe_kernel(const Kernel& kernel, const std::string& target) {
+ProbeResult probe_kernel(const SolidKernel& kernel, const std::string& target) {
   KernelTally tally;
   std::uint64_t different = 0;
   for (std::size_t i = 0; i < kCases; ++i) {
@@ -349,7 +326,7 @@ std::vector<ProbeResult> native_probes() {
     const Restore restore;
     for (const std::string& target : lane_targets()) {
       use_lane_target(target);
-      for (const Kernel& kernel : kernels()) out.push_back(probe_kernel(kernel, target));
+      for (const SolidKernel& kernel : solid_kernels()) out.push_back(probe_kernel(kernel, target));
     }
   }
   for (ProbeResult& r : lemma_probes()) out.push_back(std::move(r));

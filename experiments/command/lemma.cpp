@@ -35,8 +35,7 @@ struct LemmaArguments {
   std::string offset = "obb";  // obb or exact
   std::string device;
   std::uint64_t seed = 1;
-  std::string json;
-  std::string csv;  // of the sweep
+  Outputs outputs = {};  // csv: of the sweep
 };
 
 struct Sweep {
@@ -150,7 +149,7 @@ void validate(const LemmaArguments& arguments) {
                 "leave --device out, or use --canvas gl");
   }
   word_of("--offset", arguments.offset, {"obb", "exact"}, "no offset", "give obb or exact");
-  if (!arguments.csv.empty() && arguments.sweep.empty()) {
+  if (arguments.outputs.csv && arguments.sweep.empty()) {
     throw Error("--csv", "there is a table to write only with --sweep",
                 "add --sweep 0.5:1.1:0.01, or use --json");
   }
@@ -266,7 +265,6 @@ class LemmaCommand {
  private:
   LemmaArguments arguments_;
   Text device_;
-  Outputs outputs_;
 };
 
 CLI::App* LemmaCommand::add_to(CLI::App& experiment) {
@@ -282,8 +280,8 @@ CLI::App* LemmaCommand::add_to(CLI::App& experiment) {
        {"--offset", &arguments_.offset, "OFFSET", "obb or exact; default obb"},
        {"--seed", &arguments_.seed, "N", "of the points; default 1"},
        {"--device", &device_, "DEVICE", kDeviceHelp},
-       {"--json", &outputs_.json, "FILE", kJsonHelp},
-       {"--csv", &outputs_.csv, "FILE",
+       {"--json", &arguments_.outputs.json, "FILE", kJsonHelp},
+       {"--csv", &arguments_.outputs.csv, "FILE",
         "write the sweep as CSV to this file; - for standard\noutput"}},
       "Examples:\n"
       "  farcull experiment lemma --points 1000000 --radius budget\n"
@@ -294,11 +292,9 @@ CLI::App* LemmaCommand::add_to(CLI::App& experiment) {
 
 // Prints the rows; writes --json and --csv.
 int LemmaCommand::run() {
-  const Outputs outputs = checked(outputs_, {});
   LemmaArguments& arguments = arguments_;
+  const Outputs outputs = arguments.outputs = checked(arguments.outputs, {});
   arguments.device = device_of(device_);
-  arguments.json = outputs.json.value_or("");
-  arguments.csv = outputs.csv.value_or("");
   TerminalProgress terminal;
   const Progress progress = terminal.callback();
   validate(arguments);
@@ -315,11 +311,9 @@ int LemmaCommand::run() {
   }
   const double seconds = watch.ms() / 1000;
   terminal.clear();
-  if (!arguments.json.empty())
-    write_output(arguments.json, to_json(arguments, on, seconds, results).dump(2) + "\n");
-  if (!arguments.csv.empty()) write_output(arguments.csv, sweep_csv(results));
-  if (arguments.json != "-" && arguments.csv != "-")
-    write_output("-", text_of(arguments, on, seconds, results));
+  if (outputs.json) write_json(to_json(arguments, on, seconds, results), *outputs.json);
+  if (outputs.csv) write_output(*outputs.csv, sweep_csv(results));
+  if (!outputs.to_stdout()) write_output("-", text_of(arguments, on, seconds, results));
   return broken ? 1 : 0;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "experiments/command/options.h"
+#include "experiments/record/fields.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/frames.h"
 #include "experiments/scenes/scene_file.h"
@@ -19,26 +20,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json to_json(const BuiltinScene& scene) {
-  Json out = {{"name", scene.name},
-              {"objects", scene.objects},
-              {"triangles", scene.triangles},
-              {"needs_meshes", scene.needs_meshes},
-              {"moves", !scene.motion.empty()},
-              {"motion", nullptr},
-              {"topology_changes", scene.topology_changes},
-              {"seed", nullptr},
-              {"size", nullptr},
-              {"second", nullptr},
-              {"description", scene.description}};
-  if (!scene.motion.empty()) out["motion"] = scene.motion;
-  if (scene.seed) out["seed"] = *scene.seed;
-  if (const auto& n = scene.size) {
-    out["size"] = {{"what", n->what}, {"least", n->least}, {"most", n->most}, {"usual", n->usual}};
-  }
-  if (const auto& n = scene.second) {
-    out["second"] = {
-        {"what", n->what}, {"least", n->least}, {"most", n->most}, {"usual", n->usual}};
-  }
+  const auto number = [](const auto& n) {
+    return n ? FARCULL_JSON(*n, what, least, most, usual) : Json(nullptr);
+  };
+  Json out = FARCULL_JSON(scene, name, objects, triangles, needs_meshes);
+  out["moves"] = !scene.motion.empty();
+  out["motion"] = text_json(scene.motion);
+  out["topology_changes"] = scene.topology_changes;
+  out["seed"] = json_of(scene.seed);
+  out["size"] = number(scene.size);
+  out["second"] = number(scene.second);
+  out["description"] = scene.description;
   return out;
 }
 

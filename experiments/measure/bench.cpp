@@ -1,27 +1,151 @@
-// A cold round, then rounds that count; every answer is compared with that of the first contestant.
+// Who takes part: methods by the one pipeline, peers by their own set-up. A cold round, then rounds
+// that count; every answer is compared with that of the first contestant.
 // And the table for people, and JSON for programs.
 #include "experiments/measure/bench.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "commit.h"
+#include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/scene/scene.h"
 #include "experiments/measure/harness.h"
+#include "experiments/method/run.h"
+#include "experiments/peers/parts.h"
+#include "experiments/record/fields.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/machine.h"
 #include "experiments/system/text_table.h"
+#include "offsets/obb.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+const std::vector<std::string> kMethods = {"far-pairs", "far", "exact"};
+
+std::vector<std::string> names_of(const std::vector<Peer>& peers) {
+  std::vector<std::string> names;
+  for (const Peer& peer : peers) names.push_back(peer.name);
+  return names;
+}
+
+/// Those of `known` that the text asks for, in their order. Throws Error naming the option.
+std::vector<std::string> chosen(const std::string& option, const std::string& text,
+                                const std::vector<std::string>& known) {
+  if (text == "all") return known;
+  if (text == "none") return {};
+  const std::vector<std::string> asked = split_list(text);
+  for (const std::string& name : asked) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw Error(option, "'" + name + "' is none of them",
+                fmt::format("give all, none, or some of {}", fmt::join(known, ",")));
+  }
+  std::vector<std::string> out;
+  for (const std::string& name : known) {
+    if (std::find(asked.begin(), asked.end(), name) != asked.end()) out.push_back(name);
+  }
+  return out;
+}
+
+// Neighbours are not asked for: the peers leave them out too.
+BenchRun method_run(Method method, std::shared_ptr<Session> session, const std::string& device) {
+  RunOptions options{.method = method, .verify = false, .neighbours = false};
+  options.device = device;
+  return [=](const Scene& scene) {
+    const Stopwatch watch;
+    Record record = run(scene, options, *session, {}, {.answer_only = true});
+    return BenchAnswer{.candidates_ms = watch.ms() - record.ms.exact,
+                       .exact_ms = record.ms.exact,
+                       .candidate_pairs = record.found.count,
+                       .pairs = std::move(record.collisions.pairs)};
+  };
+}
+
+/// Sets up one contestant. What cannot run is left out, or an Error where it was asked for by name.
+class ContestantList {
+ public:
+  explicit ContestantList(const Progress& progress) : progress_(progress) {}
+
+  template <class SetUp>
+  void add(BenchContestant contestant, bool by_name, const char* option, const SetUp& set_up) {
+    if (progress_) progress_("setting up " + contestant.name);
+    if (contestant.left_out.empty()) {
+      const Stopwatch watch;
+      try {
+        set_up(contestant);
+      } catch (const Error& error) {
+        if (by_name) throw;
+        contestant.left_out = error.where + ": " + error.reason;
+      }
+      contestant.setup_ms = watch.ms();
+    } else if (by_name) {
+      throw Error(option, contestant.name + ": " + contestant.left_out, "leave it out");
+    }
+    all.push_back(std::move(contestant));
+  }
+
+  std::vector<BenchContestant> all;
+
+ private:
+  const Progress& progress_;
+};
+
+void add_methods(const Scene& scene, const BenchOptions& options, ContestantList& list) {
+  const bool by_name = options.methods != "all";
+  const bool no_gl = is_cpu(options.device);
+  // Without --device, drawing on GL is measured where hardware answers, and far-pairs where any
+  // does.
+  const bool gl_by_name = by_name && !options.device.empty();
+  const std::string gl_device = options.device.empty() ? "gl" : options.device;
+  std::shared_ptr<Session> gl;  // that the methods share
+  const auto on_gl = [&](BenchContestant& c, Method method) {
+    if (!gl) gl = std::make_shared<Session>(gl_device, options.threads);
+    c.device = gl->context().info().renderer;
+    c.run = method_run(method, gl, gl_device);
+  };
+  for (const std::string& name : chosen("--methods", options.methods, kMethods)) {
+    const Method method = parse_method(name);
+    const std::string refused =
+        has_self(scene) && !tests_self(method) ? "it tests no object against itself" : "";
+    list.add({.name = name, .left_out = refused}, by_name, "--methods", [&](BenchContestant& c) {
+      c.run = method_run(method, std::make_shared<Session>("native", options.threads), "native");
+    });
+    const bool slow = draws(method) && options.device.empty() && !GlContext::hardware_listed();
+    if (!looks(method) || no_gl || slow) continue;
+    list.add({.name = name, .device = "gl", .left_out = refused}, gl_by_name, "--methods",
+             [&](BenchContestant& c) {
+               on_gl(c, method);
+               if (draws(method)) {
+                 gl->canvas(obb_fattener(), {});
+               } else {
+                 gl->pairs();
+               }
+             });
+  }
+}
+
+void add_peers(const Scene& scene, const BenchOptions& options, ContestantList& list) {
+  const std::vector<Peer> peers = all_peers(options.threads);
+  const std::vector<std::string> names = chosen("--peers", options.peers, names_of(peers));
+  const bool by_name = options.peers != "all";
+  for (const Peer& peer : peers) {
+    if (std::find(names.begin(), names.end(), peer.name) == names.end()) continue;
+    BenchContestant contestant{.name = peer.name, .peer = true, .library = peer.library};
+    contestant.left_out = peer.missing;
+    if (contestant.left_out.empty() && peer.refuses) contestant.left_out = peer.refuses(scene);
+    list.add(contestant, by_name, "--peers",
+             [&](BenchContestant& c) { c.run = peer.set_up(options.threads); });
+  }
+}
 
 // Medians of the parts of a contestant's runs.
 struct Parts {
@@ -64,11 +188,6 @@ BenchRow cold_row(const BenchContestant& c, const BenchAnswer& answer) {
   return row;
 }
 
-template <class Value>
-Json or_null(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
 /// The fastest row of far-pairs.
 const BenchRow* best_far_pairs(const BenchResult& result) {
   const BenchRow* best = nullptr;
@@ -80,27 +199,14 @@ const BenchRow* best_far_pairs(const BenchResult& result) {
 }
 
 Json row_json(const BenchResult& result, const BenchRow& row) {
-  Json json = {{"name", row.name},
-               {"device", row.device},
-               {"total_ms", to_json(row.total_ms)},
-               {"setup_ms", row.setup_ms},
-               {"build_ms", row.build_ms},
-               {"candidates_ms", row.candidates_ms},
-               {"exact_ms", row.exact_ms},
-               {"candidate_pairs", row.candidate_pairs},
-               {"pairs", row.pairs},
-               {"peak_mib", or_null(row.peak_mib)},
-               {"cold_ms", row.cold_ms},
-               {"repeats", row.repeats},
-               {"peer", row.peer},
-               {"library", row.peer ? Json(row.library) : Json(nullptr)},
-               {"ratio_to_fastest_peer", or_null(ratio_to_fastest(result, row))}};
-  if (!row.peer) {
-    Json ratios = Json::object();
-    for (const BenchRow& peer : result.rows) {
-      if (peer.peer) ratios[peer.name] = row.total_ms.median / peer.total_ms.median;
-    }
-    json["ratio_to_peers"] = ratios;
+  Json json = FARCULL_JSON(row, name, device, total_ms, setup_ms, build_ms, candidates_ms, exact_ms,
+                           candidate_pairs, pairs, peak_mib, cold_ms, repeats, peer);
+  json["library"] = json_if(row.peer, row.library);
+  json["ratio_to_fastest_peer"] = json_of(ratio_to_fastest(result, row));
+  if (row.peer) return json;
+  Json& ratios = json["ratio_to_peers"] = Json::object();
+  for (const BenchRow& peer : result.rows) {
+    if (peer.peer) ratios[peer.name] = row.total_ms.median / peer.total_ms.median;
   }
   return json;
 }
@@ -114,6 +220,30 @@ Json disagreement_json(const std::optional<Disagreement>& disagreement) {
 }
 
 }  // namespace
+
+void validate(const BenchOptions& options) {
+  chosen("--methods", options.methods, kMethods);
+  chosen("--peers", options.peers, names_of(all_peers(options.threads)));
+  if (options.repeat < 1) {
+    throw Error("--repeat", fmt::format("{} is no number of runs", options.repeat),
+                "give 1 or more");
+  }
+  if (!(options.limit_s >= 0)) {
+    throw Error("--limit", fmt::format("{} is no time", options.limit_s),
+                "give seconds, 0 or more");
+  }
+  if (options.methods == "none" && options.peers == "none") {
+    throw Error("--peers", "nobody is left to be measured", "name a peer or a method");
+  }
+}
+
+std::vector<BenchContestant> contestants(const Scene& scene, const BenchOptions& options,
+                                         const Progress& progress) {
+  ContestantList list(progress);
+  add_methods(scene, options, list);
+  add_peers(scene, options, list);
+  return std::move(list.all);
+}
 
 BenchResult bench(const Scene& scene, const std::vector<BenchContestant>& contestants,
                   const BenchOptions& options, const Progress& progress) {
@@ -172,35 +302,29 @@ std::string describe(const Scene& scene, const Disagreement& disagreement) {
 
 nlohmann::ordered_json to_json(const Scene& scene, const BenchOptions& options,
                                const BenchResult& result) {
-  Json rows = Json::array();
-  for (const BenchRow& row : result.rows) rows.push_back(row_json(result, row));
-  Json left_out = Json::array();
-  for (const BenchContestant& c : result.left_out)
-    left_out.push_back({{"name", c.name}, {"device", c.device}, {"reason", c.left_out}});
   const BenchRow* best = best_far_pairs(result);
   const std::optional<double> ratio = best ? ratio_to_fastest(result, *best) : std::nullopt;
-  return {{"scene", scene.name},
-          {"threads", options.threads},
-          {"rows", rows},
-          {"fastest_peer",
-           result.fastest_peer ? Json(result.rows[*result.fastest_peer].name) : Json(nullptr)},
-          {"ratio_to_fastest_peer", or_null(ratio)},
-          {"left_out", left_out},
-          {"disagreement", disagreement_json(result.disagreement)},
-          {"objects", scene.objects.size()},
-          {"triangles", scene.triangles.size()},
-          {"self_not_asked", not_asked_json(scene)},
-          {"hash", scene_hash(scene)},
-          {"seed", or_null(options.seed)},
-          {"options",
-           {{"methods", options.methods},
-            {"peers", options.peers},
-            {"repeat", options.repeat},
-            {"limit_s", options.limit_s},
-            {"device", options.device},
-            {"self", options.self}}},
-          {"cpu", cpu_model()},
-          {"commit", FARCULL_COMMIT}};
+  return {
+      {"scene", scene.name},
+      {"threads", options.threads},
+      {"rows", json_list(result.rows, [&](const BenchRow& row) { return row_json(result, row); })},
+      {"fastest_peer",
+       result.fastest_peer ? Json(result.rows[*result.fastest_peer].name) : Json(nullptr)},
+      {"ratio_to_fastest_peer", json_of(ratio)},
+      {"left_out",
+       json_list(result.left_out,
+                 [](const BenchContestant& c) {
+                   return Json{{"name", c.name}, {"device", c.device}, {"reason", c.left_out}};
+                 })},
+      {"disagreement", disagreement_json(result.disagreement)},
+      {"objects", scene.objects.size()},
+      {"triangles", scene.triangles.size()},
+      {"self_not_asked", not_asked_json(scene)},
+      {"hash", scene_hash(scene)},
+      {"seed", json_of(options.seed)},
+      {"options", FARCULL_JSON(options, methods, peers, repeat, limit_s, device, self)},
+      {"cpu", cpu_model()},
+      {"commit", FARCULL_COMMIT}};
 }
 
 std::string bench_table(const Scene& scene, const BenchOptions& options,

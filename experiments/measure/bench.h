@@ -112,11 +112,12 @@ struct DistanceBenchOptions {
 struct DistanceErrors {
   std::uint64_t answers = 0;
   std::uint64_t lacking = 0;       // distances that ours has
-  std::uint64_t beyond_it = 0;     // distances that ours has not: beyond `within`
+  std::uint64_t beyond = 0;        // distances that ours has not: beyond `within`
   std::uint64_t exact = 0;         // the same double
   std::uint64_t other_zero = 0;    // 0 where the objects are apart, or not 0 where they meet
   std::uint64_t other_object = 0;  // with `nearest`: another object, which is not as near
   double largest_relative = 0;     // of distances that neither calls 0
+  FARCULL_FIELDS(answers, exact, lacking, beyond, other_zero, other_object, largest_relative)
 };
 
 struct DistanceBenchRow : TimedRow {

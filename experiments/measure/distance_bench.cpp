@@ -15,6 +15,7 @@
 #include "core/view/view.h"
 #include "experiments/measure/harness.h"
 #include "experiments/method/distances.h"
+#include "experiments/record/fields.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/machine.h"
 #include "experiments/system/text_table.h"
@@ -99,7 +100,7 @@ DistanceErrors errors_of(DistanceTask task, const std::vector<PeerDistance>& ans
     const auto before = [&](const PeerDistance& x) {
       return one_each ? x.a < truth.a : nearest_by(x, truth);
     };
-    for (; at != answer.end() && before(*at); ++at) ++out.beyond_it;
+    for (; at != answer.end() && before(*at); ++at) ++out.beyond;
     if (at == answer.end() || at->a != truth.a || (!one_each && at->b != truth.b)) {
       ++out.lacking;
       continue;
@@ -116,7 +117,7 @@ DistanceErrors errors_of(DistanceTask task, const std::vector<PeerDistance>& ans
     }
     ++at;
   }
-  out.beyond_it += static_cast<std::uint64_t>(answer.end() - at);
+  out.beyond += static_cast<std::uint64_t>(answer.end() - at);
   return out;
 }
 
@@ -175,24 +176,12 @@ nlohmann::ordered_json to_json(const Scene& scene, const DistanceBenchOptions& o
   using Json = nlohmann::ordered_json;
   Json rows = Json::array();
   for (const DistanceBenchRow& row : result.rows) {
-    const auto times = ratio_to_fastest(result, row);
-    rows.push_back({{"name", row.name},
-                    {"library", row.library},
-                    {"peer", row.peer},
-                    {"total_ms", to_json(row.total_ms)},
-                    {"build_ms", row.build_ms},
-                    {"query_ms", row.query_ms},
-                    {"cold_ms", row.cold_ms},
-                    {"repeats", row.repeats},
-                    {"peak_mib", row.peak_mib ? Json(*row.peak_mib) : Json(nullptr)},
-                    {"ratio_to_fastest_peer", times ? Json(*times) : Json(nullptr)},
-                    {"answers", row.errors.answers},
-                    {"lacking", row.errors.lacking},
-                    {"beyond", row.errors.beyond_it},
-                    {"exact", row.errors.exact},
-                    {"other_zero", row.errors.other_zero},
-                    {"other_object", row.errors.other_object},
-                    {"largest_relative_error", row.errors.largest_relative}});
+    Json one = FARCULL_JSON(row, name, library, peer, total_ms, build_ms, query_ms, cold_ms,
+                            repeats, peak_mib);
+    one["ratio_to_fastest_peer"] = json_of(ratio_to_fastest(result, row));
+    one.update(FARCULL_JSON(row.errors, answers, lacking, beyond, exact, other_zero, other_object));
+    one["largest_relative_error"] = row.errors.largest_relative;
+    rows.push_back(std::move(one));
   }
   Json left_out = Json::array();
   for (const auto& [name, reason] : result.left_out)
@@ -200,7 +189,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const DistanceBenchOptions& o
   const double within = options.question.within;
   return {{"scene", scene.name},
           {"distances", task_name(options.question)},
-          {"within", std::isinf(within) ? Json(nullptr) : Json(within)},
+          {"within", json_if(!std::isinf(within), within)},
           {"threads", options.threads},
           {"rows", rows},
           {"fastest_peer",
@@ -209,8 +198,7 @@ nlohmann::ordered_json to_json(const Scene& scene, const DistanceBenchOptions& o
           {"objects", scene.objects.size()},
           {"triangles", scene.triangles.size()},
           {"hash", scene_hash(scene)},
-          {"options",
-           {{"peers", options.peers}, {"repeat", options.repeat}, {"limit_s", options.limit_s}}},
+          {"options", FARCULL_JSON(options, peers, repeat, limit_s)},
           {"cpu", cpu_model()},
           {"commit", FARCULL_COMMIT}};
 }

@@ -1,7 +1,5 @@
 // Asks the diagram and exact arithmetic, counts for each object what the one leaves of what the
 // other found, and turns it into JSON, CSV and a table.
-#include "experiments/measure/potential_neighbours.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>

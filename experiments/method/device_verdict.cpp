@@ -93,15 +93,6 @@ std::string processor() {
   return out.empty() ? "unknown" : out;
 }
 
-std::string now() {
-  const std::time_t t = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc{};
-  ::gmtime_r(&t, &utc);
-  char out[32];
-  std::strftime(out, sizeof out, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return out;
-}
-
 // Three digits, or "infinite".
 std::string number(double x) {
   if (!std::isfinite(x)) return "infinite";
@@ -238,6 +229,16 @@ const char* assumptions(Reliance reliance) {
 
 }  // namespace
 
+std::string utc_now() {
+  const std::time_t seconds =
+      std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc = {};
+  ::gmtime_r(&seconds, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
 std::string to_string(const DeviceVerdict& verdict, Reliance reliance) {
   if (!verdict.failed.empty()) {
     std::string out = "a probe fails on this device: ";
@@ -306,7 +307,7 @@ DeviceVerdict device_verdict(const GlInfo& device, Reliance reliance, const Prob
 DeviceVerdict keep_verdict(const GlInfo& device, Reliance reliance,
                            const std::vector<ProbeResult>& results, double ms) {
   DeviceVerdict out;
-  out.made = now();
+  out.made = utc_now();
   out.probes = results.size();
   out.ms = ms;
   Json probes = Json::array();

@@ -18,6 +18,9 @@ struct ProbeResult;  // core/gl/probe/probe.h
 /// A10. drawing: far, A1 to A10.
 enum class Reliance { pairs, drawing };
 
+/// The time now: UTC, ISO 8601, in seconds.
+std::string utc_now();
+
 struct DeviceVerdict {
   bool holds = false;  // every probe passed
   std::vector<std::string>

@@ -40,13 +40,10 @@ ProbeResult result(const std::string& name, const std::string& tried,
   return out;
 }
 
-using Check = void (*)(const SolidCase&, const SolidAnswer&, bool ordinary, KernelTally&);
-using Fatten = Solid (*)(const KernelTriangle&);
-using Adversarial = Solid (*)(std::uint64_t seed, std::uint64_t index, float cx, float cy);
-
 // Fattened triangles of every kind, then solids made of floats directly.
-KernelTally solids(const GlContext& context, const KernelProbeOptions& options, SolidProgram solid,
-                   Fatten fatten, Adversarial adversarial, Check check) {
+KernelTally solids(const GlContext& context, const KernelProbeOptions& options,
+                   const SolidKernel& kernel) {
+  SolidProgram solid = kernel.program;
   if (options.bare) solid.glsl = "#define FAR_WIDEN 0.0f\n" + solid.glsl;
   KernelTally tally;
   for (const bool direct : {false, true}) {
@@ -55,16 +52,17 @@ KernelTally solids(const GlContext& context, const KernelProbeOptions& options, 
     for (std::size_t i = 0; i < kSolidCases; ++i) {
       SolidCase c = solid_case_at(i);
       if (direct) {
-        c.solid = adversarial(options.seed, i, c.cx, c.cy);
+        c.solid = kernel.adversarial(options.seed, i, c.cx, c.cy);
       } else {
         const KernelTriangle t = kernel_triangle(options.seed, i, c.cx, c.cy);
         ordinary[i] = t.ordinary;
-        c.solid = fatten(t);
+        c.solid = kernel.fatten(t);
       }
       cases.push_back(c);
     }
     const std::vector<SolidAnswer> answers = device_solids(context, solid, cases);
-    for (std::size_t i = 0; i < kSolidCases; ++i) check(cases[i], answers[i], ordinary[i], tally);
+    for (std::size_t i = 0; i < kSolidCases; ++i)
+      kernel.check(cases[i], answers[i], ordinary[i], tally);
     // A step of the buffer is 0.25 px, then 16 px: mostly about as much as from entry to exit.
     std::vector<SolidCase> stored = cases;
     if (options.late_stores) std::rotate(stored.begin(), stored.begin() + 1, stored.end());
@@ -80,6 +78,17 @@ KernelTally solids(const GlContext& context, const KernelProbeOptions& options, 
 }
 
 }  // namespace
+
+std::vector<SolidKernel> solid_kernels() {
+  return {{"oriented boxes", obb_fattener().solid,
+           [](const KernelTriangle& t) { return obb_of(t.corners, t.radius); }, adversarial_box,
+           check_box},
+          {"exact offsets", minkowski_fattener().solid,
+           [](const KernelTriangle& t) {
+             return minkowski_solid(t.corners[0], t.corners[1], t.corners[2], t.radius);
+           },
+           adversarial_minkowski, check_minkowski}};
+}
 
 std::vector<ProbeResult> pair_kernel_probes(const GlContext& context,
                                             const KernelProbeOptions& options) {
@@ -123,21 +132,10 @@ std::vector<ProbeResult> solid_kernel_probes(const GlContext& context,
       "solid_interval by the canvas's fragment program; triangles of every kind, and floats made "
       "to fail; each is seen behind itself, by the programs with flags and with queries, in both "
       "depth formats";
-  return {result("oriented boxes", tried,
-                 [&] {
-                   return solids(
-                       context, options, obb_fattener().solid,
-                       [](const KernelTriangle& t) { return obb_of(t.corners, t.radius); },
-                       adversarial_box, check_box);
-                 }),
-          result("exact offsets", tried, [&] {
-            return solids(
-                context, options, minkowski_fattener().solid,
-                [](const KernelTriangle& t) {
-                  return minkowski_solid(t.corners[0], t.corners[1], t.corners[2], t.radius);
-                },
-                adversarial_minkowski, check_minkowski);
-          })};
+  std::vector<ProbeResult> out;
+  for (const SolidKernel& kernel : solid_kernels())
+    out.push_back(result(kernel.name, tried, [&] { return solids(context, options, kernel); }));
+  return out;
 }
 
 std::vector<ProbeResult> all_probes(const GlContext& context,

@@ -9,8 +9,21 @@
 
 #include "core/gl/base/context.h"
 #include "core/gl/probe/probe.h"
+#include "verify/kernel_check.h"
 
 namespace farcull {
+
+/// A kernel of an offset: its program, fattened triangles and solids made of floats to ask it
+/// about, and the check of an answer.
+struct SolidKernel {
+  const char* name;
+  SolidProgram program;
+  Solid (*fatten)(const KernelTriangle&);
+  Solid (*adversarial)(std::uint64_t seed, std::uint64_t index, float cx, float cy);
+  void (*check)(const SolidCase&, const SolidAnswer&, bool ordinary, KernelTally&);
+};
+/// Of both offsets.
+std::vector<SolidKernel> solid_kernels();
 
 /// All but the first two are deliberate defects, so that tests can see the probes fail.
 struct KernelProbeOptions {

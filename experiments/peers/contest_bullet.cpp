@@ -126,47 +126,50 @@ bool pair(const SuitePair& asked) {
   return !meshes<margin>(two_objects(asked)).empty();
 }
 
-ContestantCard card(const std::string& name, const std::string& margin) {
-  return {.name = name + kType,
-          .library = "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
-                     std::to_string(BT_BULLET_VERSION % 100),
-          .means = Means::crossing,
-          .degenerate = false,
-          .call = "btCollisionWorld::contactPairTest() of two btGImpactMeshShape with " + margin +
-                  ", btScalar " + kType,
-          .use =
-              "games and simulation, with moving objects of about 0.2 to 5 units and triangles "
-              "below 10 units, as the manual advises"};
-}
-
 constexpr const char* kSource =
     "Bullet 2.83 Physics SDK Manual (the newest that Bullet 3 has), Collision Margin and General "
     "Tips; btCollisionWorld.h, contactPairTest()";
 
-Contestant without_margin() {
-  ContestantCard out = card("bullet-gimpact-", "margin 0");
-  out.says =
-      "nothing of exact answers or of touching; of the margin 0 that it has here: \"zero margin "
-      "might "
-      "introduce problems\"; of degenerate triangles and slivers that they \"can better be "
-      "avoided\"";
-  out.source = kSource;
-  return {.card = out, .pair = pair<Margin::none>, .mesh = meshes<Margin::none>};
-}
-
-Contestant with_margin() {
-  ContestantCard out = card("bullet-gimpact-margin-", "the margin that it has by default");
-  out.margin = 0.08;  // two shapes, each of which has 0.04 by the manual
-  out.says =
-      "nothing of exact answers; triangles closer than two margins may be reported, since \"the "
-      "collision margin will expand the object\", and it \"is set to 0.04\"";
-  out.source = kSource;
-  return {.card = out, .pair = pair<Margin::by_default>, .mesh = meshes<Margin::by_default>};
+// apart: units, of triangles that may be reported all the same.
+template <Margin margin>
+Contestant contestant(const std::string& name, const std::string& with, double apart,
+                      const std::string& says) {
+  return {
+      .card =
+          {.name = name + kType,
+           .library = "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
+                      std::to_string(BT_BULLET_VERSION % 100),
+           .means = Means::crossing,
+           .degenerate = false,
+           .margin = apart,
+           .call = "btCollisionWorld::contactPairTest() of two btGImpactMeshShape with " + with +
+                   ", btScalar " + kType,
+           .says = says,
+           .source = kSource,
+           .use = "games and simulation, with moving objects of about 0.2 to 5 units and triangles "
+                  "below 10 units, as the manual advises"},
+      .pair = pair<margin>,
+      .mesh = meshes<margin>};
 }
 
 }  // namespace
 }  // namespace farcull
 
 int main(int argc, char** argv) {
-  return farcull::contest(argc, argv, {farcull::without_margin(), farcull::with_margin()});
+  using namespace farcull;
+  return contest(
+      argc, argv,
+      {contestant<Margin::none>(
+           "bullet-gimpact-", "margin 0", 0,
+           "nothing of exact answers or of touching; of the margin 0 that it has here: \"zero "
+           "margin "
+           "might "
+           "introduce problems\"; of degenerate triangles and slivers that they \"can better be "
+           "avoided\""),
+       // Two shapes, each of which has 0.04 by the manual.
+       contestant<Margin::by_default>(
+           "bullet-gimpact-margin-", "the margin that it has by default", 0.08,
+           "nothing of exact answers; triangles closer than two margins may be reported, since "
+           "\"the "
+           "collision margin will expand the object\", and it \"is set to 0.04\"")});
 }

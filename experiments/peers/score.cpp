@@ -1,27 +1,26 @@
-// Counts misses and wrong answers by kind and parameter.
+// Counts misses and wrong answers by kind and parameter. To minimize a fault it tries simpler
+// pairs, all of one round in one process, and goes on from the simplest that keeps the fault.
 #include "experiments/peers/score.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
 #include <map>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/view/view.h"
+#include "experiments/suite/reader.h"
 #include "verify/contact.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
-
-/// The counts that are written, in this order.
-constexpr std::array kCounts = {&Score::asked,     &Score::answered,  &Score::missed,
-                                &Score::wrong,     &Score::own_asked, &Score::own_missed,
-                                &Score::own_wrong, &Score::refused,   &Score::unanswered,
-                                &Score::crashed,   &Score::hung,      &Score::no_memory,
-                                &Score::not_asked, &Score::twice,     &Score::differing};
 
 bool degenerate(const std::array<Vec3, 3>& corners) { return shape(corners) != Shape::triangle; }
 
@@ -72,7 +71,7 @@ bool speaks_of(const ContestantCard& card, const Scene& scene, const TrianglePai
 }  // namespace
 
 void add(const Score& more, Score& to) {
-  for (const auto count : kCounts) to.*count += more.*count;
+  add_fields(more, to);
   to.ns += more.ns;
   note_reason(more.reason, to);
 }
@@ -150,7 +149,8 @@ std::string scores_text(const std::vector<Score>& scores) {
   std::string out;
   for (const Score& score : scores) {
     out += fmt::format("{}{} {}", out.empty() ? "" : ";", score.parameter, score.kind);
-    for (const auto count : kCounts) out += fmt::format(" {}", score.*count);
+    std::apply([&](const auto... count) { ((out += fmt::format(" {}", count)), ...); },
+               score.members());
     out += fmt::format(" {}|{}", score.ns, score.reason);
   }
   return out;
@@ -160,6 +160,7 @@ std::vector<Score> parse_scores(const std::string& text) {
   const auto fail = [&](const std::string& what) {
     throw Error("scores", "'" + what + "' is no score", "use the farcull that measured it");
   };
+  constexpr std::size_t kCounts = std::tuple_size_v<decltype(Score().members())>;
   std::vector<Score> out;
   for (const std::string& part :
        text.empty() ? std::vector<std::string>{} : split_list(text, ';')) {
@@ -168,7 +169,7 @@ std::vector<Score> parse_scores(const std::string& text) {
     if (bar == std::string::npos) fail(part);
     score.reason = part.substr(bar + 1);
     const std::vector<std::string> words = split_list(part.substr(0, bar), ' ');
-    if (words.size() != kCounts.size() + 3) fail(part);
+    if (words.size() != kCounts + 3) fail(part);
     const auto number = [&](std::size_t i) {
       const auto value = parse_number<double>(words[i]);
       if (!value) fail(part);
@@ -176,11 +177,150 @@ std::vector<Score> parse_scores(const std::string& text) {
     };
     score.parameter = number(0);
     score.kind = words[1];
-    for (std::size_t i = 0; i < kCounts.size(); ++i)
-      score.*kCounts[i] = static_cast<std::uint64_t>(number(i + 2));
+    std::size_t i = 2;
+    std::apply([&](auto&... count) { ((count = static_cast<std::uint64_t>(number(i++))), ...); },
+               score.members());
     score.ns = number(words.size() - 1);
   }
   return out;
+}
+
+namespace {
+
+using Change = std::function<double(double)>;
+
+/// Coordinate i of 18, of the first triangle and then of the second.
+double& coordinate(SuitePair& pair, std::size_t i) {
+  return (i < 9 ? pair.a : pair.b)[i / 3 % 3][static_cast<Eigen::Index>(i % 3)];
+}
+double coordinate(const SuitePair& pair, std::size_t i) {
+  return (i < 9 ? pair.a : pair.b)[i / 3 % 3][static_cast<Eigen::Index>(i % 3)];
+}
+
+void change_all(SuitePair& pair, const Change& change) {
+  for (std::size_t i = 0; i < 18; ++i) coordinate(pair, i) = change(coordinate(pair, i));
+}
+
+/// Rounded to so many bits.
+double to_bits(double value, int bits) {
+  int exponent = 0;
+  const double fraction = std::frexp(value, &exponent);
+  return std::ldexp(std::nearbyint(std::ldexp(fraction, bits)), exponent - bits);
+}
+/// Rounded to so many significant decimal digits.
+double to_digits(double value, int digits) {
+  if (value == 0) return 0;
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*e", digits - 1, value);
+  return std::strtod(text, nullptr);
+}
+
+/// A shared corner is one vertex: the second takes what the first has.
+void keep_shared(SuitePair& pair) {
+  for (const SharedCorner& corner : pair.shared) pair.b[corner.b] = pair.a[corner.a];
+}
+
+std::vector<SuitePair> simpler(const SuitePair& from) {
+  std::vector<SuitePair> out;
+  const auto with = [&](const std::function<void(SuitePair&)>& change) {
+    SuitePair next = from;
+    change(next);
+    keep_shared(next);
+    bool finite = true;
+    for (std::size_t i = 0; i < 18; ++i) finite = finite && std::isfinite(coordinate(next, i));
+    if (finite && cost_of(next) < cost_of(from)) out.push_back(std::move(next));
+  };
+  const auto all = [&](const Change& change) {
+    with([&](SuitePair& pair) { change_all(pair, change); });
+  };
+  for (const int bits : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32})
+    all([bits](double x) { return to_bits(x, bits); });
+  for (int digits = 1; digits <= 16; ++digits)
+    all([digits](double x) { return to_digits(x, digits); });
+  // As integers, at the scale of the largest coordinate.
+  double most = 0;
+  for (std::size_t i = 0; i < 18; ++i) most = std::max(most, std::abs(coordinate(from, i)));
+  if (most > 0) {
+    const int exponent = std::ilogb(most);
+    for (int keep = 1; keep <= 30; keep += 1) {
+      all([=](double x) { return std::nearbyint(std::ldexp(x, keep - exponent)); });
+    }
+    all([=](double x) { return std::ldexp(x, -exponent); });
+  }
+  for (const auto* triangle : {&from.a, &from.b}) {
+    for (const Vec3& corner : *triangle) {
+      with([&](SuitePair& pair) {
+        for (Vec3& p : pair.a) p -= corner;
+        for (Vec3& p : pair.b) p -= corner;
+      });
+    }
+  }
+  for (std::size_t i = 0; i < 18; ++i) {
+    for (const int digits : {0, 1, 2, 3, 5, 8}) {
+      with([&](SuitePair& pair) {
+        double& x = coordinate(pair, i);
+        x = digits == 0 ? 0 : to_digits(x, digits);
+      });
+    }
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const SuitePair& x, const SuitePair& y) { return cost_of(x) < cost_of(y); });
+  return out;
+}
+
+/// Whether a simpler pair is of the same sort: it meets or not as before, and what the
+/// documentation promises of it is the same.
+bool like(const ContestantCard& card, const SuitePair& before, SuitePair& pair) {
+  // Corners that came together by rounding would be shared by place and not by index.
+  if (!pair.shared.empty() && pair.shared != equal_corners(pair.a, pair.b)) return false;
+  pair.kind = decide(pair, "a smaller pair");
+  return collides(pair.kind) == collides(before.kind) &&
+         promised(card, pair) == promised(card, before);
+}
+
+}  // namespace
+
+std::size_t cost_of(const SuitePair& pair) { return coordinates_text(pair).size(); }
+
+std::string coordinates_text(const SuitePair& pair) {
+  std::string out;
+  for (std::size_t i = 0; i < 18; ++i)
+    out += (i == 0 ? "" : " ") + decimal(coordinate(pair, i) + 0.0);
+  return out;
+}
+
+std::optional<SuitePair> minimized(const Invited& invited, const PairFault& fault,
+                                   const ContestLimits& limits, int rounds) {
+  ContestLimits hasty = limits;
+  if (is_death(fault.outcome)) {  // each costs a process, and a hang its whole limit
+    hasty.start_s = limits.answer_s;
+    rounds = std::min(rounds, 3);
+  }
+  // Twice, each time alone in a new process.
+  const auto errs_alone = [&](const SuitePair& pair) {
+    for (int time = 0; time < 2; ++time) {
+      if (ask_pairs(invited, std::span(&pair, 1), hasty, 0).answers[0].outcome != fault.outcome)
+        return false;
+    }
+    return true;
+  };
+  if (!errs_alone(fault.pair)) return std::nullopt;
+  SuitePair best = fault.pair;
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<SuitePair> tried = simpler(best);
+    std::erase_if(tried, [&](SuitePair& pair) { return !like(invited.card, fault.pair, pair); });
+    if (tried.empty()) return best;
+    if (is_death(fault.outcome)) tried.resize(std::min<std::size_t>(tried.size(), 4));
+    const PairsAnswer answer = ask_pairs(invited, tried, hasty, 0);
+    bool found = false;
+    for (std::size_t i = 0; i < tried.size() && !found; ++i) {
+      if (answer.answers[i].outcome != fault.outcome || !errs_alone(tried[i])) continue;
+      best = tried[i];
+      found = true;
+    }
+    if (!found) return best;
+  }
+  return best;
 }
 
 }  // namespace farcull

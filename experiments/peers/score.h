@@ -1,11 +1,13 @@
 // Compares the answers of a contestant with the labels of a suite: with closed triangles, and with
-// what its own documentation calls a collision.
+// what its own documentation calls a collision. And the smallest example of a fault: the same fault
+// with fewer digits.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "experiments/peers/runner.h"
 
 namespace farcull {
@@ -23,8 +25,10 @@ struct Score {
   std::uint64_t refused = 0, unanswered = 0, crashed = 0, hung = 0, no_memory = 0;
   std::uint64_t not_asked = 0;             // not among `asked`: too many processes had ended badly
   std::uint64_t twice = 0, differing = 0;  // asked twice, and answered otherwise then
-  double ns = 0;                           // of all answers
-  std::string reason = {};                 // of the first refusal or death
+  FARCULL_FIELDS(asked, answered, missed, wrong, own_asked, own_missed, own_wrong, refused,
+                 unanswered, crashed, hung, no_memory, not_asked, twice, differing)
+  double ns = 0;            // of all answers
+  std::string reason = {};  // of the first refusal or death
 
   bool operator==(const Score&) const = default;
 };
@@ -54,5 +58,26 @@ Score score_mesh(const ContestantCard& card, const SuiteMesh& mesh, const MeshAn
 std::string scores_text(const std::vector<Score>& scores);
 /// The inverse of scores_text(). Throws Error for any other text.
 std::vector<Score> parse_scores(const std::string& text);
+
+/// A fault about one pair: the outcome, which the label contradicts, or a death.
+struct PairFault {
+  SuitePair pair;  // with its kind
+  ContestOutcome outcome = ContestOutcome::apart;
+};
+
+/// The number of characters of the coordinates in decimal: what is minimized.
+std::size_t cost_of(const SuitePair& pair);
+
+/// A pair at which the contestant has the same fault, also where it is the only one that a process
+/// is asked about; empty where the fault depends on what was asked before. It is one of which the
+/// oracles say as before whether it meets, and whose coordinates have as few characters as a search
+/// of at most `rounds` rounds finds: it moves and scales both triangles, rounds coordinates, and
+/// takes whatever keeps the fault. A round asks one process. Corners that are shared stay so. The
+/// kind is that of the new pair.
+std::optional<SuitePair> minimized(const Invited& invited, const PairFault& fault,
+                                   const ContestLimits& limits, int rounds = 8);
+
+/// The 18 coordinates in decimal, with blanks between.
+std::string coordinates_text(const SuitePair& pair);
 
 }  // namespace farcull

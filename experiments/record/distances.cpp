@@ -1,6 +1,4 @@
 // Turns distances into JSON, CSV, text and certificates.
-#include "experiments/record/distances.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>

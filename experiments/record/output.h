@@ -2,12 +2,15 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "experiments/method/distances.h"
 #include "experiments/method/plan.h"
 #include "experiments/method/run.h"
 #include "verify/certificate/certificate.h"
+#include "verify/certificate/distance_certificate.h"
 #include "verify/certificate/pair_list.h"
 
 namespace farcull {
@@ -67,5 +70,29 @@ nlohmann::ordered_json plan_json(const Scene& scene, const Plan& plan);
 
 /// "runs", "left out" or "depends": of a planned stage.
 std::string decision_of(const Stage& stage);
+
+// Distances (docs/proximity.md).
+
+/// Keys keep their order, so that the same answers give the same text. seed: what the scene was
+/// drawn with, where it is random.
+nlohmann::ordered_json distances_json(const Scene& scene, const DistanceRecord& record,
+                                      std::optional<std::uint64_t> seed = {});
+
+/// A row for each pair, `before` at its start; the names of the columns.
+std::string distances_header();
+std::string distances_rows(const Scene& scene, const DistanceRecord& record,
+                           const std::string& before = "");
+
+/// The distances, of many the first ones, then the stages and the accounting.
+std::string distances_table(const Scene& scene, const DistanceRecord& record);
+
+/// The verdict of an accounting, in one line without its end.
+std::string verdict_text(const DistanceAccounting& accounting);
+/// The pairs, and the classes that they are in.
+std::string accounting_sum(const DistanceAccounting& accounting);
+
+/// The answers of the record in the form that a stranger can check, without times and without which
+/// object is inside another.
+DistanceCertificate certificate_of(const Scene& scene, const DistanceRecord& record);
 
 }  // namespace farcull

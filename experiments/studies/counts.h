@@ -199,8 +199,7 @@ struct SetCounts {
 /// (measure/bench.h).
 struct DistanceCounts {
   std::uint64_t asked = 0;  // distances that the question has
-  std::uint64_t answers = 0, exact = 0, lacking = 0, beyond = 0, other_zero = 0, other_object = 0;
-  double largest_relative = 0;
+  DistanceErrors errors;
   std::uint64_t triangles = 0, objects = 0;
   std::uint64_t accounted = 0;  // as in SetCounts
   /// Distances that are not the nearest double, and distances of nothing that was asked for.
@@ -208,8 +207,7 @@ struct DistanceCounts {
   bool promises = false;     // that every distance is the nearest double
   std::string library = {};  // with its version
   std::string scene_hash;
-  FARCULL_FIELDS(asked, answers, exact, lacking, beyond, other_zero, other_object, largest_relative,
-                 triangles, objects, accounted, wrong, promises, library, scene_hash)
+  FARCULL_FIELDS(asked, errors, triangles, objects, accounted, wrong, promises, library, scene_hash)
 };
 
 /// std::monostate: nothing was measured.

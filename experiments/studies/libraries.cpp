@@ -11,7 +11,6 @@
 #include "core/base/error.h"
 #include "experiments/generators/pair_generators.h"
 #include "experiments/measure/lab.h"
-#include "experiments/peers/minimize.h"
 #include "experiments/peers/score.h"
 #include "experiments/studies/study.h"
 #include "experiments/suite/writer.h"
@@ -119,24 +118,12 @@ struct MeshFiles {
 
 LibraryCounts counts_of(const ContestantCard& card, const std::vector<Score>& scores) {
   LibraryCounts out;
-  for (const Score& score : scores) {
-    out.asked += score.asked;
-    out.answered += score.answered;
-    out.missed += score.missed;
-    out.wrong += score.wrong;
-    out.own_asked += score.own_asked;
-    out.own_missed += score.own_missed;
-    out.own_wrong += score.own_wrong;
-    out.refused += score.refused;
-    out.unanswered += score.unanswered;
-    out.not_asked += score.not_asked;
-    out.crashed += score.crashed;
-    out.hung += score.hung;
-    out.no_memory += score.no_memory;
-    out.twice += score.twice;
-    out.differing += score.differing;
-    if (out.reason.empty()) out.reason = score.reason;
-  }
+  Score sum;
+  for (const Score& score : scores) add(score, sum);
+  std::tie(out.asked, out.answered, out.missed, out.wrong, out.own_asked, out.own_missed,
+           out.own_wrong, out.refused, out.unanswered, out.crashed, out.hung, out.no_memory,
+           out.not_asked, out.twice, out.differing) = sum.members();
+  out.reason = sum.reason;
   out.promises = card.promises;
   out.library = card.library;
   out.means = card.means == Means::closed ? "closed" : "crossing";

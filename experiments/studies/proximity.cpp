@@ -239,17 +239,11 @@ PointResult measure_distances(const DistancePoint& point, const DistancePeer& co
     const DistanceErrors errors = errors_of(point.task, answer.distances, exact.distances);
     const std::uint64_t asked = exact.distances.size();
     DistanceCounts counts{.asked = asked,
-                          .answers = errors.answers,
-                          .exact = errors.exact,
-                          .lacking = errors.lacking,
-                          .beyond = errors.beyond_it,
-                          .other_zero = errors.other_zero,
-                          .other_object = errors.other_object,
-                          .largest_relative = errors.largest_relative,
+                          .errors = errors,
                           .triangles = exact.scene.triangles.size(),
                           .objects = exact.scene.objects.size(),
                           .accounted = exact.accounted,
-                          .wrong = asked - errors.exact + errors.beyond_it,
+                          .wrong = asked - errors.exact + errors.beyond,
                           .promises = contestant.name == farcull_distances().name,
                           .library = contestant.library,
                           .scene_hash = exact.hash};

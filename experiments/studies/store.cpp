@@ -155,16 +155,6 @@ std::string grid_text(const GridChoice& choice) {
 
 }  // namespace
 
-std::string utc_now() {
-  const std::time_t seconds =
-      std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc = {};
-  ::gmtime_r(&seconds, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
-}
-
 Provenance provenance_now(const std::string& device, const std::string& options) {
   Provenance out{.started = utc_now(),
                  .commit = FARCULL_COMMIT,

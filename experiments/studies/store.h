@@ -40,9 +40,6 @@ std::string driver_text(const Provenance& provenance);
 /// ask for its names; throws Error where the one that was named does not answer.
 Provenance provenance_now(const std::string& device, const std::string& options);
 
-/// The time now: UTC, ISO 8601, in seconds.
-std::string utc_now();
-
 constexpr std::int32_t kStoreId = 0x46415243;  // "FARC"
 constexpr std::int32_t kStoreVersion = 1;
 

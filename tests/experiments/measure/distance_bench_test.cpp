@@ -130,12 +130,12 @@ TEST(DistanceBench, EachErrorIsCountedAsWhatItIs) {
   const DistanceErrors errors = errors_of(DistanceTask::objects, answer, exact);
   EXPECT_EQ(errors.answers, 4u);
   EXPECT_EQ(errors.lacking, 1u);
-  EXPECT_EQ(errors.beyond_it, 1u);
+  EXPECT_EQ(errors.beyond, 1u);
   EXPECT_EQ(errors.other_zero, 1u);
   EXPECT_EQ(errors.exact, 1u);
   EXPECT_EQ(errors.largest_relative, 0.125);
   EXPECT_EQ(errors_of(DistanceTask::objects, {}, exact).lacking, 4u);
-  EXPECT_EQ(errors_of(DistanceTask::objects, exact, {}).beyond_it, 4u);
+  EXPECT_EQ(errors_of(DistanceTask::objects, exact, {}).beyond, 4u);
 }
 
 TEST(DistanceBench, AnotherNearestObjectIsAnErrorIfItIsNotAsNear) {

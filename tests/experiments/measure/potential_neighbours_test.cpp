@@ -1,6 +1,6 @@
 // Potential neighbours and what is lost of them, against rationals and against the pairs that the
 // diagrams leave, on small random scenes.
-#include "experiments/measure/potential_neighbours.h"
+#include "experiments/measure/neighbour_sets.h"
 
 #include <gtest/gtest.h>
 

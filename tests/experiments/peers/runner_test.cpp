@@ -7,7 +7,6 @@
 #include <fstream>
 #include <random>
 
-#include "experiments/peers/minimize.h"
 #include "experiments/peers/score.h"
 #include "tests/experiments/system/error_of.h"
 #include "verify/exact.h"
