@@ -94,7 +94,7 @@ TEST(Proximity, APeerThatLiesShowsAnError) {
     };
     const PointResult honest = measured(liar([](auto&) {}));
     EXPECT_EQ(wrong(honest), 0u);
-    EXPECT_EQ(distances_of(honest).largest_relative, 0);
+    EXPECT_EQ(distances_of(honest).errors.largest_relative, 0);
     EXPECT_GT(distances_of(honest).asked, 5u);
     const auto apart = [](std::vector<PeerDistance>& all) {
       return std::find_if(all.begin(), all.end(),
@@ -103,14 +103,14 @@ TEST(Proximity, APeerThatLiesShowsAnError) {
     const PointResult by_an_ulp = measured(
         liar([&](auto& all) { apart(all)->distance = std::nextafter(apart(all)->distance, 9e9); }));
     EXPECT_EQ(wrong(by_an_ulp), 1u);
-    EXPECT_GT(distances_of(by_an_ulp).largest_relative, 0);
-    EXPECT_LE(distances_of(by_an_ulp).largest_relative, 0x1p-52);
+    EXPECT_GT(distances_of(by_an_ulp).errors.largest_relative, 0);
+    EXPECT_LE(distances_of(by_an_ulp).errors.largest_relative, 0x1p-52);
     const PointResult touching = measured(liar([&](auto& all) { apart(all)->distance = 0; }));
     EXPECT_EQ(wrong(touching), 1u);
-    EXPECT_EQ(distances_of(touching).other_zero, 1u);
+    EXPECT_EQ(distances_of(touching).errors.other_zero, 1u);
     const PointResult fewer = measured(liar([](auto& all) { all.pop_back(); }));
     EXPECT_EQ(wrong(fewer), 1u);
-    EXPECT_EQ(distances_of(fewer).lacking, 1u);
+    EXPECT_EQ(distances_of(fewer).errors.lacking, 1u);
     EXPECT_FALSE(breaks_promise(stored(fewer))) << "it promises nothing";
     // The same by farcull would break its promise.
     DistancePeer ours = liar([](auto& all) { all.pop_back(); });
