@@ -16,8 +16,8 @@
 #include <system_error>
 
 #include "core/base/error.h"
-#include "core/base/parameter.h"
 #include "core/base/floating_point.h"
+#include "core/base/parameter.h"
 #include "core/base/stoppable.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/options.h"
