@@ -1,7 +1,5 @@
 // Answers in every floating-point environment that a caller may have, from all that decides,
 // accounts and checks. The twins call a predicate without a guard, and it is wrong.
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
 
 #include "core/pairs/backend.h"
@@ -10,7 +8,7 @@
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
-#include "tests/core/base/floating_point_lab.h"
+#include "tests/lab/floating_point.h"
 #include "verify/certificate/certificate.h"
 #include "verify/exact.h"
 

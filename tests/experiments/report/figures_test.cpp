@@ -18,7 +18,7 @@
 #include "experiments/report/markdown.h"
 #include "experiments/report/style.h"
 #include "tests/experiments/report/logarithmic.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {

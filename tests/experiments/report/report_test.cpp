@@ -22,7 +22,7 @@
 #include "experiments/report/style.h"
 #include "experiments/report/tables.h"
 #include "experiments/system/shell_word.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {

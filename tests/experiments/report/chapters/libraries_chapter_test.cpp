@@ -17,7 +17,7 @@
 #include "experiments/report/report.h"
 #include "experiments/report/style.h"
 #include "experiments/suite/writer.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
