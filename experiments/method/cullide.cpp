@@ -7,6 +7,7 @@
 #include "core/base/stopwatch.h"
 #include "core/boxes/join.h"
 #include "core/native/lanes.h"
+#include "core/pairs/boxes_before_pixels.h"
 #include "core/scene/scene.h"
 #include "experiments/method/methods.h"
 #include "offsets/minkowski.h"
@@ -155,6 +156,19 @@ Stage boxes_stage(const Scene& scene, const Regions& regions, bool self, bool fu
   return stage;
 }
 
+// Takes out what boxes of triangles settle.
+Stage narrow(const Scene& scene, const RunOptions& options, unsigned threads, Regions& regions) {
+  const Stopwatch watch;
+  Stage stage{.kind = StageKind::blocks, .in = regions.triangles.size(), .unit = Unit::triangles};
+  const NarrowedRegions result = narrow_regions(scene, options.ignored, threads, regions);
+  stage.ran = true;
+  stage.reason = result.narrowed ? Reason::boxes_meet : Reason::boxes_decide_little;
+  stage.n = result.pairs;
+  stage.out = regions.triangles.size();
+  stage.ms = watch.ms();
+  return stage;
+}
+
 // Triangles that drawing culled are kept all the same where a pair inside their patch is.
 void add_members(const Scene& scene, Candidates& out) {
   const std::vector<std::uint32_t> members = members_of(out.pairs, scene.triangles.size());
@@ -166,7 +180,7 @@ void add_members(const Scene& scene, Candidates& out) {
 
 }  // namespace
 
-void plan_drawing(const Scene& scene, unsigned, const Progress&, Plan& plan) {
+void plan_drawing(const Scene& scene, unsigned threads, const Progress&, Plan& plan) {
   const RunOptions& options = plan.options;
   const bool self = tests_self_alone(options.method);
   DrawPlan work;
@@ -181,6 +195,10 @@ void plan_drawing(const Scene& scene, unsigned, const Progress&, Plan& plan) {
   const Regions& regions = work.regions;
   plan.trace.push_back(boxes_stage(scene, regions, self || work.patches.cut, options.full));
   plan.trace.back().ms = watch.ms();
+  if (!self && !work.patches.cut && !options.full && !regions.triangles.empty() &&
+      boxes_of(options) == BoxLevel::triangles) {
+    plan.trace.push_back(narrow(scene, options, threads, work.regions));
+  }
   work.settings = settings_of(options, regions.triangles.size());
   if (work.patches.cut) work.settings.owners = work.patches.owner;
   if (regions.triangles.empty()) {

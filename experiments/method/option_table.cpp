@@ -233,6 +233,25 @@ const Option kOptions[] = {
          [](Run o) {
            return text_if(draws(o.method), query_of(o) == QueryMode::flags ? "flags" : "occlusion");
          }},
+    {.name = "boxes",
+     .type = "objects|triangles",
+     .help = "what boxes decide before anything is drawn: which\n"
+             "triangles meet the box of another object, as published,\n"
+             "or the box of a triangle of one; default triangles for\n"
+             "far, objects for cullide and quick-cullide",
+     .serves = drawing_levels,
+     .take =
+         [](Given text, RunOptions& o) {
+           return take_word(text, "objects", BoxLevel::objects, "triangles", BoxLevel::triangles,
+                            o.boxes);
+         },
+     .kind = "choice",
+     .remedy = "give objects or triangles",
+     .value =
+         [](Run o) {
+           return text_if(drawing_levels(traits(o.method)),
+                          boxes_of(o) == BoxLevel::objects ? "objects" : "triangles");
+         }},
     {.name = "clusters",
      .type = "LIST|none",
      .help = "sizes of clusters of triangles that are asked before\n"

@@ -77,6 +77,10 @@ DepthMode depth_of(const RunOptions& options) {
   return options.depth.value_or(fattens(options.method) ? DepthMode::fragment : DepthMode::fixed);
 }
 
+BoxLevel boxes_of(const RunOptions& options) {
+  return options.boxes.value_or(fattens(options.method) ? BoxLevel::triangles : BoxLevel::objects);
+}
+
 QueryMode query_of(const RunOptions& options) {
   // One step a triangle: flags would wait for each of them.
   const bool steps = tests_self_alone(options.method);
