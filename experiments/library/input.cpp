@@ -143,10 +143,17 @@ namespace {
 constexpr int kMostResolution = 16384;
 
 // The enumerations of the library have the order of those within.
-static_assert(static_cast<int>(ColliderContactKind::touch_face) ==
-              static_cast<int>(ContactKind::touch_face));
-static_assert(static_cast<int>(ColliderContacts::segments) ==
-              static_cast<int>(ContactDetail::segments));
+static_assert([] {
+  using Given = ColliderContactKind;
+  using Own = ContactKind;
+  return same(Given::apart, Own::apart) && same(Given::equal, Own::equal) &&
+         same(Given::touch_vertex, Own::touch_vertex) && same(Given::touch_edge, Own::touch_edge) &&
+         same(Given::coplanar, Own::coplanar) && same(Given::crossing, Own::crossing) &&
+         same(Given::touch_face, Own::touch_face);
+}());
+static_assert(same(ColliderContacts::none, ContactDetail::none) &&
+              same(ColliderContacts::kinds, ContactDetail::kinds) &&
+              same(ColliderContacts::segments, ContactDetail::segments));
 
 }  // namespace
 

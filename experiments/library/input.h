@@ -14,6 +14,12 @@
 
 namespace farcull {
 
+/// Whether two enumerators have one number, so that a cast makes the second from the first.
+template <class Given, class Own>
+constexpr bool same(Given given, Own own) {
+  return static_cast<int>(given) == static_cast<int>(own);
+}
+
 inline constexpr unsigned kMostThreads = 1024;
 
 /// The call with the floating-point environment of the proofs, the caller's restored afterwards.

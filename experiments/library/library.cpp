@@ -249,9 +249,13 @@ bool ColliderStream::complete() const {
 namespace {
 
 // The enumerations of the library have the order of those within.
-static_assert(static_cast<int>(DistanceKind::all) == static_cast<int>(DistancePairs::all));
-static_assert(static_cast<int>(DistanceInside::not_closed) ==
-              static_cast<int>(WhichInside::not_closed));
+static_assert(same(DistanceKind::objects, DistancePairs::objects) &&
+              same(DistanceKind::nearest, DistancePairs::nearest) &&
+              same(DistanceKind::all, DistancePairs::all));
+static_assert(same(DistanceInside::unknown, WhichInside::unknown) &&
+              same(DistanceInside::none, WhichInside::none) &&
+              same(DistanceInside::a, WhichInside::a) && same(DistanceInside::b, WhichInside::b) &&
+              same(DistanceInside::not_closed, WhichInside::not_closed));
 
 DistancePairs pairs_of(DistanceKind kind) {
   if (kind < DistanceKind::objects || kind > DistanceKind::all)

@@ -252,6 +252,14 @@ std::string distances_table(const Scene& scene, const DistanceRecord& record) {
   return out + accounting_lines(scene, record);
 }
 
+// Certificates, which know nothing of the rest, have an enumeration of the same order.
+static_assert(static_cast<int>(DistancePairs::objects) ==
+                  static_cast<int>(DistanceCertificate::Pairs::objects) &&
+              static_cast<int>(DistancePairs::nearest) ==
+                  static_cast<int>(DistanceCertificate::Pairs::nearest) &&
+              static_cast<int>(DistancePairs::all) ==
+                  static_cast<int>(DistanceCertificate::Pairs::all));
+
 DistanceCertificate certificate_of(const Scene& scene, const DistanceRecord& record) {
   DistanceCertificate out;
   out.scene = {scene.name, scene.objects.size(), scene.triangles.size(), record.scene_hash};
