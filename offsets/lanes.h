@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/canvas/fatten.h"
-#include "core/native/job.h"
+#include "core/native/canvas.h"
 
 namespace farcull {
 

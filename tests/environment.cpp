@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "core/base/parameter.h"
+#include "core/base/error.h"
 
 namespace {
 

@@ -44,7 +44,7 @@ SOURCES = ['.h', '.cpp', '.glsl', '.vert', '.frag', '.comp']  # shaders too, sin
 LINES = [
     (OURS[:4], 'core/base/parallel.cpp', r'std::(jthread|async|thread)([^:_\w]|$)|pthread_create',
      'starts a thread: only core/base/parallel.cpp does, which sets the arithmetic of each'),
-    (['core'], '', '"[^"]*--[a-z]', 'names an option of the command line: write {name} (core/base/parameter.h)')]
+    (['core'], '', '"[^"]*--[a-z]', 'names an option of the command line: write {name} (core/base/error.h)')]
 
 
 def reached(start, edges):

@@ -28,7 +28,6 @@
 #include <thread>
 #include <vector>
 
-#include "core/scene/moved.h"
 #include "core/scene/scene.h"
 #include "verify/answers.h"
 

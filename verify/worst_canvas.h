@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/canvas/asked_depth.h"
 #include "core/canvas/canvas.h"
 
 namespace farcull {

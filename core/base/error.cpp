@@ -1,8 +1,6 @@
 // The text of an error: where, line, reason and remedy in one sentence.
 #include "core/base/error.h"
 
-#include "core/base/parameter.h"
-
 namespace farcull {
 namespace {
 

@@ -1,6 +1,9 @@
 // Errors of the outside world (files, EGL, GL, disk, options): one exception type that says where,
 // why and what to do. Mistakes of the programmer are assertions, uncertainty is a value ("keep the
 // pair"); neither is an Error.
+//
+// A text names a parameter as {depth_format}, so that nothing below the command line knows how its
+// words are written.
 #pragma once
 
 #include <stdexcept>
@@ -12,7 +15,7 @@ class Error : public std::runtime_error {
  public:
   /// where: a file ("mesh.obj"), a parameter ("{radius}") or a GL stage ("store"); reason: what is
   /// wrong there; remedy: what the user can do next; line: of a text file, from 1; 0: no line. The
-  /// three texts are spelled() (core/base/parameter.h).
+  /// three texts are spelled().
   Error(std::string where, std::string reason, std::string remedy, long line = 0);
 
   std::string where;
@@ -20,5 +23,15 @@ class Error : public std::runtime_error {
   std::string remedy;
   long line;
 };
+
+// ---- names of parameters ----
+
+/// The text as its reader writes parameters: by the name alone, unless the program has another
+/// spelling.
+std::string spelled(const std::string& text);
+/// The program's spelling of a parameter's name, such as --depth-format on a command line; empty:
+/// it has no such parameter, so the text stays as it is (a file may be called a{b}.obj). To be
+/// called before any thread runs.
+void spell_parameters(std::string (*spelling)(const std::string& name));
 
 }  // namespace farcull

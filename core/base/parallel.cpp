@@ -17,8 +17,6 @@
 #include <csignal>
 #endif
 
-#include "core/base/stoppable.h"
-
 namespace farcull {
 namespace {
 

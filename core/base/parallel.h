@@ -1,10 +1,15 @@
-// Work on all cores in contiguous chunks, so that results can be joined in order. All threads of
-// farcull's own work start here, so each computes as the proofs say (core/base/floating_point.h).
+// Work on all cores in contiguous chunks, so that results can be joined in order; work that threads
+// take item by item; and calls that can be stopped. All threads of farcull's own work start here,
+// so each computes as the proofs say (core/base/floating_point.h).
 #pragma once
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <exception>
+#include <functional>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -45,5 +50,63 @@ inline std::size_t chunks_for(std::size_t count, std::size_t least, unsigned thr
       threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
   return std::clamp<std::size_t>(count / std::max<std::size_t>(least, 1), 1, cores);
 }
+
+// ---- work of many items of unlike length, shared by all threads ----
+
+/// Calls work(k, memory) once for each k in 0 .. count - 1, the next one by whichever thread is
+/// free. Each thread makes a Memory, and uses it in all its calls. threads: 0 for as many as there
+/// are cores. An exception of work is thrown again here.
+template <class Memory, class Work>
+void for_each_with_memory(std::size_t count, unsigned threads, const Work& work) {
+  const std::size_t chunks = chunks_for(count, 1, threads);
+  std::atomic<std::size_t> next = 0;
+  for_chunks(chunks, chunks, [&](std::size_t, std::size_t, std::size_t) {
+    Memory memory;
+    for (std::size_t k = next++; k < count; k = next++) work(k, memory);
+  });
+}
+
+/// The same with work(k).
+template <class Work>
+void for_each_shared(std::size_t count, unsigned threads, const Work& work) {
+  struct Nothing {};
+  for_each_with_memory<Nothing>(count, threads, [&](std::size_t k, Nothing&) { work(k); });
+}
+
+// ---- a call in a thread of its own, which another thread can stop ----
+
+/// Thrown within a call that was stopped. It is no Error: nothing is wrong.
+class Stopped : public std::exception {
+ public:
+  const char* what() const noexcept override { return "stopped"; }
+};
+
+/// Throws Stopped where the calling thread works for a StoppableCall that was asked to stop. Else
+/// it does nothing. Each step that is divided by for_chunks() begins with it.
+void stop_point();
+
+/// Runs `work` in a thread of its own. The threads that help with it in for_chunks() see the same
+/// request to stop. Signals are left to the threads of the caller. The thread starts with the
+/// floating-point environment of the thread that constructs the object.
+class StoppableCall {
+ public:
+  /// Throws std::system_error where no thread can be started; nothing has run then.
+  explicit StoppableCall(std::function<void()> work);
+  /// Waits until the work has ended.
+  ~StoppableCall();
+  StoppableCall(const StoppableCall&) = delete;
+  StoppableCall& operator=(const StoppableCall&) = delete;
+
+  /// Asks the work to stop at its next stop_point(). It may end otherwise before it gets there.
+  void stop();
+  /// Waits until the work has ended, but no longer than this. Whether it has ended.
+  bool wait_for(std::chrono::milliseconds most);
+  /// Waits until the work has ended. Throws what it threw: Stopped where it was stopped.
+  void finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace farcull

@@ -1,8 +1,8 @@
 // Words for stages. Every text that a person reads about a stage is made here.
 #include "core/base/stage.h"
 
-#include "core/base/count.h"
-#include "core/base/parameter.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace farcull {
 namespace {

@@ -1,12 +1,17 @@
 // A stage of a run: what is done, or left out, and why. A plan lists the stages that are to come, a
 // trace those that were. The same structure serves both, so a run can be compared with its plan.
+// And how a long computation reports the stage where it stands.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace farcull {
+
+/// Called before each stage with the stage's name. May be empty.
+using Progress = std::function<void(const std::string&)>;
 
 enum class StageKind : std::uint8_t {
   boxes,           // which triangles can take part, by boxes

@@ -5,14 +5,60 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/uninitialized.h"
-#include "core/canvas/work.h"
 #include "core/view/view.h"
 
 namespace farcull {
+
+/// Counts since the canvas was made. All are 0 for a canvas on the cores of the CPU.
+struct CanvasWork {
+  std::uint64_t passes = 0;            // Canvas::run() of at least one step
+  std::uint64_t draws = 0;             // draw calls
+  std::uint64_t dispatches = 0;        // of programs that sum what was sent and pack flags
+  std::uint64_t state_changes = 0;     // of program, target or depth test: between steps
+  std::uint64_t queries = 0;           // occlusion queries, and one a pass that counts primitives
+  std::uint64_t readbacks = 0;         // answers that are read: reports, then each query
+  std::uint64_t waits = 0;             // for the device to finish what it was told
+  std::uint64_t uploaded_bytes = 0;    // of elements and of the lists of passes
+  std::uint64_t downloaded_bytes = 0;  // of reports and queries
+  std::uint64_t spans = 0;             // passes and uploads, which the device's clock may time
+  std::uint64_t timed = 0;             // spans whose time is known
+  double device_ms = 0;                // sum of these times, by the clock of the device
+
+  /// The time of all spans on the device, ms; empty if there was no span, or one was not timed.
+  std::optional<double> known_ms() const {
+    if (spans == 0 || timed < spans) return {};
+    return device_ms;
+  }
+  /// Calls change(mine, other's) for each count.
+  template <class Change>
+  void for_each(const CanvasWork& other, const Change& change) {
+    change(passes, other.passes);
+    change(draws, other.draws);
+    change(dispatches, other.dispatches);
+    change(state_changes, other.state_changes);
+    change(queries, other.queries);
+    change(readbacks, other.readbacks);
+    change(waits, other.waits);
+    change(uploaded_bytes, other.uploaded_bytes);
+    change(downloaded_bytes, other.downloaded_bytes);
+    change(spans, other.spans);
+    change(timed, other.timed);
+    change(device_ms, other.device_ms);
+  }
+  CanvasWork& operator+=(const CanvasWork& other) {
+    for_each(other, [](auto& mine, auto its) { mine += its; });
+    return *this;
+  }
+  CanvasWork& operator-=(const CanvasWork& other) {
+    for_each(other, [](auto& mine, auto its) { mine -= its; });
+    return *this;
+  }
+};
 
 /// How a primitive gets its depth. fragment: one screen-aligned proxy, entry and exit depth
 /// computed by the shader function of the offset. fixed: the triangles of a closed or open surface,
@@ -29,8 +75,8 @@ struct Proxy {
   Solid solid;
 };
 
-struct NativeJob;    // core/native/job.h
-struct NativeLines;  // core/native/job.h
+struct NativeJob;    // core/native/canvas.h
+struct NativeLines;  // core/native/canvas.h
 
 /// A solid's shader function, one text for GLSL and C++ (core/base/glsl_shim.h):
 ///   bool solid_interval(vec2 c, vec4 s0, .. vec4 s4, out float entry, out float exit)
@@ -131,5 +177,14 @@ double depth_step(const Window& window, int depth_bits);
 /// rounds by 2^-25, and the sum, below 1, by 2^-24. Of 24 bits, storing rounds by 1 / (2^24 - 1)
 /// more, and reading back as a float by 2^-24.
 double depth_rounding(int depth_bits);
+
+/// A GL canvas asks a proxy this far behind D(exit): four steps of 2^-24. Derived in
+/// docs/budget.md, "Two programs", and proved by farcull_proofs (depth.behind). The program that
+/// stores and the one that asks may round the depth map in different directions, and convert a
+/// depth to 24 bits to different neighbours; with the slack entry <= exit is seen all the same. 3/4
+/// plus the slack stays below 1, the value of an empty pixel. The canvas's own items have given
+/// depths and need no slack. The native canvas needs none: both depths are rounded to nearest by
+/// the same function.
+constexpr float kAskedBehind = 4 * 0x1p-24f;
 
 }  // namespace farcull

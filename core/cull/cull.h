@@ -36,7 +36,6 @@
 #include <string>
 #include <vector>
 
-#include "core/base/progress.h"
 #include "core/base/stage.h"
 #include "core/canvas/canvas.h"
 #include "core/canvas/fatten.h"

@@ -4,20 +4,86 @@
 //
 // For proxies it promises more than OpenGL does (docs/budget.md, "The canvas on the CPU"): samples
 // lie at pixel centres, nothing is snapped, and the arithmetic is IEEE 754. Raw triangles follow
-// OpenGL's rules (core/native/job.h) and promise nothing.
+// OpenGL's rules (draw_triangles_native) and promise nothing.
+//
+// First the job of one thread: plain data, so that a function compiled for any instruction set can
+// take it.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "core/canvas/canvas.h"
-#include "core/native/job.h"
 
 namespace farcull {
 
+/// Columns and rows behind a window's last that its buffer has as well: a block begins inside the
+/// window, and reads and writes back all its pixels. Of a row they keep what one thread writes back
+/// out of the next row, which may be another's.
+inline constexpr int kNativeOverhang = 8;
+
+/// The pixels of the window where an element may have a fragment: [x0, x1) x [y0, y1) from the
+/// window's lower left corner; empty where x0 >= x1 or y0 >= y1.
+struct PixelRange {
+  std::uint16_t x0, x1, y0, y1;
+};
+
+/// run: a pass. values: the depths in px that store (nearest) or ask (farthest) leaves. depths: the
+/// same as the depth buffer holds them.
+enum class NativeOutput : std::uint8_t { run, values, depths };
+
+/// The rows [y0, y1) of a window, and the steps of a pass that a thread draws there, in order.
+struct NativeJob {
+  // The window.
+  int width, height;  // px
+  int stride;         // floats from row to row of the buffer; width + kNativeOverhang or more
+  int y0, y1;
+  float scale;        // of the depth map (depth_scale())
+  bool fixed24;       // depths are rounded to multiples of 1 / (2^24 - 1) and held as multiples
+  bool conservative;  // triangles have a fragment in each pixel that they touch
+  // The elements.
+  const Proxy* proxies;
+  const std::array<float, 12>* triangles;
+  const PixelRange* ranges;  // per element
+  // The pass.
+  NativeOutput output;
+  bool touching;
+  const Step* steps;
+  std::uint32_t step_count;
+  const Draw* draws;
+  float* depth;        // height + kNativeOverhang rows of stride floats
+  std::uint8_t* seen;  // per slot; shared by all threads, which only ever write 1
+};
+
+/// `count` lines along the depth through one solid, for the solid's kernel on lanes. cx, cy: px;
+/// hit: 0 or 1.
+struct NativeLines {
+  const Solid* solid;
+  std::uint32_t count;
+  const float* cx;
+  const float* cy;
+  std::uint8_t* hit;
+  float* entry;
+  float* exit;
+};
+
+/// Draws raw triangles by the fixed rules of OpenGL: corners snapped to 8 subpixel bits, pixel
+/// centres inside by the top-left rule, depth interpolated from the corners'. They promise
+/// nothing, and CULLIDE draws them.
+///
+/// Conservatively, as GL_NV_conservative_raster does: a fragment in every pixel whose closed square
+/// the snapped triangle touches, however small or thin it is. Its depth is that of the triangle's
+/// plane at the pixel's centre, but never outside the depths of its corners; of a triangle whose
+/// image is a segment or a point, the middle of these. So a fragment has one depth, where the
+/// triangle has a range of them in the pixel, and pairs can still be missed.
+void draw_triangles_native(const NativeJob& job);
+constexpr int kNativeSubpixelBits = 8;
+
+// ---- the canvas ----
+
 struct NativeCanvasOptions {
   int depth_bits = 32;  // 32: float; 24: rounded to the nearest multiple of 1 / (2^24 - 1)
-  /// For raw triangles: every pixel that one touches has a fragment (core/native/job.h).
+  /// For raw triangles: every pixel that one touches has a fragment (draw_triangles_native).
   bool conservative = false;
   unsigned threads = 0;  // 0: as many as there are cores
 };

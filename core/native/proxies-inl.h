@@ -14,8 +14,8 @@
 #include <atomic>
 #include <bit>
 
+#include "core/native/canvas.h"
 #include "core/native/glsl_lanes-inl.h"
-#include "core/native/job.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace farcull::HWY_NAMESPACE {

@@ -2,7 +2,7 @@
 // pixel centre is inside, outside or on an edge without doubt, and so is whether a pixel's square
 // meets a triangle (by the axes of the pixel and the normals of the edges, which separate them if
 // anything does).
-#include "core/native/job.h"
+#include "core/native/canvas.h"
 
 #include <algorithm>
 #include <cmath>

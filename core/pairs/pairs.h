@@ -16,7 +16,6 @@
 #include <string>
 #include <vector>
 
-#include "core/base/progress.h"
 #include "core/base/stage.h"
 #include "core/pairs/backend.h"
 #include "core/pairs/regions.h"

@@ -9,7 +9,6 @@
 
 #include "core/base/stage.h"
 #include "core/boxes/block_join.h"
-#include "core/scene/moved.h"
 #include "core/scene/scene.h"
 
 namespace farcull {

@@ -16,7 +16,7 @@
 #include <span>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "core/base/stage.h"
 #include "core/scene/scene.h"
 
 namespace farcull {

@@ -15,7 +15,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/base/shared_work.h"
+#include "core/base/parallel.h"
 #include "core/proximity/bounds.h"
 #include "core/proximity/scene_trees.h"
 

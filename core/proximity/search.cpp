@@ -14,7 +14,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/base/shared_work.h"
+#include "core/base/parallel.h"
 #include "core/boxes/lanes-inl.h"
 #include "core/proximity/bounds.h"
 #include "core/proximity/scene_trees.h"

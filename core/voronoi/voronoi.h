@@ -30,7 +30,7 @@
 #include <vector>
 
 #include "core/base/glsl_shim.h"
-#include "core/base/progress.h"
+#include "core/base/stage.h"
 #include "core/scene/scene.h"
 
 namespace farcull {

@@ -13,7 +13,6 @@
 #include "commit.h"
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
-#include "core/base/parameter.h"
 #include "experiments/command/options.h"
 #include "experiments/system/output_file.h"
 

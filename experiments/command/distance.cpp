@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "core/base/count.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/scene/scene.h"

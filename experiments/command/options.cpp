@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/parameter.h"
+#include "core/base/error.h"
 #include "core/base/terminal.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/base/fields.h"
-#include "core/base/progress.h"
+#include "core/base/stage.h"
 #include "core/gl/base/context.h"
 #include "core/scene/scene.h"
 #include "core/voronoi/voronoi.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/stage.h"
-#include "core/canvas/work.h"
+#include "core/canvas/canvas.h"
 #include "core/cull/cull.h"
 #include "core/gl/base/context.h"
 #include "core/pairs/pairs.h"

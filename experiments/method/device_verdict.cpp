@@ -22,9 +22,9 @@
 #include <optional>
 #include <sstream>
 
-#include "core/base/count.h"
-#include "core/base/hash.h"
+#include "core/base/bytes.h"
 #include "core/base/stopwatch.h"
+#include "core/base/text.h"
 #include "core/gl/base/context.h"
 #include "core/gl/probe/probe.h"
 #include "experiments/method/kernel_probes.h"

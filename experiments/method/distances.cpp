@@ -12,7 +12,7 @@
 
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
-#include "core/base/shared_work.h"
+#include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
 #include "verify/exact.h"
 #include "verify/inside.h"

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "core/base/progress.h"
 #include "core/base/stage.h"
 #include "core/proximity/near_pairs.h"
 #include "core/scene/scene.h"

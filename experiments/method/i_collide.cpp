@@ -1,6 +1,6 @@
 // Sweep and prune on the boxes of objects, then of their triangles (I-COLLIDE, 1995).
-#include "core/base/count.h"
 #include "core/base/stopwatch.h"
+#include "core/base/text.h"
 #include "core/scene/scene.h"
 #include "experiments/method/methods.h"
 

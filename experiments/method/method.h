@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "core/base/progress.h"
+#include "core/base/stage.h"
 #include "core/scene/scene.h"
 
 namespace farcull {

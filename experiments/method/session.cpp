@@ -4,7 +4,6 @@
 #include <cstdio>
 
 #include "core/base/error.h"
-#include "core/base/parameter.h"
 #include "core/base/terminal.h"
 #include "core/gl/pairs/pairs.h"
 #include "core/pairs/backend.h"

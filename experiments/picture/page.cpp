@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 #include "commit.h"
-#include "core/base/base64.h"
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "embedded/page_css.h"
 #include "embedded/page_html.h"

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/image.h"
 #include "core/gl/picture/picture.h"
 #include "experiments/measure/lab.h"
 #include "experiments/method/run.h"

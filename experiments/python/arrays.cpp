@@ -12,7 +12,6 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/base/stoppable.h"
 
 namespace farcull::python {
 namespace {

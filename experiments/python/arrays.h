@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "core/base/stage.h"
 #include "core/scene/scene.h"
 #include "experiments/library/farcull.h"
 

@@ -17,8 +17,7 @@
 
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
-#include "core/base/parameter.h"
-#include "core/base/stoppable.h"
+#include "core/base/parallel.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/options.h"
 

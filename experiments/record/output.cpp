@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "commit.h"
-#include "core/base/count.h"
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/gl/base/context.h"
 #include "experiments/record/fields.h"
 #include "experiments/record/tables.h"

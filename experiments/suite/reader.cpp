@@ -14,12 +14,12 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/mesh/text.h"
-#include "verify/certificate/sha256.h"
 
 namespace farcull {
 namespace {

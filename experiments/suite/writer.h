@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/progress.h"
+#include "core/base/stage.h"
 #include "experiments/generators/pair_generators.h"
 #include "experiments/suite/reader.h"
 

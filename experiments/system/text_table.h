@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/count.h"
+#include "core/base/text.h"
 
 namespace farcull {
 

@@ -14,11 +14,11 @@
 #include <string_view>
 #include <utility>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "experiments/system/output_file.h"
 #include "experiments/tiles/run_tile.h"
-#include "verify/certificate/sha256.h"
 
 namespace farcull {
 namespace {

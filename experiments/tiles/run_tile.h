@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/hash.h"
-#include "core/base/progress.h"
+#include "core/base/bytes.h"
+#include "core/base/stage.h"
 #include "core/boxes/block.h"
 #include "core/scene/scene.h"
 #include "experiments/method/run.h"

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/base/bytes.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"
 #include "experiments/tiles/run_tile.h"
-#include "verify/certificate/sha256.h"
 
 namespace farcull {
 namespace {

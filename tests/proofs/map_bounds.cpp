@@ -3,7 +3,6 @@
 #include <cmath>
 #include <vector>
 
-#include "core/canvas/asked_depth.h"
 #include "core/canvas/canvas.h"
 #include "core/view/budget.h"
 #include "core/view/view.h"
@@ -237,7 +236,7 @@ std::vector<Bound> map_bounds() {
        "what is asked is seen where the exit is at the entry that another program stored, in "
        "either "
        "format, in steps of 2^-24",
-       "kAskedBehind", "core/canvas/asked_depth.h", kAskedBehind * 0x1p24, "", asked_behind},
+       "kAskedBehind", "core/canvas/canvas.h", kAskedBehind * 0x1p24, "", asked_behind},
   };
 }
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "core/base/base64.h"
+#include "core/base/bytes.h"
 #include "verify/certificate/certificate.h"
 #include "verify/certificate/json_reader.h"
 

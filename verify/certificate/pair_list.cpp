@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "verify/certificate/sha256.h"
 
 namespace farcull {
 namespace {

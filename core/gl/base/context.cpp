@@ -14,7 +14,6 @@
 #include <system_error>
 #include <thread>
 
-#include "core/base/count.h"
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/base/text.h"

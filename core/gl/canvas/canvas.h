@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "core/canvas/asked_depth.h"
 #include "core/canvas/canvas.h"
 #include "core/gl/base/context.h"
 

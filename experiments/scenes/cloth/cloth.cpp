@@ -20,8 +20,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
-#include "core/base/hash.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/system/output_file.h"
 

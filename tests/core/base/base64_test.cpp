@@ -1,5 +1,5 @@
 // The vectors of RFC 4648, and texts that are no encoding.
-#include "core/base/base64.h"
+#include "core/base/bytes.h"
 
 #include <gtest/gtest.h>
 

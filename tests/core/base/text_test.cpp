@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "core/base/hash.h"
+#include "core/base/bytes.h"
 
 namespace farcull {
 namespace {

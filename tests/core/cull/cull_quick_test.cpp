@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "core/base/count.h"
+#include "core/base/text.h"
 #include "core/cull/clusters.h"
 #include "tests/core/cull/cull_lab.h"
 

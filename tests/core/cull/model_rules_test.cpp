@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "core/base/count.h"
+#include "core/base/text.h"
 #include "tests/core/cull/model_cases.h"
 #include "tests/core/cull/model_page.h"
 #include "tests/core/cull/model_worlds.h"

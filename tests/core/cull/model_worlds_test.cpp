@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "core/base/count.h"
+#include "core/base/text.h"
 #include "tests/core/cull/model_page.h"
 #include "tests/core/cull/model_worlds.h"
 

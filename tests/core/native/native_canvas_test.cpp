@@ -9,7 +9,6 @@
 #include <cstring>
 
 #include "core/base/error.h"
-#include "core/native/job.h"
 #include "core/view/regions.h"
 #include "offsets/fit.h"
 #include "offsets/minkowski.h"

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/base/parameter.h"
 #include "core/view/view.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/base/base64.h"
+#include "core/base/bytes.h"
 #include "experiments/scenes/mesh/text.h"
 
 namespace farcull {

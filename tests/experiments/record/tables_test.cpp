@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/base/count.h"
 #include "core/base/stage.h"
+#include "core/base/text.h"
 #include "experiments/record/output.h"
 #include "tests/core/scene/scenes.h"
 

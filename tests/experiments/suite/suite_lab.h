@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
+#include "core/base/bytes.h"
 #include "experiments/suite/writer.h"
 #include "tests/experiments/system/error_of.h"
-#include "verify/certificate/sha256.h"
 
 namespace farcull::lab {
 

@@ -10,10 +10,10 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/tiles/run_tile.h"
-#include "verify/certificate/sha256.h"
 
 namespace farcull {
 namespace {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
@@ -16,7 +17,6 @@
 #include "tests/experiments/system/error_of.h"
 #include "tests/verify/reference.h"
 #include "verify/certificate/not_asked.h"
-#include "verify/certificate/sha256.h"
 #include "verify/exact.h"
 
 namespace farcull {

@@ -1,0 +1,65 @@
+// Bytes as text: in Base64, and by two hashes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace farcull {
+
+// Base64 (RFC 4648), padded, without line breaks.
+
+std::string to_base64(std::span<const std::uint8_t> bytes);
+
+/// Empty if to_base64() gives this text for no bytes; so the bits that padding leaves over have to
+/// be 0.
+std::optional<std::vector<std::uint8_t>> from_base64(const std::string& text);
+
+// FNV-1a, the hash of fingerprints: 64 bits over a sequence of bytes.
+
+class Fnv1a {
+ public:
+  void add_byte(unsigned char byte) { hash_ = (hash_ ^ byte) * 0x100000001b3u; }
+  void add(std::string_view text) {
+    for (const char c : text) add_byte(static_cast<unsigned char>(c));
+  }
+  /// The bytes of the word, the lowest first.
+  void add(std::uint64_t word) {
+    for (int byte = 0; byte < 8; ++byte, word >>= 8) add_byte(static_cast<unsigned char>(word));
+  }
+  /// 16 hex digits.
+  std::string hex() const {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash_));
+    return text;
+  }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325u;
+};
+
+// SHA-256 (FIPS 180-4), as `sha256sum` computes it: what a certificate names the list of pairs by.
+
+class Sha256 {
+ public:
+  void add(std::string_view bytes);
+  /// 64 lower-case hexadecimal digits. The object must not be used afterwards.
+  std::string digest();
+
+ private:
+  void take_block();
+
+  std::array<std::uint32_t, 8> state_ = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
+                                         0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
+  std::array<std::uint8_t, 64> block_{};
+  std::size_t filled_ = 0;   // bytes of block_
+  std::uint64_t bytes_ = 0;  // in all
+};
+
+}  // namespace farcull
