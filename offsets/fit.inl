@@ -1,7 +1,7 @@
 // How offsets fit solids and rectangles to the corners of a primitive, in doubles. One text for scalars, where a primitive may
 // have any number of corners, and for lanes, where each lane is a triangle of its own. FAR_NEAREST rounds to float; dvec3,
-// min, max, abs and sqrt are those of GLSL, and offsets/fit_rounding.h has the constants. Include it as offsets/fit.h and
-// offsets/fit_lanes-inl.h do.
+// min, max, abs and sqrt are those of GLSL, and offsets/rounding.h has the constants. Include it as offsets/offsets.cpp and
+// offsets/lanes.cpp do.
 
 // ---- vectors ----
 

@@ -1,6 +1,6 @@
 // Fattens the triangles that lie inside the region, one a lane. A fit is a type with
 //   rectangle(p, radius, bound_x, bound_y, corners) and solid(p, radius, numbers)
-// on lanes (offsets/fit_lanes-inl.h).
+// on lanes (offsets/lanes.cpp).
 #if defined(FARCULL_NATIVE_FATTEN_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_NATIVE_FATTEN_INL_H_
 #undef FARCULL_NATIVE_FATTEN_INL_H_

@@ -2,7 +2,7 @@
 // a vector of floats, one pixel a lane. Every operation is that of core/base/glsl_shim.h, lane by
 // lane, rounded once, so the bits are the same. Compiled once for each instruction set that Google
 // Highway can choose between (hwy/foreach_target.h). Include a kernel between
-// `#define float Lane` and `#undef float`, as offsets/obb_lanes.cpp does.
+// `#define float Lane` and `#undef float`, as offsets/lanes.cpp does.
 #if defined(FARCULL_NATIVE_GLSL_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_NATIVE_GLSL_LANES_INL_H_
 #undef FARCULL_NATIVE_GLSL_LANES_INL_H_

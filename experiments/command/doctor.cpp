@@ -28,9 +28,7 @@
 #include "experiments/record/output.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/system/output_file.h"
-#include "offsets/fit.h"
-#include "offsets/minkowski.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "verify/kernel_check.h"
 
 namespace farcull {

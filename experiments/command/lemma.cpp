@@ -16,8 +16,7 @@
 #include "experiments/method/run.h"
 #include "experiments/record/fields.h"
 #include "experiments/system/output_file.h"
-#include "offsets/minkowski.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "verify/worst_canvas.h"
 
 namespace farcull {

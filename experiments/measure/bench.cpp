@@ -22,7 +22,7 @@
 #include "experiments/record/tables.h"
 #include "experiments/system/machine.h"
 #include "experiments/system/text_table.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "verify/exact.h"
 
 namespace farcull {

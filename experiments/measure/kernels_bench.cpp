@@ -11,9 +11,7 @@
 #include "experiments/peers/peer.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/scene_build.h"
-#include "offsets/fit.h"
-#include "offsets/minkowski.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "verify/exact.h"
 #include "verify/filter.h"
 

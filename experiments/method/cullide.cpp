@@ -9,8 +9,7 @@
 #include "core/native/lanes.h"
 #include "core/scene/scene.h"
 #include "experiments/method/methods.h"
-#include "offsets/minkowski.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 // The header of a new offset goes here.
 
 namespace farcull {

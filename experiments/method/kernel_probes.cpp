@@ -9,9 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/gl/probe/probe.h"
-#include "offsets/fit.h"
-#include "offsets/minkowski.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "verify/kernel_check.h"
 
 namespace farcull {

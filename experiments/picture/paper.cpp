@@ -12,9 +12,7 @@
 #include "core/pairs/grid.h"
 #include "core/view/budget.h"
 #include "core/view/view.h"
-#include "offsets/fit.h"
-#include "offsets/minkowski.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 
 namespace farcull {
 namespace {

@@ -12,7 +12,7 @@
 #include "experiments/picture/paper.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/scene_file.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 
 namespace farcull {
 namespace {

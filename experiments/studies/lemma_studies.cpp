@@ -11,7 +11,7 @@
 #include "experiments/studies/point.h"
 #include "experiments/studies/run_point.h"
 #include "experiments/studies/study.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "verify/worst_canvas.h"
 
 namespace farcull {

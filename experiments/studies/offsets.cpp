@@ -10,8 +10,7 @@
 #include "experiments/studies/point.h"
 #include "experiments/studies/run_point.h"
 #include "experiments/studies/study.h"
-#include "offsets/minkowski.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 
 namespace farcull {
 namespace {

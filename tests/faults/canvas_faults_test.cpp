@@ -10,8 +10,7 @@
 #include <sstream>
 
 #include "core/gl/canvas/canvas.h"
-#include "offsets/minkowski.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "tests/core/gl/gl_lab.h"
 #include "tests/faults/outcomes.h"
 

@@ -7,9 +7,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "offsets/fit.h"
-#include "offsets/minkowski.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "tests/core/base/rational.h"
 #include "tests/core/gl/gl_lab.h"
 #include "verify/minkowski_line.h"

@@ -1,8 +1,7 @@
 // The exact offset against rationals: minkowski_solid() holds hull and ball, and the kernel's
 // interval holds the exact one of the solid that the floats say, on this machine's floats and on
 // the worst ones.
-#include "offsets/minkowski.h"
-#include "offsets/fit.h"
+#include "offsets/offsets.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +12,7 @@
 
 #include "embedded/minkowski_glsl.h"
 #include "offsets/kernel.h"
-#include "offsets/obb.h"
-#include "offsets/round.h"
+#include "offsets/rounding.h"
 #include "tests/core/base/rational.h"
 #include "tests/core/base/seed.h"
 #include "verify/minkowski_cases.h"

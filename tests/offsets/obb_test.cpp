@@ -1,7 +1,6 @@
 // The oriented box against rationals: obb_of() holds hull and ball, and the kernel's interval holds
 // the exact one of the solid that the floats say.
-#include "offsets/obb.h"
-#include "offsets/fit.h"
+#include "offsets/offsets.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Solids fitted in doubles and rounded outward to floats (offsets/fit.inl).
 #include <vector>
 
-#include "offsets/fit_rounding.h"
+#include "offsets/rounding.h"
 #include "tests/proofs/bounds.h"
 #include "tests/proofs/number.h"
 #include "tests/proofs/raw.h"
@@ -70,7 +70,7 @@ std::string grown_radius(double corner, double underflow, double rounding) {
 }  // namespace
 
 std::vector<Bound> fit_bounds() {
-  const std::string file = "offsets/fit_rounding.h";
+  const std::string file = "offsets/rounding.h";
   return {
       {"fit.up", "a double rounded up to a float is not below it", "kFitHalfUlp", file, kFitHalfUlp,
        "w", [](double x) { return up(x, kFitSubnormal); }},

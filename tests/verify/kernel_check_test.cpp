@@ -1,7 +1,7 @@
 // The checks of kernels' answers: this CPU's are right, and answers that are a little too
 // narrow, far too wide, or no numbers are not.
 #include "verify/kernel_check.h"
-#include "offsets/fit.h"
+#include "offsets/offsets.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,6 @@
 #include <limits>
 
 #include "core/pairs/grid.h"
-#include "offsets/minkowski.h"
-#include "offsets/obb.h"
 
 namespace farcull::lab {
 using Answer = IntervalAnswer;

@@ -1,7 +1,7 @@
 // The worst canvas on depths that are equal: seen where touching counts, and there alone.
 #include <gtest/gtest.h>
 
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "tests/core/canvas/lab.h"
 #include "verify/worst_canvas.h"
 

@@ -1,6 +1,6 @@
 // Fattening: items, clipped triangles and drawables that are left out.
 #include "core/canvas/fatten.h"
-#include "offsets/fit.h"
+#include "offsets/offsets.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include <cstring>
 #include <numeric>
 
-#include "offsets/obb.h"
 #include "tests/core/base/rational.h"
 #include "tests/verify/reference.h"
 

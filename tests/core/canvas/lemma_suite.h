@@ -12,8 +12,7 @@
 #include <vector>
 
 #include "experiments/lemma/lemma.h"
-#include "offsets/minkowski.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "tests/core/base/seed.h"
 #include "tests/core/canvas/lab.h"
 #include "verify/exact.h"

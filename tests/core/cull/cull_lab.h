@@ -16,8 +16,7 @@
 
 #include "core/cull/cull.h"
 #include "core/cull/pass.h"
-#include "offsets/minkowski.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "tests/core/base/seed.h"
 #include "tests/core/canvas/ideal_canvas.h"
 #include "tests/core/canvas/lab.h"

@@ -4,7 +4,7 @@
 #include "core/cull/cull.h"
 #include "core/native/canvas.h"
 #include "core/view/regions.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "tests/core/scene/scenes.h"
 
 namespace farcull {

@@ -14,7 +14,7 @@
 
 #include "core/base/error.h"
 #include "core/boxes/join.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "tests/core/base/rational.h"
 #include "tests/core/canvas/ideal_canvas.h"
 #include "tests/verify/reference.h"

@@ -10,7 +10,7 @@
 #include "experiments/method/run.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/scene_file.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "tests/core/base/seed.h"
 #include "tests/core/gl/gl_lab.h"
 #include "tests/core/scene/scenes.h"

@@ -7,8 +7,7 @@
 
 #include "core/cull/cull.h"
 #include "core/native/canvas.h"
-#include "offsets/minkowski.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "tests/core/scene/scenes.h"
 
 namespace farcull {

@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/gl/base/driver_fault.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "tests/core/gl/gl_lab.h"
 #include "tests/core/gl/reversed_depth.h"
 

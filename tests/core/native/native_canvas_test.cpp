@@ -10,9 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/view/regions.h"
-#include "offsets/fit.h"
-#include "offsets/minkowski.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "tests/core/base/trials.h"
 #include "tests/core/canvas/lab.h"
 #include "tests/core/native/every_target.h"

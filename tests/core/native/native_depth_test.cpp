@@ -6,8 +6,7 @@
 #include <cmath>
 
 #include "core/native/canvas.h"
-#include "offsets/minkowski.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 #include "tests/core/canvas/lab.h"
 #include "tests/core/native/every_target.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "offsets/fit.h"
+#include "offsets/offsets.h"
 #include "tests/core/base/trials.h"
 #include "tests/core/canvas/lemma_suite.h"
 #include "tests/core/cull/far_properties.h"

@@ -1,6 +1,6 @@
 // What the lemma experiment measures: one generator alone, and how large a violation is.
 #include "experiments/lemma/lemma.h"
-#include "offsets/fit.h"
+#include "offsets/offsets.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,6 @@
 
 #include "experiments/studies/run_point.h"
 #include "experiments/studies/run_studies.h"
-#include "offsets/obb.h"
 #include "verify/exact_point.h"
 #include "verify/worst_canvas.h"
 

@@ -6,8 +6,7 @@
 #include "core/view/regions.h"
 #include "core/view/view.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "offsets/minkowski.h"
-#include "offsets/obb.h"
+#include "offsets/offsets.h"
 
 namespace farcull {
 namespace {
