@@ -15,9 +15,22 @@
 #include "core/base/fields.h"
 #include "core/scene/scene.h"
 #include "verify/exact.h"
-#include "verify/pair_set.h"
 
 namespace farcull {
+
+/// The number of pairs and a sum over them, which does not depend on their order. Two sets of one
+/// size that differ have the same sum with a chance of 2^-64.
+struct PairSet {
+  std::uint64_t count = 0;
+  std::uint64_t sum = 0;
+
+  void add(const TrianglePair& pair);
+  bool operator==(const PairSet&) const = default;
+};
+
+/// The pairs that count whose boxes overlap (not farther apart than the clearance along an axis),
+/// as the certificate enumerates them (verify/certificate/box_pairs.h).
+PairSet pairs_with_overlapping_boxes(const Scene& scene, double clearance);
 
 /// Numbers of unordered pairs that count. Each pair is in exactly one class, the first that fits,
 /// in the order of the fields. Neighbours, their shared part and a clearance D are those of
@@ -52,8 +65,8 @@ struct AccountOptions {
 /// miscounted in silence, hence std::logic_error; so is a scene whose ranges are not those of
 /// validate(), and a clearance that is negative or not finite. std::logic_error as well where the
 /// accounting itself fails: a pair is left undecided, the classes do not sum to pairs_total, or the
-/// pairs whose boxes overlap are not those that the certificate's own enumeration
-/// (verify/pair_set.h) finds. Memory O(triangles + kept).
+/// pairs whose boxes overlap are not those that the certificate's own enumeration finds. Memory
+/// O(triangles + kept).
 Accounting account(const Scene& scene, std::span<const TrianglePair> kept,
                    const AccountOptions& options = {});
 

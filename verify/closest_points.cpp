@@ -1,3 +1,25 @@
+// Closest points of two triangles, and the nearest of many pairs.
+#include "verify/closest.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "core/base/floating_point.h"
+#include "verify/closest_features.h"
+#include "verify/filter.h"
+#include "verify/filter_scalars.h"
+#include "verify/rounding.h"
+#include "verify/squared_distance.h"
+
+namespace farcull {
+
 // Doubles guess the features, integers prove them; where that fails all features are tried.
 //
 // Scale. Every finite double is an integer times a power of two. All corners are multiplied by one
@@ -34,19 +56,7 @@
 //
 // Doubles only choose what to try, and leave out features that are provably not closest. So no
 // rounding reaches the answer but the last one.
-#include "verify/closest.h"
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-
-#include "verify/closest_features.h"
-#include "verify/closest_guess.h"
-#include "verify/filter.h"
-#include "verify/filter_of_distance.h"
-#include "verify/squared_distance.h"
-
-namespace farcull {
 namespace {
 
 using closest::corners_of;
@@ -279,6 +289,166 @@ Closest closest_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& 
 SquaredDistance squared_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
   const Scaled pair(a, b);
   return squared(pair, solve(pair, a, b).found);
+}
+
+// The nearest of many pairs. Bounds in doubles leave the pairs that can be the nearest one; their
+// squared distances are compared exactly.
+//
+// Mostly these are the triangles around one corner or edge, which have the same two closest points.
+// Let F and G be the features of closest points of a pair that was solved, and w their difference.
+// Another pair whose triangles have the corners of F and of G has points as near. It has no nearer
+// ones if w . (x - p) < 0 for its other corners x on the side of p, and w . (y - q) > 0 for those
+// on the side of q (above), where p and q may be any corners of F and G, since w is
+// perpendicular to both. This is decided in doubles where rounding leaves no doubt. The computed w
+// is the difference of two rounded points: off by u (|p| + |q|) and by u |w| more per axis, u =
+// 2^-53. With x - p, off by u of itself, products and sums, the computed product is off by less
+// than 5.1 u |w|.|x - p| + 1.1 u (|p| + |q|).|x - p|; kTie and kTiePoints are larger, also than
+// the roundings of these bounds. A subnormal coordinate is off by 2^-1075 instead, which
+// kTieSubnormal covers, and kTieAbsolute the underflow of products.
+
+namespace {
+
+using filters::DistanceBounds;
+
+using Triangle = std::array<Vec3, 3>;
+
+/// The closest points of a pair, to recognise pairs that have the same ones.
+class SamePoints {
+ public:
+  SamePoints(const Triangle& a, const Triangle& b, const Closest& closest)
+      : w_(closest.points[1] - closest.points[0]),
+        off_(kTie * w_.cwiseAbs() +
+             kTiePoints * (closest.points[0].cwiseAbs() + closest.points[1].cwiseAbs()) +
+             Vec3::Constant(kTieSubnormal)),
+        sides_{side_of(a, closest.features[0]), side_of(b, closest.features[1])} {}
+
+  /// True: these are the closest points of a and b too. False: not known.
+  bool are_those_of(const Triangle& a, const Triangle& b) const {
+    return is_behind(sides_[0], a, 1) && is_behind(sides_[1], b, -1);
+  }
+
+ private:
+  struct Side {
+    Triangle corners;  // of the feature
+    int count;
+  };
+  static Side side_of(const Triangle& t, const Feature& feature) {
+    if (feature.kind == FeatureKind::face) return {t, 3};
+    return {{t[feature.index], t[(feature.index + 1) % 3], t[feature.index]},
+            feature.kind == FeatureKind::edge ? 2 : 1};
+  }
+  bool is_behind(const Side& side, const Triangle& t, double sense) const {
+    int own = 0;
+    for (const Vec3& x : t) {
+      bool is_own = false;
+      for (int i = 0; i < side.count; ++i) is_own |= x == side.corners[i];
+      if (is_own) {
+        ++own;
+        continue;
+      }
+      const Vec3 from = x - side.corners[0];
+      if (!(sense * w_.dot(from) < -(off_.dot(from.cwiseAbs()) + kTieAbsolute))) return false;
+    }
+    if (own < side.count) return false;
+    for (int i = 0; i < side.count; ++i) {
+      if (t[0] != side.corners[i] && t[1] != side.corners[i] && t[2] != side.corners[i])
+        return false;
+    }
+    return true;
+  }
+
+  Vec3 w_, off_;
+  std::array<Side, 2> sides_;
+};
+
+/// Pairs by number, with what is known of their distances.
+struct Candidate {
+  std::size_t at;
+  DistanceBounds bounds;
+};
+
+DistanceBounds bounds_of(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  if (filter_planes(a, b) == Triage::yes) return {0, 0};
+  return filters::distance_bounds<FilterBounds>(a, b);
+}
+
+/// Those that can be the first of the nearest ones, in order; not the first pair of all, which is
+/// at most `least` apart, and not those that are `same`, since the first pair comes before them.
+std::vector<Candidate> candidates_of(const Scene& scene, std::span<const TrianglePair> pairs,
+                                     double least, const SamePoints& same) {
+  std::vector<Candidate> out;
+  std::size_t kept = 0;
+  for (std::size_t i = 1; i < pairs.size(); ++i) {
+    const Triangle a = scene.corners(pairs[i].a), b = scene.corners(pairs[i].b);
+    if (same.are_those_of(a, b)) continue;
+    const DistanceBounds bounds = bounds_of(a, b);
+    if (bounds.lower > least) continue;
+    least = std::min(least, bounds.upper);
+    out.push_back({i, bounds});
+    if (least == 0 && bounds.upper == 0) break;  // what follows is not the first at distance 0
+    if (out.size() > 2 * kept + 1000) {
+      std::erase_if(out, [&](const Candidate& c) { return c.bounds.lower > least; });
+      kept = out.size();
+    }
+  }
+  std::erase_if(out, [&](const Candidate& c) { return c.bounds.lower > least; });
+  return out;
+}
+
+double not_below(const Closest& closest) {
+  if (closest.squared.is_zero()) return 0;
+  return std::nextafter(closest.distance, std::numeric_limits<double>::infinity());
+}
+
+NearestPair nearest_of(const Scene& scene, std::span<const TrianglePair> pairs) {
+  const auto corners = [&](std::size_t at) {
+    return std::array{scene.corners(pairs[at].a), scene.corners(pairs[at].b)};
+  };
+  const auto [first_a, first_b] = corners(0);
+  Closest closest = closest_points(first_a, first_b);
+  if (closest.squared.is_zero()) return {pairs[0], std::move(closest)};
+  std::size_t best = 0, solved = 0;
+  double at_most = not_below(closest);
+  SamePoints same(first_a, first_b, closest);
+  std::vector<Candidate> left = candidates_of(scene, pairs, at_most, same);
+  // The most promising first; those that touch in order, since the first of them ends the search.
+  std::stable_sort(left.begin(), left.end(), [](const Candidate& x, const Candidate& y) {
+    return x.bounds.lower < y.bounds.lower;
+  });
+  for (const auto& [at, bounds] : left) {
+    if (bounds.lower > at_most) break;  // and so are those that follow
+    if (at_most == 0 && at > best) continue;
+    const auto [a, b] = corners(at);
+    if (at_most > 0 && same.are_those_of(a, b)) {
+      best = std::min(best, at);
+      continue;
+    }
+    const auto order = squared_distance(a, b) <=> closest.squared;
+    if (order > 0 || (order == 0 && at > best)) continue;
+    best = at;
+    if (order == 0) continue;
+    solved = at;
+    closest = closest_points(a, b);
+    same = SamePoints(a, b, closest);
+    at_most = not_below(closest);
+  }
+  if (best != solved) {
+    const auto [a, b] = corners(best);
+    closest = closest_points(a, b);
+  }
+  return {pairs[best], std::move(closest)};
+}
+
+}  // namespace
+
+std::optional<NearestPair> nearest_pair(const Scene& scene, std::span<const TrianglePair> pairs) {
+  const FloatingPointGuard guard;
+  for (const TrianglePair& pair : pairs) {
+    if (std::max(pair.a, pair.b) >= scene.triangles.size())
+      throw std::logic_error("nearest_pair: a pair names a triangle that the scene lacks");
+  }
+  if (pairs.empty()) return std::nullopt;
+  return nearest_of(scene, pairs);
 }
 
 }  // namespace farcull

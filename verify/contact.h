@@ -16,8 +16,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <thread>
+#include <vector>
 
 #include "core/scene/scene.h"
 
@@ -43,5 +46,64 @@ struct ContactCounts {
 /// that the scene does not have or one triangle twice.
 ContactCounts count_contacts(const Scene& scene, std::span<const TrianglePair> pairs,
                              unsigned threads = std::thread::hardware_concurrency());
+
+// ---- kinds of contact ----
+//
+// How two triangles meet, as one of seven kinds, and where: the points that they have in common.
+//
+// Semantics and preconditions as in verify/exact.h: the doubles as given, any finite ones; a
+// triangle is the closed convex hull of its corners, so a degenerate one is the segment or the
+// point that it is. For every two triangles A and B exactly one kind is true, the first that fits
+// (docs/methods.md, "Kinds of contact"; the labels of docs/suite.md are the same). Its corners are
+// the three of a triangle, the two ends of a segment, or the point; the only edge of a segment is
+// the segment itself. Neighbours are triangles as any others: what they share is a contact too.
+
+enum class ContactKind : std::uint8_t {
+  apart,         // no point in common: pairs that a clearance lets collide
+  equal,         // the same set of points
+  touch_vertex,  // one point in common, which is a corner of A or of B
+  touch_edge,    // one point in common, which is on an edge of A and on an edge of B
+  coplanar,      // in one plane, and more than one point in common
+  crossing,      // a point in common that is on no edge of A and on no edge of B; a segment crosses
+                 // a triangle where it goes through the triangle's inside
+  touch_face,    // a segment in common that is on an edge of A or of B
+};
+
+inline constexpr std::array kContactKinds = {ContactKind::apart,        ContactKind::equal,
+                                             ContactKind::touch_vertex, ContactKind::touch_edge,
+                                             ContactKind::coplanar,     ContactKind::crossing,
+                                             ContactKind::touch_face};
+
+/// "touch-vertex" and so on, as in the labels of a suite.
+std::string_view name_of(ContactKind kind);
+/// The inverse; empty where no kind is called so.
+std::optional<ContactKind> parse_contact_kind(std::string_view name);
+
+/// The kind, and the points in common. These are a convex set.
+struct ContactShape {
+  ContactKind kind = ContactKind::apart;
+  int dimension = -1;  // of the common points: 0 a point, 1 a segment, 2 a polygon; -1 none
+  /// World units. Dimension 1: the ends of the segment, the lexicographically lower one first, each
+  /// coordinate rounded once to the nearest double; 0: the point, twice; else zeros.
+  std::array<Vec3, 2> ends = {Vec3::Zero(), Vec3::Zero()};
+  bool operator==(const ContactShape&) const = default;
+};
+
+/// Exact. Symmetric; the order of corners does not matter. Triangles that penetrate are
+/// answered from signs of determinants, all others as by contact_shape().
+ContactKind contact_kind(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
+
+/// Exact but for the rounding of `ends`, in integers alone. Symmetric; the order of corners
+/// does not matter.
+ContactShape contact_shape(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
+
+/// The kind of each pair, in the order given. 0 threads count as 1; their number changes no answer.
+/// Throws std::logic_error if a pair names a triangle that the scene does not have.
+std::vector<ContactKind> contact_kinds(const Scene& scene, std::span<const TrianglePair> pairs,
+                                       unsigned threads = std::thread::hardware_concurrency());
+
+/// The same with the common points.
+std::vector<ContactShape> contact_shapes(const Scene& scene, std::span<const TrianglePair> pairs,
+                                         unsigned threads = std::thread::hardware_concurrency());
 
 }  // namespace farcull

@@ -2,7 +2,7 @@
 // Hodgman: Reentrant polygon clipping, 1974). All of it in integers, points as numerators with a
 // common denominator, so that nothing is rounded. The corners of what is left say how the triangles
 // meet.
-#include "verify/contact_kind.h"
+#include "verify/contact.h"
 
 #include <gmpxx.h>
 
@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "verify/contact.h"
 #include "verify/exact.h"
 #include "verify/squared_distance.h"
 

@@ -27,7 +27,6 @@
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
 #include "core/scene/scene.h"
-#include "verify/disjoint_distance.h"
 #include "verify/within.h"
 
 namespace farcull {

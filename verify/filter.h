@@ -9,9 +9,10 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "core/scene/scene.h"
-#include "verify/filter_bounds.h"
+#include "verify/rounding.h"
 
 namespace farcull {
 
@@ -35,5 +36,12 @@ Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec
 /// It looks only at the boundaries of triangles that cross. `unknown` within about 1e-14 of the
 /// extent of the pair.
 Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
+
+/// answers[i]: that of filter_planes() about the triangles of pairs[i], a before b, and the
+/// clearance; the same on every instruction set (core/native/lanes.h). As many answers as pairs.
+/// Fast where successive pairs have the same a. Preconditions as above; every index is in
+/// range.
+void filter_pairs(const Scene& scene, std::span<const TrianglePair> pairs, double clearance,
+                  std::span<Triage> answers);
 
 }  // namespace farcull

@@ -1,6 +1,6 @@
 // Two triangles against each other's planes, and along the line where the planes cross. One text
-// for scalars and for lanes, where each lane is a pair of its own: filter_of_planes.h, which
-// derives the bounds, and filter_lanes-inl.h include it in a namespace that says
+// for scalars and for lanes, where each lane is a pair of its own: filter_scalars.h, which derives
+// the bounds, and filter.cpp include it in a namespace that says
 //   Real, Truth   a number and an answer, of every lane; PlainReal is a number for all lanes
 //   Point         a corner, with x(), y() and z()
 //   min, max, abs, sqrt, of_all, and FAR_FILTER before each function.

@@ -2,7 +2,7 @@
 // the sign of d . ((p - x) x (q - x)) tells on which side of the line the edge from p to q passes;
 // where it passes all three edges on one side it crosses the triangle, before or behind x by the
 // sign of the determinant of the three corners relative to x. Signs are found in doubles, with the
-// bound of filter_of_planes.h, or in integers where that leaves a doubt.
+// bound of filter_scalars.h, or in integers where that leaves a doubt.
 #include "verify/inside.h"
 
 #include <gmpxx.h>
@@ -19,7 +19,7 @@
 #include "core/base/random.h"
 #include "verify/closest_features.h"
 #include "verify/exact.h"
-#include "verify/filter_of_planes.h"
+#include "verify/filter_scalars.h"
 
 namespace farcull {
 namespace {

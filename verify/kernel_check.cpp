@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "verify/box_line.h"
-#include "verify/interval_cases.h"
-#include "verify/minkowski_cases.h"
-#include "verify/minkowski_line.h"
+#include "verify/kernel_cases.h"
+#include "verify/solid_lines.h"
 
 namespace farcull {
 namespace {

@@ -1,5 +1,5 @@
 // The integers behind a SquaredDistance, and rounding of fractions to doubles. For the sources of
-// verify/closest.h and verify/contact_kind.h and their tests alone.
+// verify/closest.h and verify/contact.h and their tests alone.
 #pragma once
 
 #include <gmpxx.h>

@@ -1,5 +1,8 @@
 // Is the distance of two triangles at most a clearance? Filters in doubles answer first, exact
 // arithmetic where they leave a doubt. For the sources of verify/exact.h alone.
+//
+// Semantics and preconditions as in verify/exact.h: closed convex hulls of the three corners with
+// the doubles as given, any finite ones, degenerate triangles included.
 #pragma once
 
 #include <array>
@@ -37,5 +40,11 @@ inline bool is_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b
   return triage == Triage::unknown ? is_within_beyond_planes(a, b, clearance)
                                    : triage == Triage::yes;
 }
+
+/// True iff the distance of two disjoint triangles is at most `clearance` (world units, finite, >=
+/// 0). Compares squared distances of rational points with the square of the clearance; nothing is
+/// rounded. Precondition: the triangles share no point (only the boundaries are looked at, so
+/// crossing triangles could get a wrong answer).
+bool disjoint_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
 }  // namespace farcull

@@ -10,7 +10,7 @@
 #include "core/scene/scene.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/options.h"
-#include "verify/contact_kind.h"
+#include "verify/contact.h"
 
 namespace farcull {
 

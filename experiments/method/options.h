@@ -22,7 +22,7 @@ namespace farcull {
 /// fastest (docs/bench.md).
 inline constexpr Method kDefaultMethod = Method::far_pairs;
 
-/// How much contact detail to report (verify/contact_kind.h). segments: with the points that the
+/// How much contact detail to report (verify/contact.h). segments: with the points that the
 /// triangles have in common.
 enum class ContactDetail : std::uint8_t { none, kinds, segments };
 

@@ -12,7 +12,6 @@
 #include "experiments/method/options.h"
 #include "verify/accounting.h"
 #include "verify/contact.h"
-#include "verify/contact_kind.h"
 
 namespace farcull {
 

@@ -22,7 +22,7 @@
 #include "experiments/record/tables.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/system/text_table.h"
-#include "verify/contact_kind.h"
+#include "verify/contact.h"
 
 namespace farcull {
 

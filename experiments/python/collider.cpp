@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "experiments/python/arrays.h"
-#include "verify/contact_kind.h"
+#include "verify/contact.h"
 
 namespace farcull::python {
 namespace {

@@ -10,7 +10,7 @@
 #include "offsets/offsets.h"
 #include "tests/core/base/rational.h"
 #include "tests/core/gl/gl_lab.h"
-#include "verify/minkowski_line.h"
+#include "verify/solid_lines.h"
 
 namespace farcull {
 namespace {

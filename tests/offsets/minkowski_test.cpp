@@ -15,8 +15,8 @@
 #include "offsets/rounding.h"
 #include "tests/core/base/rational.h"
 #include "tests/core/base/seed.h"
-#include "verify/minkowski_cases.h"
-#include "verify/minkowski_line.h"
+#include "verify/kernel_cases.h"
+#include "verify/solid_lines.h"
 
 namespace farcull {
 namespace glsl::exact_without_widening {

@@ -14,7 +14,7 @@
 #include "core/base/glsl_shim.h"
 #include "tests/core/base/rational.h"
 #include "tests/core/base/seed.h"
-#include "verify/box_line.h"
+#include "verify/solid_lines.h"
 
 namespace farcull {
 namespace glsl::obb_without_widening {

@@ -23,8 +23,8 @@ struct Bound {
   double twin = 0.5;
 };
 
-std::vector<Bound> filter_bounds();    // verify/filter_of_planes.h
-std::vector<Bound> distance_bounds();  // verify/filter_of_distance.h, verify/tie_rounding.h
+std::vector<Bound> filter_bounds();    // verify/filter_scalars.h
+std::vector<Bound> distance_bounds();  // verify/filter_scalars.h, verify/rounding.h
 std::vector<Bound> map_bounds();       // core/view: the map to pixels, clipping, the budget
 std::vector<Bound> fit_bounds();       // offsets/fit.inl
 std::vector<Bound> slab_bounds();      // offsets/slab.glsl

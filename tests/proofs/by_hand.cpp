@@ -11,7 +11,7 @@ std::vector<ByHand> proved_by_hand() {
       {"Where products overflow, the bound of a filter is infinite or not a number, and no "
        "comparison "
        "with it holds",
-       "the comment of `verify/filter_of_planes.h`, \"Overflow\"",
+       "the comment of `verify/filter_scalars.h`, \"Overflow\"",
        "the rows `filter.*` and `distance.*`, which have no largest number"},
       {"The length of a vector is at most that of another plus that of their difference",
        "the triangle inequality",
@@ -23,7 +23,7 @@ std::vector<ByHand> proved_by_hand() {
        "`distance.gap`, `fit.box`, `extent.corner`: they speak of one corner"},
       {"Signs of determinants decide on which side corners lie, and what two triangles on a line "
        "share",
-       "the comments of `verify/filter_of_planes.h` and `verify/filter_planes.inl`",
+       "the comments of `verify/filter_scalars.h` and `verify/filter_planes.inl`",
        "`filter.side`, `filter.normals`, `filter.projection`"},
       {"Every point of the exact triangle inside the planes has a partner on the fan of the "
        "computed "

@@ -1,5 +1,5 @@
 // The filter of distances: two points near each other, and the direction between them; and the test
-// whether two pairs have the same closest points (verify/nearest_pair.cpp). R is the largest
+// whether two pairs have the same closest points (verify/closest_points.cpp). R is the largest
 // |coordinate| of the corners relative to one of them, exactly; its computed value is one rounding
 // off.
 #include <array>
@@ -7,8 +7,7 @@
 #include "tests/proofs/bounds.h"
 #include "tests/proofs/number.h"
 #include "tests/proofs/raw.h"
-#include "verify/filter_bounds.h"
-#include "verify/tie_rounding.h"
+#include "verify/rounding.h"
 
 namespace farcull::proofs {
 namespace {
@@ -180,8 +179,8 @@ std::string same_points(double tie, double points, double subnormal, double abso
 
 std::vector<Bound> distance_bounds() {
   using B = FilterBounds;
-  const std::string file = "verify/filter_bounds.h", here = "tests/proofs/distance_bounds.cpp",
-                    tie = "verify/tie_rounding.h";
+  const std::string file = "verify/rounding.h", here = "tests/proofs/distance_bounds.cpp",
+                    tie = "verify/rounding.h";
   return {
       {"distance.weights", "the weights of three corners sum to 1 within this", "kWeights", here,
        kWeights, "u", weights, 0.125},

@@ -5,7 +5,7 @@
 #include "tests/proofs/bounds.h"
 #include "tests/proofs/number.h"
 #include "tests/proofs/raw.h"
-#include "verify/filter_bounds.h"
+#include "verify/rounding.h"
 
 namespace farcull::proofs {
 namespace {
@@ -204,7 +204,7 @@ std::vector<Bound> filter_bounds() {
   const auto side = [](double value) { Claimed::side = value; };
   const auto absolute = [](double value) { Claimed::absolute = value; };
   const auto normals = [](double value) { Claimed::normals = value; };
-  const std::string file = "verify/filter_bounds.h";
+  const std::string file = "verify/rounding.h";
   return {
       {"filter.side",
        "which side of a plane a corner is on: the computed determinant is within its "

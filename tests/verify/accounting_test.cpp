@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "tests/verify/reference.h"
-#include "verify/answers.h"
 #include "verify/certificate/box_pairs.h"
 #include "verify/exact.h"
 

@@ -8,11 +8,10 @@
 #include "experiments/generators/pair_generators.h"
 #include "tests/core/base/seed.h"
 #include "tests/verify/reference.h"
-#include "verify/disjoint_distance.h"
 #include "verify/exact.h"
 #include "verify/filter.h"
-#include "verify/filter_of_distance.h"
-#include "verify/filter_of_planes.h"
+#include "verify/filter_scalars.h"
+#include "verify/within.h"
 
 namespace farcull {
 namespace {

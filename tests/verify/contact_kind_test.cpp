@@ -1,6 +1,6 @@
 // Kinds of contact and common segments: examples of each kind, CGAL's intersection of triangles in
 // rational numbers, and what other functions say of the same pairs.
-#include "verify/contact_kind.h"
+#include "verify/contact.h"
 
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/intersections.h>
@@ -16,7 +16,6 @@
 #include "tests/core/base/rational.h"
 #include "tests/verify/hard_pairs.h"
 #include "tests/verify/reference.h"
-#include "verify/contact.h"
 #include "verify/exact.h"
 
 namespace farcull {

@@ -1,6 +1,6 @@
 // The filter of planes on lanes answers as the scalar text does, on every instruction set, and
 // decide() answers as the predicates on two triangles do.
-#include "verify/filter_lanes.h"
+#include "verify/filter.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,7 @@
 #include "tests/verify/hard_pairs.h"
 #include "tests/verify/reference.h"
 #include "verify/exact.h"
-#include "verify/filter.h"
-#include "verify/filter_of_planes.h"
+#include "verify/filter_scalars.h"
 
 namespace farcull {
 namespace {

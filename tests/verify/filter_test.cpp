@@ -13,7 +13,7 @@
 #include "tests/verify/hard_pairs.h"
 #include "tests/verify/reference.h"
 #include "verify/exact.h"
-#include "verify/filter_of_planes.h"
+#include "verify/filter_scalars.h"
 
 namespace farcull {
 namespace {

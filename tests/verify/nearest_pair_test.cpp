@@ -12,7 +12,7 @@
 #include "tests/verify/closest_reference.h"
 #include "tests/verify/hard_pairs.h"
 #include "verify/closest.h"
-#include "verify/filter_of_distance.h"
+#include "verify/filter_scalars.h"
 
 namespace farcull {
 namespace {

@@ -15,8 +15,8 @@
 #include "tests/core/canvas/lab.h"
 #include "tests/core/native/every_target.h"
 #include "tests/core/scene/scenes.h"
-#include "verify/box_line.h"
-#include "verify/minkowski_cases.h"
+#include "verify/kernel_cases.h"
+#include "verify/solid_lines.h"
 
 namespace farcull {
 namespace {

@@ -15,7 +15,7 @@
 #include "tests/core/base/rational.h"
 #include "tests/core/base/seed.h"
 #include "tests/core/base/trials.h"
-#include "verify/interval_cases.h"
+#include "verify/kernel_cases.h"
 
 namespace farcull::lab {
 
@@ -38,7 +38,6 @@ namespace farcull::interval {
 namespace farcull::interval_bare {
 using namespace farcull::glsl;
 #include "core/pairs/interval.glsl"
-#include "tests/core/pairs/interval_evaluate.h"
 }  // namespace farcull::interval_bare
 
 #define float Chance
@@ -46,7 +45,6 @@ namespace farcull::interval_bare_chance {
 using namespace farcull::glsl_chance;
 #include "core/pairs/interval.glsl"
 #undef float
-#include "tests/core/pairs/interval_evaluate.h"
 }  // namespace farcull::interval_bare_chance
 
 #undef FAR_PAIR_ROUNDING
@@ -56,7 +54,6 @@ namespace farcull::interval_chance {
 using namespace farcull::glsl_chance;
 #include "core/pairs/interval.glsl"
 #undef float
-#include "tests/core/pairs/interval_evaluate.h"
 }  // namespace farcull::interval_chance
 
 namespace farcull {

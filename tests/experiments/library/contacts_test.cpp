@@ -8,7 +8,7 @@
 #include "experiments/library/farcull.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/experiments/library/flat.h"
-#include "verify/contact_kind.h"
+#include "verify/contact.h"
 
 namespace farcull {
 namespace {

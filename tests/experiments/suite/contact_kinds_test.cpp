@@ -4,7 +4,7 @@
 
 #include "experiments/suite/reader.h"
 #include "experiments/suite/writer.h"
-#include "verify/contact_kind.h"
+#include "verify/contact.h"
 #include "verify/exact.h"
 
 namespace farcull {

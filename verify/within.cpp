@@ -3,7 +3,7 @@
 // or an edge, that edge or face is parallel to the first face, and both points can be moved along
 // it, keeping their difference, until one of them reaches an edge or a corner (Ericson, Real-Time
 // Collision Detection, 2005, section 5.1.10). A degenerate triangle is the union of its edges.
-#include "verify/disjoint_distance.h"
+#include "verify/within.h"
 
 #include <gmpxx.h>
 

@@ -1,4 +1,5 @@
-// Bounds on the rounding of the filters (verify/filter.h).
+// Bounds on the rounding of what the verification computes in doubles: of the filters
+// (verify/filter.h), and of points that are compared.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +8,7 @@ namespace farcull {
 
 enum class Triage : std::uint8_t { no, yes, unknown };
 
-/// The proved bounds, derived in filter_of_planes.h and filter_of_distance.h. The filters take them
+/// The proved bounds, derived in filter_scalars.h. The filters take them
 /// as a type: tests show with smaller ones that they are needed.
 struct FilterBounds {
   static constexpr double side =
@@ -29,5 +30,17 @@ constexpr double kNormalRounding = 0x1p-49;
 constexpr double kLeastSquare = 0x1p-900;
 /// Rounding of a clearance times a length.
 constexpr double kNeededRounding = 0x1p-50;
+
+// ---- of SamePoints (verify/closest_points.cpp, which derives them) ----
+
+/// Error of a product w . (x - p), relative to the magnitudes of its terms.
+constexpr double kTie = 8 * 0x1p-53;
+/// Error that the rounding of the two points of w adds, relative to the magnitudes of their
+/// coordinates.
+constexpr double kTiePoints = 2 * 0x1p-53;
+/// The same where a coordinate is subnormal.
+constexpr double kTieSubnormal = 0x1p-1070;
+/// Underflow of products.
+constexpr double kTieAbsolute = 0x1p-1000;
 
 }  // namespace farcull

@@ -1,0 +1,355 @@
+// The filters (verify/filter.h) on scalars, with bounds as a type, and the derivations of the
+// bounds.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "core/scene/scene.h"
+#include "verify/rounding.h"
+
+namespace farcull {
+
+// The order in which two triangles whose planes cross are compared along the line of the planes.
+
+/// Corners of a and of b, by number. Where the planes cross, each triangle covers a segment of
+/// their line, from the edge to one of the other corners to the edge to the other. Seen from the
+/// corner that is alone, with the other two in the order that puts the other triangle's corner on
+/// the positive side, the ends are in a known order along the line, and two determinants compare
+/// them (Guigue, Devillers: Fast and robust triangle-triangle overlap test using orientation
+/// predicates, 2003).
+struct CornerOrder {
+  std::array<std::uint8_t, 3> a, b;  // the corner that is alone comes first
+};
+
+/// a_above: bit i is set if corner i of a is on the positive side of the plane of b; b_above
+/// likewise. Precondition: one or two bits of each are set.
+constexpr CornerOrder corner_order(unsigned a_above, unsigned b_above) {
+  // Indexed by the bits of the corners above: the corner that is alone on its side.
+  constexpr std::array<std::uint8_t, 8> kAlone = {0, 0, 1, 2, 2, 1, 0, 0};
+  const auto from = [](std::uint8_t alone) {
+    return std::array<std::uint8_t, 3>{alone, static_cast<std::uint8_t>((alone + 1) % 3),
+                                       static_cast<std::uint8_t>((alone + 2) % 3)};
+  };
+  CornerOrder order{from(kAlone[a_above]), from(kAlone[b_above])};
+  if ((a_above >> order.a[0] & 1) == 0) std::swap(order.b[1], order.b[2]);
+  if ((b_above >> order.b[0] & 1) == 0) std::swap(order.a[1], order.a[2]);
+  return order;
+}
+
+/// corner_order() for lookup: a_above in bits 0 to 2, b_above in bits 3 to 5.
+inline constexpr std::array<CornerOrder, 64> kCornerOrders = [] {
+  std::array<CornerOrder, 64> orders{};
+  for (unsigned bits = 0; bits < 64; ++bits) orders[bits] = corner_order(bits & 7, bits >> 3);
+  return orders;
+}();
+
+}  // namespace farcull
+
+namespace farcull::filters {
+
+// ---- against planes ----
+//
+// The bounds (Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 3; Shewchuk,
+// Adaptive Precision Floating-Point Arithmetic, 1997, for the same determinant). u = 2^-53; without
+// underflow and overflow every operation multiplies its exact result by some 1 + d, |d| <= u.
+//
+// Side of a plane. With e = p - o, f = q - o, w = x - o, the determinant is the sum over k of
+// n_k w_k, n = e x f: six terms e_i f_j w_k. A term meets at most 8 roundings: one in each of its
+// three differences, e_i f_j, the difference in n_k, n_k w_k, and two sums. So the computed D
+// differs from the exact one by at most ((1 + u)^8 - 1) P, where P is the sum of the six exact
+// |e_i f_j w_k|. The permanent is computed by the same operations on magnitudes, with at most 8
+// roundings a term, hence P <= (1 - u)^-8 times the computed one, and larger |w_k| only enlarge it.
+// The bound itself takes two more roundings. ((1 + u)^8 - 1) (1 - u)^-10 < 8 u + 150 u^2 < 9 u.
+//
+// Product of two normals n.m: a normal's terms meet 4 roundings each, the products and sums 3 more:
+// 11, and the bound 13 more at most: (1 + u)^11 - 1 over (1 - u)^13 is below 12 u.
+//
+// Projection of w = x - o onto a direction d that is given (however it was found, its doubles are
+// what is meant): one difference, one product, two sums: 4, and the bound 6 more: below 5 u. The 9
+// u of sides serve.
+//
+// Underflow. Differences and sums of doubles are exact where they are subnormal. A product is off
+// by at most 2^-1075 more. In D: two in each n_k, times w_k, and one in each n_k w_k, which makes
+// at most 2^-1073 (|w|_1 + 2) with all later roundings; in n.m, 2^-1073 (|n|_1 + |m|_1 + 2), also
+// with |n|_1 as computed from magnitudes; in a projection 2^-1073. The same happens to the
+// permanent, times 12 u. `absolute` is 2^70 times that and more, since 2^-1000 and its products
+// with what is at least 1 are normal numbers, on which every processor is fast.
+//
+// Overflow. Every operation of D has its like on magnitudes in the permanent, which is at least as
+// large, for rounding is monotone. So where anything overflows the bound is infinite or not a
+// number, and no comparison with it holds.
+
+using PlainReal = double;
+using Real = double;
+using Truth = bool;
+using Point = Vec3;
+using std::abs;
+using std::max;
+using std::min;
+using std::sqrt;
+inline bool of_all(bool answer) { return answer; }
+#define FAR_FILTER inline
+#include "verify/filter_planes.inl"
+#undef FAR_FILTER
+
+inline Triple operator+(const Triple& p, const Triple& q) {
+  return {p.x + q.x, p.y + q.y, p.z + q.z};
+}
+inline Triple operator-(const Triple& p, const Triple& q) {
+  return {p.x - q.x, p.y - q.y, p.z - q.z};
+}
+
+/// About p / |p|; not finite where p is zero or products underflow or overflow.
+inline Triple unit(const Triple& p) {
+  const double length = std::sqrt(dot(p, p));
+  return {p.x / length, p.y / length, p.z / length};
+}
+
+/// -1, 1, or 0 for a doubt.
+inline int sign(double value, double bound) { return (value > bound) - (value < -bound); }
+
+/// Bit i where the value of corner i is above 0.
+inline unsigned above(const Sides& sides) {
+  return (sides.value[0] > 0) + 2u * (sides.value[1] > 0) + 4u * (sides.value[2] > 0);
+}
+
+/// True where d surely divides: w1, w2 on its positive side, x1, x2 on the negative one. All are
+/// differences of coordinates.
+template <class Bounds>
+bool divides(const Triple& d, const Triple& w1, const Triple& w2, const Triple& x1,
+             const Triple& x2) {
+  const Triple most = largest(largest(w1, w2), largest(x1, x2));
+  const double bound = Bounds::side * dot(magnitudes(d), most) + Bounds::absolute;
+  return dot(d, w1) > bound && dot(d, w2) > bound && dot(d, x1) < -bound && dot(d, x2) < -bound;
+}
+
+template <class Bounds>
+Triage filter_planes(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
+  const AgainstPlanes planes = against_planes<Bounds>(a.data(), b.data(), clearance);
+  if (planes.apart) return Triage::no;
+  if (!planes.crossing) return Triage::unknown;
+  const auto& [i, j] = kCornerOrders[above(planes.a) + 8 * above(planes.b)];
+  const OnLine line = compare_on_line<Bounds>(a[i[0]], a[i[1]], a[i[2]], b[j[0]], b[j[1]], b[j[2]]);
+  // Triangles that miss each other may be within a clearance.
+  if (line.apart && clearance == 0) return Triage::no;
+  return line.meeting ? Triage::yes : Triage::unknown;
+}
+
+// Seen from v, with N = a1 x a2 and M = b1 x b2: A1 = M . a1 and A2 = M . a2 give the sides of b's
+// plane that a's corners are on, B1 = N . b1 and B2 = N . b2 likewise. If A1 and A2 have the same
+// sign, a meets b's plane in v alone; likewise b. Else each triangle meets the line of both planes
+// in a segment from v, in the directions sign(A2) (a1 A2 - a2 A1) and sign(B2) (b1 B2 - b2 B1),
+// since these are sums with weights above 0 and lie in the other plane. Now a1 A2 - a2 A1 = M x N
+// and b1 B2 - b2 B1 = N x M, so the directions are the same iff A2 and B2 differ in sign.
+template <class Bounds>
+Triage filter_beyond_vertex(const Vec3& v, const Vec3& a1, const Vec3& a2, const Vec3& b1,
+                            const Vec3& b2) {
+  const Triple e1 = difference(a1, v);
+  const Triple e2 = difference(a2, v);
+  const Triple f1 = difference(b1, v);
+  const Triple f2 = difference(b2, v);
+  const Normal n = normal_of(e1, e2);
+  const double b_bound = side_bound<Bounds>(n, largest(f1, f2));
+  const int b1_side = sign(dot(n.n, f1), b_bound);
+  const int b2_side = sign(dot(n.n, f2), b_bound);
+  if (b1_side * b2_side > 0) return Triage::no;
+  const Normal m = normal_of(f1, f2);
+  const double a_bound = side_bound<Bounds>(m, largest(e1, e2));
+  const int a1_side = sign(dot(m.n, e1), a_bound);
+  const int a2_side = sign(dot(m.n, e2), a_bound);
+  if (a1_side * a2_side > 0) return Triage::no;
+  if (a1_side * a2_side * b1_side * b2_side != 0)
+    return a2_side * b2_side < 0 ? Triage::yes : Triage::no;
+  // Nearly in one plane: a plane through v that has one triangle on each side proves as much.
+  return divides<Bounds>((unit(e1) + unit(e2)) - (unit(f1) + unit(f2)), e1, e2, f1, f2)
+             ? Triage::no
+             : Triage::unknown;
+}
+
+// (q - p) x (r - p) . (q - p) x (s - p) is |q - p|^2 times the product of the parts of r - p and
+// s - p that are perpendicular to the edge. Where it is negative, the plane through the edge that
+// is perpendicular to the first part has r on one side and s on the other: the triangles share the
+// edge alone. It is at every edge of a mesh that is not folded sharply. Else s off the plane of (p,
+// q, r) proves the same.
+template <class Bounds>
+Triage filter_beyond_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
+  const Triple e = difference(q, p);
+  const Triple w = difference(s, p);
+  const Normal n = normal_of(e, difference(r, p));
+  const Normal m = normal_of(e, w);
+  const double bound =
+      Bounds::normals * dot(n.m, m.m) + Bounds::absolute * (sum(n.m) + sum(m.m) + 1);
+  if (dot(n.n, m.n) < -bound) return Triage::no;
+  const int off = sign(dot(n.n, w), side_bound<Bounds>(n, magnitudes(w)));
+  return off != 0 ? Triage::no : Triage::unknown;
+}
+
+// ---- by distance ----
+//
+// Two closest points are guessed in doubles (Ericson, Real-Time Collision Detection, 2005, sections
+// 5.1.5 and 5.1.9). Either they prove the answer or there is none, however wrong the guess may be:
+// the points show that the triangles come near, or the direction between them that they do not.
+//
+// All corners are taken relative to o = a[0]: a difference x = fl(corner - o) is off by u |x| at
+// most, u = 2^-53. R is the largest |coordinate| of these.
+//
+// Near. p = sum of l_i x_i with weights l_i >= 0 that sum to 1 up to 4 u (two are computed, each at
+// most 1, the third is 1 less the others, or 0 where that is negative by rounding), and q likewise.
+// p is within (1 + 4 u) times u R (the differences) + 3 u R (products and sums) + 4 u R (weights,
+// against those divided by their sum) < 9 u R per axis of a point of the triangle, and so q; their
+// difference has one more rounding, of 2 u R: below 20.1 u R per axis and 35 u R in length. The
+// computed length is below 4 R and off by less than 3 u of itself, and two sums follow: 20 u R. In
+// all 55 u R; `point` is 64 u.
+//
+// Far. For any vector d the distance is at least (min d.b_j - max d.a_i) / |d|. A computed d.x is
+// off by less than 5 u |d|.|x| (above), their difference by 2 u |d|.|x| more: 12 u M,
+// M the product of the magnitudes of d with the largest |x| per axis. `gap` is 16 u. The computed
+// length of d, times the clearance, is off by less than 4 u of itself, which the factor 1 + 8 u
+// covers.
+//
+// Underflow: products are off by at most 2^-1075, far below `absolute`, where the length of d is
+// as computed only if its square is at least 2^-900; a shorter one counts as 2^-450 at least where
+// it shall be small. Overflow: as against planes; infinities and what is
+// not a number satisfy no comparison.
+
+using Corners = std::array<Vec3, 3>;
+
+/// The best guess so far.
+struct Closest {
+  double squared = std::numeric_limits<double>::infinity();
+  Vec3 difference = Vec3::Zero();
+
+  void offer(const Vec3& d) {
+    const double s = d.squaredNorm();
+    if (s < squared) {
+      squared = s;
+      difference = d;
+    }
+  }
+};
+
+inline double clamped(double x) {
+  return x > 0 ? std::min(x, 1.0) : 0;
+}  // 0 for what is not a number
+
+/// Between segments: from p + s u to q + t v, s and t in [0, 1].
+inline void offer_segments(const Vec3& p, const Vec3& p_end, const Vec3& q, const Vec3& q_end,
+                           Closest& closest) {
+  const Vec3 u = p_end - p;
+  const Vec3 v = q_end - q;
+  const Vec3 w = p - q;
+  const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), uw = u.dot(w), vw = v.dot(w);
+  const double det = uu * vv - uv * uv;
+  double s = det > 0 ? clamped((uv * vw - vv * uw) / det) : 0;
+  double t = vv > 0 ? (uv * s + vw) / vv : 0;
+  if (!(t >= 0 && t <= 1)) {
+    t = clamped(t);
+    s = uu > 0 ? clamped((uv * t - uw) / uu) : 0;
+  }
+  closest.offer((q * (1 - t) + q_end * t) - (p * (1 - s) + p_end * s));
+}
+
+/// From a corner p to the face of t, where it lies over it; `sense` -1 turns the difference round.
+inline void offer_face(const Vec3& p, const Corners& t, double sense, Closest& closest) {
+  const Vec3 e = t[1] - t[0];
+  const Vec3 f = t[2] - t[0];
+  const Vec3 w = p - t[0];
+  const double ee = e.dot(e), ef = e.dot(f), ff = f.dot(f), ew = e.dot(w), fw = f.dot(w);
+  const double det = ee * ff - ef * ef;
+  const double l = (ff * ew - ef * fw) / det;
+  const double m = (ee * fw - ef * ew) / det;
+  if (!(l >= 0 && m >= 0 && l + m <= 1)) return;
+  const double k = std::max(1 - l - m, 0.0);
+  closest.offer(sense * ((t[0] * k + t[1] * l + t[2] * m) - p));
+}
+
+/// The largest magnitude per axis.
+inline Vec3 extent_of(const Corners& a, const Corners& b) {
+  Vec3 most = Vec3::Zero();
+  for (const Corners* t : {&a, &b}) {
+    for (const Vec3& p : *t) most = most.cwiseMax(p.cwiseAbs());
+  }
+  return most;
+}
+
+/// Two points of the triangles, near each other, and the corners relative to a[0].
+struct Near {
+  Corners s, t;
+  Closest closest;
+};
+
+inline Near near_points(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  Near out;
+  auto& [s, t, closest] = out;
+  for (int i = 0; i < 3; ++i) {
+    s[i] = a[i] - a[0];
+    t[i] = b[i] - a[0];
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      offer_segments(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3], closest);
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    offer_face(s[i], t, 1, closest);
+    offer_face(t[i], s, -1, closest);
+  }
+  return out;
+}
+
+/// By how much the projections onto the difference surely leave a gap, times its length.
+template <class Bounds>
+double gap_along(const Near& near, const Vec3& extent) {
+  const auto& [s, t, closest] = near;
+  const Vec3& d = closest.difference;
+  const double s_most = std::max({d.dot(s[0]), d.dot(s[1]), d.dot(s[2])});
+  const double t_least = std::min({d.dot(t[0]), d.dot(t[1]), d.dot(t[2])});
+  const double doubt = Bounds::gap * d.cwiseAbs().dot(extent) + Bounds::absolute;
+  return t_least - s_most - doubt;
+}
+
+template <class Bounds>
+Triage filter_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance) {
+  const Near near = near_points(a, b);
+  const double squared = near.closest.squared;
+  const Vec3 extent = extent_of(near.s, near.t);
+  const double length = std::sqrt(std::max(squared, kLeastSquare));
+  if (length + Bounds::point * extent.maxCoeff() + Bounds::absolute <= clearance)
+    return Triage::yes;
+  if (squared < kLeastSquare) return Triage::unknown;
+  const double needed = clearance * length;
+  return gap_along<Bounds>(near, extent) > needed + needed * kNeededRounding ? Triage::no
+                                                                             : Triage::unknown;
+}
+
+/// The distance is at least `lower` and at most `upper`, which may be infinite.
+struct DistanceBounds {
+  double lower = 0;
+  double upper = std::numeric_limits<double>::infinity();
+};
+
+/// Lower: the distance is at least the gap over |d|. The quotient is one rounding off, the computed
+/// length 3 u, and the factor 1 - 8 u, itself rounded once, covers both. Nothing underflows there:
+/// a gap above 0 is a multiple of the last bit of the doubt, hence above 2^-104 |d|^2 (no |d_k| is
+/// more than twice the extent and a little), and |d| is at least 2^-450.
+template <class Bounds>
+DistanceBounds distance_bounds(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+  const Near near = near_points(a, b);
+  const double squared = near.closest.squared;
+  const Vec3 extent = extent_of(near.s, near.t);
+  const double length = std::sqrt(std::max(squared, kLeastSquare));
+  DistanceBounds out;
+  const double upper = length + Bounds::point * extent.maxCoeff() + Bounds::absolute;
+  if (upper >= 0) out.upper = upper;
+  if (squared < kLeastSquare) return out;
+  const double lower = gap_along<Bounds>(near, extent) / length * (1 - kNeededRounding);
+  if (lower > 0) out.lower = lower;
+  return out;
+}
+
+}  // namespace farcull::filters
