@@ -1,6 +1,5 @@
 // decide(): the candidates in blocks, which the threads take in turn. A filter in doubles answers
 // for most pairs, several at once on lanes; exact arithmetic answers for the rest.
-
 #include <algorithm>
 #include <atomic>
 #include <bit>

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/scene/scene.h"
-#include "verify/certificate/fraction.h"
 #include "verify/certificate/integer_inside.h"
+#include "verify/certificate/integers.h"
 #include "verify/distance_question.h"
 
 namespace farcull {

@@ -15,7 +15,7 @@
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/text_table.h"
-#include "verify/certificate/not_asked.h"
+#include "verify/certificate/certificate.h"
 
 namespace farcull {
 namespace {

@@ -16,7 +16,7 @@
 #include "experiments/record/fields.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"
-#include "verify/certificate/not_asked.h"
+#include "verify/certificate/certificate.h"
 
 namespace farcull {
 namespace {

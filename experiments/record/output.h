@@ -25,7 +25,7 @@ nlohmann::ordered_json threads_json(const GlInfo& gl);
 /// The floating-point environment of the caller and the one in force.
 nlohmann::ordered_json floating_point_json(const FloatingPoint& callers, const FloatingPoint& used);
 
-/// Pairs that the scene leaves out (verify/certificate/not_asked.h): objects, pairs, and which
+/// Pairs that the scene leaves out (verify/certificate/certificate.h): objects, pairs, and which
 /// objects, as the first and the last of each run of them.
 nlohmann::ordered_json not_asked_json(const Scene& scene);
 

@@ -8,7 +8,7 @@
 #include "core/gl/base/context.h"
 #include "core/scene/scene.h"
 #include "experiments/system/text_table.h"
-#include "verify/certificate/not_asked.h"
+#include "verify/certificate/certificate.h"
 
 namespace farcull {
 namespace {

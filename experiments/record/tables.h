@@ -35,8 +35,8 @@ std::string default_method_line(const RunOptions& options);
 /// neighbours".
 std::string colliding_text(std::uint64_t pairs, std::uint64_t neighbour_pairs, bool self);
 
-/// Pairs that the scene leaves out (verify/certificate/not_asked.h): "12 pairs of triangles inside
-/// a and b"; empty where it leaves out nothing.
+/// Pairs that the scene leaves out (verify/certificate/certificate.h): "12 pairs of triangles
+/// inside a and b"; empty where it leaves out nothing.
 std::string not_asked_text(const Scene& scene);
 /// The same as a line of its own, with the options that ask it; empty where there is nothing.
 std::string not_asked_line(const Scene& scene, const std::string& options = "--self");

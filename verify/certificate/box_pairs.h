@@ -5,14 +5,47 @@
 // pairs: triangle after triangle, each asked for its partners.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/scene/scene.h"
-#include "verify/certificate/bounds_tree.h"
 
 namespace farcull {
+
+// Trees of boxes over triangles, for the enumerations of this folder. Boxes are minima and maxima
+// of the coordinates as given, so nothing is rounded.
+
+struct BoundsTree {
+  struct Bounds {
+    std::array<double, 3> lo, hi;
+  };
+  /// The nodes are in preorder: the left child follows its parent, the right one starts where the
+  /// left one ends.
+  struct Node {
+    Bounds bounds;
+    std::uint32_t last_triangle = 0;  // the largest index below it
+    std::uint32_t first = 0;          // into order
+    std::uint32_t count = 0;
+    std::uint32_t after = 0;  // the first node that is not below it
+  };
+
+  /// The boxes of all triangles of the scene, and no nodes. Precondition: validate() accepts it.
+  explicit BoundsTree(const Scene& scene);
+
+  /// Appends the nodes of a binary tree over the triangles first .. first + count - 1, count > 0.
+  void add(std::uint32_t first, std::uint32_t count);
+
+  bool is_leaf(std::uint32_t node) const { return nodes[node].after == node + 1; }
+
+  std::vector<Bounds> bounds;  // per triangle
+  std::vector<std::uint32_t> order;
+  std::vector<Node> nodes;
+};
+
+// ---- the pairs that a certificate speaks about ----
 
 /// All pairs of triangles that count (of different objects, and of one object where it is `self`)
 /// whose closed boxes share a point (touching counts), sorted by (a, b), a < b, each once. Boxes
@@ -36,6 +69,47 @@ class BoxPairs {
   BoundsTree tree_;
   std::uint32_t object_ = 0;    // of triangle_
   std::uint32_t triangle_ = 0;  // the next to be asked
+};
+
+// ---- the pairs of triangles of two objects that may be within some distance, by their boxes ----
+//
+// For the checker of distances; also an enumeration of its own: it shares no code with
+// core/proximity, which culls.
+
+/// Whether two boxes are farther apart than a length, in doubles whose rounding is bounded.
+class FarBoxes {
+ public:
+  /// length: world units, >= 0, may be infinite.
+  explicit FarBoxes(double length);
+  /// True only if each point of one box is farther than the length from each of the other.
+  bool proved(const BoundsTree::Bounds& x, const BoundsTree::Bounds& y) const;
+
+ private:
+  double length_;
+  double scale_ = 1;    // a power of two
+  double squared_ = 0;  // above (length * scale)^2
+};
+
+/// Precondition: validate() accepts the scene. It must outlive the object.
+class NearBoxes {
+ public:
+  explicit NearBoxes(const Scene& scene);
+
+  /// Begins with the objects a <= b. length: world units, >= 0, may be infinite.
+  void ask(std::uint32_t a, std::uint32_t b, double length);
+
+  /// Appends pairs of triangles, one of each object, or any two of the object that both are; in no
+  /// order, until there are at least `enough` or no more. Among all that are appended since ask()
+  /// each pair whose boxes are not proved to be farther apart than the length is there once. False
+  /// when none is left.
+  bool next(std::vector<TrianglePair>& pairs, std::size_t enough);
+
+ private:
+  const Scene& scene_;
+  BoundsTree tree_;
+  std::vector<std::uint32_t> roots_;  // by object; of one without triangles none
+  FarBoxes far_{0};
+  std::vector<std::array<std::uint32_t, 2>> open_;  // pairs of nodes still to be looked into
 };
 
 }  // namespace farcull

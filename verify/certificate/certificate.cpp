@@ -12,11 +12,27 @@
 #include "core/base/parallel.h"
 #include "verify/certificate/box_pairs.h"
 #include "verify/certificate/integer_pair.h"
-#include "verify/certificate/likely_direction.h"
-#include "verify/certificate/not_asked.h"
 #include "verify/certificate/pair_list.h"
 
 namespace farcull {
+
+// One pass over the objects: n triangles make n (n - 1) / 2 pairs, and neighbours in the order of
+// the scene join into one range.
+
+NotAsked not_asked(const Scene& scene) {
+  NotAsked out;
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    const Object& object = scene.objects[o];
+    if (object.self) continue;
+    ++out.objects;
+    const std::uint64_t n = object.triangle_count;
+    if (n > 0) out.pairs += n * (n - 1) / 2;
+    if (out.ranges.empty() || out.ranges.back()[1] + 1 != o) out.ranges.push_back({o, o});
+    out.ranges.back()[1] = o;
+  }
+  return out;
+}
+
 namespace {
 
 using Corners = std::array<Vec3, 3>;

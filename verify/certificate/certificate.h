@@ -15,6 +15,7 @@
 // decided as without one.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -26,6 +27,16 @@
 
 namespace farcull {
 
+/// The pairs that a scene does not ask about: those inside an object that is not `self`. No number of
+/// pairs met, missed or proved speaks of them, so whoever reports one reports this as well.
+struct NotAsked {
+  std::uint64_t objects = 0;                         // that are not tested against themselves
+  std::uint64_t pairs = 0;                           // of two triangles inside one of them
+  std::vector<std::array<std::uint32_t, 2>> ranges;  // these objects, as [first, last]
+};
+
+NotAsked not_asked(const Scene& scene);
+
 struct Certificate {
   struct SceneKey {
     std::string name;
@@ -35,8 +46,7 @@ struct Certificate {
     bool operator==(const SceneKey&) const = default;
   };
 
-  /// The pairs that the scene does not ask about (verify/certificate/not_asked.h), and so is no
-  /// part of the claims.
+  /// The pairs that the scene does not ask about (not_asked()), and so is no part of the claims.
   struct Unasked {
     std::uint64_t objects = 0;
     std::uint64_t pairs = 0;

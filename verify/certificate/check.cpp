@@ -10,7 +10,6 @@
 #include "verify/certificate/box_pairs.h"
 #include "verify/certificate/certificate.h"
 #include "verify/certificate/integer_pair.h"
-#include "verify/certificate/not_asked.h"
 #include "verify/certificate/pair_list.h"
 
 namespace farcull {

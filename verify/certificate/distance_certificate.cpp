@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "verify/certificate/fraction.h"
-#include "verify/certificate/json_reader.h"
+#include "verify/certificate/integers.h"
+#include "verify/certificate/json.h"
 
 namespace farcull {
 namespace {

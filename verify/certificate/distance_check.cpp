@@ -10,12 +10,10 @@
 #include "core/base/stopwatch.h"
 #include "verify/certificate/box_pairs.h"
 #include "verify/certificate/distance_certificate.h"
-#include "verify/certificate/far_proof.h"
-#include "verify/certificate/fraction.h"
+#include "verify/certificate/distance_proofs.h"
 #include "verify/certificate/integer_distance.h"
 #include "verify/certificate/integer_inside.h"
-#include "verify/certificate/listed_distances.h"
-#include "verify/certificate/near_boxes.h"
+#include "verify/certificate/integers.h"
 
 namespace farcull {
 namespace {

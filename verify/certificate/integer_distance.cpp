@@ -8,11 +8,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "verify/certificate/integer_direction.h"
 #include "verify/certificate/integer_pair.h"
-#include "verify/certificate/integer_points.h"
-#include "verify/certificate/integer_scale.h"
-#include "verify/certificate/likely_direction.h"
+#include "verify/certificate/integer_witnesses.h"
+#include "verify/certificate/integers.h"
 
 namespace farcull {
 

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/scene/scene.h"
-#include "verify/certificate/fraction.h"
+#include "verify/certificate/integers.h"
 
 namespace farcull {
 

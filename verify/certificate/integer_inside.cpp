@@ -12,8 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "verify/certificate/integer_scale.h"
-#include "verify/certificate/integer_vector.h"
+#include "verify/certificate/integers.h"
 
 namespace farcull {
 namespace {

@@ -86,4 +86,9 @@ bool integer_intersects(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>&
 /// along none of the 38 directions the gap is longer.
 bool integer_within(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
 
+/// A guess which of the 38 directions parts two triangles most clearly: one whose gap beyond the
+/// clearance, in doubles, is clear of rounding, cheap ones first; else the one with the widest in
+/// proportion. Only a guess, whatever doubles overflow.
+int likely_direction(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double clearance);
+
 }  // namespace farcull

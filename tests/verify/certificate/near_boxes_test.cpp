@@ -1,5 +1,5 @@
 // Boxes that are proved far apart are, exactly; and what is not proved is nearly as near.
-#include "verify/certificate/near_boxes.h"
+#include "verify/certificate/box_pairs.h"
 
 #include <gtest/gtest.h>
 

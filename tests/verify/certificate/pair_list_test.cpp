@@ -16,7 +16,7 @@
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/experiments/system/error_of.h"
 #include "tests/verify/reference.h"
-#include "verify/certificate/not_asked.h"
+#include "verify/certificate/certificate.h"
 #include "verify/exact.h"
 
 namespace farcull {

@@ -1,11 +1,9 @@
 // A rounded root is only a guess: its exact square is compared with the fraction.
-#include "verify/certificate/fraction.h"
+#include "verify/certificate/integers.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "verify/certificate/integer_scale.h"
 
 namespace farcull {
 namespace {

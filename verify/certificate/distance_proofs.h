@@ -1,15 +1,30 @@
-// Many pairs of triangles of which each has to be farther apart than some length, decided in
-// integers, on all cores. For the checker of distances.
+// For the checker of distances: the entries of a certificate in the numbers of its scene, and the
+// proof that all other pairs are farther apart.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/scene/scene.h"
-#include "verify/certificate/fraction.h"
+#include "verify/certificate/distance_certificate.h"
+#include "verify/certificate/integers.h"
 
 namespace farcull {
+
+/// An entry with its triangles as the scene numbers them.
+struct Listed {
+  TrianglePair pair;
+  Length length;
+};
+
+/// Entry by entry. Throws Error naming `name` where one names what the scene does not have.
+std::vector<Listed> located(const DistanceCertificate& certificate, const Scene& scene,
+                            const std::string& name);
+
+// Many pairs of triangles of which each has to be farther apart than some length, decided in
+// integers, on all cores.
 
 class FarProof {
  public:

@@ -1,0 +1,181 @@
+// The numbers of this folder: vectors of machine integers and of GMP's, with the few operations
+// that deciding a pair takes; doubles as such integers; and fractions. For the sources of
+// verify/certificate, for verify/distance_claims.h and for tests alone.
+#pragma once
+
+#include <gmpxx.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <compare>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "core/scene/scene.h"
+
+namespace farcull::integer {
+
+__extension__ using Wide = __int128;
+
+template <class Integer>
+using Vector = std::array<Integer, 3>;
+template <class Integer>
+using Corners = std::array<Vector<Integer>, 3>;
+
+inline void multiply(Wide& out, Wide x, Wide y) { out = x * y; }
+inline void add_product(Wide& out, Wide x, Wide y) { out += x * y; }
+inline void subtract_product(Wide& out, Wide x, Wide y) { out -= x * y; }
+
+inline void multiply(mpz_class& out, const mpz_class& x, const mpz_class& y) {
+  mpz_mul(out.get_mpz_t(), x.get_mpz_t(), y.get_mpz_t());
+}
+inline void add_product(mpz_class& out, const mpz_class& x, const mpz_class& y) {
+  mpz_addmul(out.get_mpz_t(), x.get_mpz_t(), y.get_mpz_t());
+}
+inline void subtract_product(mpz_class& out, const mpz_class& x, const mpz_class& y) {
+  mpz_submul(out.get_mpz_t(), x.get_mpz_t(), y.get_mpz_t());
+}
+
+template <class Integer>
+void minus(Vector<Integer>& out, const Vector<Integer>& x, const Vector<Integer>& y) {
+  for (int k = 0; k < 3; ++k) out[k] = x[k] - y[k];
+}
+
+template <class Integer>
+void dot(Integer& out, const Vector<Integer>& x, const Vector<Integer>& y) {
+  multiply(out, x[0], y[0]);
+  add_product(out, x[1], y[1]);
+  add_product(out, x[2], y[2]);
+}
+
+template <class Integer>
+void cross(Vector<Integer>& out, const Vector<Integer>& x, const Vector<Integer>& y) {
+  for (int k = 0; k < 3; ++k) {
+    multiply(out[k], x[(k + 1) % 3], y[(k + 2) % 3]);
+    subtract_product(out[k], x[(k + 2) % 3], y[(k + 1) % 3]);
+  }
+}
+
+template <class Integer>
+bool is_zero(const Vector<Integer>& x) {
+  return x[0] == 0 && x[1] == 0 && x[2] == 0;
+}
+
+template <class Integer>
+void edge(Vector<Integer>& out, const Corners<Integer>& t, int i) {
+  minus(out, t[(i + 1) % 3], t[i]);
+}
+
+// A pair of triangles in integers: every finite double is an integer times a power of two, so one
+// common power turns all coordinates of a pair into integers, and nothing is rounded.
+
+/// value = mantissa * 2^exponent, the mantissa odd or 0.
+struct Parts {
+  std::int64_t mantissa = 0;
+  int exponent = 0;
+};
+
+/// Precondition: finite.
+inline Parts parts(double value) {
+  if (value == 0) return {};
+  int exponent = 0;
+  const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));
+  const int zeros = std::countr_zero(static_cast<std::uint64_t>(mantissa));
+  return {mantissa >> zeros, exponent - 53 + zeros};
+}
+
+/// to = value / 2^exponent. Precondition: that is an integer.
+inline void scale(mpz_class& to, double value, int exponent) {
+  const Parts x = parts(value);
+  to = static_cast<long>(x.mantissa);
+  if (x.mantissa != 0) to <<= x.exponent - exponent;
+}
+
+/// Two triangles: the corner of the input is the first corner of a + 2^exponent * the integers.
+struct ScaledPair {
+  Corners<mpz_class> a, b;
+  int exponent = 0;
+};
+
+/// length: another number, finite, that has to be a whole multiple of 2^exponent as well.
+inline ScaledPair scaled(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                         double length = 0) {
+  int least = std::numeric_limits<int>::max();
+  const auto include = [&least](double x) {
+    if (x != 0) least = std::min(least, parts(x).exponent);
+  };
+  include(length);
+  for (const auto* t : {&a, &b}) {
+    for (const Vec3& p : *t) {
+      for (int k = 0; k < 3; ++k) include(p[k]);
+    }
+  }
+  ScaledPair out;
+  if (least != std::numeric_limits<int>::max()) out.exponent = least;
+  const auto convert = [&](Corners<mpz_class>& to, const std::array<Vec3, 3>& from) {
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) scale(to[i][k], from[i][k], out.exponent);
+    }
+  };
+  convert(out.a, a);
+  convert(out.b, b);
+  // Every direction and every gap is about differences, and differences are shorter.
+  const Vector<mpz_class> origin = out.a[0];
+  for (auto* t : {&out.a, &out.b}) {
+    for (Vector<mpz_class>& p : *t) minus(p, Vector<mpz_class>(p), origin);
+  }
+  return out;
+}
+
+}  // namespace farcull::integer
+
+namespace farcull {
+
+// ---- squares of distances as fractions ----
+
+/// over / under, >= 0. Not always in lowest terms.
+struct Fraction {
+  mpz_class over = 0;   // >= 0
+  mpz_class under = 1;  // > 0
+
+  /// By value: 1/2 equals 2/4.
+  friend std::strong_ordering operator<=>(const Fraction& x, const Fraction& y);
+  friend bool operator==(const Fraction& x, const Fraction& y) { return x <=> y == 0; }
+};
+
+/// The most decimal digits of either part of a squared distance. All coordinates of a scene times
+/// 2^1074 are integers below 2^2098, and their differences are below D = 2^2099. In this scale the
+/// square of a distance is, by the features of the nearest points, (w . d)^2 / (d . d) with d at
+/// most a product of two edges, so both parts are below (6 D^3)^2 < 2^12600. In world units
+/// the lower part has 2148 bits more: (d . d) 2^2148 < (2 D^2)^2 * 3 * 2^2148 < 2^10548. Dividing
+/// by common factors makes none longer. log10(2^12600) < 3793.
+constexpr std::size_t kMostDigits = 4000;
+
+/// The square of a length, finite and >= 0.
+Fraction square_of(double length);
+
+/// The fraction that is all of the text: decimal digits, '/', decimal digits, in lowest terms,
+/// without leading zeros, neither part longer than kMostDigits. None for any other text.
+std::optional<Fraction> parse_fraction(std::string_view text);
+
+/// In lowest terms, as parse_fraction() reads it.
+std::string text_of(const Fraction& fraction);
+
+/// A double that is at least the root, and hardly more; infinity where no double is.
+double root_above(const Fraction& fraction);
+
+/// A length by its square, with the double above it.
+struct Length {
+  Fraction squared;
+  double above = 0;  // root_above(squared)
+
+  explicit Length(Fraction square) : squared(std::move(square)), above(root_above(squared)) {}
+};
+
+}  // namespace farcull
