@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/scene/scene.h"
-#include "experiments/command/options.h"
+#include "experiments/command/command.h"
 #include "experiments/measure/bench.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"

@@ -1,6 +1,6 @@
 // Reads certificates of pairs and of distances, scenes and lists of pairs, and prints what the
 // checkers of verify/certificate find.
-#include "experiments/command/check.h"
+#include "experiments/command/command.h"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,6 @@
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
 #include "core/scene/scene.h"
-#include "experiments/command/options.h"
 #include "experiments/measure/frames.h"
 #include "experiments/record/check.h"
 #include "experiments/scenes/builtin/scenes.h"

@@ -13,7 +13,7 @@
 #include "commit.h"
 #include "core/base/error.h"
 #include "core/base/floating_point.h"
-#include "experiments/command/options.h"
+#include "experiments/command/command.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/options.h"
+#include "experiments/command/command.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 

@@ -4,7 +4,7 @@
 #include <exception>
 
 #include "core/base/floating_point.h"
-#include "experiments/command/options.h"
+#include "experiments/command/command.h"
 #include "experiments/system/output_file.h"
 
 int main(int argc, char** argv) {

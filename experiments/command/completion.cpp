@@ -8,11 +8,11 @@
 #include <functional>
 
 #include "core/base/error.h"
-#include "experiments/command/declare.h"
+#include "experiments/command/command.h"
 #include "experiments/method/options.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/system/output_file.h"
-#include "experiments/system/shell_word.h"
+#include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {

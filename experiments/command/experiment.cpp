@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "experiments/command/options.h"
-#include "experiments/lemma/oracles.h"
+#include "experiments/command/command.h"
+#include "experiments/lemma/lemma.h"
 #include "experiments/measure/compare.h"
 #include "experiments/measure/family.h"
 #include "experiments/studies/study.h"

@@ -13,7 +13,7 @@
 #include "embedded/pairs_txt.h"
 #include "embedded/scene_file_txt.h"
 #include "embedded/terms_txt.h"
-#include "experiments/command/options.h"
+#include "experiments/command/command.h"
 #include "experiments/system/output_file.h"
 
 namespace farcull {

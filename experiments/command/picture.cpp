@@ -1,6 +1,6 @@
 // Options of `farcull picture` become PictureArguments; the result goes to a file or standard
 // output.
-#include "experiments/command/picture.h"
+#include "experiments/command/command.h"
 
 #include <fmt/format.h>
 

@@ -14,7 +14,7 @@
 #include "core/base/error.h"
 #include "core/canvas/canvas.h"
 #include "core/view/regions.h"
-#include "experiments/command/options.h"
+#include "experiments/command/command.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/run_studies.h"
 #include "experiments/studies/store.h"

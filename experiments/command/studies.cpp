@@ -11,9 +11,8 @@
 
 #include "core/base/error.h"
 #include "core/view/view.h"
-#include "experiments/command/options.h"
+#include "experiments/command/command.h"
 #include "experiments/peers/runner.h"
-#include "experiments/studies/merge.h"
 #include "experiments/studies/run_studies.h"
 #include "experiments/studies/store.h"
 #include "experiments/studies/study.h"

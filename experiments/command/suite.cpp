@@ -3,7 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "experiments/command/options.h"
+#include "experiments/command/command.h"
 #include "experiments/suite/writer.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"

@@ -15,7 +15,7 @@
 #include "core/view/view.h"
 #include "experiments/measure/harness.h"
 #include "experiments/method/distances.h"
-#include "experiments/record/fields.h"
+#include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/machine.h"
 #include "experiments/system/text_table.h"

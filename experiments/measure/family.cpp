@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/scene/scene.h"
 #include "experiments/measure/harness.h"
-#include "experiments/record/fields.h"
+#include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/scene_file.h"

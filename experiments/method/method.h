@@ -1,5 +1,5 @@
 // The methods that a run can choose between, and what each can do. A method is one value of the
-// enumeration, one entry of the table in table.cpp, and the two functions that the entry names.
+// enumeration, one entry of the table in methods.cpp, and the two functions that the entry names.
 #pragma once
 
 #include <functional>
@@ -27,7 +27,7 @@ enum class Method {
   // A new method goes here.
 };
 
-struct Candidates;  // candidates.h
+struct Candidates;  // record.h
 struct Plan;        // plan.h
 class Session;      // session.h
 

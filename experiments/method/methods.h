@@ -1,8 +1,8 @@
 // The functions that the table of methods names: Traits::plan and Traits::find (method.h) of each.
 #pragma once
 
-#include "experiments/method/candidates.h"
 #include "experiments/method/plan.h"
+#include "experiments/method/record.h"
 #include "experiments/method/session.h"
 
 namespace farcull {

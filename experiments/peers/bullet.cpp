@@ -13,7 +13,7 @@
 #include <span>
 #include <type_traits>
 
-#include "experiments/peers/parts.h"
+#include "experiments/peers/peer.h"
 
 namespace farcull {
 namespace {

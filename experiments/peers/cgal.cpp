@@ -23,7 +23,7 @@
 #endif
 
 #include "core/base/stopwatch.h"
-#include "experiments/peers/parts.h"
+#include "experiments/peers/peer.h"
 #include "verify/exact.h"
 
 namespace farcull {

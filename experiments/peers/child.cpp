@@ -1,6 +1,6 @@
 // Starts, feeds, times and ends a process. Nothing of what it does can stop the caller: pipes do
 // not block, and a process that is late is killed with its group.
-#include "experiments/peers/child.h"
+#include "experiments/peers/runner.h"
 
 #include <fcntl.h>
 #include <poll.h>

@@ -13,7 +13,7 @@
 
 #include "core/scene/scene.h"
 #include "experiments/peers/contestant.h"
-#include "experiments/peers/parts.h"
+#include "experiments/peers/peer.h"
 
 namespace farcull {
 namespace {

@@ -11,7 +11,7 @@
 #include <vtkVersion.h>
 
 #include "experiments/peers/contestant.h"
-#include "experiments/peers/parts.h"
+#include "experiments/peers/peer.h"
 
 namespace farcull {
 namespace {

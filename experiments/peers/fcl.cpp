@@ -28,7 +28,7 @@
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
-#include "experiments/peers/parts.h"
+#include "experiments/peers/peer.h"
 #include "verify/exact.h"
 
 namespace farcull {

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "experiments/peers/parts.h"
+#include "experiments/peers/peer.h"
 
 namespace farcull {
 namespace {

@@ -6,6 +6,8 @@
 #include <span>
 #include <utility>
 
+#include "verify/exact.h"
+
 namespace farcull {
 namespace {
 
@@ -89,6 +91,98 @@ std::vector<Peer> all_peers(unsigned threads) {
 std::vector<Peer> narrow_peers() { return listed(kNarrow, &LibraryPeers::narrow, 1); }
 std::vector<DistancePeer> distance_peers() {
   return listed(kDistances, &LibraryPeers::distances, 1);
+}
+
+// ---- the preparation of a scene and the collector of candidates ----
+
+namespace {
+
+std::uint64_t next_id() {
+  static std::atomic<std::uint64_t> last = 0;
+  return ++last;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> objects_with_triangles(const Scene& scene) {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    if (scene.objects[o].triangle_count > 0) out.push_back(o);
+  }
+  return out;
+}
+
+std::string refuse_degenerate(const Scene& scene, const char* reason) {
+  return degenerate_triangles(scene) == 0 ? "" : reason;
+}
+
+PeerScene::PeerScene(const Scene& scene, bool with_boxes)
+    : scene(scene),
+      boxes(with_boxes ? triangle_boxes(scene) : std::vector<Box>{}),
+      owner(owners(scene)) {
+  std::size_t with_triangles = 0;
+  two_sides = true;
+  for (const Object& object : scene.objects) {
+    if (object.triangle_count == 0) continue;
+    if (++with_triangles == 2) second = object.first_triangle;
+    two_sides = two_sides && !object.self;
+  }
+  two_sides = two_sides && with_triangles == 2;
+  if (!two_sides) second = 0;
+}
+
+bool PeerScene::has_pairs() const {
+  return !owner.empty() &&
+         (owner.front() != owner.back() || std::any_of(scene.objects.begin(), scene.objects.end(),
+                                                       [](const Object& o) { return o.self; }));
+}
+
+PeerCandidates::PeerCandidates(const Scene& scene, unsigned threads, bool parallel)
+    : scene_(scene), threads_(threads), parallel_(parallel), id_(next_id()) {}
+
+PeerCandidates::~PeerCandidates() = default;
+
+PeerCandidates::Part& PeerCandidates::part() {
+  thread_local std::pair<std::uint64_t, Part*> mine{0, nullptr};
+  if (mine.first != id_) {
+    const std::lock_guard lock(mutex_);
+    parts_.emplace_back(new Part(*this));
+    mine = {id_, parts_.back().get()};
+  }
+  return *mine.second;
+}
+
+void PeerCandidates::Part::decide(unsigned threads) {
+  const Stopwatch exact;
+  const ExactQuestion question{.threads = threads, .neighbours = false};
+  const std::vector<TrianglePair> found = farcull::decide(all_.scene_, pending_, question).pairs;
+  pairs_.insert(pairs_.end(), found.begin(), found.end());
+  decided_ += pending_.size();
+  pending_.clear();
+  exact_ms_ += exact.ms();
+}
+
+BenchAnswer PeerCandidates::finish() {
+  BenchAnswer answer;
+  if (parts_.empty()) part();
+  Part& all = *parts_.front();
+  for (const auto& part : parts_) {
+    answer.exact_ms += part->exact_ms_;
+    answer.candidate_pairs += part->decided_;
+    if (part.get() == &all) continue;
+    all.pending_.insert(all.pending_.end(), part->pending_.begin(), part->pending_.end());
+    all.pairs_.insert(all.pairs_.end(), part->pairs_.begin(), part->pairs_.end());
+  }
+  if (parallel_) answer.exact_ms /= threads_;
+  answer.candidate_pairs += all.pending_.size();
+  const Stopwatch rest;
+  all.decide(threads_);
+  std::sort(all.pairs_.begin(), all.pairs_.end());
+  answer.exact_ms += rest.ms();
+  answer.pairs = std::move(all.pairs_);
+  answer.candidates_ms = std::max(0.0, since_.ms() - answer.exact_ms);
+  parts_.clear();
+  return answer;
 }
 
 }  // namespace farcull

@@ -2,13 +2,22 @@
 // compare with, in the process. One file per library adapts it; peer.cpp lists what they give.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/base/parallel.h"
+#include "core/base/stopwatch.h"
 #include "core/scene/scene.h"
 
 namespace farcull {
@@ -114,5 +123,236 @@ LibraryPeers ode_library();
 /// CGAL's exact predicate by itself, as its users call it: what decide() falls back to. Neither may
 /// be degenerate.
 bool cgal_do_intersect(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
+
+// For the files that adapt a library: which triangles are tested with which, the exact decision of
+// candidates, the search of two trees, and the distances that a task asks for.
+
+/// Neighbours by index. (Those by position alone are left to the exact decision.)
+inline bool share_vertex(const Scene& scene, std::uint32_t a, std::uint32_t b) {
+  return share_index(scene.triangles[a], scene.triangles[b]);
+}
+
+/// The numbers of the objects that have triangles, ascending.
+std::vector<std::uint32_t> objects_with_triangles(const Scene& scene);
+
+/// The vertices that an object with triangles uses: all are among first .. last, and objects mostly
+/// own that range.
+struct VertexRange {
+  std::uint32_t first = 0, last = 0;
+};
+inline VertexRange vertices_of(const Scene& scene, const Object& object) {
+  VertexRange out{scene.triangles[object.first_triangle][0],
+                  scene.triangles[object.first_triangle][0]};
+  for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+    for (const std::uint32_t v : scene.triangles[object.first_triangle + t]) {
+      out.first = std::min(out.first, v);
+      out.last = std::max(out.last, v);
+    }
+  }
+  return out;
+}
+
+/// Why a peer does not take a scene: `reason` if it has degenerate triangles, else nothing.
+std::string refuse_degenerate(const Scene& scene, const char* reason);
+
+/// A scene as a peer prepares it, in its own time: the boxes of the triangles, and which of them
+/// are tested with which.
+struct PeerScene {
+  /// Without boxes where the peer has others.
+  explicit PeerScene(const Scene& scene, bool with_boxes = true);
+
+  const Scene& scene;
+  std::vector<Box> boxes;            // per triangle
+  std::vector<std::uint32_t> owner;  // per triangle
+  bool two_sides = false;            // exactly two objects have triangles, and neither is self
+  std::uint32_t second = 0;          // the first triangle of the second of them; else 0
+
+  /// Whether a pair of these triangles counts; neighbours by index do not.
+  bool counts(std::uint32_t a, std::uint32_t b) const {
+    return owner[a] != owner[b] || (scene.objects[owner[a]].self && !share_vertex(scene, a, b));
+  }
+  /// Whether there can be a pair at all.
+  bool has_pairs() const;
+};
+
+/// Takes candidates from one thread or several and decides them, in parts while they come, the rest
+/// on all threads at the end.
+class PeerCandidates {
+ public:
+  /// `parallel`: candidates come from several threads, and each decides its own full parts. Else
+  /// they come from one, and full parts are decided on all threads.
+  PeerCandidates(const Scene& scene, unsigned threads, bool parallel);
+  ~PeerCandidates();
+
+  /// The part of the calling thread; valid until finish(). A call of add() on it is not locked.
+  class Part {
+   public:
+    void add(std::uint32_t a, std::uint32_t b) {
+      pending_.push_back(a < b ? TrianglePair{a, b} : TrianglePair{b, a});
+      if (pending_.size() == kFull) decide(all_.parallel_ ? 1 : all_.threads_);
+    }
+
+   private:
+    friend class PeerCandidates;
+    explicit Part(const PeerCandidates& all) : all_(all) {}
+    void decide(unsigned threads);
+
+    const PeerCandidates& all_;
+    std::vector<TrianglePair> pending_;
+    std::vector<TrianglePair> pairs_;
+    std::uint64_t decided_ = 0;
+    double exact_ms_ = 0;
+  };
+  Part& part();
+
+  /// The answer, without build_ms; candidates_ms is the time since construction less exact_ms.
+  BenchAnswer finish();
+
+ private:
+  static constexpr std::size_t kFull = std::size_t{1} << 17;  // 1 MiB of candidates
+  const Scene& scene_;
+  const unsigned threads_;
+  const bool parallel_;
+  const std::uint64_t id_;  // no two collectors of a process have the same
+  const Stopwatch since_;
+  std::mutex mutex_;  // of parts_
+  std::vector<std::unique_ptr<Part>> parts_;
+};
+
+/// Calls work(i) for 0 .. count - 1 on `threads` threads; a thread that is free takes the next
+/// `block`.
+template <class Work>
+void for_each_taken(std::size_t count, std::size_t block, unsigned threads, const Work& work) {
+  std::atomic<std::size_t> next = 0;
+  for_chunks(threads, threads, [&](std::size_t, std::size_t, std::size_t) {
+    for (std::size_t begin; (begin = next.fetch_add(block)) < count;) {
+      for (std::size_t i = begin; i < std::min(begin + block, count); ++i) work(i);
+    }
+  });
+}
+
+// Two trees searched at once for leaves whose volumes meet, on all threads: for libraries that have
+// trees, but a traversal of one thread only.
+
+/// A node of each of two trees, whose leaves are to be compared.
+///
+/// A Tree has, for nodes that are numbered by int with the root 0: is_leaf(node), left(node),
+/// right(node), triangle(leaf), size(node) of which only the order matters, and
+/// meets(node, other, node of other), which is true wherever triangles of the two could meet.
+template <class Tree>
+struct TreeTask {
+  const Tree* first;
+  const Tree* second;
+  int a = 0;
+  int b = 0;
+  bool inner = false;  // the leaves below a with each other; then first is second and a is b
+};
+
+/// One step of a search: the larger node is divided (next), two leaves are given to `found`, and
+/// disjoint volumes end it.
+template <class Tree, class Found, class Next>
+void step(const TreeTask<Tree>& task, const Found& found, const Next& next) {
+  const Tree& first = *task.first;
+  const Tree& second = *task.second;
+  const auto with = [&](int left, int right, bool inner = false) {
+    next(TreeTask<Tree>{&first, &second, left, right, inner});
+  };
+  if (task.inner) {
+    if (first.is_leaf(task.a)) return;
+    const int left = first.left(task.a), right = first.right(task.a);
+    with(left, left, true);
+    with(right, right, true);
+    with(left, right);
+    return;
+  }
+  if (!first.meets(task.a, second, task.b)) return;
+  const bool leaf = first.is_leaf(task.a), other_leaf = second.is_leaf(task.b);
+  if (leaf && other_leaf) {
+    found(first.triangle(task.a), second.triangle(task.b));
+  } else if (other_leaf || (!leaf && first.size(task.a) > second.size(task.b))) {
+    with(first.left(task.a), task.b);
+    with(first.right(task.a), task.b);
+  } else {
+    with(task.a, second.left(task.b));
+    with(task.a, second.right(task.b));
+  }
+}
+
+template <class Tree, class Found>
+void descend(const TreeTask<Tree>& task, const Found& found) {
+  step(task, found, [&found](const TreeTask<Tree>& next) { descend(next, found); });
+}
+
+/// Gives the candidates of all tasks to `candidates`; of a tree with itself, without neighbours by
+/// index. `candidates` is parallel iff threads > 1.
+template <class Tree>
+void search_trees(const Scene& scene, std::vector<TreeTask<Tree>> tasks, unsigned threads,
+                  PeerCandidates& candidates) {
+  // Divided until there is enough for all threads.
+  const std::size_t enough = threads > 1 ? 64 * threads : 1;
+  const auto with = [&](const TreeTask<Tree>& task, PeerCandidates::Part& part) {
+    return [&scene, &part, self = task.first == task.second](std::uint32_t a, std::uint32_t b) {
+      if (!self || !share_vertex(scene, a, b)) part.add(a, b);
+    };
+  };
+  while (!tasks.empty() && tasks.size() < enough) {
+    std::vector<TreeTask<Tree>> finer;
+    for (const TreeTask<Tree>& task : tasks) {
+      step(task, with(task, candidates.part()),
+           [&finer](const TreeTask<Tree>& next) { finer.push_back(next); });
+    }
+    tasks = std::move(finer);
+  }
+  for_each_taken(tasks.size(), 1, threads,
+                 [&](std::size_t i) { descend(tasks[i], with(tasks[i], candidates.part())); });
+}
+
+/// The distances that a task asks for, sorted; tasks are divided over the threads.
+/// numbers: of the objects that have triangles, ascending; the functions take indices into it.
+/// most: the bound to begin with. gap(i, k): at most what bound() can find, and cheap.
+/// bound(i, k, least): what the peer finds, if that is below `least`; otherwise `least` or more.
+/// distance(found): the distance in world units, or infinity where the question does not ask for
+/// it.
+template <class Scalar, class Gap, class Bound, class Distance>
+std::vector<PeerDistance> distances_of_trees(const std::vector<std::uint32_t>& numbers,
+                                             DistanceTask task, Scalar most, unsigned threads,
+                                             const Gap& gap, const Bound& bound,
+                                             const Distance& distance) {
+  const std::size_t count = numbers.size();
+  std::vector<PeerDistance> out;
+  if (task == DistanceTask::objects) {
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t k = i + 1; k < count; ++k) pairs.emplace_back(i, k);
+    }
+    out.resize(pairs.size());
+    for_each_taken(pairs.size(), 1, threads, [&](std::size_t t) {
+      const auto [i, k] = pairs[t];
+      out[t] = {numbers[i], numbers[k], distance(bound(i, k, most))};
+    });
+  } else {
+    out.resize(count);
+    for_each_taken(count, 1, threads, [&](std::size_t i) {
+      std::vector<std::pair<Scalar, std::size_t>> others;
+      for (std::size_t k = 0; k < count; ++k) {
+        if (k != i) others.emplace_back(gap(i, k), k);
+      }
+      std::sort(others.begin(), others.end());  // the nearest boxes first
+      Scalar least = most;
+      std::size_t nearest = i;
+      for (const auto& [apart, k] : others) {
+        if (apart >= least) break;
+        const Scalar found = bound(i, k, least);
+        if (!(found < least)) continue;
+        least = found;
+        nearest = k;
+      }
+      out[i] = {numbers[i], numbers[nearest],
+                nearest == i ? std::numeric_limits<double>::infinity() : distance(least)};
+    });
+  }
+  std::erase_if(out, [](const PeerDistance& d) { return std::isinf(d.distance); });
+  return out;
+}
 
 }  // namespace farcull

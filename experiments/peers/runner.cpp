@@ -15,7 +15,6 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "experiments/peers/child.h"
 
 namespace farcull {
 namespace {

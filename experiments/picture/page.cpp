@@ -25,7 +25,6 @@
 #include "verify/contact.h"
 
 namespace farcull {
-
 namespace {
 
 std::string base64_of(const std::string& bytes) {

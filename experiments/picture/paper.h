@@ -65,7 +65,7 @@ struct PaperFigure {
 /// where it cannot be read.
 std::vector<PaperFigure> paper_figures(const std::string& pair);
 
-// Each by itself. Those of paper_cull.cpp come last.
+// Each by itself. Those of the two passes come last.
 PaperFigure ball_figure();
 PaperFigure coverage_figure();
 PaperFigure entry_and_exit_figure();

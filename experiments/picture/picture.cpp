@@ -14,12 +14,11 @@
 #include "commit.h"
 #include "core/base/error.h"
 #include "core/gl/picture/picture.h"
-#include "experiments/picture/arguments.h"
+#include "experiments/picture/panel.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
-#include "experiments/system/shell_word.h"
 #include "experiments/system/text_table.h"
 
 namespace farcull {

@@ -11,8 +11,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
-#include "experiments/measure/lab.h"
-#include "experiments/picture/arguments.h"
+#include "experiments/measure/harness.h"
 #include "experiments/picture/panel.h"
 
 namespace farcull {

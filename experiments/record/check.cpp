@@ -12,7 +12,6 @@
 #include "core/base/floating_point.h"
 #include "core/base/stopwatch.h"
 #include "core/scene/scene.h"
-#include "experiments/record/fields.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"

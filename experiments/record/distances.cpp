@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "commit.h"
-#include "experiments/record/fields.h"
 #include "experiments/record/output.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"

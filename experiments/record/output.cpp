@@ -13,7 +13,6 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/gl/base/context.h"
-#include "experiments/record/fields.h"
 #include "experiments/record/tables.h"
 #include "experiments/system/text_table.h"
 #include "verify/certificate/certificate.h"

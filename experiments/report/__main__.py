@@ -47,9 +47,9 @@ try:
     import pages
     import tables
     from chapters import devices
+    from draw import legible
     from estimates import counted, grouped, listed, of_all, sentence
     from frame import Chapter, Damaged, command_of, describe, promising, value
-    from legible import legible
     from store import Store, other_devices
 except ImportError as error:
     print(f"farcull: {error.name}: is not there for {sys.executable}; install it (Debian: python3-matplotlib "

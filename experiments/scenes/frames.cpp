@@ -1,5 +1,5 @@
 // Frames come from a built-in motion, or from meshes that are read anew for each frame.
-#include "experiments/scenes/frames.h"
+#include "experiments/scenes/scene_file.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,6 @@
 
 #include "core/base/text.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/scene_file.h"
 
 namespace farcull {
 namespace {

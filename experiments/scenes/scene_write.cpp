@@ -17,7 +17,6 @@
 
 #include "core/base/error.h"
 #include "core/scene/scene.h"
-#include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/scene_file.h"

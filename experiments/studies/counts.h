@@ -17,7 +17,7 @@
 
 namespace farcull {
 
-/// An answer compared with the truth of its scene (measure/lab.h).
+/// An answer compared with the truth of its scene (measure/harness.h).
 struct AnswerCounts {
   std::uint64_t colliding = 0, missed = 0;  // pairs
   std::uint64_t missed_triangles = 0;       // colliding triangles that are in none of its pairs

@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 #include "experiments/generators/pair_generators.h"
-#include "experiments/measure/lab.h"
+#include "experiments/measure/harness.h"
 #include "experiments/peers/score.h"
 #include "experiments/studies/study.h"
 #include "experiments/suite/writer.h"

@@ -1,6 +1,6 @@
 // Which rows fit together in one store: those of one version of each library. Shards are read, what
 // does not fit is refused, and one store is written.
-#include "experiments/studies/merge.h"
+#include "experiments/studies/run_studies.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
-#include "experiments/system/shell_word.h"
+#include "experiments/system/text_table.h"
 
 namespace farcull {
 namespace {

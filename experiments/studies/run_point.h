@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
-#include "experiments/measure/lab.h"
+#include "experiments/measure/harness.h"
 #include "experiments/method/run.h"
 #include "experiments/peers/peer.h"
 #include "experiments/studies/counts.h"

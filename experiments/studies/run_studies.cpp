@@ -15,11 +15,10 @@
 #include "core/base/stopwatch.h"
 #include "core/base/terminal.h"
 #include "core/base/text.h"
-#include "experiments/measure/lab.h"
+#include "experiments/measure/harness.h"
 #include "experiments/method/method.h"
 #include "experiments/record/tables.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/studies/merge.h"
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 

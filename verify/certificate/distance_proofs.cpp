@@ -12,7 +12,6 @@
 #include "verify/certificate/integer_distance.h"
 
 namespace farcull {
-
 namespace {
 
 constexpr const char* kOtherScene = "give the scene that the certificate was written for";

@@ -18,7 +18,7 @@
 
 #include "core/base/error.h"
 #include "experiments/scenes/mesh/text.h"
-#include "experiments/system/shell_word.h"
+#include "experiments/system/text_table.h"
 
 namespace farcull {
 

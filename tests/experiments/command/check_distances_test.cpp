@@ -5,7 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "experiments/command/check.h"
+#include "experiments/command/command.h"
 #include "experiments/scenes/scene_file.h"
 #include "tests/experiments/command/check_lab.h"
 #include "tests/experiments/system/error_of.h"

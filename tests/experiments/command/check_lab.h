@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "experiments/command/check.h"
+#include "experiments/command/command.h"
 
 namespace farcull {
 

@@ -1,4 +1,4 @@
-#include "experiments/command/check.h"
+#include "experiments/command/command.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // `farcull help` explains what the tables print: every stage, column, line and method.
-#include "experiments/command/declare.h"
+#include "experiments/command/command.h"
 
 #include <gtest/gtest.h>
 

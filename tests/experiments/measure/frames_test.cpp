@@ -10,7 +10,7 @@
 #include <set>
 
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/frames.h"
+#include "experiments/scenes/scene_file.h"
 #include "experiments/system/output_file.h"
 #include "tests/experiments/system/error_of.h"
 

@@ -1,5 +1,5 @@
 // The scene cache of the lab.
-#include "experiments/measure/lab.h"
+#include "experiments/measure/harness.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/pairs/backend.h"
-#include "experiments/lemma/oracles.h"
+#include "experiments/lemma/lemma.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
 #include "experiments/record/output.h"

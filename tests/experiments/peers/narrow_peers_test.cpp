@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "experiments/measure/lab.h"
+#include "experiments/measure/harness.h"
 #include "experiments/peers/peer.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "verify/exact.h"

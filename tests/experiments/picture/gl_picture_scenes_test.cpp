@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "core/base/error.h"
-#include "experiments/command/picture.h"
+#include "experiments/command/command.h"
 #include "experiments/picture/picture.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "tests/core/gl/gl_lab.h"

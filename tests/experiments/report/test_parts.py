@@ -11,7 +11,7 @@ import estimates
 import pages
 import scales
 import tables
-from legible import legible
+from draw import legible
 from frame import Axis, Chapter, Figure, Mark, Panel, Series, Table, log
 
 E = math.e

@@ -16,8 +16,8 @@ import pytest
 
 from made_up import CONSTANTS, importlib  # first, since it finds the modules of the report
 import draw
+from draw import legible
 from frame import Chapter
-from legible import legible
 from store import Store
 
 PROGRAM, FIXTURE = os.environ["FARCULL_PROGRAM"], os.environ["FARCULL_REPORT_FIXTURE"]

@@ -9,7 +9,6 @@
 #include <sstream>
 
 #include "experiments/scenes/builtin/scenes.h"
-#include "experiments/scenes/frames.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/scene_file.h"
 #include "tests/experiments/scenes/builtin/moving_lab.h"

@@ -1,4 +1,4 @@
-#include "experiments/studies/merge.h"
+#include "experiments/studies/run_studies.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "core/base/error.h"
-#include "experiments/studies/run_studies.h"
 #include "tests/experiments/studies/store_lab.h"
 #include "tests/experiments/system/error_of.h"
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <set>
 
-#include "experiments/measure/lab.h"
+#include "experiments/measure/harness.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "verify/exact.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "experiments/studies/merge.h"
+#include "experiments/studies/run_studies.h"
 #include "tests/experiments/studies/store_lab.h"
 #include "tests/experiments/system/error_of.h"
 

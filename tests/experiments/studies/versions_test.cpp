@@ -1,5 +1,5 @@
 // A library that is upgraded between two runs, or between two shards.
-#include "experiments/studies/merge.h"
+#include "experiments/studies/run_studies.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "experiments/generators/pair_generators.h"
-#include "experiments/lemma/oracles.h"
+#include "experiments/lemma/lemma.h"
 #include "tests/verify/reference.h"
 #include "verify/certificate/box_pairs.h"
 #include "verify/exact.h"

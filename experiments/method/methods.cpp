@@ -1,0 +1,301 @@
+// The table of methods, and those methods that draw nothing on a canvas; cullide.cpp has the
+// others.
+#include "experiments/method/methods.h"
+
+#include <array>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/stopwatch.h"
+#include "core/base/text.h"
+#include "core/pairs/backend.h"
+#include "core/scene/scene.h"
+
+namespace farcull {
+
+// ---- the table: the one place that lists the methods ----
+
+namespace {
+
+constexpr std::array kTable = {
+    Traits{.method = Method::far,
+           .name = "far",
+           .promises = Promises::at_budget_radius,
+           .draws = true,
+           .fattens = true,
+           .quick = true,
+           .tests_self = true,
+           .plan = plan_drawing,
+           .find = find_by_drawing},
+    Traits{.method = Method::cullide,
+           .name = "cullide",
+           .draws = true,
+           .plan = plan_drawing,
+           .find = find_by_drawing},
+    Traits{.method = Method::quick_cullide,
+           .name = "quick-cullide",
+           .draws = true,
+           .quick = true,
+           .plan = plan_drawing,
+           .find = find_by_drawing},
+    Traits{.method = Method::s_cullide,
+           .name = "s-cullide",
+           .draws = true,
+           .quick = true,
+           .tests_self = true,
+           .tests_self_alone = true,
+           .plan = plan_drawing,
+           .find = find_by_drawing},
+    Traits{.method = Method::i_collide,
+           .name = "i-collide",
+           .promises = Promises::always,
+           .tests_self = true,
+           .plan = plan_sweep,
+           .find = find_by_sweep},
+    Traits{.method = Method::far_pairs,
+           .name = "far-pairs",
+           .promises = Promises::always,
+           .chooses_views = true,
+           .tests_self = true,
+           .takes_clearance = true,
+           .plan = plan_far_pairs,
+           .find = find_far_pairs},
+    Traits{.method = Method::exact,
+           .name = "exact",
+           .culls = false,
+           .tests_self = true,
+           .takes_clearance = true,
+           .plan = plan_exact,
+           .find = find_exact},
+    // A new method goes here.
+};
+
+constexpr auto kMethods = [] {
+  std::array<Method, kTable.size()> methods{};
+  for (std::size_t i = 0; i < kTable.size(); ++i) methods[i] = kTable[i].method;
+  return methods;
+}();
+
+// traits() looks an entry up by the value of its method.
+static_assert([] {
+  for (std::size_t i = 0; i < kTable.size(); ++i) {
+    if (static_cast<std::size_t>(kTable[i].method) != i) return false;
+  }
+  return true;
+}());
+
+}  // namespace
+
+const Traits& traits(Method method) { return kTable[static_cast<std::size_t>(method)]; }
+
+std::span<const Method> all_methods() { return kMethods; }
+
+std::string to_string(Method method) { return traits(method).name; }
+
+Method parse_method(const std::string& name, const std::string& option) {
+  for (const Method method : all_methods()) {
+    if (name == to_string(method)) return method;
+  }
+  throw Error(option, "'" + name + "' is no method", "give " + method_names());
+}
+
+std::string method_names(const std::function<bool(const Traits&)>& can) {
+  std::vector<std::string> names;
+  for (const Method method : all_methods()) {
+    if (!can || can(traits(method))) names.push_back(to_string(method));
+  }
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 < names.size() ? ", " : " or ") + names[i];
+  return text;
+}
+
+// Exact: all pairs whose boxes overlap, each decided as the join finds it; nothing is culled.
+
+void plan_exact(const Scene& scene, unsigned, const Progress&, Plan& plan) {
+  plan.ahead.push_back({.kind = StageKind::join,
+                        .ran = true,
+                        .reason = Reason::join_all,
+                        .in = scene.triangles.size(),
+                        .unit = Unit::pairs});
+}
+
+Candidates find_exact(const Scene& scene, const Plan& plan, Session& session,
+                      const Progress& progress) {
+  if (progress) progress("exact tests of every pair");
+  ExactResult result = all_colliding_pairs(scene,
+                                           {.clearance = plan.options.clearance,
+                                            .threads = session.cpu_threads(),
+                                            .neighbours = plan.options.neighbours},
+                                           plan.options.ignored);
+  Candidates out;
+  out.device.note = "the method draws nothing";
+  out.triangle_count = scene.triangles.size();
+  for (const Object& object : scene.objects) out.object_count += object.triangle_count > 0;
+  out.count = result.box_pairs;
+  out.ignored = result.ignored;
+  out.ms = result.join_ms;
+  out.decided_ms = result.predicates_ms;
+  const std::size_t colliding = result.pairs.size() + result.neighbour_pairs.size();
+  out.decided = Collisions{.pairs = std::move(result.pairs),
+                           .neighbour_pairs = std::move(result.neighbour_pairs),
+                           .neighbours = result.neighbours};
+  out.trace.push_back({.kind = StageKind::join,
+                       .ran = true,
+                       .reason = Reason::join_all,
+                       .ms = out.ms,
+                       .in = scene.triangles.size(),
+                       .out = out.count,
+                       .unit = Unit::pairs});
+  out.trace.push_back({.kind = StageKind::exact,
+                       .ran = true,
+                       .reason = Reason::predicates,
+                       .ms = out.decided_ms,
+                       .in = out.count,
+                       .out = colliding,
+                       .unit = Unit::pairs});
+  return out;
+}
+
+// I-collide: sweep and prune on the boxes of objects, then of their triangles (I-COLLIDE, 1995).
+
+namespace {
+
+// Triangles of the objects in a pair, and of those that are tested against themselves.
+std::uint64_t triangles_of(const Scene& scene, const std::vector<TrianglePair>& object_pairs) {
+  std::vector<std::uint8_t> in(scene.objects.size(), 0);
+  for (const TrianglePair& pair : object_pairs) in[pair.a] = in[pair.b] = 1;
+  std::uint64_t triangles = 0;
+  for (std::size_t o = 0; o < in.size(); ++o) {
+    const Object& object = scene.objects[o];
+    if (in[o] != 0 || (object.self && object.triangle_count > 1))
+      triangles += object.triangle_count;
+  }
+  return triangles;
+}
+
+Stage sweep_stage(const Scene& scene) {
+  return {.kind = StageKind::sweep,
+          .ran = true,
+          .reason = Reason::sweep,
+          .in = scene.triangles.size(),
+          .unit = Unit::pairs};
+}
+
+}  // namespace
+
+void plan_sweep(const Scene& scene, unsigned, const Progress&, Plan& plan) {
+  plan.ahead.push_back(sweep_stage(scene));
+}
+
+Candidates find_by_sweep(const Scene& scene, const Plan& plan, Session& session,
+                         const Progress& progress) {
+  if (progress) progress("sweep and prune");
+  const Stopwatch watch;
+  if (plan.options.full) session.sweep().forget();
+  SweepPruneResult result = session.sweep().find(scene);
+  Candidates out;
+  out.ms = watch.ms();
+  out.device.note = "the method draws nothing";
+  out.count = result.candidates.size();
+  out.pairs = std::move(result.candidates);
+  out.triangles = std::move(result.triangles);
+  out.triangle_count = out.triangles.size();
+  out.object_count = count_objects(scene, out.triangles);
+  const std::uint64_t swept = triangles_of(scene, result.object_pairs);
+  out.by = SweptObjects{swept};
+  Stage stage = sweep_stage(scene);
+  stage.n = result.counts.objects;
+  stage.m = swept;
+  stage.detail = counted(result.counts.swaps, "place", "places") + " changed, " +
+                 counted(result.counts.sorts, "list", "lists") + " sorted from scratch";
+  stage.ms = out.ms;
+  stage.out = out.count;
+  out.trace.push_back(stage);
+  return out;
+}
+
+// Far-pairs (core/pairs/pairs.h): boxes of runs on the CPU, or interval pairs on the device of the
+// session.
+
+void plan_far_pairs(const Scene& scene, unsigned threads, const Progress&, Plan& plan) {
+  const RunOptions& options = plan.options;
+  PairSettings settings{.views = {},
+                        .resolution = resolution_of(options),
+                        .clearance = options.clearance,
+                        .full = options.full,
+                        // Who names a GL device wants it to look.
+                        .blocks = options.device.empty() || is_cpu(options.device),
+                        .neighbours = options.neighbours,
+                        .ignored = options.ignored};
+  if (!views_of(options).empty()) settings.views = parse_views(views_of(options));
+  PairPlan pairs = plan_pairs(scene, settings, threads, plan.memory);
+  plan.trace = pairs.trace;
+  Stage setup{.kind = StageKind::setup};
+  if (pairs.choices.empty()) {
+    setup.reason = Reason::nothing_to_look_at;
+  } else {
+    setup.ran = true;
+    setup.reason = Reason::device;
+    setup.detail = options.device.empty() ? "OpenGL compute where hardware answers, else the cpu"
+                                          : options.device;
+  }
+  plan.ahead.push_back(setup);
+  const std::vector<Stage> views = planned_stages(pairs);
+  plan.ahead.insert(plan.ahead.end(), views.begin(), views.end());
+  plan.work = std::move(pairs);
+}
+
+namespace {
+
+void take(PairResult&& result, Candidates& out) {
+  out.pairs = std::move(result.candidates);
+  out.count = out.pairs.size();
+  out.by = std::move(result.views);
+  out.trace.insert(out.trace.end(), result.stages.begin(), result.stages.end());
+}
+
+}  // namespace
+
+Candidates find_far_pairs(const Scene& scene, const Plan& plan, Session& session,
+                          const Progress& progress) {
+  const auto& pairs = std::get<PairPlan>(plan.work);
+  Candidates out;
+  out.by = std::vector<PairView>();
+  if (pairs.nothing_can_meet()) {
+    out.device.note = plan.options.ignored.empty()
+                          ? "no two objects' boxes overlap, and none is tested against itself"
+                          : "no two objects' boxes overlap, ignored ones apart, and none is tested "
+                            "against itself";
+    out.trace.push_back({.kind = StageKind::setup, .reason = Reason::nothing_to_look_at});
+    return out;
+  }
+  if (pairs.choices.empty()) {
+    out.device = {.gl = {}, .cpu = true, .note = "boxes of runs decide: no view", .relies = {}};
+    out.trace.push_back({.kind = StageKind::setup, .reason = Reason::nothing_to_look_at});
+    const Stopwatch watch;
+    take(find_pairs(scene, pairs, *cpu_pair_backend(session.threads()), session.pair_workspace(),
+                    progress),
+         out);
+    out.ms = watch.ms();
+    return out;
+  }
+  if (progress) progress("opening the device");
+  const Stopwatch setup;
+  PairDevice& device = session.pairs();
+  out.setup_ms = setup.ms();
+  out.device = {.gl = device.gl, .cpu = !device.gl, .note = device.reason, .relies = {}};
+  if (device.gl) out.device.relies = Reliance::pairs;
+  out.trace.push_back({.kind = StageKind::setup,
+                       .ran = true,
+                       .reason = Reason::device,
+                       .detail = device.backend->name(),
+                       .ms = out.setup_ms});
+
+  const Stopwatch watch;
+  take(find_pairs(scene, pairs, *device.backend, session.pair_workspace(), progress), out);
+  out.ms = watch.ms();
+  return out;
+}
+
+}  // namespace farcull
