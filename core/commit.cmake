@@ -16,8 +16,8 @@ file(CONFIGURE OUTPUT ${OUT} CONTENT "#pragma once\n#define FARCULL_COMMIT \"${c
 # Beside it PROBED, with a hash of all that a verdict about a device rests on: kernels, probes, and what runs them.
 if(PROBED)
   file(GLOB probed ${SOURCE}/core/gl/* ${SOURCE}/core/gl/*/* ${SOURCE}/core/boxes/* ${SOURCE}/core/pairs/* ${SOURCE}/core/base/glsl_* ${SOURCE}/core/view/budget.*
-       ${SOURCE}/core/canvas/* ${SOURCE}/core/scene/pair_sort.* ${SOURCE}/offsets/* ${SOURCE}/verify/kernel_* ${SOURCE}/verify/*_line.h
-       ${SOURCE}/verify/*_cases.h ${SOURCE}/verify/rational.h ${SOURCE}/experiments/method/*kernel_probes* ${SOURCE}/experiments/method/device_verdict*)
+       ${SOURCE}/core/canvas/* ${SOURCE}/core/scene/pair_sort.* ${SOURCE}/offsets/* ${SOURCE}/verify/kernel_* ${SOURCE}/verify/solid_lines.h
+       ${SOURCE}/verify/rational.h ${SOURCE}/experiments/method/device_verdict*)
   list(SORT probed)
   set(hashes "")
   foreach(file IN LISTS probed)

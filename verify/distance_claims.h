@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
-#include "verify/certificate/integer_inside.h"
+#include "verify/certificate/integer_distance.h"
 #include "verify/certificate/integers.h"
 #include "verify/distance_question.h"
 

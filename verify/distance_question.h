@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/scene/scene.h"
-#include "verify/certificate/integer_inside.h"
+#include "verify/certificate/integer_distance.h"
 
 namespace farcull {
 

@@ -1,8 +1,10 @@
-// Numbers from text, and numbers as people read them.
+// Numbers from text, numbers as people read them, and whether a stream is a terminal and how wide
+// it is.
 #pragma once
 
 #include <charconv>
 #include <cstdint>
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,5 +46,13 @@ inline std::string grouped(std::uint64_t n) {
 inline std::string counted(std::uint64_t n, const std::string& one, const std::string& many) {
   return grouped(n) + " " + (n == 1 ? one : many);
 }
+
+// ---- the terminal: the questions about it that systems answer differently ----
+
+/// True where the stream is a terminal; false too where it is closed.
+bool is_terminal(std::FILE* stream);
+
+/// Columns of the stream's terminal as it is now; 0 if the stream is no terminal or does not say.
+unsigned terminal_columns(std::FILE* stream);
 
 }  // namespace farcull

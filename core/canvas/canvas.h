@@ -3,9 +3,12 @@
 // assumptions allow (verify/worst_canvas.h).
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -155,12 +158,16 @@ class Canvas {
   /// give each pixel of the window, NaN where there is no fragment; height rows of width values.
   /// Among fragments whose mapped depths are equal, any may be given. Proxies only. For the lemmas'
   /// tests and for pictures.
-  virtual std::vector<float> samples(Verb verb, const std::vector<Draw>& draws);
+  virtual std::vector<float> samples(Verb /*verb*/, const std::vector<Draw>& /*draws*/) {
+    throw std::logic_error("this canvas offers no samples");
+  }
   /// The depths, as the depth buffer holds them, that storing (entry, nearest kept) or asking
   /// (exit, farthest kept) leaves in each pixel of the window for `draws`; height rows of width
   /// values in [0, 1], empty pixels 1 for store and 0 for ask. For the lemmas' tests and for
   /// pictures.
-  virtual std::vector<float> depths(Verb verb, const std::vector<Draw>& draws);
+  virtual std::vector<float> depths(Verb /*verb*/, const std::vector<Draw>& /*draws*/) {
+    throw std::logic_error("this canvas offers no depths");
+  }
   /// Work that was asked of the device so far; all 0 on the cores of the CPU.
   virtual CanvasWork work() const { return {}; }
 };
@@ -169,14 +176,23 @@ class Canvas {
 ///   clamp(0.5 + z * scale, 0.25, 0.75), strictly nearer than the clear value 1.
 /// The rest of [0, 1] is for the items at fixed depths: 0 for kEverywhere, (0.75, 1) for a canvas's
 /// control items.
-float depth_scale(const Window& window);
+inline float depth_scale(const Window& window) {
+  const double reach = std::max(std::abs(window.lo[2]), std::abs(window.hi[2])) + 2;
+  return static_cast<float>(0.25 / reach);
+}
 /// The depth of one step of a depth buffer in px.
-double depth_step(const Window& window, int depth_bits);
+inline double depth_step(const Window& window, [[maybe_unused]] int depth_bits) {
+  // Depths lie in [1/4, 3/4]: the coarsest step of a 32-bit float there is 2^-24, as for 24 bits of
+  // fixed point.
+  return 0x1p-24 / depth_scale(window);
+}
 /// How far a depth that a buffer gives back may be from 0.5 + z * scale of an exact z of the
 /// window, in steps of 2^-24, whatever the rounding of its operations: the product, of at most 1/4,
 /// rounds by 2^-25, and the sum, below 1, by 2^-24. Of 24 bits, storing rounds by 1 / (2^24 - 1)
 /// more, and reading back as a float by 2^-24.
-double depth_rounding(int depth_bits);
+inline double depth_rounding(int depth_bits) {
+  return depth_bits == 24 ? 0.5 + 1 + 0x1p24 / (0x1p24 - 1) + 1 : 0.5 + 1;
+}
 
 /// A GL canvas asks a proxy this far behind D(exit): four steps of 2^-24. Derived in
 /// docs/budget.md, "Two programs", and proved by farcull_proofs (depth.behind). The program that

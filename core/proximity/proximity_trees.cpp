@@ -16,7 +16,6 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/proximity/bounds.h"
 #include "core/proximity/scene_trees.h"
 
 namespace farcull {

@@ -16,7 +16,6 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/boxes/lanes-inl.h"
-#include "core/proximity/bounds.h"
 #include "core/proximity/scene_trees.h"
 #include "core/proximity/triangle_pairs-inl.h"
 

@@ -1,7 +1,7 @@
 // Two triangles on each lane. Two closest points are guessed (Ericson, Real-Time Collision
 // Detection, 2005, sections 5.1.5 and 5.1.9; edges that pierce a face besides), and prove two
 // bounds however wrong the guess is: the points themselves that the triangles come as near, the
-// direction between them that they come no nearer (core/proximity/bounds.h).
+// direction between them that they come no nearer (core/proximity/scene_trees.h).
 #if defined(FARCULL_PROXIMITY_TRIANGLE_PAIRS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FARCULL_PROXIMITY_TRIANGLE_PAIRS_INL_H_
 #undef FARCULL_PROXIMITY_TRIANGLE_PAIRS_INL_H_
@@ -11,7 +11,6 @@
 
 #include <hwy/highway.h>
 
-#include "core/proximity/bounds.h"
 #include "core/proximity/scene_trees.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -188,7 +187,7 @@ class Guess {
   Weights on_a_, on_b_;
 };
 
-/// Bounds that the difference of the points proves, as core/proximity/bounds.h derives them.
+/// Bounds that the difference of the points proves, as core/proximity/scene_trees.h derives them.
 class Proof {
  public:
   HWY_INLINE Proof(const LaneTriangle& a, const LaneTriangle& b) : a_(a), b_(b) {

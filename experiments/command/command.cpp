@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/terminal.h"
+#include "core/base/text.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"

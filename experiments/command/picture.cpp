@@ -7,7 +7,7 @@
 #include <charconv>
 
 #include "core/base/error.h"
-#include "core/base/terminal.h"
+#include "core/base/text.h"
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/text.h"
 #include "experiments/system/output_file.h"

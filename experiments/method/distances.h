@@ -14,7 +14,7 @@
 #include "core/base/stage.h"
 #include "core/proximity/near_pairs.h"
 #include "core/scene/scene.h"
-#include "verify/certificate/integer_inside.h"
+#include "verify/certificate/integer_distance.h"
 #include "verify/closest.h"
 #include "verify/distance_accounting.h"
 

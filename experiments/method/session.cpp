@@ -4,10 +4,10 @@
 #include <cstdio>
 
 #include "core/base/error.h"
-#include "core/base/terminal.h"
+#include "core/base/text.h"
 #include "core/gl/pairs/pairs.h"
 #include "core/pairs/backend.h"
-#include "experiments/method/kernel_probes.h"
+#include "experiments/method/device_verdict.h"
 #include "experiments/method/options.h"
 
 namespace farcull {

@@ -1,16 +1,29 @@
 // Frames come from a built-in motion, or from meshes that are read anew for each frame.
-#include "experiments/scenes/scene_file.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+#include <string_view>
 #include <utility>
+#include <vector>
 
+#include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/scene/scene.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "experiments/scenes/mesh/load.h"
+#include "experiments/scenes/mesh/scene_build.h"
+#include "experiments/scenes/scene_file.h"
+#include "experiments/system/output_file.h"
 
 namespace farcull {
+
 namespace {
 
 constexpr long kMostFrames = 1'000'000;
@@ -112,6 +125,423 @@ std::optional<Error> FrameSource::missing() const {
 FrameNotes FrameSource::notes() const {
   if (!built_in_) return {};
   return {.values = built_in_->notes(), .warning = built_in_->warning()};
+}
+
+// Objects that are not tested against each other, by their names; and scenes that are written: a
+// mesh for each object, and a scene file that names them.
+
+namespace {
+
+// Names are looked up in the scene when it is there: those of frames may differ from frame to
+// frame.
+
+constexpr const char* kRemedy =
+    "give two names of objects with a colon between, as in a:b or link*:gripper; a name is that of "
+    "the mesh file without its ending, or that in the scene file";
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+/// Whether the name fits a pattern, in which a * stands for any characters. The last * is tried
+/// with one character more whenever the rest does not fit.
+bool fits(std::string_view name, std::string_view pattern) {
+  std::size_t n = 0, p = 0, star = std::string_view::npos, from = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      from = n;
+    } else if (p < pattern.size() && pattern[p] == name[n]) {
+      ++n, ++p;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      n = ++from;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string_view::npos;
+}
+
+std::vector<std::uint32_t> objects_of(const Scene& scene, std::string_view pattern) {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    if (fits(scene.objects[o].name, pattern)) out.push_back(o);
+  }
+  return out;
+}
+
+/// Whether the pattern is the name of an object, and fits others too, so that it may mean either.
+bool doubtful(const Scene& scene, std::string_view pattern,
+              const std::vector<std::uint32_t>& objects) {
+  return std::ranges::any_of(objects,
+                             [&](std::uint32_t o) { return scene.objects[o].name == pattern; }) &&
+         !std::ranges::all_of(objects,
+                              [&](std::uint32_t o) { return scene.objects[o].name == pattern; });
+}
+
+constexpr const char* kDoubtful = "is the name of an object, and as a pattern fits others too";
+
+std::string some_names(const Scene& scene) {
+  constexpr std::size_t kShown = 5;
+  std::string out;
+  for (std::size_t o = 0; o < std::min(kShown, scene.objects.size()); ++o)
+    out += (o > 0 ? ", " : "") + scene.objects[o].name;
+  return out + (scene.objects.size() > kShown ? ", ..." : "");
+}
+
+/// Every two different objects of the groups.
+std::vector<ObjectPair> pairs_of(const std::vector<std::uint32_t>& first,
+                                 const std::vector<std::uint32_t>& second) {
+  std::vector<ObjectPair> out;
+  for (const std::uint32_t a : first) {
+    for (const std::uint32_t b : second) {
+      if (a != b) out.push_back({a, b});
+    }
+  }
+  return in_order(std::move(out));
+}
+
+constexpr const char* kOneObject = "names one object; only --self tests an object against itself";
+
+/// Appends the pairs that one text names.
+void append(const Scene& scene, const IgnoredNames& names, Lacking lacking,
+            std::vector<ObjectPair>& out) {
+  const std::string_view text = names.text;
+  const auto fail = [&](const std::string& reason) {
+    throw Error(names.where, fmt::format("'{}' {}", names.text, reason),
+                fmt::format("{}; the scene has {}", kRemedy, some_names(scene)), names.line);
+  };
+  std::vector<std::uint32_t> first, second;
+  std::string unknown;
+  int places = 0;
+  for (std::size_t colon = text.find(':'); colon != std::string_view::npos;
+       colon = text.find(':', colon + 1)) {
+    const std::string_view left = text.substr(0, colon), right = text.substr(colon + 1);
+    const std::vector<std::uint32_t> a = objects_of(scene, left), b = objects_of(scene, right);
+    if (a.empty() || b.empty()) {
+      if (unknown.empty()) unknown = a.empty() ? left : right;
+      continue;
+    }
+    ++places;
+    first = a;
+    second = b;
+    for (const auto& [name, objects] : {std::pair(left, a), std::pair(right, b)}) {
+      if (doubtful(scene, name, objects))
+        fail(fmt::format("names '{}', which {}", name, kDoubtful));
+    }
+  }
+  if (text.find(':') == std::string_view::npos) fail("has no colon");
+  if (lacking == Lacking::passed_over && (places == 0 || (first.size() == 1 && first == second)))
+    return;
+  if (places == 0) fail(fmt::format("names '{}', and no object is called so", unknown));
+  if (places > 1) fail("can be divided at more than one colon");
+  if (first.size() == 1 && first == second) fail(kOneObject);
+  const std::vector<ObjectPair> pairs = pairs_of(first, second);
+  out.insert(out.end(), pairs.begin(), pairs.end());
+}
+
+}  // namespace
+
+std::vector<ObjectPair> pairs_between(const Scene& scene, const std::string& first,
+                                      const std::string& second, const std::string& where,
+                                      const std::string& what, long line, Lacking lacking) {
+  const auto objects = [&](const std::string& pattern) {
+    std::vector<std::uint32_t> out = objects_of(scene, pattern);
+    if (doubtful(scene, pattern, out)) {
+      throw Error(where, fmt::format("{} names '{}', which {}", what, pattern, kDoubtful),
+                  "call the object something without a *", line);
+    }
+    if (!out.empty() || lacking == Lacking::passed_over) return out;
+    throw Error(where, fmt::format("{} names '{}', and no object is called so", what, pattern),
+                "give names of objects, in which * stands for any characters; the scene has " +
+                    some_names(scene),
+                line);
+  };
+  const std::vector<std::uint32_t> a = objects(first), b = objects(second);
+  if (a.size() == 1 && a == b && lacking == Lacking::refused) {
+    throw Error(where, fmt::format("{} names '{}' alone", what, scene.objects[a[0]].name),
+                "give two different objects; whether an object is tested against itself is said "
+                "by self",
+                line);
+  }
+  return pairs_of(a, b);
+}
+
+std::vector<IgnoredNames> parse_ignored(const std::string& list) {
+  std::vector<IgnoredNames> out;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    out.push_back({list.substr(begin, end - begin), "--ignore"});
+    if (out.back().text.empty()) throw Error("--ignore", "a pair of names is empty", kRemedy);
+    begin = end + 1;
+  }
+  return out;
+}
+
+std::vector<IgnoredNames> read_ignored(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw Error(path, "cannot be read", "name a text file with a pair of names a line");
+  std::vector<IgnoredNames> out;
+  long line = 0;
+  for (std::string text; std::getline(file, text);) {
+    ++line;
+    if (line == 1 && text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+    if (text.ends_with('\r')) text.pop_back();
+    if (!text.empty() && !text.starts_with('#')) out.push_back({text, path, line});
+  }
+  if (!file.eof()) throw Error(path, "cannot be read to its end", "name a text file", line);
+  if (out.empty()) throw Error(path, "names no pair of objects", kRemedy);
+  return out;
+}
+
+std::vector<ObjectPair> ignored_objects(const Scene& scene, const std::vector<IgnoredNames>& names,
+                                        Lacking lacking) {
+  std::vector<ObjectPair> out;
+  for (const IgnoredNames& one : names) append(scene, one, lacking, out);
+  return in_order(std::move(out));
+}
+
+namespace {
+
+constexpr std::size_t kLongestName = 100;  // bytes, well below what file systems take
+
+// A folder and what this call put there, taken away again unless it is kept.
+class Folder {
+ public:
+  explicit Folder(const std::string& path) : path_(path) {
+    std::error_code error;
+    if (std::filesystem::is_directory(path_, error)) return;
+    made_ = std::filesystem::create_directory(path_, error);
+    if (made_) return;
+    const std::string why = error ? error.message() : std::string(std::strerror(EEXIST));
+    throw Error(path, "the folder cannot be made: " + why,
+                "name one in a folder that is there and that you may write to");
+  }
+  ~Folder() {
+    if (kept_) return;
+    std::error_code error;
+    for (const std::filesystem::path& file : added_) std::filesystem::remove(file, error);
+    if (made_) std::filesystem::remove(path_, error);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  void write(const std::string& name, const std::string& text) {
+    const std::filesystem::path file = path_ / name;
+    std::error_code error;
+    const bool there = std::filesystem::exists(std::filesystem::symlink_status(file, error));
+    write_output(file.string(), text);
+    if (!there) added_.push_back(file);
+    ++written_.files;
+    written_.bytes += text.size();
+  }
+  WrittenScene keep(const std::string& scene_file) {
+    kept_ = true;
+    written_.scene_file = (path_ / scene_file).string();
+    return written_;
+  }
+
+ private:
+  std::filesystem::path path_;
+  bool made_ = false;
+  bool kept_ = false;
+  std::vector<std::filesystem::path> added_;
+  WrittenScene written_;
+};
+
+// A name for each object that a file and a group may have, each once; without '_', which stands
+// before the numbers of frames.
+std::vector<std::string> file_names(const Scene& scene) {
+  std::vector<std::string> names;
+  std::set<std::string> used;
+  for (const Object& object : scene.objects) {
+    std::string name = object.name.substr(0, kLongestName);
+    for (char& c : name) {
+      const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                         (c >= '0' && c <= '9') || c == '-' || c == '.';
+      if (!plain) c = '-';
+    }
+    if (name.empty() || name[0] == '.') name.insert(0, "object");
+    std::string free = name;
+    for (int n = 2; !used.insert(free).second; ++n) free = fmt::format("{}-{}", name, n);
+    names.push_back(free);
+  }
+  return names;
+}
+
+// The triangles of an object.
+MeshPart part_of(const Scene& scene, const Object& object, PartMaker& parts) {
+  if (object.triangle_count == 0)
+    throw std::logic_error("mesh_write: object '" + object.name + "' has no triangle");
+  for (std::uint32_t t = 0; t < object.triangle_count; ++t)
+    parts.add(scene.triangles[object.first_triangle + t]);
+  return parts.take();
+}
+
+// All objects as groups.
+std::string obj_text(const Scene& scene) {
+  std::string out;
+  const std::vector<std::string> names = file_names(scene);
+  PartMaker parts(scene.vertices);
+  std::uint64_t first = 1;
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    const MeshPart part = part_of(scene, scene.objects[o], parts);
+    out += obj_object(part, names[o], first);
+    first += part.vertices.size();
+  }
+  return out;
+}
+
+// The pairs of ignored objects by their names, which a scene file is read with.
+std::vector<std::pair<std::string, std::string>> ignored_names(const Scene& scene) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const ObjectPair& pair : scene.ignored) {
+    const std::string &a = scene.objects[pair.a].name, &b = scene.objects[pair.b].name;
+    if (pairs_between(scene, a, b, scene.name, "ignore") != std::vector{pair}) {
+      throw Error(
+          scene.name,
+          fmt::format("the names '{}' and '{}' of two ignored objects fit others too", a, b),
+          "give each object a name of its own, without *");
+    }
+    out.emplace_back(a, b);
+  }
+  return out;
+}
+
+WrittenScene write_groups(const std::function<const Scene&(long)>& at, FrameRange range,
+                          const std::string& folder, const Progress& progress) {
+  Folder out(folder);
+  std::string name, scene_name;
+  bool self = false;
+  for (long frame = range.first; frame <= range.last; ++frame) {
+    if (progress) progress(fmt::format("writing frame {}", frame));
+    const Scene& scene = at(frame);
+    if (frame == range.first) {
+      scene_name = scene.name;
+      name = scene_name.substr(0, scene_name.find_first_of(":@"));
+      self = !scene.objects.empty() && scene.objects[0].self;
+    }
+    require_nothing_ignored(scene, "a scene of objects that come and go");
+    for (const Object& object : scene.objects) {
+      if (object.self == self) continue;
+      throw Error(scene.name, "objects come and go and only some are tested against themselves",
+                  "write single frames, or leave --frames out");
+    }
+    out.write(fmt::format("{}_{:04}.obj", name, frame), obj_text(scene));
+  }
+  out.write("scene.json",
+            scene_file_text(scene_name, {{name, name + "_%04d.obj", true, self}}, {}));
+  return out.keep("scene.json");
+}
+
+// The objects of frames, each with a file for every frame, or one file if it never moves.
+class FrameFiles {
+ public:
+  FrameFiles(const std::string& folder, FrameRange range) : out_(folder), range_(range) {}
+
+  void add(const Scene& scene, long frame) {
+    if (frame == range_.first) {
+      scene_name_ = scene.name;
+      objects_ = scene.objects;
+      ignored_ = ignored_names(scene);
+      names_ = file_names(scene);
+      meshes_.resize(names_.size());
+    }
+    const auto same = [](const Object& a, const Object& b) {
+      return a.name == b.name && a.self == b.self;
+    };
+    if (!std::equal(objects_.begin(), objects_.end(), scene.objects.begin(), scene.objects.end(),
+                    same) ||
+        ignored_ != ignored_names(scene)) {
+      throw std::logic_error("write_frames: the objects change");
+    }
+    PartMaker parts(scene.vertices);
+    for (std::size_t o = 0; o < objects_.size(); ++o)
+      add(o, off_text(part_of(scene, scene.objects[o], parts)), frame);
+  }
+
+  WrittenScene finish() {
+    // A scene file of frames has to name a numbered mesh.
+    const bool none =
+        std::none_of(meshes_.begin(), meshes_.end(), [](const Mesh& m) { return m.moves; });
+    std::vector<SceneFileObject> list;
+    for (std::size_t o = 0; o < objects_.size(); ++o) {
+      if (none) number_from_first(o, range_.last + 1);
+      const bool moves = meshes_[o].moves;
+      if (!moves) out_.write(names_[o] + ".off", meshes_[o].first);
+      list.push_back({.name = objects_[o].name,
+                      .mesh = names_[o] + (moves ? "_%04d.off" : ".off"),
+                      .self = objects_[o].self});
+    }
+    out_.write("scene.json", scene_file_text(scene_name_, list, ignored_));
+    return out_.keep("scene.json");
+  }
+
+ private:
+  // The text of the first frame, until another one differs.
+  struct Mesh {
+    std::string first;
+    bool moves = false;
+  };
+
+  void add(std::size_t object, std::string text, long frame) {
+    Mesh& mesh = meshes_[object];
+    if (frame == range_.first) {
+      mesh.first = std::move(text);
+      return;
+    }
+    if (!mesh.moves) {
+      if (text == mesh.first) return;
+      number_from_first(object, frame);
+    }
+    out_.write(numbered_name(object, frame), text);
+  }
+
+  // Writes the text of the first frame for all frames before `end`.
+  void number_from_first(std::size_t object, long end) {
+    for (long frame = range_.first; frame < end; ++frame)
+      out_.write(numbered_name(object, frame), meshes_[object].first);
+    meshes_[object] = {"", true};
+  }
+
+  std::string numbered_name(std::size_t object, long frame) const {
+    return fmt::format("{}_{:04}.off", names_[object], frame);
+  }
+
+  Folder out_;
+  FrameRange range_;
+  std::string scene_name_;
+  std::vector<Object> objects_;
+  std::vector<std::pair<std::string, std::string>> ignored_;
+  std::vector<std::string> names_;
+  std::vector<Mesh> meshes_;
+};
+
+}  // namespace
+
+WrittenScene write_scene(const Scene& scene, const std::string& folder) {
+  Folder out(folder);
+  PartMaker parts(scene.vertices);
+  std::vector<SceneFileObject> objects;
+  const std::vector<std::string> names = file_names(scene);
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    const std::string file = names[o] + ".off";
+    out.write(file, off_text(part_of(scene, scene.objects[o], parts)));
+    objects.push_back({.name = scene.objects[o].name, .mesh = file, .self = scene.objects[o].self});
+  }
+  out.write("scene.json", scene_file_text(scene.name, objects, ignored_names(scene)));
+  return out.keep("scene.json");
+}
+
+WrittenScene write_frames(const std::function<const Scene&(long)>& at, FrameRange range,
+                          bool objects_change, const std::string& folder,
+                          const Progress& progress) {
+  if (objects_change) return write_groups(at, range, folder, progress);
+  FrameFiles files(folder, range);
+  for (long frame = range.first; frame <= range.last; ++frame) {
+    if (progress) progress(fmt::format("writing frame {}", frame));
+    files.add(at(frame), frame);
+  }
+  return files.finish();
 }
 
 }  // namespace farcull

@@ -13,7 +13,6 @@
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
-#include "core/base/terminal.h"
 #include "core/base/text.h"
 #include "experiments/measure/harness.h"
 #include "experiments/method/method.h"

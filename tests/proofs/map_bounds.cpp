@@ -227,11 +227,10 @@ std::vector<Bound> map_bounds() {
       {"budget.radius", "the radius is beyond the exact sum of the terms", "Budget::radius", budget,
        radius_factor(), "u", radius, 0x1p-12},
       {"depth.map", "a mapped depth, in steps of 2^-24, rounded in any direction",
-       "depth_rounding(32)", "core/canvas/canvas.cpp", depth_rounding(32), "",
+       "depth_rounding(32)", "core/canvas/canvas.h", depth_rounding(32), "",
        [](double x) { return depth_map(x, false); }},
       {"depth.map_24", "the same, stored with 24 bits", "depth_rounding(24)",
-       "core/canvas/canvas.cpp", depth_rounding(24), "",
-       [](double x) { return depth_map(x, true); }},
+       "core/canvas/canvas.h", depth_rounding(24), "", [](double x) { return depth_map(x, true); }},
       {"depth.behind",
        "what is asked is seen where the exit is at the entry that another program stored, in "
        "either "

@@ -16,7 +16,7 @@
 
 #include "core/scene/scene.h"
 #include "verify/certificate/certificate.h"
-#include "verify/certificate/integer_inside.h"
+#include "verify/certificate/integer_distance.h"
 
 namespace farcull {
 

@@ -12,7 +12,6 @@
 #include "verify/certificate/distance_certificate.h"
 #include "verify/certificate/distance_proofs.h"
 #include "verify/certificate/integer_distance.h"
-#include "verify/certificate/integer_inside.h"
 #include "verify/certificate/integers.h"
 
 namespace farcull {

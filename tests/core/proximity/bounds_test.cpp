@@ -1,10 +1,9 @@
 // The bounds that the search for near pairs rests on, against exact arithmetic. Each has a twin
 // without its slack, which must fail.
-#include "core/proximity/bounds.h"
+#include "core/proximity/scene_trees.h"
 
 #include <gtest/gtest.h>
 
-#include "core/proximity/scene_trees.h"
 #include "tests/core/base/rational.h"
 #include "tests/core/base/trials.h"
 #include "tests/core/proximity/near_lab.h"

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "experiments/method/kernel_probes.h"
+#include "experiments/method/device_verdict.h"
 #include "tests/core/gl/gl_lab.h"
 
 namespace farcull {

@@ -1,6 +1,6 @@
 // What lies inside what, in integers: against tetrahedra of small whole numbers, whose rays meet
 // edges and corners all the time, and against the answer of the program.
-#include "verify/certificate/integer_inside.h"
+#include "verify/certificate/integer_distance.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,6 @@
 #include "experiments/method/distances.h"
 #include "tests/core/base/trials.h"
 #include "tests/verify/reference.h"
-#include "verify/certificate/integer_distance.h"
 #include "verify/rational.h"
 
 namespace farcull {

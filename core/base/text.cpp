@@ -1,5 +1,5 @@
-// POSIX, or the C runtime and the console of Windows.
-#include "core/base/terminal.h"
+// Questions about a terminal: POSIX, or the C runtime and the console of Windows.
+#include "core/base/text.h"
 
 #ifdef _WIN32
 #include <io.h>
