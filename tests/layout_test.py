@@ -252,7 +252,7 @@ experiments/library:experiments/record:= | experiments/record:experiments/scenes
 experiments/peers:experiments/measure experiments/studies:= | experiments/generators:experiments/suite:=
 experiments/suite:experiments/lemma:= | experiments/studies:experiments/command:= | experiments/picture:experiments/studies:=
 experiments/command:tests:=
-verify:core/boxes/join.h core/boxes/block_join.h core/view/budget.h core/view/plan.h:shares no code
+verify:core/boxes/join.h core/view/budget.h core/view/plan.h:shares no code
 verify/certificate:core/boxes/join.h:shares no code | core/scene:core/other/other.h:in no folder of the table
 core/scene core/canvas:core/base/error.h:. | core/view:core/scene/scene.h core/boxes/join.h:. | offsets:core/view/budget.h:.
 core/gl:core/canvas/canvas.h generated/commit.h <epoxy/egl.h>:. | verify/certificate:<gmpxx.h>:.

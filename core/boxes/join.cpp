@@ -2,6 +2,11 @@
 // each pair is reported in one strip. The join in order asks a tree of boxes about one triangle
 // after the other, some side by side: the pairs of a triangle a are those with b > a, so that pairs
 // in the order of a are in order.
+//
+// Trees of blocks are asked about one block after the other. Triangles stand in lanes of sixteen
+// boxes as floats, which are compared with each other; boxes that touch in floats are compared
+// again in doubles. Only comparisons decide, so every instruction set gives the same pairs in the
+// same order.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/boxes/join.cpp"
 #include <hwy/foreach_target.h>
@@ -10,10 +15,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 
 #include "core/base/parallel.h"
+#include "core/base/uninitialized.h"
 #include "core/boxes/join.h"
 #include "core/boxes/lanes-inl.h"
+#include "core/scene/pair_sort.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace farcull::HWY_NAMESPACE {
@@ -22,6 +31,126 @@ std::uint64_t find_leaves_here(const BoxTree<double>& tree, const WideBoxes<doub
                                const Box& box, std::vector<std::uint32_t>& leaves) {
   return boxes::for_overlapping_leaves(tree, blocks, boxes::OneBox<double>(box), 0,
                                        [&](std::uint32_t leaf) { leaves.push_back(leaf); });
+}
+
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Numbers = boxes::Tag<float>;
+using Words = hn::RebindToUnsigned<Numbers>;
+using WordMask = hn::Mask<Words>;
+using OneBox = boxes::OneBox<float>;
+constexpr std::size_t kLanes = boxes::kLanes<float>;
+static_assert(kWide % kLanes == 0);
+
+// Compares the triangles of two blocks.
+class Comparison {
+ public:
+  // vertices: of the two; null: neighbours stay.
+  HWY_INLINE Comparison(const BlockLanes& a, const BlockLanes& b, const VertexBlock* a_vertices,
+                        const VertexBlock* b_vertices)
+      : a_(a), b_(b), a_vertices_(a_vertices), b_vertices_(b_vertices) {}
+
+  // Writes to `certain` and `perhaps`, which have room for 272 pairs each.
+  HWY_INLINE void write(TrianglePair*& certain, TrianglePair*& perhaps) const {
+    const OneBox bound(b_.bound);
+    std::uint32_t rows = boxes::overlapping_bits(a_.boxes, bound);
+    while (rows != 0) write_row(boxes::next_bit(rows), certain, perhaps);
+  }
+
+ private:
+  HWY_INLINE void write_row(std::size_t row, TrianglePair*& certain, TrianglePair*& perhaps) const {
+    const OneBox box(a_.boxes, row);
+    const bool same = &a_ == &b_;
+    for (std::size_t from = same ? row / kLanes * kLanes : 0; from < kWide; from += kLanes) {
+      WordMask met = hn::RebindMask(Words(), boxes::overlapping(b_.boxes, from, box));
+      if (same) met = hn::And(met, behind(row, from));
+      if (hn::AllFalse(Words(), met)) continue;
+      if (a_vertices_ != nullptr) {
+        met = hn::And(met, hn::Not(neighbours(row, from)));
+        if (hn::AllFalse(Words(), met)) continue;
+      }
+      const WordMask inside = hn::RebindMask(Words(), overlapping_inside(from, box));
+      put(row, from, hn::And(met, inside), certain);
+      const WordMask touching = hn::And(met, hn::Not(inside));
+      if (!hn::AllFalse(Words(), touching)) put(row, from, touching, perhaps);
+    }
+  }
+  // Boxes of b, from lane `from` on, that overlap the box by more than touching.
+  HWY_INLINE hn::Mask<Numbers> overlapping_inside(std::size_t from, const OneBox& box) const {
+    const auto along = [&](std::size_t axis, hn::Vec<Numbers> lo, hn::Vec<Numbers> hi) {
+      return hn::And(hn::Lt(boxes::column(b_.boxes, axis, from), hi),
+                     hn::Gt(boxes::column(b_.boxes, axis + 3, from), lo));
+    };
+    return hn::And(hn::And(along(0, box.x0, box.x1), along(1, box.y0, box.y1)),
+                   along(2, box.z0, box.z1));
+  }
+  // Lanes of the block that stand behind the row.
+  HWY_INLINE WordMask behind(std::size_t row, std::size_t from) const {
+    return hn::Gt(hn::Iota(Words(), static_cast<std::uint32_t>(from)),
+                  hn::Set(Words(), static_cast<std::uint32_t>(row)));
+  }
+  HWY_INLINE WordMask neighbours(std::size_t row, std::size_t from) const {
+    const Words w;
+    const auto p = hn::Load(w, &b_vertices_->corner[0][from]),
+               q = hn::Load(w, &b_vertices_->corner[1][from]),
+               r = hn::Load(w, &b_vertices_->corner[2][from]);
+    const auto has = [&](std::size_t corner) {
+      const auto v = hn::Set(w, a_vertices_->corner[corner][row]);
+      return hn::Or(hn::Or(hn::Eq(p, v), hn::Eq(q, v)), hn::Eq(r, v));
+    };
+    return hn::Or(hn::Or(has(0), has(1)), has(2));
+  }
+  HWY_INLINE void put(std::size_t row, std::size_t from, WordMask mask, TrianglePair*& out) const {
+    const Words w;
+    const auto one = hn::Set(w, a_.triangles[row]);
+    const auto others = hn::Compress(hn::Load(w, &b_.triangles[from]), mask);
+    hn::StoreInterleaved2(hn::Min(one, others), hn::Max(one, others), w, &out->a);
+    out += hn::CountTrue(w, mask);
+  }
+
+  const BlockLanes& a_;
+  const BlockLanes& b_;
+  const VertexBlock* a_vertices_;
+  const VertexBlock* b_vertices_;
+};
+
+}  // namespace
+
+void pair_blocks_here(const BlockTrees& trees, std::uint32_t a, std::uint32_t b, std::uint32_t from,
+                      std::uint32_t to, std::size_t most, std::vector<BlockPair>& out) {
+  const std::uint32_t first_a = trees.first_block(a), first_b = trees.first_block(b);
+  for (std::uint32_t block = from; block < to && out.size() <= most; ++block) {
+    const std::uint32_t own = block - first_a;
+    const OneBox box(trees.nodes()[trees.tree(a).first[0] + own / kWide], own % kWide);
+    boxes::for_overlapping_leaves(trees.tree(b), trees.nodes(), box, a == b ? own : 0,
+                                  [&](std::uint32_t other) {
+                                    out.push_back({block, first_b + other});
+                                  });
+  }
+}
+
+void compare_blocks_here(const LaneSpans& lanes, std::span<const VertexBlock> vertices,
+                         std::span<const LanePair> pairs, BlockFindings& out) {
+  constexpr std::size_t kRoom = 17 * 16, kFlush = 4096;
+  std::vector<TrianglePair> certain(kFlush + kRoom), perhaps(kFlush + kRoom);
+  TrianglePair *next = certain.data(), *next_perhaps = perhaps.data();
+  const auto flush = [](std::vector<TrianglePair>& from, TrianglePair*& end, std::size_t least,
+                        std::vector<TrianglePair>& to) {
+    if (static_cast<std::size_t>(end - from.data()) < least) return;
+    to.insert(to.end(), from.data(), end);
+    end = from.data();
+  };
+  for (const LanePair& pair : pairs) {
+    const bool drops = pair.drops_neighbours;
+    Comparison(lanes[pair.a], lanes[pair.b], drops ? &vertices[pair.a] : nullptr,
+               drops ? &vertices[pair.b] : nullptr)
+        .write(next, next_perhaps);
+    flush(certain, next, kFlush, out.certain);
+    flush(perhaps, next_perhaps, kFlush, out.perhaps);
+  }
+  flush(certain, next, 0, out.certain);
+  flush(perhaps, next_perhaps, 0, out.perhaps);
 }
 
 }  // namespace farcull::HWY_NAMESPACE
@@ -193,6 +322,154 @@ void OrderedPairs::next(std::size_t most, std::vector<TrianglePair>& out) {
   } else if (out.size() < most / 4) {
     triangles_ = std::min<std::uint32_t>(triangles_ * 2, 1 << 16);
   }
+}
+
+// ---- blocks ----
+
+HWY_EXPORT(pair_blocks_here);
+HWY_EXPORT(compare_blocks_here);
+
+void pair_blocks(const BlockTrees& trees, std::uint32_t a, std::uint32_t b, std::uint32_t from,
+                 std::uint32_t to, std::size_t most, std::vector<BlockPair>& out) {
+  HWY_DYNAMIC_DISPATCH(pair_blocks_here)(trees, a, b, from, to, most, out);
+}
+void compare_blocks(const LaneSpans& lanes, std::span<const VertexBlock> vertices,
+                    std::span<const LanePair> pairs, BlockFindings& out) {
+  HWY_DYNAMIC_DISPATCH(compare_blocks_here)(lanes, vertices, pairs, out);
+}
+
+BlockTrees::BlockTrees(const TriangleBlocks& blocks, std::span<const Box> regions)
+    : blocks_(&blocks), trees_(blocks.objects.size()) {
+  std::vector<FloatBox> leaves;
+  for (std::uint32_t o = 0; o < trees_.size(); ++o) {
+    if (regions[o].is_empty()) continue;
+    leaves.resize(blocks.count(o));
+    for (std::uint32_t k = 0; k < leaves.size(); ++k) leaves[k] = blocks.bound(o, k);
+    const std::size_t at = nodes_.size();
+    nodes_.resize(at + blocks_of_tree(leaves.size()));
+    trees_[o] = make_tree<float>(leaves, nodes_, at);
+  }
+}
+
+std::vector<std::uint32_t> blocks_in(const BlockPairs& pairs, std::size_t blocks) {
+  std::vector<std::uint8_t> used(blocks, 0);
+  for (const BlockPair& pair : pairs.between) used[pair.a] = used[pair.b] = 1;
+  for (const BlockPair& pair : pairs.inside) used[pair.a] = used[pair.b] = 1;
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t block = 0; block < blocks; ++block) {
+    if (used[block]) out.push_back(block);
+  }
+  return out;
+}
+
+namespace {
+
+constexpr std::uint32_t kNoLanes = 0xffffffff;
+
+// Per block the place of its lanes, or kNoLanes.
+std::vector<std::uint32_t> places_of(const TriangleBlocks& blocks) {
+  std::vector<std::uint32_t> out(blocks.ranges.size(), kNoLanes);
+  for (std::uint32_t o = 0; o < blocks.objects.size(); ++o) {
+    if (!blocks.is_gathered(o)) continue;
+    const auto from = out.begin() + blocks.first[o];
+    std::iota(from, from + blocks.count(o), blocks.gathered[o].first);
+  }
+  return out;
+}
+
+// The lanes of the blocks in some pairs.
+struct Lanes {
+  std::vector<std::uint32_t> place;           // per block, or kNoLanes
+  UninitializedVector<BlockLanes> more;       // behind those that the blocks have
+  UninitializedVector<VertexBlock> vertices;  // of all; filled only for the blocks of the pairs
+};
+
+void fill_vertices(const Scene& scene, std::span<const std::uint32_t> triangles, VertexBlock& out) {
+  for (std::uint32_t k = 0; k < kWide; ++k) {
+    for (std::size_t c = 0; c < 3; ++c)
+      out.corner[c][k] = k < triangles.size() ? scene.triangles[triangles[k]][c] : 0;
+  }
+}
+
+Lanes lanes_of(const Scene& scene, const TriangleBlocks& blocks, const BlockPairs& pairs,
+               double clearance, bool neighbours, unsigned threads) {
+  const std::vector<std::uint32_t> used = blocks_in(pairs, blocks.ranges.size());
+  Lanes out;
+  out.place = places_of(blocks);
+  const auto given = static_cast<std::uint32_t>(blocks.lanes.size());
+  std::uint32_t size = given;
+  for (const std::uint32_t block : used) {
+    if (out.place[block] == kNoLanes) out.place[block] = size++;
+  }
+  out.more.resize(size - given);
+  const bool drops = !neighbours && !pairs.inside.empty();
+  if (drops) out.vertices.resize(size);
+  const auto fill = [&](std::uint32_t block) {
+    const std::uint32_t place = out.place[block];
+    if (place < given && !drops) return;
+    std::array<std::uint32_t, kWide> triangles;
+    const TriangleBlock& range = blocks.ranges[block];
+    for (std::uint32_t i = 0; i < range.count; ++i) {
+      triangles[i] = blocks.triangle(range.first + i);
+      prefetch(scene, triangles[i]);
+    }
+    const auto own = std::span(triangles).first(range.count);
+    if (place >= given)
+      fill_lanes(scene, own, half_of(clearance), blocks.origin, out.more[place - given]);
+    if (drops) fill_vertices(scene, own, out.vertices[place]);
+  };
+  for_chunks(used.size(), chunks_for(used.size(), 128, threads),
+             [&](std::size_t, std::size_t begin, std::size_t end) {
+               for (std::size_t k = begin; k < end; ++k) fill(used[k]);
+             });
+  return out;
+}
+
+constexpr std::size_t kAtOnce = 2048;  // pairs of blocks that are compared at a time
+
+}  // namespace
+
+std::vector<TrianglePair> pairs_of_some(const Scene& scene, const TriangleBlocks& blocks,
+                                        const BlockPairs& some, double clearance, bool neighbours,
+                                        unsigned threads) {
+  const Lanes lanes = lanes_of(scene, blocks, some, clearance, neighbours, threads);
+  const auto lane_pair = [&](std::size_t k) {
+    const bool same = k >= some.between.size();
+    const BlockPair& pair = same ? some.inside[k - some.between.size()] : some.between[k];
+    return LanePair{lanes.place[pair.a], lanes.place[pair.b], same && !neighbours};
+  };
+  const std::size_t all = some.size(), chunks = chunks_for(all, 64, threads);
+  std::vector<std::vector<TrianglePair>> found(chunks);
+  for_chunks(all, chunks, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    std::vector<LanePair> pairs;
+    pairs.reserve(std::min(end - begin, kAtOnce));
+    BlockFindings findings;
+    for (std::size_t k = begin; k < end; ++k) {
+      pairs.push_back(lane_pair(k));
+      if (pairs.size() < kAtOnce && k + 1 < end) continue;
+      compare_blocks({.first = blocks.lanes, .second = lanes.more}, lanes.vertices, pairs,
+                     findings);
+      pairs.clear();
+      for (const TrianglePair& pair : findings.perhaps) {
+        if (boxes_meet(scene, pair, half_of(clearance))) findings.certain.push_back(pair);
+      }
+      findings.perhaps.clear();
+    }
+    found[chunk] = std::move(findings.certain);
+  });
+  return sorted_unique(std::move(found), threads);
+}
+
+std::vector<TrianglePair> pairs_of_blocks(const Scene& scene, const BlockMeetings& meetings,
+                                          double clearance, bool neighbours, unsigned threads) {
+  if (meetings.pairs.size() == 0) return meetings.kept;
+  std::vector<TrianglePair> found =
+      pairs_of_some(scene, *meetings.of, meetings.pairs, clearance, neighbours, threads);
+  if (meetings.kept.empty()) return found;
+  std::vector<TrianglePair> out;
+  out.reserve(found.size() + meetings.kept.size());
+  std::ranges::merge(found, meetings.kept, std::back_inserter(out));
+  return out;
 }
 
 }  // namespace farcull

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/stage.h"
-#include "core/boxes/block_join.h"
+#include "core/boxes/join.h"
 #include "core/scene/scene.h"
 
 namespace farcull {

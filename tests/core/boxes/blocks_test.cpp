@@ -11,7 +11,7 @@
 #include <set>
 
 #include "core/boxes/block.h"
-#include "core/boxes/block_join.h"
+#include "core/boxes/join.h"
 #include "core/native/lanes.h"
 #include "core/pairs/regions.h"
 #include "core/pairs/sweep.h"
