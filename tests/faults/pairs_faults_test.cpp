@@ -1,27 +1,15 @@
 // FAR pairs on GL, through the library, with one call to GL lost or one allocation failed at a
 // time: the answer is right, or there is an error; and the next call on the same object is right.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstdio>
-#include <optional>
-#include <random>
-#include <set>
-#include <string>
-
 #include "core/base/error.h"
 #include "core/gl/base/context.h"
 #include "core/gl/base/driver_fault.h"
 #include "core/gl/base/objects.h"
 #include "core/gl/pairs/pairs.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/pairs/pairs_lab.h"
-#include "tests/core/pairs/repeated_scenes.h"
-#include "tests/faults/flat_scene.h"
-#include "tests/faults/other_shader_text.h"
-#include "tests/faults/outcomes.h"
+#include "tests/faults/gl_calls.h"
+#include "tests/lab/flat.h"
+#include "tests/lab/gl.h"
+#include "tests/lab/pairs.h"
 
 namespace farcull {
 namespace {
@@ -299,9 +287,8 @@ TEST(PairsFaultsSum, OtherNumbersHaveOtherEchoes) {
     return out.sum;
   };
   EXPECT_NE(echo(512, 400), echo(535, 381));
-  for (std::int32_t width = 500; width < 550; ++width) {
+  for (std::int32_t width = 500; width < 550; ++width)
     for (std::int32_t height = 370; height < 410; ++height) echoes.insert(echo(width, height));
-  }
   EXPECT_EQ(echoes.size(), 50u * 40u);
 }
 

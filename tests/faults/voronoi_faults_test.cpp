@@ -1,16 +1,11 @@
 // The Voronoi diagram on GL with one call to GL lost or one allocation failed at a time, with wrong
 // depth tests, and with a wrong square root: the answer is right, or there is an error.
-#include <gtest/gtest.h>
-
-#include <memory>
-#include <string>
-
 #include "core/base/error.h"
 #include "core/gl/base/driver_fault.h"
 #include "core/gl/voronoi/voronoi.h"
-#include "tests/core/voronoi/voronoi_slices_lab.h"
-#include "tests/faults/other_shader_text.h"
-#include "tests/faults/outcomes.h"
+#include "tests/faults/gl_calls.h"
+#include "tests/lab/gl.h"
+#include "tests/lab/voronoi.h"
 
 namespace farcull {
 namespace {

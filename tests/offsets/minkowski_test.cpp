@@ -4,19 +4,12 @@
 #include "offsets/minkowski.h"
 #include "offsets/fit.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <iostream>
-
 #include "embedded/minkowski_glsl.h"
 #include "offsets/kernel.h"
 #include "offsets/obb.h"
 #include "offsets/round.h"
-#include "tests/core/base/rational.h"
-#include "tests/core/base/seed.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/test.h"
 #include "verify/minkowski_cases.h"
 #include "verify/minkowski_line.h"
 
@@ -80,9 +73,8 @@ TEST(ExactOf, HoldsHullAndBallOfEveryTriangle) {
     if (n == 30'000) random = Random(seed_of_day(601));
     const Case c = random_case(random, n % kKindCount);
     const Solid solid = solid_of(c.triangle, c.radius);
-    for (const auto& row : solid) {
+    for (const auto& row : solid)
       for (const float x : row) ASSERT_TRUE(std::isfinite(x));
-    }
     for (int k = 1; k < 4; ++k) ASSERT_EQ(solid[4][k], 0);  // the canvas's own numbers
     ASSERT_TRUE(holds_balls(solid, c.triangle, c.radius)) << kKinds[c.kind] << ", case " << n;
   }

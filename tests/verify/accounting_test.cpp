@@ -1,18 +1,11 @@
 // Accounting puts every pair into the right class, and notices faults of its own steps.
 #include "verify/accounting.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include <algorithm>
-#include <functional>
-#include <limits>
-#include <random>
-#include <stdexcept>
-#include <utility>
-
-#include "tests/verify/reference.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/test.h"
 #include "verify/answers.h"
 #include "verify/certificate/box_pairs.h"
 #include "verify/exact.h"
@@ -32,7 +25,7 @@ bool is_ignored(const Scene& scene, const TrianglePair& pair,
     return o;
   };
   const ObjectPair objects{owner(pair.a), owner(pair.b)};
-  return std::find(ignored.begin(), ignored.end(), objects) != ignored.end();
+  return std::ranges::find(ignored, objects) != ignored.end();
 }
 
 /// Every class recounted over all pairs, by the reference.
@@ -44,7 +37,7 @@ Accounting recount(const Scene& scene, const Pairs& kept, const AccountOptions& 
         ++result.pairs_total;
         if (is_ignored(scene, pair, options.ignored)) {
           ++result.ignored;
-        } else if (std::binary_search(kept.begin(), kept.end(), pair)) {
+        } else if (std::ranges::binary_search(kept, pair)) {
           ++result.pairs_kept;
         } else if (!overlapping) {
           ++result.certified_by_boxes;
@@ -240,9 +233,8 @@ RC_GTEST_PROP(AccountingProperty, EachClassAsRecountedOverAllPairs, ()) {
   const unsigned keep_one_in = *rc::gen::inRange(1, 6);
   std::vector<ObjectPair> ignored;
   for (std::uint32_t a = 0; a < scene.objects.size(); ++a) {
-    for (std::uint32_t b = a + 1; b < scene.objects.size(); ++b) {
+    for (std::uint32_t b = a + 1; b < scene.objects.size(); ++b)
       if (random() % 4 == 0) ignored.push_back({a, b});
-    }
   }
   Pairs kept;  // of all pairs that are not ignored, so that some have disjoint boxes
   reference::for_each_pair(scene, [&](const TrianglePair& pair, bool) {
@@ -303,9 +295,8 @@ TEST(AccountingClearance, ComparesDistancesExactly) {
   EXPECT_EQ(account(diagonal, {}, {.clearance = std::nextafter(5.0, 0.0)}).certified_by_predicates,
             1u);
   for (const double wrong :
-       {-1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+       {-1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
     EXPECT_THROW(account(scene, {}, {.clearance = wrong}), std::logic_error);
-  }
 }
 
 // Two joins that share nothing but the definition: what one loses the other shows. Large enough for

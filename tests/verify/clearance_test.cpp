@@ -1,13 +1,7 @@
 // Clearance: squared distances against the square of the clearance, exactly.
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <limits>
-
 #include "experiments/generators/pair_generators.h"
-#include "tests/core/base/seed.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/test.h"
 #include "verify/disjoint_distance.h"
 #include "verify/exact.h"
 #include "verify/filter.h"

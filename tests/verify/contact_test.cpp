@@ -1,29 +1,20 @@
 // Kinds of contact, each from triangles made for it.
 #include "verify/contact.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <utility>
-#include <vector>
-
-#include "tests/core/base/rational.h"
-#include "tests/core/base/seed.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/test.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
 
 using rational::Random;
+using reference::kMax;
+using reference::kPermutations;
+using reference::kTiny;
+using reference::reordered;
 using reference::Triangle;
-
-constexpr double kTiny = std::numeric_limits<double>::denorm_min();
-constexpr double kMax = std::numeric_limits<double>::max();
-constexpr std::array<std::array<int, 3>, 6> kPermutations = {
-    {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
 
 /// The definition by the difference A - B: penetrating iff 0 is an interior point of it, that is,
 /// iff no d != 0 has d . p >= 0 for all nine differences p of corners. If the p span less than all
@@ -63,10 +54,6 @@ Contact by_reference(const Triangle& a, const Triangle& b) {
                       converted(b, [](double x) { return std::int64_t(x); }))
           : penetrate(converted(a, reference::scaled), converted(b, reference::scaled));
   return found ? Contact::penetrating : Contact::touching;
-}
-
-Triangle reordered(const Triangle& t, const std::array<int, 3>& order) {
-  return {t[order[0]], t[order[1]], t[order[2]]};
 }
 
 /// The answer under every order of arguments and corners, and the reference's.
@@ -160,11 +147,9 @@ std::vector<Triangle> on_grid(int x, int y, int z) {
   for (int i = 0; i < x * y * z; ++i) points.emplace_back(i % x, i / x % y, i / x / y);
   std::vector<Triangle> out;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    for (std::size_t j = i; j < points.size(); ++j) {
-      for (std::size_t k = j; k < points.size(); ++k) {
+    for (std::size_t j = i; j < points.size(); ++j)
+      for (std::size_t k = j; k < points.size(); ++k)
         out.push_back({points[i], points[j], points[k]});
-      }
-    }
   }
   return out;
 }
@@ -172,9 +157,8 @@ std::vector<Triangle> on_grid(int x, int y, int z) {
 std::uint64_t differences_on_grid(int keep, std::uint64_t& penetrating) {
   std::vector<std::array<reference::Vector<std::int64_t>, 3>> exact;
   const std::vector<Triangle> all = on_grid(3, 3, 2);
-  for (const Triangle& t : all) {
+  for (const Triangle& t : all)
     exact.push_back(reference::converted(t, [](double x) { return std::int64_t(x); }));
-  }
   std::uint64_t differences = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = 0; j < all.size(); ++j) {
@@ -220,14 +204,12 @@ TEST(Contact, AsTheReferenceAmongDoublesOfEverySize) {
   for (int n = 0; n < 4000; ++n) {
     if (n == 2000) random = Random(seed_of_day(501));
     std::array<double, 5> values{};
-    for (double& value : values) {
+    for (double& value : values)
       value = n % 2 == 0 ? random.uniform(-1, 1) : random.scaled(-40, 40);
-    }
     const auto triangle = [&] {
       Triangle t;
-      for (Vec3& p : t) {
+      for (Vec3& p : t)
         for (int axis = 0; axis < 3; ++axis) p[axis] = values[random.below(5)];
-      }
       return t;
     };
     const Triangle a = triangle();
@@ -247,9 +229,8 @@ TEST(CountContacts, CountsEachPairWhateverTheThreads) {
   Random random(502);
   Scene scene;
   for (std::uint32_t t = 0; t < 100; ++t) {
-    for (int corner = 0; corner < 3; ++corner) {
+    for (int corner = 0; corner < 3; ++corner)
       scene.vertices.emplace_back(random.below(5), random.below(5), random.below(5));
-    }
     scene.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
     scene.source_face.push_back(t);
   }
@@ -267,9 +248,8 @@ TEST(CountContacts, CountsEachPairWhateverTheThreads) {
   EXPECT_GT(pairs.size(), 2048u);  // enough for more than one thread
   EXPECT_GT(expected.touching, 0u);
   EXPECT_GT(expected.penetrating, 0u);
-  for (const unsigned threads : {0u, 1u, 2u, 7u}) {
+  for (const unsigned threads : {0u, 1u, 2u, 7u})
     EXPECT_EQ(count_contacts(scene, pairs, threads), expected);
-  }
   EXPECT_EQ(count_contacts(scene, {}), ContactCounts{});
 }
 

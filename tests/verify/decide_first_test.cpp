@@ -1,11 +1,7 @@
 // The first colliding candidates: always a prefix of all of them, and no more is decided than that
 // takes.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <stdexcept>
-
-#include "tests/core/base/rational.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/test.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -28,7 +24,7 @@ Tangle tangle(std::uint32_t triangles) {
     for (std::uint32_t a = 0; a < t; ++a) out.pairs.push_back({a, t});
   }
   out.scene.objects.push_back({"", 0, triangles, true});
-  std::sort(out.pairs.begin(), out.pairs.end());
+  std::ranges::sort(out.pairs);
   return out;
 }
 
@@ -63,10 +59,9 @@ TEST(DecideFirst, NumberOfThreadsDecidesNothing) {
   const std::vector<TrianglePair> meet = decide(all.scene, all.pairs).all();
   const TrianglePair one = meet.front();
   std::vector<TrianglePair> candidates;
-  for (const TrianglePair& pair : all.pairs) {
+  for (const TrianglePair& pair : all.pairs)
     if (pair == one || (one < pair && !std::ranges::binary_search(meet, pair)))
       candidates.push_back(pair);
-  }
   ASSERT_GT(candidates.size(), 3000u);
   const FirstCollisions first = decide_first(all.scene, candidates, 1, {.threads = 1});
   EXPECT_EQ(first.collisions.all(), std::vector<TrianglePair>{one});

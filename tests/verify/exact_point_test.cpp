@@ -1,12 +1,7 @@
 // Which pixels a point lies in: pixels are closed squares, so a border belongs to both sides.
 #include "verify/exact_point.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <utility>
-#include <vector>
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -18,7 +13,7 @@ using Places = std::vector<std::pair<int, int>>;
 Places places_of(const ExactPoint& point) {
   Places out;
   for (const Pixel& pixel : pixels_containing(point, 4, 2)) out.push_back({pixel.x, pixel.y});
-  std::sort(out.begin(), out.end());
+  std::ranges::sort(out);
   return out;
 }
 

@@ -1,29 +1,20 @@
 // The exact predicates agree with rational arithmetic, degenerate triangles included.
 #include "verify/exact.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include <bit>
-#include <cmath>
-#include <limits>
-#include <random>
-#include <sstream>
-#include <stdexcept>
-
-#include "tests/core/base/seed.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
 
+using reference::kMax;
+using reference::kPermutations;
+using reference::kTiny;
+using reference::reordered;
 using reference::Triangle;
-
-constexpr double kTiny = std::numeric_limits<double>::denorm_min();
-constexpr double kMax = std::numeric_limits<double>::max();
-constexpr std::array<std::array<int, 3>, 6> kPermutations = {
-    {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
 
 std::string text(const Triangle& a, const Triangle& b) {
   const Eigen::IOFormat format(Eigen::FullPrecision, Eigen::DontAlignCols, ", ", ", ", "", "", "{",
@@ -41,10 +32,6 @@ double down(double x) { return std::nextafter(x, -kMax); }
 
 Triangle segment(const Vec3& a, const Vec3& b) { return {a, b, a}; }
 Triangle single_point(const Vec3& a) { return {a, a, a}; }
-
-Triangle reordered(const Triangle& t, const std::array<int, 3>& order) {
-  return {t[order[0]], t[order[1]], t[order[2]]};
-}
 
 Triangle with_axes(const Triangle& t, const std::array<int, 3>& axes) {
   Triangle result;
@@ -203,11 +190,9 @@ TEST(Intersects, CoordinatesAtTheEndsOfTheDoubles) {
 std::vector<Triangle> all_triangles(const std::vector<Vec3>& corners) {
   std::vector<Triangle> result;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    for (std::size_t j = i; j < corners.size(); ++j) {
-      for (std::size_t k = j; k < corners.size(); ++k) {
+    for (std::size_t j = i; j < corners.size(); ++j)
+      for (std::size_t k = j; k < corners.size(); ++k)
         result.push_back({corners[i], corners[j], corners[k]});
-      }
-    }
   }
   return result;
 }
@@ -252,9 +237,8 @@ TEST(Intersects, RandomPairsOnSmallGrids) {
     if (n == 150'000) random.seed(static_cast<unsigned>(seed_of_day(7)));
     const int size = 2 + n % 5;
     std::array<Triangle, 2> pair;
-    for (Triangle& t : pair) {
+    for (Triangle& t : pair)
       for (Vec3& p : t) p = Vec3(random() % size, random() % size, random() % size);
-    }
     const bool expected = reference::intersects(pair[0], pair[1]);
     ASSERT_EQ(intersects(pair[0], pair[1]), expected) << text(pair[0], pair[1]);
     answers[expected] += n < 150'000;  // by the fixed seed
@@ -274,11 +258,9 @@ TEST(Intersects, RandomPairsOfArbitraryBits) {
     std::array<Triangle, 2> pair;
     for (Triangle& t : pair) {
       for (Vec3& p : t) {
-        for (int axis = 0; axis < 3; ++axis) {
-          do {
+        for (int axis = 0; axis < 3; ++axis) do {
             p[axis] = std::bit_cast<double>(random());
           } while (!std::isfinite(p[axis]));
-        }
       }
     }
     auto& [a, b] = pair;
@@ -313,9 +295,8 @@ rc::Gen<double> nearly_grid_coordinate() {
 
 Triangle generated(const rc::Gen<double>& coordinate) {
   Triangle t;
-  for (Vec3& p : t) {
+  for (Vec3& p : t)
     for (int axis = 0; axis < 3; ++axis) p[axis] = *coordinate;
-  }
   return t;
 }
 
@@ -364,9 +345,8 @@ TEST(Exact, CountsDegenerateTriangles) {
 TEST(Exact, KeepsTheOrderOfCandidatesWhateverTheThreads) {
   std::mt19937 random(11);
   std::vector<Triangle> triangles(60);
-  for (Triangle& t : triangles) {
+  for (Triangle& t : triangles)
     for (Vec3& p : t) p = Vec3(random() % 9, random() % 9, random() % 9);
-  }
   std::vector<std::vector<Triangle>> objects;  // of one triangle, so that none are neighbours
   for (const Triangle& t : triangles) objects.push_back({t});
   const Scene scene = reference::scene_of(objects);
@@ -376,14 +356,12 @@ TEST(Exact, KeepsTheOrderOfCandidatesWhateverTheThreads) {
     pair.b = (pair.a + 1 + random() % 59) % 60;
   }
   std::vector<TrianglePair> expected;
-  for (const TrianglePair& pair : candidates) {
+  for (const TrianglePair& pair : candidates)
     if (reference::intersects(triangles[pair.a], triangles[pair.b])) expected.push_back(pair);
-  }
   ASSERT_GT(expected.size(), 1000u);
   ASSERT_LT(expected.size(), candidates.size() - 1000);
-  for (const unsigned threads : {0u, 1u, 2u, 7u}) {
+  for (const unsigned threads : {0u, 1u, 2u, 7u})
     EXPECT_EQ(decide(scene, candidates, {.threads = threads}).pairs, expected) << threads;
-  }
 }
 
 TEST(Exact, RefusesCandidatesOutOfRange) {
@@ -470,9 +448,8 @@ TEST(BoxJoin, AsBruteForceBeyondTheCutoff) {
   expect_join_as_brute_force(reference::scene_of(grid_objects({3000, 0, 4000, 2500}, 40, 2, 4)));
   auto flat = grid_objects({5000, 5000}, 400, 3, 5);
   for (auto& triangles : flat) {
-    for (Triangle& t : triangles) {
+    for (Triangle& t : triangles)
       for (Vec3& p : t) p.z() = 1;
-    }
   }
   expect_join_as_brute_force(reference::scene_of(flat));
 }

@@ -3,15 +3,10 @@
 #include "verify/kernel_check.h"
 #include "offsets/fit.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <limits>
-
 #include "core/pairs/grid.h"
 #include "offsets/minkowski.h"
 #include "offsets/obb.h"
+#include "tests/lab/test.h"
 
 namespace farcull::lab {
 using Answer = IntervalAnswer;

@@ -3,10 +3,9 @@
 #include "verify/worst_canvas.h"
 
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/base/trials.h"
-#include "tests/core/canvas/lemma_suite.h"
-#include "tests/core/cull/far_properties.h"
-#include "tests/core/scene/scenes.h"
+#include "offsets/obb.h"
+#include "tests/lab/far.h"
+#include "tests/lab/lemmas.h"
 
 namespace farcull {
 namespace {
@@ -120,6 +119,34 @@ TEST(WorstFar, MissesPairsNearPixelCornersAtNineTenthsOfTheRadius) {
     WorstCanvas canvas(fattener.solid);
     EXPECT_EQ(far_on(canvas, scene, fattener, "z", 128).accounting.false_negatives, 0u);
     EXPECT_GT(far_on(canvas, scene, fattener, "z", 128, 0.9).accounting.false_negatives, 100u);
+  }
+}
+
+TEST(WorstTouching, IsSeenWhereItCounts) {
+  const Window window = lab::window(8, 100);
+  const auto triangle = [](float z) {
+    return std::array<float, 12>{-4, -4, z, 0, 12, -4, z, 0, -4, 12, z, 0};
+  };
+  for (const int bits : {32, 24}) {
+    WorstCanvas canvas(obb_fattener().solid, {.depth_bits = bits});
+    const auto is_seen = [&](float stored, float asked, bool touching) {
+      Drawables drawables;
+      drawables.mode = DepthMode::fixed;
+      drawables.first = {0, 1, 2};
+      drawables.triangles = {triangle(stored), triangle(asked)};
+      Pass pass;
+      pass.slots = 1;
+      pass.touching = touching;
+      pass.draws = {{0, 0}, {1, 0}};
+      pass.steps = {{Verb::store, 0, 1}, {Verb::ask, 1, 1}};
+      canvas.begin(window, drawables);
+      return canvas.run(pass)[0] != 0;
+    };
+    EXPECT_TRUE(is_seen(3, 3, true)) << bits;
+    EXPECT_FALSE(is_seen(3, 3, false)) << bits;
+    // The twins: a quarter of a pixel before, and behind.
+    EXPECT_FALSE(is_seen(3, 2.75f, true)) << bits;
+    EXPECT_TRUE(is_seen(3, 3.25f, false)) << bits;
   }
 }
 

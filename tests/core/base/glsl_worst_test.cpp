@@ -2,14 +2,10 @@
 // Worst must hold every result that a device may give, and stay exact where a device must be.
 #include "core/base/glsl_worst.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <bit>
-#include <cfenv>
-#include <limits>
-
-#include "tests/core/base/rational.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {

@@ -1,13 +1,9 @@
 // Work in chunks on threads that are kept: each chunk once, whatever else happens at that time.
 #include "core/base/parallel.h"
 
-#include <gtest/gtest.h>
+#include "tests/lab/test.h"
 
 #include <atomic>
-#include <stdexcept>
-#include <string>
-#include <thread>
-#include <vector>
 
 namespace farcull {
 namespace {
@@ -22,17 +18,14 @@ std::vector<int> visits(std::size_t count, std::size_t chunks) {
 }
 
 TEST(Parallel, VisitsEachItemOnce) {
-  for (const std::size_t chunks : {1u, 2u, 3u, 8u, 40u}) {
-    for (const std::size_t count : {0u, 1u, 7u, 1000u}) {
+  for (const std::size_t chunks : {1u, 2u, 3u, 8u, 40u})
+    for (const std::size_t count : {0u, 1u, 7u, 1000u})
       EXPECT_EQ(visits(count, chunks), std::vector<int>(count, 1)) << chunks << " of " << count;
-    }
-  }
 }
 
 TEST(Parallel, ManyCallsOneAfterTheOther) {
-  for (int round = 0; round < 5000; ++round) {
+  for (int round = 0; round < 5000; ++round)
     ASSERT_EQ(visits(3, 3), std::vector<int>(3, 1)) << round;
-  }
 }
 
 // Calls inside of chunks end as well, though no thread is free for them.
@@ -52,9 +45,7 @@ TEST(Parallel, SeveralThreadsMayCall) {
     std::vector<std::jthread> callers;
     for (int k = 0; k < 6; ++k) {
       callers.emplace_back([&] {
-        for (int round = 0; round < 500; ++round) {
-          wrong += visits(11, 4) != std::vector<int>(11, 1);
-        }
+        for (int round = 0; round < 500; ++round) wrong += visits(11, 4) != std::vector<int>(11, 1);
       });
     }
   }

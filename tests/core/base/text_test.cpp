@@ -1,11 +1,9 @@
-// Numbers from text, and the hash of fingerprints.
+// Numbers from text, the hash of fingerprints, and Base64.
 #include "core/base/text.h"
 
-#include <gtest/gtest.h>
-
-#include <cstdint>
-
+#include "core/base/base64.h"
 #include "core/base/hash.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -37,6 +35,26 @@ TEST(Fnv1a, IsTheHashOfThatName) {
   EXPECT_EQ(a.hex(), "af63dc4c8601ec8c");
   EXPECT_EQ(foobar.hex(), "85944171f73967e8");
   EXPECT_NE(word.hex(), a.hex()) << "a word is eight bytes";
+}
+
+std::vector<std::uint8_t> bytes(const std::string& text) { return {text.begin(), text.end()}; }
+
+TEST(Base64, IsThatOfRfc4648) {
+  for (const auto& [plain, encoded] :
+       std::vector<std::pair<std::string, std::string>>{{"", ""},
+                                                        {"f", "Zg=="},
+                                                        {"fo", "Zm8="},
+                                                        {"foo", "Zm9v"},
+                                                        {"foobar", "Zm9vYmFy"},
+                                                        {std::string("\xff\x00\xfe", 3), "/wD+"}}) {
+    EXPECT_EQ(to_base64(bytes(plain)), encoded);
+    EXPECT_EQ(from_base64(encoded), bytes(plain));
+  }
+}
+
+TEST(Base64, RefusesWhatIsNoEncoding) {
+  for (const char* text : {"Z", "Zg", "Zg=", "Zh==", "Zm9=", "Zg==Zg==", "Zm9\n", "====", "Z==="})
+    EXPECT_FALSE(from_base64(text)) << text;
 }
 
 }  // namespace

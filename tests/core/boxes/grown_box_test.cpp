@@ -1,9 +1,8 @@
 // Boxes that grow by half a clearance, against rationals.
 #include "core/boxes/block.h"
 
-#include <gtest/gtest.h>
-
-#include "tests/core/base/rational.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {

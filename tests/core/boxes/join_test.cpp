@@ -1,42 +1,25 @@
 // The box join finds the pairs that brute force finds.
 #include "core/boxes/join.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include <algorithm>
-#include <cfloat>
-#include <numeric>
-#include <utility>
-
-#include "tests/core/base/rational.h"
+#include "tests/lab/boxes.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
 
-using Pairs = std::vector<TrianglePair>;
-using Indices = std::vector<std::uint32_t>;
+using lab::Indices;
+using lab::Pairs;
 using rational::Random;
 
-/// Its own comparison, so that overlap() is not what tests itself.
-bool meet(const Box& a, const Box& b) {
-  for (int i = 0; i < 3; ++i) {
-    if (!(std::max(a.lo[i], b.lo[i]) <= std::min(a.hi[i], b.hi[i]))) return false;
-  }
-  return true;
-}
-
-Pairs brute_force(const std::vector<Box>& boxes, const Indices& owners, Indices items) {
-  std::sort(items.begin(), items.end());
-  Pairs pairs;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    for (std::size_t j = i + 1; j < items.size(); ++j) {
-      const std::uint32_t a = items[i], b = items[j];
-      if (owners[a] != owners[b] && meet(boxes[a], boxes[b])) pairs.push_back({a, b});
-    }
-  }
-  return pairs;
+Pairs brute_force(const std::vector<Box>& boxes, const Indices& owners, const Indices& items) {
+  std::vector<bool> taken(boxes.size());
+  for (const std::uint32_t item : items) taken[item] = true;
+  return lab::brute_force(boxes, [&](std::uint32_t a, std::uint32_t b) {
+    return owners[a] != owners[b] && taken[a] && taken[b];
+  });
 }
 
 void expect_as_brute_force(const std::vector<Box>& boxes, const Indices& owners,
@@ -102,7 +85,7 @@ RC_GTEST_PROP(SweepJoinProperty, AsBruteForceOnDuplicatedCoordinates, ()) {
     owners.push_back(static_cast<std::uint32_t>(*rc::gen::inRange(0, owner_count)));
     if (*rc::gen::inRange(0, 4) != 0) items.push_back(static_cast<std::uint32_t>(n));
   }
-  std::reverse(items.begin(), items.end());  // the order of items does not matter
+  std::ranges::reverse(items);  // the order of items does not matter
   RC_ASSERT(box_join(boxes, owners, items) == brute_force(boxes, owners, items));
 }
 

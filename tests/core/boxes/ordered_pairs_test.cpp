@@ -1,13 +1,9 @@
 // Pairs in order, some at a time, against all pairs of triangles whose boxes overlap.
 #include "core/boxes/join.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <limits>
-
 #include "core/boxes/block.h"
-#include "tests/core/base/rational.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -41,10 +37,7 @@ std::vector<TrianglePair> by_search(const Scene& scene, double clearance,
   for (std::uint32_t a = 0; a < owner.size(); ++a) {
     for (std::uint32_t b = a + 1; b < owner.size(); ++b) {
       if (owner[a] == owner[b] && !scene.objects[owner[a]].self) continue;
-      if (std::find(ignored.begin(), ignored.end(), ObjectPair{owner[a], owner[b]}) !=
-          ignored.end()) {
-        continue;
-      }
+      if (std::ranges::find(ignored, ObjectPair{owner[a], owner[b]}) != ignored.end()) continue;
       if (overlap(grown_box(scene, a, clearance), grown_box(scene, b, clearance)))
         out.push_back({a, b});
     }
@@ -77,10 +70,9 @@ TEST(OrderedPairs, AreAllPairsInOrderWhateverThePartsAndThreads) {
     const double clearance = random.coin() ? 0 : 0.25;
     const std::vector<TrianglePair> expected = by_search(scene, clearance, ignored);
     found += expected.size();
-    for (const std::size_t most : {std::size_t{1}, std::size_t{40}, std::size_t{100'000}}) {
+    for (const std::size_t most : {std::size_t{1}, std::size_t{40}, std::size_t{100'000}})
       for (const unsigned threads : {1u, 3u})
         EXPECT_EQ(streamed(scene, clearance, ignored, threads, most), expected) << triangles;
-    }
     // The twin: the search notices a pair of objects that is not ignored.
     if (!ignored.empty() && by_search(scene, clearance, {}) != expected) {
       EXPECT_NE(streamed(scene, clearance, {}, 1, 40), expected);

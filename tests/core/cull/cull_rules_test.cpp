@@ -1,31 +1,19 @@
 // The rules by which culling leaves out the level of objects and further rounds.
-#include <gtest/gtest.h>
-
 #include "core/cull/cull.h"
 #include "core/native/canvas.h"
 #include "core/view/regions.h"
 #include "offsets/obb.h"
-#include "tests/core/scene/scenes.h"
+#include "tests/lab/scenes.h"
 
 namespace farcull {
 namespace {
 
 /// Objects of one triangle each in a stack, so close that all boxes overlap.
 Scene stack(int objects) {
-  Scene scene;
-  scene.name = "stack";
-  for (int i = 0; i < objects; ++i) {
-    const double z = i;
-    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-    for (const Vec3& p : {Vec3(0, 0, z), Vec3(9, 0, z + objects), Vec3(0, 9, z + objects)})
-      scene.vertices.push_back(p);
-    scene.triangles.push_back({first, first + 1, first + 2});
-    scene.source_face.push_back(0);
-    scene.objects.push_back({.name = std::to_string(i),
-                             .first_triangle = static_cast<std::uint32_t>(i),
-                             .triangle_count = 1});
-  }
-  return scene;
+  std::vector<std::vector<std::array<Vec3, 3>>> out;
+  for (double z = 0; z < objects; ++z)
+    out.push_back({{Vec3(0, 0, z), Vec3(9, 0, z + objects), Vec3(0, 9, z + objects)}});
+  return lab::scene_of(out);
 }
 
 CullSettings settings_of(const Fattener& fattener) {
@@ -43,16 +31,14 @@ CullResult cull_of(const Scene& scene, const CullSettings& settings) {
 }
 
 const Stage* find_stage(const std::vector<Stage>& stages, StageKind kind) {
-  for (const Stage& stage : stages) {
+  for (const Stage& stage : stages)
     if (stage.kind == kind) return &stage;
-  }
   return nullptr;
 }
 
 bool asked_objects(const std::vector<Stage>& stages) {
-  for (const Stage& stage : stages) {
+  for (const Stage& stage : stages)
     if (stage.level == "objects" && stage.ran) return true;
-  }
   return false;
 }
 

@@ -1,7 +1,6 @@
-// FAR as a property on the worst canvas; the same on GL in gl_far_properties_test.cpp.
-#include "tests/core/cull/far_properties.h"
+// FAR as a property on the worst canvas; the same on GL in gl_far_test.cpp.
+#include "tests/lab/far.h"
 
-#include "tests/core/base/trials.h"
 #include "verify/worst_canvas.h"
 
 namespace farcull {

@@ -1,8 +1,6 @@
 // The reliability lemmas on the real rasterizer.
-#include <cmath>
-
-#include "tests/core/canvas/lemma_suite.h"
-#include "tests/core/gl/gl_lab.h"
+#include "tests/lab/gl.h"
+#include "tests/lab/lemmas.h"
 
 namespace farcull {
 namespace {

@@ -1,15 +1,7 @@
 // Theorem 2 and the lemmas of Quick-CULLIDE for one pass of the model, from every state of up to
 // four triangles (docs/model.md). What holds for each pass holds for any number of views and
 // rounds.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cstdio>
-#include <memory>
-#include <string>
-
 #include "core/base/count.h"
-#include "tests/core/cull/model_page.h"
 #include "tests/core/cull/model_worlds.h"
 
 namespace farcull::model {
@@ -75,9 +67,8 @@ void for_settings(int n, bool against_lemmas, const Visit& visit) {
       std::size_t placed = 0;
       for (const Set owner : owners) {
         level.emplace_back();
-        for (const Set group : groups) {
+        for (const Set group : groups)
           if ((group & ~owner) == 0) level.back().push_back(group);
-        }
         placed += level.back().size();
       }
       if (placed < groups.size()) continue;  // a group of two owners
@@ -180,7 +171,8 @@ TEST(SmallSteps, WhatIsLeftOutWouldSetNothing) {
       for (Set state = 0; state < kStates; ++state) {
         if (!at.has(state)) continue;
         for (const bool second : {false, true}) {
-          // The bits of the pass may grow afterwards; the others are what decides what is stored.
+          // The bits of the pass may grow afterwards; the others are what decides what is
+          // stored.
           const Set after = with(state, second, table.quick[second][state].cleared);
           const Set own = second ? at.world.region << kHalf : at.world.region;
           const Set free = own & ~after;

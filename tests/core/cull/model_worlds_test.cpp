@@ -1,15 +1,7 @@
 // The model of the passes on all small worlds: theorem 2, and what the lemmas of Quick-CULLIDE say
 // of bits and costs (docs/model.md). What is counted here stands in that page.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <memory>
-#include <string>
-
-#include "core/base/count.h"
-#include "tests/core/cull/model_page.h"
 #include "tests/core/cull/model_worlds.h"
+#include "core/base/count.h"
 
 namespace farcull::model {
 namespace {
@@ -23,9 +15,8 @@ Set meeting_pairs(const std::vector<Set>& owners, const View& view, int n) {
   int pair = 0;
   for (int t = 0; t < n; ++t) {
     for (int u = 0; u < t; ++u, ++pair) {
-      const bool apart = std::none_of(owners.begin(), owners.end(), [&](Set owner) {
-        return (owner & only(t)) && (owner & only(u));
-      });
+      const bool apart = std::ranges::none_of(
+          owners, [&](Set owner) { return (owner & only(t)) && (owner & only(u)); });
       if (apart && (!view.drawn || (may_meet(view, t) & only(u)))) out |= only(pair);
     }
   }
@@ -145,8 +136,8 @@ bool is_ahead(const Work& quick, const Work& plain) {
 }
 
 bool all_shown(const World& world) {
-  return std::all_of(world.views.begin(), world.views.end(),
-                     [&](const View& view) { return view.shown == world.region; });
+  return std::ranges::all_of(world.views,
+                             [&](const View& view) { return view.shown == world.region; });
 }
 
 // Quick-CULLIDE may go on where plain CULLIDE has ended. Its total is then larger in some worlds,

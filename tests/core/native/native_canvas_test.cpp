@@ -2,22 +2,13 @@
 // instruction set and any number of threads.
 #include "core/native/canvas.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <cstring>
-
-#include "core/base/error.h"
 #include "core/native/job.h"
 #include "core/view/regions.h"
 #include "offsets/fit.h"
 #include "offsets/minkowski.h"
 #include "offsets/obb.h"
-#include "tests/core/base/trials.h"
-#include "tests/core/canvas/lab.h"
-#include "tests/core/native/every_target.h"
-#include "tests/core/scene/scenes.h"
+#include "tests/lab/lanes.h"
+#include "tests/lab/scenes.h"
 #include "verify/box_line.h"
 #include "verify/minkowski_cases.h"
 
@@ -145,8 +136,8 @@ TEST(NativeLanes, FattenedTrianglesAreThoseOfTheScalarTextBitForBit) {
                                   .bounds = proxy_bounds(*window),
                                   .out = proxies.data(),
                                   .done = done.data()});
-          on_lanes += std::count(done.begin(), done.end(), 1);
-          left += std::count(done.begin(), done.end(), 0);
+          on_lanes += std::ranges::count(done, 1);
+          left += std::ranges::count(done, 0);
           EXPECT_EQ(std::memcmp(many.proxies.data(), one.proxies.data(),
                                 many.proxies.size() * sizeof(Proxy)),
                     0)
@@ -198,11 +189,10 @@ std::vector<std::uint8_t> plain_run(const Window& w, const Drawables& drawables,
             const float z = (step.verb == Verb::store ? entry : exit) * scale;
             place = held_as(std::min(std::max(0.5f + z, 0.25f), 0.75f));
           }
-          if (step.verb == Verb::store) {
+          if (step.verb == Verb::store)
             held = std::min(held, place);
-          } else if (reversed ? place < held : pass.touching ? place >= held : place > held) {
+          else if (reversed ? place < held : pass.touching ? place >= held : place > held)
             seen[pass.draws[d].slot] = 1;
-          }
         }
       }
     }
@@ -285,7 +275,7 @@ TEST(NativeCanvas, PassesSeeWhatPlainLoopsSee) {
             EXPECT_EQ(canvas.run(random.pass), wanted) << bits << " bits";
             EXPECT_EQ(canvas.run(many), wanted) << bits << " bits, " << threads << " threads";
           }
-          seen_in_all += static_cast<int>(std::count(wanted.begin(), wanted.end(), 1));
+          seen_in_all += static_cast<int>(std::ranges::count(wanted, 1));
           reversed_differs += run(bits, true) != wanted;
         }
       }
@@ -330,8 +320,8 @@ TEST(NativeCanvas, AnyNumberOfThreadsGivesTheSameBits) {
         EXPECT_EQ(depths, first_depths) << fattener.name << ", " << threads << " threads";
       }
     });
-    EXPECT_GT(std::count(first.begin(), first.end(), 0), 100);
-    EXPECT_GT(std::count(first.begin(), first.end(), 1), 100);
+    EXPECT_GT(std::ranges::count(first, 0), 100);
+    EXPECT_GT(std::ranges::count(first, 1), 100);
   }
 }
 
@@ -422,10 +412,9 @@ TEST(NativeTriangles, OfTrianglesThatShareEdgesOneOwnsEachPixel) {
             {middle, corners[turned ? (i + 1) % 4 : i], corners[turned ? i : (i + 1) % 4]}));
       }
       const std::vector<int> counts = coverage(w, fan);
-      for (int y = 1; y < 38; ++y) {
+      for (int y = 1; y < 38; ++y)
         for (int x = 1; x < 38; ++x)
           EXPECT_EQ(counts[static_cast<std::size_t>(y) * 40 + x], 1) << x << ", " << y;
-      }
       // The twin: with one triangle left out, pixels are left over.
       fan.pop_back();
       const std::vector<int> fewer = coverage(w, fan);
@@ -490,16 +479,13 @@ bool touches(const std::array<std::array<std::int64_t, 2>, 3>& t, std::int64_t x
     }
     return !(left && right) && (left || right);
   };
-  for (const Point& p : square) {
+  for (const Point& p : square)
     if (inside(t.data(), 3, p)) return true;
-  }
-  for (const Point& p : t) {
+  for (const Point& p : t)
     if (inside(square, 4, p)) return true;
-  }
   for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < 4; ++k)
       if (meet(t[i], t[(i + 1) % 3], square[k], square[(k + 1) % 4])) return true;
-    }
   }
   return false;
 }

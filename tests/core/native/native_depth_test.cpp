@@ -1,15 +1,10 @@
 // What the canvas on the cores of the CPU does at the very borders: depths that are equal, depths
 // of 24 bits, and corners that doubles know too badly.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "core/native/canvas.h"
 #include "offsets/minkowski.h"
 #include "offsets/obb.h"
-#include "tests/core/canvas/lab.h"
-#include "tests/core/native/every_target.h"
+#include "tests/lab/canvas.h"
+#include "tests/lab/lanes.h"
 
 namespace farcull {
 namespace {

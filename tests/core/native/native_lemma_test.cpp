@@ -2,14 +2,9 @@
 // worst canvas that keeps the same promises.
 #include "core/native/canvas.h"
 
-#include <array>
-#include <cmath>
-#include <numbers>
-
 #include "offsets/fit.h"
-#include "tests/core/base/trials.h"
-#include "tests/core/canvas/lemma_suite.h"
-#include "tests/core/cull/far_properties.h"
+#include "tests/lab/far.h"
+#include "tests/lab/lemmas.h"
 #include "verify/worst_canvas.h"
 
 namespace farcull {

@@ -2,19 +2,10 @@
 // anywhere its float corners and the widening allow, clipped to a pixel with rationals.
 #include "core/pairs/grid.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "core/canvas/kernel_case.h"
 #include "tests/core/base/chance.h"
-#include "tests/core/base/rational.h"
-#include "tests/core/base/seed.h"
-#include "tests/core/base/trials.h"
+#include "tests/lab/rational.h"
+#include "tests/lab/test.h"
 #include "verify/interval_cases.h"
 
 namespace farcull::lab {
@@ -151,9 +142,8 @@ TEST(Interval, IsTight) {
   for (int n = 0; n < trials(3000); ++n) {
     const FloatTriangle t = interval_cases::random_triangle(random);
     float most = 0;
-    for (const auto& p : t) {
+    for (const auto& p : t)
       for (const float x : p) most = std::max(most, std::fabs(x));
-    }
     if (most > 4096) continue;
     std::vector<Q3> exact(3);
     for (int k = 0; k < 3; ++k) exact[k] = {Q(t[k][0]), Q(t[k][1]), Q(t[k][2])};

@@ -1,9 +1,7 @@
 // FAR pairs where one rule alone keeps a pair: each scene loses it when that rule is taken away.
-#include <algorithm>
-
 #include "core/base/stopwatch.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/pairs/pairs_lab.h"
+#include "tests/lab/pairs.h"
 
 namespace farcull {
 namespace {
@@ -115,7 +113,7 @@ TEST(PairsEdges, APairOfWhichOneBeginsEarlierBesideACrowdedPixel) {
       const std::vector<TrianglePair> truth = truth_of(scene);
       const TrianglePair last{scene.objects[1].first_triangle - 1,
                               static_cast<std::uint32_t>(scene.triangles.size()) - 1};
-      EXPECT_TRUE(std::binary_search(truth.begin(), truth.end(), last));
+      EXPECT_TRUE(std::ranges::binary_search(truth, last));
     }
   }
 }
@@ -165,7 +163,7 @@ TEST(PairsEdges, ContactsInCrowdedPixels) {
     EXPECT_GT(result.views[0].counts.crowded, 0u);
     for (std::uint32_t n = 2; n < 2 + contacts; ++n) {
       const TrianglePair contact{n, scene.objects[1].first_triangle + n};
-      EXPECT_TRUE(std::binary_search(result.candidates.begin(), result.candidates.end(), contact));
+      EXPECT_TRUE(std::ranges::binary_search(result.candidates, contact));
     }
   }
 }

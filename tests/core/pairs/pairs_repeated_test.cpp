@@ -1,17 +1,10 @@
 // Pairs that are found in many pixels: they are held and compared about once, and the answer is
 // that of every pixel looked at by itself.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <set>
-#include <string>
-
 #include "core/pairs/backend.h"
 #include "core/pairs/lists.h"
 #include "core/pairs/tile.h"
 #include "core/scene/pair_sort.h"
-#include "tests/core/pairs/pairs_lab.h"
-#include "tests/core/pairs/repeated_scenes.h"
+#include "tests/lab/pairs.h"
 
 namespace farcull {
 namespace {
@@ -84,8 +77,7 @@ std::vector<TrianglePair> raw_pairs(const PairTask& task, int side, std::size_t 
     const PairBounds bounds = grid.bounds(t);
     if (!bounds.empty()) items.push_back(grid.item(t, bounds));
   }
-  const bool masked =
-      std::any_of(task.self.begin(), task.self.end(), [](std::uint8_t self) { return self == 0; });
+  const bool masked = std::ranges::any_of(task.self, [](std::uint8_t self) { return self == 0; });
   PairPool pool(1, 1000);
   TileWorker<Rules> worker;
   PairCounts counts;
@@ -167,7 +159,7 @@ TEST(PairsRepeated, NoFurtherViewWhereItTakesNothingAway) {
   const PairResult result = find_pairs(scene, {.resolution = 32}, *backend);
   EXPECT_EQ(result.candidates, by_runs.candidates);
   EXPECT_EQ(result.views.size(), 1u);
-  EXPECT_TRUE(std::any_of(result.stages.begin(), result.stages.end(), [](const Stage& stage) {
+  EXPECT_TRUE(std::ranges::any_of(result.stages, [](const Stage& stage) {
     return !stage.ran && reason_of(stage) == "it keeps all of a sample of the candidates";
   }));
 }

@@ -1,8 +1,7 @@
 // A scene at which a property fails becomes a small file that says the same.
-#include "tests/core/scene/minimize.h"
+#include "tests/lab/scenes.h"
 
 #include "experiments/scenes/scene_file.h"
-#include "tests/core/scene/scenes.h"
 #include "verify/exact.h"
 
 namespace farcull {

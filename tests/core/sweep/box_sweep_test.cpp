@@ -1,8 +1,9 @@
 // The sweep of boxes against brute force, and broken sweeps that must be caught.
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "tests/core/sweep/sweep_lab.h"
+#include "tests/lab/boxes.h"
+
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -55,9 +56,8 @@ TEST(BoxSweep, ABoxThatBecomesEmptyLeavesItsPairs) {
 
 TEST(BoxSweep, EqualPointsAllMeet) {
   BoxSweep sweep;
-  for (const double at : {1.0, 0.0, -0.0, DBL_MAX, -DBL_MAX, 5e-324}) {
+  for (const double at : {1.0, 0.0, -0.0, DBL_MAX, -DBL_MAX, 5e-324})
     EXPECT_EQ(sweep.update(Boxes(20, cube(at, at))).size(), 190u);
-  }
   EXPECT_FALSE(sweep.sorted_from_scratch());
 }
 
@@ -73,7 +73,7 @@ TEST(BoxSweep, AsBruteForceOverMovingBoxes) {
       swaps += sweep.swaps();
       coherent += !sweep.sorted_from_scratch();
       if (frame % 20 == 19) boxes.resize(boxes.size() + 5 - frame / 2, cube(3, 4));
-      if (frame % 20 == 5) std::reverse(boxes.begin(), boxes.end());  // others than before
+      if (frame % 20 == 5) std::ranges::reverse(boxes);  // others than before
       move(boxes, random, kind);
     }
   }
@@ -105,9 +105,8 @@ TEST(BoxSweepTwin, WithoutAFaultTheSmallSweepIsRight) {
   Random random(603);
   SmallBoxSweep sweep;
   Boxes boxes = some_boxes(random, 40);
-  for (Box& box : boxes) {
+  for (Box& box : boxes)
     if (box.is_empty()) box = cube(0, 1);
-  }
   for (int frame = 0; frame < 30; ++frame) {
     ASSERT_EQ(sweep.update(boxes), brute_force(boxes)) << frame;
     for (Box& box : boxes) {

@@ -1,9 +1,10 @@
 // Sweep and prune on scenes: as brute force, from frame to frame, and broken ones that must be
 // caught.
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "tests/core/sweep/sweep_lab.h"
+#include "tests/lab/boxes.h"
+
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -44,10 +45,9 @@ Expected expected_of(const Scene& scene, const Boxes& boxes) {
   out.candidates = brute_force(boxes, [&](std::uint32_t a, std::uint32_t b) {
     return owner[a] != owner[b] || scene.objects[owner[a]].self;
   });
-  for (const TrianglePair& pair : out.candidates) {
+  for (const TrianglePair& pair : out.candidates)
     out.triangles.insert(out.triangles.end(), {pair.a, pair.b});
-  }
-  std::sort(out.triangles.begin(), out.triangles.end());
+  std::ranges::sort(out.triangles);
   out.triangles.erase(std::unique(out.triangles.begin(), out.triangles.end()), out.triangles.end());
   return out;
 }
@@ -319,15 +319,15 @@ Pairs swept(const Scene& scene, const Boxes& boxes, const Indices& order) {
       if (counts && meet(box, other)) pairs.push_back({a, b});
     }
   }
-  std::sort(pairs.begin(), pairs.end());
+  std::ranges::sort(pairs);
   return pairs;
 }
 
 Indices order_along_x(const Boxes& boxes) {
   Indices order(boxes.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return boxes[a].lo.x() < boxes[b].lo.x(); });
+  std::ranges::sort(
+      order, [&](std::uint32_t a, std::uint32_t b) { return boxes[a].lo.x() < boxes[b].lo.x(); });
   return order;
 }
 
@@ -364,19 +364,6 @@ TEST(SweepPruneTwin, ADroppedSwapIsCaught) {
   EXPECT_NE(candidates(objects, 0.5), (Pairs{{0, 1}}));
   objects.forget();
   EXPECT_EQ(candidates(objects, 0.5), (Pairs{{0, 1}}));
-}
-
-// An order that is kept does no lasting harm, and forgetting begins anew.
-TEST(SweepPrune, AnswersAreRightAfterForgetting) {
-  Random random(609);
-  Moving moving = some_objects(random, 30, 1);
-  SweepPrune sweep;
-  for (int frame = 0; frame < 4; ++frame) {
-    const Scene scene = moving.scene();
-    EXPECT_EQ(sweep.find(scene).candidates, expected_of(scene, triangle_boxes(scene)).candidates);
-    if (frame == 1) sweep.forget();
-    move_objects(moving, random, 0);
-  }
 }
 
 RC_GTEST_PROP(SweepPruneProperty, AsBruteForceOnDuplicatedCoordinates, ()) {

@@ -1,13 +1,10 @@
 #include "core/view/regions.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include <algorithm>
-#include <random>
-
-#include "tests/verify/reference.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -16,16 +13,14 @@ using reference::Triangle;
 
 Box box_of(const std::vector<Triangle>& triangles) {
   Box box = Box::empty();
-  for (const Triangle& t : triangles) {
+  for (const Triangle& t : triangles)
     for (const Vec3& p : t) box.add(p);
-  }
   return box;
 }
 
 bool meet(const Box& a, const Box& b) {
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 3; ++i)
     if (!(std::max(a.lo[i], b.lo[i]) <= std::min(a.hi[i], b.hi[i]))) return false;
-  }
   return true;
 }
 
@@ -36,11 +31,9 @@ bool as_defined(const std::vector<std::vector<Triangle>>& objects) {
   std::vector<Box> boxes, regions;
   for (const auto& triangles : objects) boxes.push_back(box_of(triangles));
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    for (std::size_t j = i + 1; j < boxes.size(); ++j) {
-      if (meet(boxes[i], boxes[j])) {
+    for (std::size_t j = i + 1; j < boxes.size(); ++j)
+      if (meet(boxes[i], boxes[j]))
         regions.push_back({boxes[i].lo.cwiseMax(boxes[j].lo), boxes[i].hi.cwiseMin(boxes[j].hi)});
-      }
-    }
   }
   std::vector<std::uint32_t> triangles;
   for (std::size_t i = 0, t = 0; i < objects.size(); ++i) {
@@ -115,9 +108,8 @@ RC_GTEST_PROP(PlanProperty, EveryMeetingPairTakesPart, ()) {
   std::vector<std::vector<Triangle>> objects(4);
   for (auto& triangles : objects) {
     triangles.resize(random() % 6);
-    for (Triangle& t : triangles) {
+    for (Triangle& t : triangles)
       for (Vec3& p : t) p = Vec3(random() % 6, random() % 6, random() % 6);
-    }
   }
   const Scene scene = reference::scene_of(objects);
   const Regions plan = find_regions(scene);
@@ -125,9 +117,9 @@ RC_GTEST_PROP(PlanProperty, EveryMeetingPairTakesPart, ()) {
     if (!overlapping || !reference::intersects(scene.corners(pair.a), scene.corners(pair.b)))
       return;
     for (const std::uint32_t t : {pair.a, pair.b})
-      RC_ASSERT(std::binary_search(plan.triangles.begin(), plan.triangles.end(), t));
+      RC_ASSERT(std::ranges::binary_search(plan.triangles, t));
     const Box common = intersection(plan.triangle_boxes[pair.a], plan.triangle_boxes[pair.b]);
-    RC_ASSERT(std::any_of(plan.places.begin(), plan.places.end(), [&](const Box& region) {
+    RC_ASSERT(std::ranges::any_of(plan.places, [&](const Box& region) {
       return (region.lo.array() <= common.lo.array()).all() &&
              (common.hi.array() <= region.hi.array()).all();
     }));

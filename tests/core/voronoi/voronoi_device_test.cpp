@@ -2,16 +2,8 @@
 // GLSL allows, against rationals; both forms against their definitions.
 #include "core/voronoi/voronoi.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
 #include "core/base/error.h"
-#include "tests/core/base/rational.h"
-#include "tests/core/base/trials.h"
-#include "tests/core/voronoi/voronoi_slices_lab.h"
+#include "tests/lab/voronoi.h"
 
 namespace farcull {
 

@@ -2,17 +2,12 @@
 #include "experiments/lemma/lemma.h"
 #include "offsets/fit.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "experiments/studies/run_point.h"
 #include "experiments/studies/run_studies.h"
 #include "offsets/obb.h"
+#include "tests/lab/test.h"
 #include "verify/exact_point.h"
 #include "verify/worst_canvas.h"
 

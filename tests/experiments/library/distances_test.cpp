@@ -1,14 +1,9 @@
 // Distances as users of the library see them, held against those of the method.
-#include <gtest/gtest.h>
-
-#include <cfenv>
-#include <limits>
-
-#include "experiments/library/farcull.h"
 #include "experiments/method/distances.h"
+#include "experiments/library/farcull.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/experiments/library/flat.h"
 #include "tests/experiments/method/distance_lab.h"
+#include "tests/lab/flat.h"
 
 namespace farcull {
 namespace {
@@ -74,14 +69,7 @@ TEST(LibraryDistances, OfACallerThatRoundsUpwardAreTheSame) {
 }
 
 TEST(LibraryDistances, RefuseWhatIsBad) {
-  const auto where = [](const auto& call) {
-    try {
-      call();
-    } catch (const ColliderError& error) {
-      return error.where;
-    }
-    return std::string();
-  };
+  const auto where = [](const auto& call) { return refusal(call)[0]; };
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = HUGE_VAL;
   EXPECT_EQ(where([&] { DistanceFinder({.within = nan}); }), "within");
   EXPECT_EQ(where([] { DistanceFinder({.kind = DistanceKind::all}); }), "within");

@@ -1,12 +1,8 @@
 // Pairs that are streamed are those of Collider::find(), in order, whatever the options.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "core/base/random.h"
 #include "experiments/library/farcull.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/experiments/library/flat.h"
+#include "tests/lab/flat.h"
 
 namespace farcull {
 namespace {
@@ -16,9 +12,8 @@ std::vector<ColliderFound> found_by(const ColliderOptions& options, const Collid
   const ColliderResult result = Collider(options).find(input);
   std::vector<ColliderFound> out;
   const auto append = [&](const auto& pairs, const auto& contacts, bool neighbours) {
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
+    for (std::size_t k = 0; k < pairs.size(); ++k)
       out.push_back({pairs[k], neighbours, contacts.empty() ? ColliderContact() : contacts[k]});
-    }
   };
   append(result.pairs, result.contacts, false);
   append(result.neighbour_pairs, result.neighbour_contacts, true);
@@ -95,12 +90,7 @@ TEST(LibraryStream, HoldsAPartOfThePairsAtATime) {
 
 TEST(LibraryStream, RefusesWhatTheColliderRefuses) {
   const auto refused = [](const ColliderOptions& options, const ColliderInput& input) {
-    try {
-      ColliderStream stream(input, options);
-    } catch (const ColliderError& error) {
-      return error.where;
-    }
-    return std::string("nothing was thrown");
+    return refusal([&] { ColliderStream stream(input, options); })[0];
   };
   const std::vector<double> points = {0, 0, 0};
   const std::vector<std::uint32_t> triangles = {0, 0, 1};

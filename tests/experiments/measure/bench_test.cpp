@@ -1,15 +1,10 @@
 #include "experiments/measure/bench.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <thread>
 
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/system/machine.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/scenes.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -34,31 +29,22 @@ std::vector<TrianglePair> brute_force(const Scene& scene) {
   const std::vector<std::uint32_t> owner = owners(scene);
   std::vector<TrianglePair> all;
   for (std::uint32_t a = 0; a < owner.size(); ++a) {
-    for (std::uint32_t b = a + 1; b < owner.size(); ++b) {
+    for (std::uint32_t b = a + 1; b < owner.size(); ++b)
       if (owner[a] != owner[b] || scene.objects[owner[a]].self) all.push_back({a, b});
-    }
   }
   return decide(scene, all, {.neighbours = false}).pairs;
 }
 
 // Sheets, each crossed by every blade: more candidates than any part that is decided at once.
 Scene sheets_and_blades(std::uint32_t sheets, std::uint32_t blades) {
-  Scene scene;
-  scene.name = "sheets";
-  const auto add = [&scene](const Vec3& a, const Vec3& b, const Vec3& c) {
-    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-    scene.vertices.insert(scene.vertices.end(), {a, b, c});
-    scene.triangles.push_back({first, first + 1, first + 2});
-    scene.source_face.push_back(0);
-  };
-  for (std::uint32_t i = 0; i < sheets; ++i) add({0, 0, i + .5}, {1, 0, i + .5}, {0, 1, i + .5});
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+  for (std::uint32_t i = 0; i < sheets; ++i)
+    objects[0].push_back({Vec3(0, 0, i + .5), Vec3(1, 0, i + .5), Vec3(0, 1, i + .5)});
   for (std::uint32_t i = 0; i < blades; ++i) {
     const double x = 0.1 + 1e-4 * i;
-    add({x, 0.1, 0}, {x, 0.1, sheets + 1.}, {x, 0.3, sheets / 2.});
+    objects[1].push_back({Vec3(x, 0.1, 0), Vec3(x, 0.1, sheets + 1.), Vec3(x, 0.3, sheets / 2.)});
   }
-  scene.objects = {{"sheets", 0, sheets}, {"blades", sheets, blades}};
-  validate(scene, scene.name);
-  return scene;
+  return lab::scene_of(objects);
 }
 
 // Whether CGAL's self_intersections() takes the scene, but for degenerate triangles.
@@ -89,9 +75,8 @@ BenchResult expect_agreement(const Scene& scene, bool degenerate = false) {
     EXPECT_EQ(ran.contains(peer.name), peer.missing.empty() && !refuses) << peer.name;
   }
   for (const char* name : {"far-pairs", "exact", "cgal-boxes", "cgal-boxes-2000",
-                           "cgal-object-pairs", "cgal-aabb", "cgal-aabb-triangles"}) {
+                           "cgal-object-pairs", "cgal-aabb", "cgal-aabb-triangles"})
     EXPECT_TRUE(ran.contains(name)) << name;
-  }
   EXPECT_TRUE(result.fastest_peer);
   return result;
 }
@@ -145,21 +130,13 @@ TEST(Bench, PeersAgreeOnAnObjectThatIsNoManifold) {
 // the origin. FCL's oriented boxes lose a third (docs/bench.md), so they are not asked.
 TEST(Bench, PeersWithAlignedBoxesAgreeOnWhatTouchesFarFromTheOrigin) {
   const std::uint32_t pairs = 500;
-  Scene scene;
-  scene.name = "touching";
-  for (std::uint32_t object = 0; object < 2; ++object) {
-    for (std::uint32_t i = 0; i < pairs; ++i) {
-      const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-      const Vec3 at = {1e6 + i * 0.37, 1e6 + i * 0.11, 1e6};
-      const double away = object == 0 ? -1e-5 : 1e-5;
-      scene.vertices.insert(scene.vertices.end(),
-                            {at, at + Vec3(away, 1e-5, 0), at + Vec3(away, 0, 1e-5)});
-      scene.triangles.push_back({first, first + 1, first + 2});
-      scene.source_face.push_back(0);
-    }
+  std::vector<std::vector<std::array<Vec3, 3>>> objects(2);
+  for (std::uint32_t i = 0; i < pairs; ++i) {
+    const Vec3 at = {1e6 + i * 0.37, 1e6 + i * 0.11, 1e6};
+    for (const double away : {-1e-5, 1e-5})
+      objects[away > 0].push_back({at, at + Vec3(away, 1e-5, 0), at + Vec3(away, 0, 1e-5)});
   }
-  scene.objects = {{"left", 0, pairs}, {"right", pairs, pairs}};
-  validate(scene, scene.name);
+  const Scene scene = lab::scene_of(objects);
   const std::vector<TrianglePair> all = brute_force(scene);
   ASSERT_EQ(all.size(), pairs);
   for (const Peer& peer : all_peers(2)) {
@@ -217,7 +194,7 @@ TEST(Bench, CatchesACorruptedPeer) {
 
   std::vector<TrianglePair> more = right;
   const TrianglePair wrong = {0, right[0].a == 0 && right[0].b == 1 ? 2u : 1u};
-  more.insert(std::lower_bound(more.begin(), more.end(), wrong), wrong);
+  more.insert(std::ranges::lower_bound(more, wrong), wrong);
   const BenchResult invented = bench(scene, {good, says("bad", [=] { return more; })}, options);
   ASSERT_TRUE(invented.disagreement);
   EXPECT_EQ(invented.disagreement->has, "bad");
@@ -226,7 +203,7 @@ TEST(Bench, CatchesACorruptedPeer) {
 
   const TrianglePair nowhere = {0, 1'000'000'000};
   std::vector<TrianglePair> outside = right;
-  outside.insert(std::lower_bound(outside.begin(), outside.end(), nowhere), nowhere);
+  outside.insert(std::ranges::lower_bound(outside, nowhere), nowhere);
   const BenchResult beyond = bench(scene, {good, says("bad", [=] { return outside; })}, options);
   ASSERT_TRUE(beyond.disagreement);
   EXPECT_FALSE(beyond.disagreement->collides);

@@ -1,16 +1,9 @@
 #include "experiments/measure/bench.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <tuple>
 
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/scene/scenes.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/scenes.h"
 
 namespace farcull {
 namespace {
@@ -38,7 +31,7 @@ TEST(DistancePeers, FindWhatCanBeReadOffATower) {
   const Distances near = {{0, 1, 1}, {1, 2, 2}, {0, 2, 3}};
   const Distances nearest = {{0, 1, 1}, {1, 0, 1}, {2, 1, 2}, {3, 2, 4}};
   const auto sorted = [](Distances some) {
-    std::sort(some.begin(), some.end(), [](const PeerDistance& x, const PeerDistance& y) {
+    std::ranges::sort(some, [](const PeerDistance& x, const PeerDistance& y) {
       return std::tie(x.a, x.b) < std::tie(y.a, y.b);
     });
     return some;
@@ -169,9 +162,8 @@ TEST(DistanceBench, OursIsExactAndTheFastestPeerIsNamed) {
 TEST(DistanceBench, AsksNobodyAboutAnObjectAndItself) {
   Scene scene = tower();
   for (Object& object : scene.objects) object.self = true;
-  for (const DistanceBenchRow& row : bench_distances(scene, {.repeat = 1}).rows) {
+  for (const DistanceBenchRow& row : bench_distances(scene, {.repeat = 1}).rows)
     EXPECT_EQ(row.errors.answers, 6u) << row.name;
-  }
 }
 
 TEST(DistanceBench, RefusesWhatItCannotMeasure) {

@@ -1,8 +1,8 @@
 #include "experiments/measure/harness.h"
 
-#include <gtest/gtest.h>
-
-#include <string>
+#include "experiments/measure/lab.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -43,6 +43,26 @@ TEST(Harness, TakesTheMeanOfTwoMiddleValuesAndTheFasterOfTwoMiddleRuns) {
   EXPECT_EQ(spread_of({}).median, 0);
   EXPECT_EQ(median_run({4, 1, 2, 9}), 2u);
   EXPECT_EQ(median_run({7}), 0u);
+}
+
+TEST(Lab, ReadsAMotionAnewWhereItHasOtherFrames) {
+  Lab lab("cpu");
+  const auto hash = [&](long frames) { return scene_hash(lab.scene("crowd:30", 1, frames)); };
+  const std::string of4 = hash(4), of12 = hash(12);
+  EXPECT_EQ(hash(4), of4);
+  Lab fresh("cpu");
+  EXPECT_EQ(scene_hash(fresh.scene("crowd:30", 1, 12)), of12);
+  EXPECT_NE(of4, of12) << "else it would not matter";
+}
+
+TEST(Lab, TheTruthIsWithoutWhatTheSceneIgnores) {
+  Lab lab("cpu");
+  Scene scene = make_builtin_scene("two-tori");
+  lab.scene("whole", [&] { return scene; });
+  EXPECT_GT(lab.truth().pairs.size(), 0u);
+  scene.ignored = {{0, 1}};
+  lab.scene("ignored", [&] { return scene; });
+  EXPECT_EQ(lab.truth().pairs.size(), 0u);
 }
 
 }  // namespace

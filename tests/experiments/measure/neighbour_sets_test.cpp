@@ -2,15 +2,8 @@
 // and spoiled sets, whose losses are counted.
 #include "experiments/measure/neighbour_sets.h"
 
-#include <gtest/gtest.h>
-
-#include <map>
-#include <set>
-#include <utility>
-
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/voronoi/voronoi_lab.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/voronoi.h"
 
 namespace farcull {
 namespace {
@@ -77,9 +70,8 @@ TEST(NeighbourSets, CountEachTriangleOnce) {
         objects[owner[a]].insert(owner[b]);
       }
     }
-    for (const auto& [a, others] : objects) {
+    for (const auto& [a, others] : objects)
       for (const std::uint32_t b : others) sets.objects.push_back({a, b});
-    }
     std::uint64_t expected = 0;
     for (const auto& [object, of] : triangles) expected += of.size();
     EXPECT_EQ(sizes_of(scene, sets, nearest_objects(scene)).set_triangles, expected);
@@ -94,11 +86,10 @@ TEST(NeighbourSets, OfBoxesAndTreesLoseNothing) {
     Scene scene = lab::neighbours_scene(seed);
     const auto truth = exact_distance::nearest_neighbours(scene);
     // A power of two changes no other digit, so the truth stays.
-    if (seed % 3 == 1) {
+    if (seed % 3 == 1)
       for (Vec3& v : scene.vertices) v = v * 0x1p-520;  // squares are below the normal numbers
-    } else if (seed % 3 == 2) {
+    else if (seed % 3 == 2)
       for (Vec3& v : scene.vertices) v = v * 0x1p510;
-    }
     for (const NeighbourMethod method : {NeighbourMethod::boxes, NeighbourMethod::trees}) {
       const NeighbourSets sets = neighbour_sets(scene, {.method = method});
       lab::Losses losses;
@@ -127,7 +118,7 @@ TEST(NeighbourSets, SayWhyThereAreNone) {
   const NeighbourOptions options{
       .method = NeighbourMethod::voronoi_reliable, .resolution = 64, .most_pairs = 1};
   const NeighbourSets none = neighbour_sets(scene, options);
-  EXPECT_NE(none.left_out.find("too many pairs"), std::string::npos) << none.left_out;
+  EXPECT_TRUE(has_text(none.left_out, "too many pairs"));
   EXPECT_THROW(sizes_of(scene, none, nearest_objects(scene)), std::logic_error);
   // The twin: an option that is out of range is no reason of the scene.
   EXPECT_EQ(error_of([&] {

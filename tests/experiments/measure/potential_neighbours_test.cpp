@@ -2,13 +2,9 @@
 // diagrams leave, on small random scenes.
 #include "experiments/measure/neighbour_sets.h"
 
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
-#include <set>
 
-#include "tests/core/base/trials.h"
-#include "tests/core/voronoi/voronoi_lab.h"
+#include "tests/lab/voronoi.h"
 
 namespace farcull {
 namespace {
@@ -51,12 +47,10 @@ void check(const Scene& scene, const DiagramOptions& options) {
     for (const std::uint32_t other : nearest) lost += !others.contains(other);
     if (reliable) {
       EXPECT_GE(of.lost, lost);
-    } else {
+    } else
       EXPECT_EQ(of.lost, lost);
-    }
-    for (std::uint32_t t = 0; t < owner.size(); ++t) {
+    for (std::uint32_t t = 0; t < owner.size(); ++t)
       if (owner[t] != o && others.contains(owner[t]) && !reliable) triangles.insert(t);
-    }
     for (const TrianglePair& pair : kept.triangles) {
       if (!reliable) break;
       if (owner[pair.a] == o) triangles.insert(pair.b);
@@ -107,8 +101,7 @@ TEST(PotentialNeighbours, RecordsAddUp) {
   EXPECT_EQ(json["totals"]["lost"], totals.lost);
   EXPECT_EQ(json["objects"].size(), scene.objects.size());
   const std::string csv = diagram_csv(scene, record);
-  EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')),
-            scene.objects.size() + 1);
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, '\n')), scene.objects.size() + 1);
 }
 
 TEST(PotentialNeighbours, ObjectsWithoutTrianglesHaveNone) {

@@ -1,11 +1,7 @@
 // Intervals by the bootstrap against what combinatorics says about them.
 #include "experiments/measure/harness.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -60,7 +56,7 @@ TEST(Statistics, NineRunsAreTheFewestOddNumberThatGives95PerCent) {
 TEST(Statistics, TheSameValuesInAnyOrderGiveTheSameInterval) {
   std::vector<double> values = {4, 1.5, 2, 9, 3, 3.5, 8};
   const Estimate first = median_estimate(values);
-  std::reverse(values.begin(), values.end());
+  std::ranges::reverse(values);
   const Estimate again = median_estimate(values);
   EXPECT_EQ(first.low, again.low);
   EXPECT_EQ(first.high, again.high);

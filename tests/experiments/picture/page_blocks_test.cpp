@@ -2,16 +2,12 @@
 // written.
 #include "experiments/picture/picture.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <stdexcept>
-
 #include "core/base/base64.h"
 #include "experiments/scenes/mesh/text.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -56,9 +52,8 @@ TEST(PageBlocks, NumbersOfAMeshBecomeSmall) {
 
 RC_GTEST_PROP(PageBlocks, BitsAreThoseOfTheNumbers, (const std::vector<bool>& wanted)) {
   std::vector<std::uint32_t> numbers;
-  for (std::uint32_t i = 0; i < wanted.size(); ++i) {
+  for (std::uint32_t i = 0; i < wanted.size(); ++i)
     if (wanted[i]) numbers.push_back(i);
-  }
   const std::string bits = unpacked(packed_bytes(bits_of(numbers, wanted.size())));
   RC_ASSERT(bits.size() == (wanted.size() + 7) / 8);
   for (std::size_t i = 0; i < 8 * bits.size(); ++i) {
@@ -99,6 +94,43 @@ TEST(PageBlocks, PositionsOfTheLargestDoublesAndOfPoints) {
   EXPECT_EQ(
       quantized(std::vector<Vec3>{Vec3(9, -9, 3)}, {.lo = Vec3(0, 0, 3), .hi = Vec3(1, 1, 4)}),
       (std::vector<std::uint32_t>{65535, 0, 0}));
+}
+
+RunOptions of(Method method, int resolution = 0) {
+  RunOptions out;
+  out.method = method;
+  out.resolution = resolution;
+  return out;
+}
+
+std::vector<std::string> titles(const std::vector<RunOptions>& steps) {
+  std::vector<std::string> out;
+  for (const RunOptions& options : steps) out.push_back(panel_title(options));
+  return out;
+}
+
+TEST(PageSteps, AMethodThatDrawsHasEveryResolutionOnceAscending) {
+  const std::vector<std::string> expected = {"cullide at 32 px", "cullide at 128 px",
+                                             "far at 32 px", "far at 128 px"};
+  EXPECT_EQ(titles(at_resolutions({of(Method::cullide, 512), of(Method::far)}, {128, 32, 128})),
+            expected);
+}
+
+TEST(PageSteps, PanelsOfOneMethodAreItsStepsOnce) {
+  EXPECT_EQ(at_resolutions({of(Method::cullide, 64), of(Method::cullide, 128)}, {64, 128}).size(),
+            2u);
+}
+
+TEST(PageSteps, MethodsWithoutAChoiceStayAsTheyAre) {
+  EXPECT_EQ(titles(at_resolutions({of(Method::exact), of(Method::far_pairs)}, {32, 64})),
+            (std::vector<std::string>{"exact", "far-pairs"}));
+}
+
+// The radius makes another method of it.
+TEST(PageSteps, FormsOfFarAreApart) {
+  RunOptions published = of(Method::far);
+  published.radius = parse_radius("published");
+  EXPECT_EQ(at_resolutions({of(Method::far), published}, {32, 64}).size(), 4u);
 }
 
 }  // namespace

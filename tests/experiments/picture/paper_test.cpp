@@ -1,25 +1,13 @@
 // The figures of the paper are those that the program draws today.
 #include "experiments/picture/paper.h"
 
-#include <gtest/gtest.h>
-
-#include <fstream>
-#include <sstream>
-
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
 
 const std::string kPair =
     std::string(FARCULL_TEST_DIR) + "/cases/published-far-loses-this-pair.obj";
-
-std::string file_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 std::size_t count_of(const std::string& word, const std::string& text) {
   std::size_t count = 0;
@@ -34,7 +22,7 @@ TEST(PaperFigures, AreThoseOfThePages) {
   EXPECT_EQ(figures.size(), 6u);
   for (const PaperFigure& figure : figures) {
     EXPECT_EQ(figure.svg,
-              file_text(std::string(FARCULL_TEST_DIR) + "/../docs/figures/" + figure.name + ".svg"))
+              read_text(std::string(FARCULL_TEST_DIR) + "/../docs/figures/" + figure.name + ".svg"))
         << figure.name;
   }
 }
@@ -45,11 +33,11 @@ TEST(PaperFigures, OfThePublishedRadiusShowsNoCentreThatBothHit) {
   const std::string svg = published_figure(kPair).svg;
   EXPECT_EQ(count_of(": hit", svg), 4u);
   EXPECT_EQ(count_of(": miss", svg), 4u);
-  EXPECT_NE(svg.find("least miss: 0.00138 px"), std::string::npos);
+  EXPECT_TRUE(has_text(svg, "least miss: 0.00138 px"));
 }
 
 TEST(PaperFiguresTwin, OfAPairFartherFrom45DegreesShowsNoMiss) {
-  std::string text = file_text(kPair);
+  std::string text = read_text(kPair);
   for (auto at = text.find("0.99375"); at != std::string::npos; at = text.find("0.99375"))
     text.replace(at, 7, "0.5");
   const std::string other = testing::TempDir() + "other_pair.obj";
@@ -59,7 +47,7 @@ TEST(PaperFiguresTwin, OfAPairFartherFrom45DegreesShowsNoMiss) {
 
 TEST(PaperFigures, OfAMissingCaseIsAnError) {
   const Error error = error_of([] { published_figure(kPair + "none.obj"); });
-  EXPECT_NE(std::string(error.what()).find("none.obj"), std::string::npos);
+  EXPECT_TRUE(has_text(error.what(), "none.obj"));
 }
 
 // Two pairs cross: their four triangles have one bit at the end, and so has the one behind them.

@@ -1,13 +1,12 @@
 #include "experiments/studies/run_point.h"
 
-#include <gtest/gtest.h>
-
 #include "core/canvas/fatten.h"
 #include "core/view/regions.h"
 #include "core/view/view.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "offsets/minkowski.h"
 #include "offsets/obb.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {

@@ -1,15 +1,9 @@
 #include "experiments/studies/merge.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-#include <map>
-#include <numeric>
-
-#include "core/base/error.h"
 #include "experiments/studies/run_studies.h"
-#include "tests/experiments/studies/store_lab.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/store.h"
 
 namespace farcull {
 namespace {
@@ -64,10 +58,10 @@ TEST(Merge, RefusesAHoleADuplicateAndAMissingShard) {
   const std::string message = message_of([&] {
     merge_stores({files[0], unfinished, files[2]}, out);
   });
-  EXPECT_NE(message.find(unfinished + ": has no row of counting"), std::string::npos) << message;
+  EXPECT_TRUE(has_text(message, unfinished + ": has no row of counting"));
   EXPECT_FALSE(std::filesystem::exists(out));
   for (const auto& entry : std::filesystem::directory_iterator(folder.folder()))
-    EXPECT_EQ(entry.path().string().find(".part-"), std::string::npos);
+    EXPECT_FALSE(has_text(entry.path().string(), ".part-"));
   EXPECT_NO_THROW(merge_stores(files, out));
   EXPECT_NE(message_of([&] { merge_stores(files, out); }).find("is there already"),
             std::string::npos);

@@ -2,13 +2,9 @@
 // is far too small.
 #include "experiments/studies/run_point.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <set>
-
 #include "experiments/measure/lab.h"
 #include "experiments/scenes/builtin/scenes.h"
+#include "tests/lab/test.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -28,9 +24,8 @@ TEST(Placements, LengthsOfIntersections) {
 std::vector<Box> boxes_of(const PlacedPatches& placed) {
   std::vector<Box> out(placed.placements, Box::empty());
   const std::size_t half = placed.scene.triangles.size() / 2;
-  for (std::uint32_t t = 0; t < placed.scene.triangles.size(); ++t) {
+  for (std::uint32_t t = 0; t < placed.scene.triangles.size(); ++t)
     for (const Vec3& p : placed.scene.corners(t)) out[t % half / kPatchTriangles].add(p);
-  }
   return out;
 }
 
@@ -68,7 +63,7 @@ TEST(Placements, StandApartInEveryView) {
       EXPECT_EQ(pair.b / kPatchTriangles, at + placed.placements);
       collides[at] = 1;
     }
-    EXPECT_GT(std::count(collides.begin(), collides.end(), 1), 90) << grazing;
+    EXPECT_GT(std::ranges::count(collides, 1), 90) << grazing;
   }
 }
 

@@ -2,16 +2,10 @@
 // of several runs was looked at.
 #include "experiments/studies/run_point.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <stdexcept>
-#include <variant>
-
-#include "core/base/error.h"
 #include "experiments/scenes/builtin/scenes.h"
 #include "experiments/studies/point.h"
 #include "experiments/studies/study.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -97,16 +91,16 @@ TEST(RunPoint, RefusesRunsThatDiffer) {
   };
   Outcome other = good;
   std::get<RunCounts>(other.counts).missed = 3;
-  EXPECT_NE(said(other).find("missed 0 and 3"), std::string::npos) << said(other);
+  EXPECT_TRUE(has_text(said(other), "missed 0 and 3"));
   other = good;
   std::get<RunCounts>(other.counts).drawn = DrawnCounts{.queries = 7};
-  EXPECT_NE(said(other).find("queries none and 7"), std::string::npos) << said(other);
+  EXPECT_TRUE(has_text(said(other), "queries none and 7"));
   other = good;
   other.pairs = {{1, 2}, {3, 5}};
-  EXPECT_NE(said(other).find("1 and 1 pairs"), std::string::npos) << said(other);
+  EXPECT_TRUE(has_text(said(other), "1 and 1 pairs"));
   other = good;
   other.device = "another";
-  EXPECT_NE(said(other).find("device cpu and another"), std::string::npos) << said(other);
+  EXPECT_TRUE(has_text(said(other), "device cpu and another"));
 }
 
 }  // namespace

@@ -1,19 +1,13 @@
 #include "experiments/studies/store.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 
 #include <csignal>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <random>
-#include <set>
 
-#include "core/base/error.h"
-#include "tests/experiments/studies/store_lab.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/store.h"
 
 namespace farcull {
 namespace {
@@ -98,23 +92,15 @@ TEST(Store, RefusesAnotherGridUnderTheSameName) {
   EXPECT_NE(message_of([&] { store.declare(other); }).find("other points"), std::string::npos);
 }
 
-void write(const std::string& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
-std::string text_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 TEST(Store, RefusesWhatIsNoneOfOursAndLeavesItAsItIs) {
   const ScratchFolder folder;
   const std::string path = folder.path("s");
   for (const Store::Access access : {Store::Access::read, Store::Access::write}) {
-    write(path, "these are my notes, " + std::string(4096, 'x'));
-    const std::string before = text_of(path);
+    write_text(path, "these are my notes, " + std::string(4096, 'x'));
+    const std::string before = read_text(path);
     EXPECT_NE(message_of([&] { Store(path, access); }).find("is no store of farcull"),
               std::string::npos);
-    EXPECT_EQ(text_of(path), before);
+    EXPECT_EQ(read_text(path), before);
     std::filesystem::remove(path);
   }
   std::filesystem::create_directory(path);
@@ -124,7 +110,7 @@ TEST(Store, RefusesWhatIsNoneOfOursAndLeavesItAsItIs) {
       message_of([&] { Store(folder.path("none"), Store::Access::read); }).find("measure first"),
       std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder.path("none")));
-  write(folder.path("empty"), "");
+  write_text(folder.path("empty"), "");
   EXPECT_NE(
       message_of([&] { Store(folder.path("empty"), Store::Access::read); }).find("nothing yet"),
       std::string::npos);
@@ -133,9 +119,9 @@ TEST(Store, RefusesWhatIsNoneOfOursAndLeavesItAsItIs) {
 // The application id stands at byte 68, the version at byte 60 of the file, big-endian.
 std::string store_with_byte(const std::string& path, std::size_t at, char to) {
   { Store store(path, Store::Access::write); }
-  std::string text = text_of(path);
+  std::string text = read_text(path);
   text[at] = to;
-  write(path, text);
+  write_text(path, text);
   return message_of([&] { Store(path, Store::Access::write); });
 }
 
@@ -151,10 +137,10 @@ TEST(Store, RefusesOtherProgramsDatabasesOtherVersionsAndDamage) {
   const std::string path = folder.path("d");
   run_studies(lab_request(folder.folder(), {counting_study(400)}));
   std::filesystem::rename(store_path(folder.folder()), path);
-  std::string text = text_of(path);
+  std::string text = read_text(path);
   ASSERT_GT(text.size(), 40000u);
   for (std::size_t at = text.size() / 2; at < text.size(); ++at) text[at] = 0;
-  write(path, text);
+  write_text(path, text);
   EXPECT_NE(message_of([&] { Store(path, Store::Access::read); }).find("damaged"),
             std::string::npos);
 }
@@ -281,7 +267,7 @@ TEST(RunStudies, GoesOnAfterADiskThatWasFull) {
       const FileSizeLimit limit(static_cast<rlim_t>(static_cast<double>(size) * part));
       const std::string message =
           message_of([&] { run_studies(lab_request(full.folder(), {study}, true)); });
-      EXPECT_NE(message.find("--resume"), std::string::npos) << message;
+      EXPECT_TRUE(has_text(message, "--resume"));
       refusals += !message.empty();
     }
     kept.insert(rows_in(Store(store_path(full.folder()), Store::Access::write), study.name));

@@ -1,11 +1,7 @@
 // What every study promises of its grid.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <map>
-#include <set>
-
 #include "experiments/studies/study.h"
+
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -19,9 +15,8 @@ std::string fault_of(const std::vector<PointKey>& points, bool in_turns = false)
   for (const PointKey& point : points) {
     if (!seen.insert(point).second) return "twice: " + describe(point);
     if (point.method.empty()) return "no method: " + describe(point);
-    if (!in_turns && point.scene != scene && !scenes.insert(point.scene).second) {
+    if (!in_turns && point.scene != scene && !scenes.insert(point.scene).second)
       return "not together: " + point.scene;
-    }
     scene = point.scene;
   }
   return "";
@@ -56,10 +51,9 @@ TEST_P(EveryStudy, HasFewerPointsWhereQuick) {
 TEST_P(EveryStudy, HasEveryMethodWhereQuickToo) {
   const auto methods = [&](bool quick) {
     std::set<std::tuple<std::string, std::string, std::string>> out;
-    for (const PointKey& point : keys_of(study().grid({.quick = quick}))) {
+    for (const PointKey& point : keys_of(study().grid({.quick = quick})))
       if (!point.method.starts_with("s-cullide"))
         out.insert({point.method, point.offset, column_text(point.depth_mode)});
-    }
     return out;
   };
   EXPECT_EQ(methods(true), methods(false));
@@ -107,15 +101,12 @@ TEST(Studies, AreRefusedWithAFaultyGrid) {
 TEST(Accuracy, ComparesEveryMethodFrom64To4096) {
   for (const bool quick : {false, true}) {
     std::map<std::string, std::set<int>> resolutions;
-    for (const PointKey& point : keys_of(study_named("accuracy").grid({.quick = quick}))) {
-      if (point.radius != kPublishedRadius) {
+    for (const PointKey& point : keys_of(study_named("accuracy").grid({.quick = quick})))
+      if (point.radius != kPublishedRadius)
         resolutions[point.method + " " + point.offset].insert(point.resolution);
-      }
-    }
     std::set<int> powers = {64, 128, 256, 512, 1024, 2048, 4096};
-    for (const char* name : {"cullide ", "quick-cullide ", "far obb", "far exact"}) {
+    for (const char* name : {"cullide ", "quick-cullide ", "far obb", "far exact"})
       EXPECT_EQ(resolutions[name], powers) << name;
-    }
     EXPECT_GE(resolutions["s-cullide "].size(), quick ? 5u : powers.size());
     powers.insert(0);
     EXPECT_EQ(resolutions["far-pairs "], powers);
@@ -125,15 +116,12 @@ TEST(Accuracy, ComparesEveryMethodFrom64To4096) {
 TEST(ErrorTime, HasEveryLibraryOnEveryScene) {
   for (const bool quick : {false, true}) {
     std::map<std::string, std::set<std::string>> methods;
-    for (const PointKey& point : keys_of(study_named("error-time").grid({.quick = quick}))) {
+    for (const PointKey& point : keys_of(study_named("error-time").grid({.quick = quick})))
       methods[point.scene].insert(point.method);
-    }
-    for (const auto& [scene, of] : methods) {
+    for (const auto& [scene, of] : methods)
       for (const char* peer :
-           {"cgal-boxes", "cgal-aabb", "embree-low", "fcl-double", "fcl-float", "ode-trimesh"}) {
+           {"cgal-boxes", "cgal-aabb", "embree-low", "fcl-double", "fcl-float", "ode-trimesh"})
         EXPECT_TRUE(of.contains(peer)) << peer << " on " << scene;
-      }
-    }
   }
 }
 

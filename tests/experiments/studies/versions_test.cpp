@@ -1,17 +1,11 @@
 // A library that is upgraded between two runs, or between two shards.
 #include "experiments/studies/merge.h"
 
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <set>
 
-#include "core/base/error.h"
-#include "tests/experiments/studies/store_lab.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/store.h"
 
 namespace farcull {
 namespace {
@@ -52,8 +46,8 @@ TEST(Versions, AResumeAfterAnUpgradeIsRefusedAndAddsNothing) {
   EXPECT_EQ(refused.where, path);
   for (const char* part : {"its rows of lemma are of lib 1.0, and lib 1.1 is here now",
                            "its rows of lemma-worst are of lib 1.0"})
-    EXPECT_NE(refused.reason.find(part), std::string::npos) << refused.reason;
-  EXPECT_NE(refused.remedy.find("another folder"), std::string::npos) << refused.remedy;
+    EXPECT_TRUE(has_text(refused.reason, part));
+  EXPECT_TRUE(has_text(refused.remedy, "another folder"));
   EXPECT_EQ(rows_in(Store(path, Store::Access::read), "counting"), 6u);
   // The twin: with the same version it goes on as before.
   EXPECT_EQ(measure(folder.folder(), asking("lib 1.0")).studies.front().measured, 6u);
@@ -127,11 +121,9 @@ TEST(Versions, ShardsOfTwoAreNotMerged) {
   const std::string out = folder.path("out.sqlite");
   const Error refused = error_of([&] { merge_stores({first, second, newer}, out); });
   EXPECT_EQ(refused.where, newer);
-  EXPECT_NE(refused.reason.find("its rows of lemma are of lib 1.1, and those of " + first +
-                                " of lib 1.0"),
-            std::string::npos)
-      << refused.reason;
-  EXPECT_NE(refused.remedy.find("--resume"), std::string::npos) << refused.remedy;
+  EXPECT_TRUE(has_text(refused.reason,
+                       "its rows of lemma are of lib 1.1, and those of " + first + " of lib 1.0"));
+  EXPECT_TRUE(has_text(refused.remedy, "--resume"));
   EXPECT_FALSE(std::filesystem::exists(out));
   // The twin.
   EXPECT_EQ(merge_stores({first, second, third}, out).rows, static_cast<std::size_t>(kPoints));

@@ -1,12 +1,11 @@
 // The kinds of contact: an example of each beside one that differs in a single unit, and properties
 // that hold for all of them.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "experiments/generators/pair_generators.h"
 #include "experiments/suite/reader.h"
 #include "experiments/suite/writer.h"
+#include "tests/lab/test.h"
+#include "verify/contact_kind.h"
+#include "verify/exact.h"
 
 namespace farcull {
 namespace {
@@ -107,6 +106,46 @@ TEST(SuiteKinds, HaveNamesThatAreReadBack) {
   EXPECT_FALSE(parse_suite_kind("touch"));
   EXPECT_FALSE(collides(SuiteKind::apart));
   EXPECT_TRUE(collides(SuiteKind::touch_vertex));
+}
+
+constexpr std::uint64_t kEach = 120;  // pairs of a family
+
+TEST(SuiteContactKinds, AreTheLabelsInEveryFamily) {
+  std::array<int, kContactKinds.size()> of_kind{};
+  int degenerate = 0;
+  for (const PairFamily& family : pair_families()) {
+    for (std::uint64_t id = 0; id < kEach; ++id) {
+      const SuitePair pair = make_suite_pair(family, 11, id);
+      const ContactKind kind = contact_kind(pair.a, pair.b);
+      ASSERT_EQ(name_of(kind), to_string(decide_kind(pair.a, pair.b, family.name)))
+          << family.name << " " << id;
+      ASSERT_EQ(contact_shape(pair.b, pair.a).kind, kind) << family.name << " " << id;
+      ++of_kind[static_cast<std::size_t>(kind)];
+      degenerate += shape(pair.a) != Shape::triangle || shape(pair.b) != Shape::triangle;
+    }
+  }
+  for (const ContactKind kind : kContactKinds)
+    EXPECT_GT(of_kind[static_cast<std::size_t>(kind)], 0) << name_of(kind);
+  EXPECT_GT(degenerate, 0);
+}
+
+// The twin: corners that are rounded to float before the kind is decided.
+TEST(SuiteContactKinds, OfRoundedCornersAreCaught) {
+  const auto rounded = [](Corners t) {
+    for (Vec3& p : t) p = p.cast<float>().cast<double>();
+    return t;
+  };
+  int caught = 0;
+  for (const PairFamily& family : pair_families()) {
+    for (std::uint64_t id = 0; id < 20; ++id) {
+      const SuitePair pair = make_suite_pair(family, 11, id);
+      const Corners a = rounded(pair.a), b = rounded(pair.b);
+      if (!a[0].allFinite() || !a[1].allFinite() || !a[2].allFinite()) continue;
+      if (!b[0].allFinite() || !b[1].allFinite() || !b[2].allFinite()) continue;
+      caught += name_of(contact_kind(a, b)) != to_string(decide_kind(pair.a, pair.b, family.name));
+    }
+  }
+  EXPECT_GT(caught, 20);
 }
 
 }  // namespace

@@ -1,15 +1,9 @@
 // The small suite as a whole: its checksum, its kinds, and our own answers to all of it.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <set>
-
 #include "experiments/generators/pair_generators.h"
 #include "experiments/library/farcull.h"
 #include "experiments/method/run.h"
 #include "experiments/suite/reader.h"
-#include "tests/experiments/suite/suite_lab.h"
+#include "tests/lab/suite.h"
 
 namespace farcull {
 namespace {
@@ -20,16 +14,16 @@ constexpr const char* kSmallSuite =
     "87a146da64ae0cd87e515eeae708caeed5617169260c606bc0cb350281b1aa36";
 
 TEST(Suite, TheSmallOneHasItsChecksumAndEveryLabelIsRight) {
-  const lab::TestFolder folder;
-  const SuiteSummary written = write_suite(folder.path(), {});
+  const ScratchFolder folder;
+  const SuiteSummary written = write_suite(folder.folder(), {});
   EXPECT_EQ(written.index.sum, kSmallSuite);
   EXPECT_EQ(written.meshes.size(), 12u);
-  const SuiteSummary checked = check_suite(folder.path());
+  const SuiteSummary checked = check_suite(folder.folder());
   EXPECT_EQ(checked.index.sum, kSmallSuite);
   std::uint64_t pairs = 0;
   for (const SuiteCounts& family : checked.families) pairs += family.pairs;
   EXPECT_EQ(pairs, 10070u);
-  const Error again = error_of([&] { write_suite(folder.path(), {}); });
+  const Error again = error_of([&] { write_suite(folder.folder(), {}); });
   EXPECT_EQ(again.reason, "is there already");
 }
 
@@ -85,11 +79,10 @@ Scene scene_of(const SuitePair& pair) {
   scene.vertices.insert(scene.vertices.end(), pair.b.begin(), pair.b.end());
   scene.triangles = {{0, 1, 2}, {3, 4, 5}};
   for (const auto& [i, j] : pair.shared) scene.triangles[1][j] = i;
-  if (pair.shared.empty()) {
+  if (pair.shared.empty())
     scene.objects = {{"a", 0, 1, false}, {"b", 1, 1, false}};
-  } else {
+  else
     scene.objects = {{"ab", 0, 2, true}};
-  }
   return scene;
 }
 
@@ -120,12 +113,11 @@ SuitePairs asked_pairs(const PairFamily& family) {
 std::vector<SuiteMesh> asked_meshes() {
   std::vector<SuiteMesh> out;
   const std::string folder = environment("FARCULL_SUITE", "");
-  if (folder.empty()) {
+  if (folder.empty())
     for (const std::string& name : mesh_names(SuiteSize::small)) out.push_back(make_mesh(name, {}));
-  } else {
+  else
     for (const std::string& path : read_suite(folder).mesh_folders())
       out.push_back(read_mesh(folder + "/" + path));
-  }
   return out;
 }
 
@@ -184,7 +176,7 @@ TEST(SuiteAnswers, FarPairsFindsTheListsOfAllMeshes) {
     std::vector<TrianglePair> found = record.collisions.pairs;
     found.insert(found.end(), record.collisions.neighbour_pairs.begin(),
                  record.collisions.neighbour_pairs.end());
-    std::sort(found.begin(), found.end());
+    std::ranges::sort(found);
     std::vector<TrianglePair> listed;
     for (const SuiteMeshPair& pair : mesh.pairs) listed.push_back(pair.pair);
     EXPECT_EQ(found, listed) << name;

@@ -1,14 +1,10 @@
 // The lists of all tiles together are the list of one run, byte for byte.
 #include "experiments/tiles/run_tile.h"
 
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
 
-#include "core/base/error.h"
-#include "core/scene/scene.h"
 #include "experiments/scenes/scene_file.h"
-#include "tests/experiments/tiles/tile_lab.h"
+#include "tests/lab/tiles.h"
 
 namespace farcull {
 namespace {

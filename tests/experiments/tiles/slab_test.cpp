@@ -2,11 +2,8 @@
 // that tile (docs/tiles.md). Twins with one word of the definitions changed lose or repeat pairs.
 #include "experiments/tiles/run_tile.h"
 
-#include <gtest/gtest.h>
-
-#include <functional>
-
 #include "core/base/random.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -36,7 +33,7 @@ Faults faults_of(const Rules& rules) {
     }
     std::vector<double> cuts(random.below(std::size_t{5}));
     for (double& cut : cuts) cut = random.below(6);
-    std::sort(cuts.begin(), cuts.end());
+    std::ranges::sort(cuts);
     const int axis = random.below(3);
     for (std::size_t a = 0; a < boxes.size(); ++a) {
       for (std::size_t b = 0; b < a; ++b) {

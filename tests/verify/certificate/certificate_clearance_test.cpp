@@ -1,23 +1,9 @@
 // Certificates for a clearance: distances decided in integers, a distance of exactly the clearance
 // counts, and one unit in the last place more or less does not go unseen.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <random>
-#include <sstream>
-#include <string>
-#include <utility>
-
 #include "core/base/error.h"
 #include "experiments/generators/pair_generators.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/experiments/system/error_of.h"
-#include "tests/verify/certificate/certificate_case.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/certificates.h"
 #include "verify/certificate/pair_list.h"
 #include "verify/exact.h"
 
@@ -29,9 +15,8 @@ using reference::Triangle;
 std::string text(const Triangle& a, const Triangle& b, double clearance) {
   std::ostringstream out;
   out << std::hexfloat;
-  for (const Triangle& t : {a, b}) {
+  for (const Triangle& t : {a, b})
     for (const Vec3& p : t) out << p.x() << ' ' << p.y() << ' ' << p.z() << "; ";
-  }
   out << clearance;
   return out.str();
 }
@@ -76,10 +61,9 @@ TEST(IntegerClearance, ADirectionOrTwoPointsOnSmallGrids) {
   for (int n = 0; n < 10'000; ++n) {
     std::array<Triangle, 2> t;
     const int flat = n % 3 == 0 ? 1 : 3;
-    for (Triangle& corners : t) {
+    for (Triangle& corners : t)
       for (Vec3& p : corners)
         p = Vec3(random() % 5, random() % 3, static_cast<double>(random() % flat));
-    }
     const double clearance = clearances[random() % clearances.size()];
     IntegerPair pair(t[0], t[1], clearance);
     const bool expected = reference::within(t[0], t[1], clearance);
@@ -352,8 +336,7 @@ TEST(CertificateClearance, EveryKindOfFieldChangedIsCaught) {
       changed.evidence = other.evidence;
       std::size_t at = 0;
       for (const TrianglePair& pair : box_pairs(c.scene, changed.clearance)) {
-        if (std::binary_search(c.meeting.begin(), c.meeting.end(), pair))
-          changed.evidence[at] = kKept | kMeets;
+        if (std::ranges::binary_search(c.meeting, pair)) changed.evidence[at] = kKept | kMeets;
         ++at;
       }
       recount(changed);
@@ -376,8 +359,8 @@ TEST(CertificateClearance, OfARunThatMissedAPairIsRefuted) {
   EXPECT_EQ(result.verdict, Verdict::refuted);
   EXPECT_EQ(result.culled_meeting, c.meeting.size() - fewer.size());
   ASSERT_TRUE(result.pair);
-  EXPECT_FALSE(std::binary_search(fewer.begin(), fewer.end(), *result.pair));
-  EXPECT_TRUE(std::binary_search(c.meeting.begin(), c.meeting.end(), *result.pair));
+  EXPECT_FALSE(std::ranges::binary_search(fewer, *result.pair));
+  EXPECT_TRUE(std::ranges::binary_search(c.meeting, *result.pair));
 }
 
 TEST(CertificateClearance, KeptPairsWhoseBoxesAreFartherApartNeedNoEvidence) {
@@ -403,11 +386,11 @@ TEST(CertificateClearance, TextKeepsEveryBit) {
     certificate.clearance = clearance;
     const std::string text = to_text(certificate);
     EXPECT_EQ(parse_certificate(text, "text"), certificate) << clearance;
-    EXPECT_NE(text.find("\"version\": 4,"), std::string::npos);
+    EXPECT_TRUE(has_text(text, "\"version\": 4,"));
   }
   certificate.clearance = 0;
-  EXPECT_NE(to_text(certificate).find("\"version\": 3,"), std::string::npos);
-  EXPECT_EQ(to_text(certificate).find("clearance"), std::string::npos);
+  EXPECT_TRUE(has_text(to_text(certificate), "\"version\": 3,"));
+  EXPECT_FALSE(has_text(to_text(certificate), "clearance"));
 }
 
 // ---- lists without a certificate ----

@@ -1,12 +1,5 @@
 // Certificates of scenes whose objects are tested against themselves: neighbours.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <optional>
-#include <random>
-
-#include "tests/verify/certificate/certificate_case.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/certificates.h"
 
 namespace farcull {
 namespace {
@@ -77,8 +70,8 @@ TEST(CertificateSelf, NeighboursAreOfOneObjectAndALostPairRefutes) {
   const Case other(scene);
   EXPECT_EQ(other.certificate.claims.neighbours, 0u);
   EXPECT_EQ(other.check(folded().certificate).verdict, Verdict::not_proved);  // another scene
-  const auto apart = std::find_if(other.pairs.begin(), other.pairs.end(), [&](const auto& pair) {
-    return !std::binary_search(other.meeting.begin(), other.meeting.end(), pair);
+  const auto apart = std::ranges::find_if(other.pairs, [&](const auto& pair) {
+    return !std::ranges::binary_search(other.meeting, pair);
   });
   ASSERT_NE(apart, other.pairs.end());
   Certificate changed = other.certificate;
@@ -89,13 +82,11 @@ TEST(CertificateSelf, NeighboursAreOfOneObjectAndALostPairRefutes) {
   const Case& c = folded();
   std::vector<TrianglePair> kept, colliding;
   std::optional<TrianglePair> lost;
-  for (const TrianglePair& pair : c.meeting) {
-    if (!lost && reference::neighbours(c.scene, pair)) {
+  for (const TrianglePair& pair : c.meeting)
+    if (!lost && reference::neighbours(c.scene, pair))
       lost = pair;
-    } else {
+    else
       kept.push_back(pair);
-    }
-  }
   const CheckResult culled = c.check(make_certificate(c.scene, kept, kept, {}));
   EXPECT_EQ(culled.verdict, Verdict::refuted);
   EXPECT_EQ(culled.pair, lost);

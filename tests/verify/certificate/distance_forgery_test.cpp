@@ -1,14 +1,8 @@
 // Certificates of distances with one thing changed are not proved: what is false is refuted, what
 // is not as the page says is left unproved, and what cannot be read is an Error.
-#include <gtest/gtest.h>
-
-#include <functional>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <string>
 
-#include "core/base/error.h"
-#include "tests/verify/certificate/distance_case.h"
+#include "tests/lab/certificates.h"
 #include "verify/certificate/distance_certificate.h"
 
 namespace farcull {
@@ -92,9 +86,8 @@ class Forger {
 
 /// Of the entry of these objects.
 Json& entry(Json& json, unsigned a, unsigned b) {
-  for (Json& one : json["distances"]) {
+  for (Json& one : json["distances"])
     if (one["objects"] == Json{a, b}) return one;
-  }
   throw std::logic_error("no such entry");
 }
 

@@ -2,16 +2,9 @@
 // directions prove just what is as far.
 #include "verify/certificate/integer_distance.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <random>
-
 #include "experiments/generators/pair_generators.h"
-#include "tests/core/base/trials.h"
-#include "tests/verify/certificate/distance_case.h"
-#include "tests/verify/hard_pairs.h"
+#include "tests/lab/certificates.h"
+#include "tests/lab/hard_pairs.h"
 #include "verify/closest.h"
 
 namespace farcull {
@@ -105,13 +98,11 @@ TEST(IntegerDistance, IsThatOfBruteForceOnASmallGrid) {
   for (int n = 0; n < trials(3000); ++n) {
     std::array<Triangle, 2> pair;
     for (Triangle& t : pair) {
-      for (Vec3& p : t) {
+      for (Vec3& p : t)
         for (double& x : p) x = static_cast<double>(random() % (n % 2 == 0 ? 3 : 6));
-      }
     }
-    if (n % 3 == 0) {
+    if (n % 3 == 0)
       for (Vec3& p : pair[1]) p.z() += 4;
-    }
     expect_distance(pair[0], pair[1]);
     expect_the_same_of_closest_points(pair[0], pair[1]);
     if (HasFatalFailure()) return;
@@ -154,9 +145,8 @@ TEST(Fraction, ReadsItsOwnTextAndNothingElse) {
         std::string("5/0"),   std::string("-5/4"),  std::string("5/-4"),     std::string("+5/4"),
         std::string("05/4"),  std::string("5/04"),  std::string("10/8"),     std::string("0/2"),
         std::string("5 /4"),  std::string("5/4 "),  std::string("5/4/1"),    std::string("0x5/4"),
-        std::string("5.0/4"), std::string("5e0/4"), std::string("5/4\0", 4), longest + "9/1"}) {
+        std::string("5.0/4"), std::string("5e0/4"), std::string("5/4\0", 4), longest + "9/1"})
     EXPECT_FALSE(parse_fraction(text)) << text;
-  }
 }
 
 }  // namespace

@@ -2,15 +2,9 @@
 // edges and corners all the time, and against the answer of the program.
 #include "verify/certificate/integer_inside.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <vector>
-
 #include "experiments/method/distances.h"
-#include "tests/core/base/trials.h"
-#include "tests/verify/reference.h"
+#include "tests/lab/reference.h"
+#include "tests/lab/test.h"
 #include "verify/certificate/integer_distance.h"
 #include "verify/rational.h"
 
@@ -61,9 +55,8 @@ bool odd_without_shift(const Tetrahedron& t, const Whole& x) {
 Tetrahedron random_tetrahedron(rational::Draws& random, long from, long below) {
   Tetrahedron t{};
   do {
-    for (Whole& p : t) {
+    for (Whole& p : t)
       for (long& x : p) x = from + random.below(static_cast<unsigned>(below));
-    }
   } while (determinant(t[0], t[1], t[2], t[3]) == 0);
   return t;
 }
@@ -98,9 +91,8 @@ Scene scene_of(const std::vector<Tetrahedron>& a, const std::vector<Tetrahedron>
 
 bool meet(const Scene& scene) {
   for (std::uint32_t s = 0; s < scene.objects[0].triangle_count; ++s) {
-    for (std::uint32_t t = scene.objects[1].first_triangle; t < scene.triangles.size(); ++t) {
+    for (std::uint32_t t = scene.objects[1].first_triangle; t < scene.triangles.size(); ++t)
       if (integer_distance(scene.corners(s), scene.corners(t)).squared.over == 0) return true;
-    }
   }
   return false;
 }
@@ -174,9 +166,8 @@ TEST(IntegerInside, AllPartsHaveToBeInside) {
   for (auto& t : scene.triangles) {
     for (std::uint32_t& v : t) {
       scene.vertices.push_back(scene.vertices[v]);
-      for (double& x : scene.vertices.back()) {
+      for (double& x : scene.vertices.back())
         if (x == 0 && v % 2 == 0) x = -0.0;
-      }
       v = static_cast<std::uint32_t>(scene.vertices.size() - 1);
     }
   }

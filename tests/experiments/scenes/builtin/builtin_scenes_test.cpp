@@ -1,18 +1,11 @@
 #include "experiments/scenes/builtin/scenes.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <limits>
-#include <set>
 
 #include "experiments/scenes/mesh/load.h"
 #include "experiments/scenes/mesh/scene_build.h"
 #include "experiments/scenes/scene_file.h"
-#include "tests/experiments/system/error_of.h"
+#include "tests/lab/test.h"
 
 namespace farcull {
 namespace {
@@ -32,9 +25,8 @@ bool edge_crosses(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& t) {
 
 // Whether two triangles cross beyond doubt; touching and what rounding might decide do not count.
 bool cross(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i)
     if (edge_crosses(a[i], a[(i + 1) % 3], b) || edge_crosses(b[i], b[(i + 1) % 3], a)) return true;
-  }
   return false;
 }
 
@@ -52,9 +44,8 @@ int crossings(const Scene& scene) {
            ++i) {
         if (!overlap(boxes[i], common)) continue;
         for (std::uint32_t j = second.first_triangle;
-             j < second.first_triangle + second.triangle_count; ++j) {
+             j < second.first_triangle + second.triangle_count; ++j)
           count += overlap(boxes[i], boxes[j]) && cross(scene.corners(i), scene.corners(j));
-        }
       }
     }
   }
@@ -70,11 +61,10 @@ class MeshFolder {
     setenv("FARCULL_MESHES", folder.c_str(), 1);
   }
   ~MeshFolder() {
-    if (old_.empty()) {
+    if (old_.empty())
       unsetenv("FARCULL_MESHES");
-    } else {
+    else
       setenv("FARCULL_MESHES", old_.c_str(), 1);
-    }
   }
   MeshFolder(const MeshFolder&) = delete;
   MeshFolder& operator=(const MeshFolder&) = delete;
@@ -133,9 +123,8 @@ TEST(BuiltinScenes, AreWhatTheirEntrySays) {
                            "slivers",
                            "stack",
                            "mixed",
-                           "gap"}) {
+                           "gap"})
     EXPECT_TRUE(names.contains(name)) << name;
-  }
 }
 
 TEST(BuiltinScenes, CollideWhereTheirNameSaysSo) {
@@ -200,9 +189,8 @@ TEST(BuiltinScenes, GroundIsAThousandTimesLargerThanItsBlobs) {
   const Scene scene = make_builtin_scene("ground");
   const std::vector<Box> boxes = object_boxes(scene, triangle_boxes(scene));
   EXPECT_EQ(scene.objects.back().name, "ground");
-  for (std::size_t i = 0; i + 1 < boxes.size(); ++i) {
+  for (std::size_t i = 0; i + 1 < boxes.size(); ++i)
     EXPECT_GT(diagonal(boxes.back()), 1000 * diagonal(boxes[i]));
-  }
 }
 
 // What all needles of a bench scene have in common: one of few oblique directions, a length and a
@@ -217,17 +205,16 @@ void expect_needles(const Scene& scene, std::size_t directions) {
     ASSERT_NEAR((b - a).cross(c - a).norm() / length, 0.002, 1e-6);
     ASSERT_GT(along.cwiseAbs().minCoeff(), 0.3) << "not oblique";
     const auto close = [&](const Vec3& d) { return (d - along).norm() < 3e-4; };
-    if (std::none_of(seen.begin(), seen.end(), close)) seen.push_back(along);
+    if (std::ranges::none_of(seen, close)) seen.push_back(along);
   }
   EXPECT_EQ(seen.size(), directions);
   const std::vector<Box> boxes = triangle_boxes(scene);
   std::uint64_t looked = 0;
   std::uint64_t overlapping = 0;
   const std::uint32_t second = scene.objects[1].first_triangle;
-  for (std::uint32_t a = 0; a < second; a += 50) {
+  for (std::uint32_t a = 0; a < second; a += 50)
     for (std::uint32_t b = second; b < boxes.size(); b += 50, ++looked)
       overlapping += overlap(boxes[a], boxes[b]);
-  }
   EXPECT_GT(overlapping, looked / 10);
 }
 
@@ -244,9 +231,8 @@ TEST(BuiltinScenes, TakesASeedWhereItIsDrawn) {
   EXPECT_NE(hash("needles:60@seed101"), hash("needles:60"));
   EXPECT_EQ(hash("needles:60@seed101@far"), hash("needles:60@far@seed101"));
   EXPECT_THROW(make_builtin_scene("two-tori@seed3"), Error);
-  for (const char* word : {"@seed3@seed4", "@seed", "@seed0", "@seed-1", "@seedx", "@seed1.5"}) {
+  for (const char* word : {"@seed3@seed4", "@seed", "@seed0", "@seed-1", "@seedx", "@seed1.5"})
     EXPECT_THROW(make_builtin_scene(std::string("needles:60") + word), Error) << word;
-  }
 }
 
 TEST(BuiltinScenes, FieldHasTheSizeOfItsNameAndKeepsItsDensity) {
@@ -308,7 +294,7 @@ TEST(BuiltinScenes, RefuseUnknownNamesAndSuffixes) {
   for (const char* name : {"crowd@", "crowd@near", "crowd@far@", "crowd@@far", "crowd@fa"}) {
     const Error error = error_of([&] { make_builtin_scene(name); });
     EXPECT_EQ(error.where, name);
-    EXPECT_NE(error.remedy.find("@far, @tiny, @huge, @ground"), std::string::npos);
+    EXPECT_TRUE(has_text(error.remedy, "@far, @tiny, @huge, @ground"));
   }
 }
 
@@ -361,7 +347,7 @@ TEST(PackagedScenes, SayHowToGetMissingMeshes) {
     if (!entry.needs_meshes) continue;
     const Error error = error_of([&] { make_builtin_scene(entry.name); });
     EXPECT_EQ(error.where.find(folder.path("meshes")), 0u);
-    EXPECT_NE(error.remedy.find("bash experiments/meshes.sh"), std::string::npos);
+    EXPECT_TRUE(has_text(error.remedy, "bash experiments/meshes.sh"));
   }
 }
 
@@ -416,9 +402,8 @@ TEST(PackagedScenes, NearCopyIsMovedByABillionthOfItsDiagonal) {
   const Scene scene = make_builtin_scene("near-copy");
   const std::size_t half = scene.vertices.size() / 2;
   const double length = diagonal(bounds(scene));
-  for (std::size_t i = 0; i < half; ++i) {
+  for (std::size_t i = 0; i < half; ++i)
     ASSERT_NEAR((scene.vertices[half + i] - scene.vertices[i]).norm() / length, 1e-9, 1e-14);
-  }
 }
 
 }  // namespace

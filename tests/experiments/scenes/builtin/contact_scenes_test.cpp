@@ -1,14 +1,9 @@
 // The scenes of things in contact: their sizes, the shapes of their triangles, and what collides in
 // them, decided exactly.
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <set>
 
 #include "experiments/scenes/builtin/scenes.h"
+#include "tests/lab/test.h"
 #include "verify/exact.h"
 
 namespace farcull {
@@ -23,7 +18,7 @@ Scene of(Make make, std::uint64_t size, std::uint64_t seed) {
 std::array<double, 3> sides(const Scene& scene, std::uint32_t triangle) {
   const auto [a, b, c] = scene.corners(triangle);
   std::array<double, 3> out = {(b - a).norm(), (c - b).norm(), (a - c).norm()};
-  std::sort(out.begin(), out.end());
+  std::ranges::sort(out);
   return out;
 }
 
@@ -35,7 +30,7 @@ double thickness(const Scene& scene, std::uint32_t triangle) {
 }
 
 double part_of(std::vector<double> values, double part) {
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
 }
 
@@ -71,9 +66,8 @@ TEST(ContactScenes, CrumpledSheetGoesThroughItselfAndHardlyStretches) {
     const Scene scene = of(make_crumpled, 20'000, seed);
     EXPECT_GT(all_colliding_pairs(scene).pairs.size(), scene.triangles.size() / 2);
     std::vector<double> lengths;
-    for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
       for (const double length : sides(scene, t)) lengths.push_back(length);
-    }
     EXPECT_LT(part_of(lengths, 0.99), 3 * part_of(lengths, 0.01));
     EXPECT_LT(part_of(lengths, 1), 3 * part_of(lengths, 0.5));
     const Box box = object_boxes(scene, triangle_boxes(scene))[0];
@@ -115,7 +109,7 @@ TEST(ContactScenes, SpheresOfAHeapTouchSeveralOthers) {
       const double radii = ((boxes[a].hi - boxes[a].lo).x() + (boxes[b].hi - boxes[b].lo).x()) / 2;
       EXPECT_GT(d.norm(), 0.85 * radii) << "deep in each other";
     }
-    EXPECT_LE(std::count(contacts.begin(), contacts.end(), 0), 3);
+    EXPECT_LE(std::ranges::count(contacts, 0), 3);
     EXPECT_GT(touching.size(), 2 * scene.objects.size());
     EXPECT_LT(touching.size(), 6 * scene.objects.size());
   }

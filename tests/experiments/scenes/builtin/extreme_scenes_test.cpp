@@ -1,12 +1,10 @@
 // The scenes that go to an extreme by a number are what their number says, measured.
 #include <gmpxx.h>
-#include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
 
 #include "experiments/scenes/builtin/scenes.h"
+#include "tests/lab/test.h"
 #include "verify/exact.h"
 
 namespace farcull {

@@ -1,16 +1,11 @@
 // What a step of the cloth is made of: derivatives against differences, the inequalities that the
 // bound of the energy rests on, and the factorization.
 
-#include <gtest/gtest.h>
-
 #include <Eigen/SparseCholesky>
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <utility>
 
 #include "experiments/scenes/cloth/cloth.h"
 #include "experiments/scenes/mesh/scene_build.h"
+#include "tests/lab/test.h"
 
 namespace farcull::cloth {
 namespace {
@@ -136,14 +131,12 @@ TEST(ClothModel, HessianIsThatOfTheGradient) {
     const Eigen::SparseMatrix<double> whole = lower.selfadjointView<Eigen::Lower>();
     const VectorXd p = shaken(VectorXd::Zero(s.x.size()), 1, random);
     VectorXd permuted(p.size());
-    for (std::size_t v = 0; v < solver.places().size(); ++v) {
+    for (std::size_t v = 0; v < solver.places().size(); ++v)
       permuted.segment<3>(3 * solver.places()[v]) = p.segment<3>(3 * static_cast<Eigen::Index>(v));
-    }
     const VectorXd product = whole * permuted;
     VectorXd hp(p.size());
-    for (std::size_t v = 0; v < solver.places().size(); ++v) {
+    for (std::size_t v = 0; v < solver.places().size(); ++v)
       hp.segment<3>(3 * static_cast<Eigen::Index>(v)) = product.segment<3>(3 * solver.places()[v]);
-    }
     const auto along = [&](double t) {
       VectorXd g;
       gradient(s.step, s.x + t * p, g);
@@ -274,9 +267,8 @@ TEST(ClothInterior, RoomEndsAtTheCone) {
       const ConePoint at{u.t + a * du.t, u.d + a * du.d};
       return at.t > 0 && determinant(at) > 0;
     };
-    for (const double part : {0.1, 0.5, 0.9, 0.999}) {
+    for (const double part : {0.1, 0.5, 0.9, 0.999})
       EXPECT_TRUE(inside(part * std::min(way, 1e6))) << i;
-    }
     if (std::isfinite(way)) {
       EXPECT_FALSE(inside(1.001 * way)) << i;
     }
