@@ -35,8 +35,7 @@ struct GlCalls {
 
   /// True where this call of `name` does nothing.
   static bool lost(const char* name, bool allocates) {
-    const long call = calls++;
-    const long allocation = allocates ? allocations++ : -1;
+    const long call = calls++, allocation = allocates ? allocations++ : -1;
     const bool now = (fault == GlFault::drop && call == at) ||
                      (fault == GlFault::out_of_memory && allocation == at);
     if (now) {

@@ -28,8 +28,7 @@ constexpr std::uint32_t kMutations = 2000;
 constexpr std::size_t kMaxBytes = 4096;  // of a mutated input
 
 struct File {
-  std::string name;
-  std::string bytes;
+  std::string name, bytes;
 };
 
 std::vector<File> corpus(const std::string& folder) {

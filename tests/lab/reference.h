@@ -271,8 +271,7 @@ inline bool neighbours(const Scene& scene, const TrianglePair& pair) {
 
 /// True where a pair collides, as verify/exact.h says.
 inline bool collides(const Scene& scene, const TrianglePair& pair, double clearance) {
-  const Triangle a = scene.corners(pair.a);
-  const Triangle b = scene.corners(pair.b);
+  const Triangle a = scene.corners(pair.a), b = scene.corners(pair.b);
   return neighbours(scene, pair) ? intersects_beyond_shared(a, b) : within(a, b, clearance);
 }
 

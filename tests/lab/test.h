@@ -74,6 +74,12 @@ inline testing::AssertionResult has_text(const std::string& text, const std::str
   return (has ? testing::AssertionSuccess() : testing::AssertionFailure()) << text;
 }
 
+/// Whether the call throws an Error whose text has this part.
+template <class Call>
+testing::AssertionResult refuses(const std::string& part, const Call& call) {
+  return has_text(message_of(call), part);
+}
+
 /// The bytes of a file; none if it cannot be read.
 inline std::string read_text(const std::string& file) {
   std::ifstream in(file, std::ios::binary);

@@ -213,8 +213,7 @@ TEST(ContactKind, FitsTheOtherPredicatesAmongPairsThatAreHard) {
     };
     return contact_shape(cut(a), cut(b)).kind;
   };
-  int wrong = 0;
-  int caught = 0;
+  int wrong = 0, caught = 0;
   RandomDraws random(602);
   for (const auto& [name, make] : hard_pairs::generators()) {
     for (int n = 0; n < 60; ++n) {

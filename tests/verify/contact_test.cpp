@@ -32,8 +32,7 @@ bool penetrate(const std::array<reference::Vector<Integer>, 3>& a,
     for (std::size_t j = i + 1; j < p.size(); ++j) {
       const auto d = reference::cross(p[i], p[j]);
       if (d[0] == 0 && d[1] == 0 && d[2] == 0) continue;
-      bool below = false;
-      bool above = false;
+      bool below = false, above = false;
       for (const auto& q : p) {
         const Integer side = reference::dot(d, q);
         below = below || side < 0;
@@ -199,8 +198,7 @@ TEST(Contact, ClosedTrianglesInsteadOfInteriorsAreCaught) {
 // Coordinates of few values of all sizes, so that corners, edges and planes often coincide.
 TEST(Contact, AsTheReferenceAmongDoublesOfEverySize) {
   Random random(501);
-  std::uint64_t penetrating = 0;
-  std::uint64_t touching = 0;
+  std::uint64_t penetrating = 0, touching = 0;
   for (int n = 0; n < 4000; ++n) {
     if (n == 2000) random = Random(seed_of_day(501));
     std::array<double, 5> values{};
@@ -212,8 +210,7 @@ TEST(Contact, AsTheReferenceAmongDoublesOfEverySize) {
         for (int axis = 0; axis < 3; ++axis) p[axis] = values[random.below(5)];
       return t;
     };
-    const Triangle a = triangle();
-    const Triangle b = triangle();
+    const Triangle a = triangle(), b = triangle();
     const Contact expected = by_reference(a, b);
     ASSERT_EQ(contact_of(a, b), expected) << "pair " << n;
     ASSERT_EQ(contact_of(b, a), expected) << "pair " << n;

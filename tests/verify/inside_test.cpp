@@ -164,8 +164,7 @@ TEST(Inside, ATorusAsItsEquationSays) {
   constexpr int kAround = 40, kTube = 20;
   const auto corner = [](int i, int j) {
     const double u = 2 * std::numbers::pi * (i % kAround) / kAround;
-    const double v = 2 * std::numbers::pi * (j % kTube) / kTube;
-    const double r = 3 + std::cos(v);
+    const double v = 2 * std::numbers::pi * (j % kTube) / kTube, r = 3 + std::cos(v);
     return Vec3(r * std::cos(u), r * std::sin(u), std::sin(v));
   };
   std::vector<Triangle> triangles;

@@ -113,8 +113,7 @@ void expect_as_reference(const std::vector<Vec3>& points, int pairs, unsigned se
   std::mt19937 random(seed);
   std::array<int, 2> answers = {0, 0};
   for (int n = 0; n < pairs; ++n) {
-    Triangle a;
-    Triangle b;
+    Triangle a, b;
     for (Triangle* t : {&a, &b})
       for (Vec3& p : *t) p = points[random() % points.size()];
     b[random() % 3] = a[random() % 3];

@@ -63,8 +63,7 @@ using rational::Random;
 using Evaluate = Answer (*)(const FloatTriangle&, float, int, int, float);
 
 struct Tally {
-  std::size_t checked = 0;
-  std::size_t failed = 0;
+  std::size_t checked = 0, failed = 0;
   std::string first;
 };
 

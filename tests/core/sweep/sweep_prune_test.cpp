@@ -78,8 +78,7 @@ Moving some_objects(Random& random, int objects, int kind) {
     const auto size = static_cast<std::uint32_t>(random.below(12));  // some have no triangles
     const Vec3 at = random.cube(3);
     for (std::uint32_t i = 0; i < size; ++i) {
-      Vec3 lo = at + random.cube(0.7);
-      Vec3 length = random.cube(0.2).cwiseAbs();
+      Vec3 lo = at + random.cube(0.7), length = random.cube(0.2).cwiseAbs();
       if (kind == 0) lo = lo.array().round();
       if (kind == 0) length = Vec3(random.below(2), random.below(2), random.below(2));
       if (kind == 2) length[random.below(3)] = 4;  // long in one direction: many columns

@@ -172,8 +172,7 @@ Q most_of_cuts(std::uint64_t seed) {
     const double other_to = random.coin() ? -other : random.uniform(-m, m);
     const double plane = from + (to - from) * random.uniform(0, 1);
     if (plane == from || plane == to) continue;
-    const double t = (plane - from) / (to - from);
-    const double p = other + t * (other_to - other);
+    const double t = (plane - from) / (to - from), p = other + t * (other_to - other);
     const Q at = (Q(plane) - Q(from)) / (Q(to) - Q(from));
     const Q truth = Q(other) + at * (Q(other_to) - Q(other));
     const Q units = abs(Q(p) - truth) / (Q(0x1p-53) * Q(m));

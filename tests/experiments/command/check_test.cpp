@@ -314,8 +314,8 @@ TEST_F(Check, SaysWhatWasNotAsked) {
   EXPECT_EQ(unasked["objects"], scene.objects.size());
   EXPECT_EQ(unasked["pairs"], certificate.not_asked.pairs);
   EXPECT_GT(certificate.not_asked.pairs, 0u);
-  EXPECT_NE(check({written(), {"random-soup"}}).text.find("\nnot asked  whether an object meets"),
-            std::string::npos);
+  EXPECT_TRUE(
+      has_text(check({written(), {"random-soup"}}).text, "\nnot asked  whether an object meets"));
 }
 
 TEST_F(Check, AnotherSceneIsStatus1) {
@@ -473,7 +473,7 @@ TEST_F(CheckDistances, BadInputIsAnError) {
   EXPECT_EQ(error_of([&] { check(arguments); }).where, "--clearance");
   const std::string half =
       folder.write("half.json", to_text(certificate(Pairs::objects)).substr(0, 200));
-  EXPECT_NE(error_of([&] { check({half, files, ""}); }).reason.find("not JSON"), std::string::npos);
+  EXPECT_TRUE(has_text(error_of([&] { check({half, files, ""}); }).reason, "not JSON"));
 }
 
 }  // namespace

@@ -58,8 +58,7 @@ void race(const char* object, const std::function<bool()>& call) {
   const auto work = [&] {
     while (true) {
       start.arrive_and_wait();
-      const bool seen = right > 0 && refused > 0;
-      const bool last = seen || wrong > 0 || late;
+      const bool seen = right > 0 && refused > 0, last = seen || wrong > 0 || late;
       start.arrive_and_wait();  // both have read the same
       if (last) return;
       try {

@@ -188,7 +188,7 @@ TEST(Bench, CatchesACorruptedPeer) {
       EXPECT_EQ(result.disagreement->lacks, "bad");
       EXPECT_EQ(result.disagreement->pair, right[at]);
       EXPECT_TRUE(result.disagreement->collides);
-      EXPECT_NE(describe(scene, *result.disagreement).find("bad lacks; "), std::string::npos);
+      EXPECT_TRUE(has_text(describe(scene, *result.disagreement), "bad lacks; "));
     }
   }
 
@@ -226,8 +226,7 @@ TEST(Bench, RepeatsNothingBeyondTheLimit) {
   BenchOptions options = quick();
   options.repeat = 3;
   options.limit_s = 0.02;
-  int fast_runs = 0;
-  int slow_runs = 0;
+  int fast_runs = 0, slow_runs = 0;
   const std::vector<BenchContestant> both = {
       says("fast", [&] { return ++fast_runs, std::vector<TrianglePair>{}; }), says("slow", [&] {
         ++slow_runs;
@@ -243,7 +242,7 @@ TEST(Bench, RepeatsNothingBeyondTheLimit) {
   EXPECT_EQ(result.rows[1].total_ms.median, result.rows[1].cold_ms);
   EXPECT_GE(result.rows[1].cold_ms, 30);
   EXPECT_EQ(result.fastest_peer, 0u);
-  EXPECT_NE(bench_table(scene, options, result).find("slow (once)"), std::string::npos);
+  EXPECT_TRUE(has_text(bench_table(scene, options, result), "slow (once)"));
 }
 
 TEST(Bench, MemoryIsThePeakBeyondWhatWasThere) {
@@ -320,8 +319,8 @@ TEST(Bench, LeavesOutAloudWhatCannotRun) {
   for (const BenchContestant& contestant : result.left_out) {
     out.insert(contestant.name);
     EXPECT_FALSE(contestant.left_out.empty());
-    EXPECT_NE(bench_table(scene, options, result).find("left out: " + contestant.name + ": "),
-              std::string::npos);
+    EXPECT_TRUE(
+        has_text(bench_table(scene, options, result), "left out: " + contestant.name + ": "));
   }
   EXPECT_FALSE(out.contains("far")) << "the native canvas draws on the CPU";
   EXPECT_TRUE(out.contains("fcl-obbrss")) << "not exact here, or not in this build";

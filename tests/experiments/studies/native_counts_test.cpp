@@ -68,7 +68,7 @@ TEST(NativeCounts, TellAnotherRadiusDepthResolutionAndOffset) {
   // Another scene has another hash as well.
   RunPoint elsewhere = good;
   elsewhere.scene = NamedScene{"two-spheres"};
-  EXPECT_NE(said(table, elsewhere, key, lab).find("[scenes]"), std::string::npos);
+  EXPECT_TRUE(has_text(said(table, elsewhere, key, lab), "[scenes]"));
 }
 
 TEST(NativeCounts, TellEveryChangedDigitAndWhichPointHasIt) {
@@ -95,9 +95,9 @@ TEST(NativeCounts, TellEveryChangedDigitAndWhichPointHasIt) {
   table.at(kScenes).at(line.scene)[0] ^= 1;
   EXPECT_NE(difference(table, line), "");
   table.at(line.section).erase(line.key);
-  EXPECT_NE(difference(table, line).find("no such line"), std::string::npos);
+  EXPECT_TRUE(has_text(difference(table, line), "no such line"));
   table.erase(line.section);
-  EXPECT_NE(difference(table, line).find("no such section"), std::string::npos);
+  EXPECT_TRUE(has_text(difference(table, line), "no such section"));
 }
 
 // The file as it is committed: whole, sorted, and small enough to read a difference in it.

@@ -36,8 +36,7 @@ TEST(CertificateSelf, CountsNeighboursApart) {
 
 TEST(CertificateSelf, EveryFalseByteOfNeighboursIsCaught) {
   const Case& c = folded();
-  int meeting = 0;
-  int apart = 0;
+  int meeting = 0, apart = 0;
   for (std::size_t i = 0; i < c.pairs.size() && meeting + apart < 40; ++i) {
     if (!reference::neighbours(c.scene, c.pairs[i])) continue;
     const bool meets = c.meets(i);

@@ -475,8 +475,7 @@ TEST(CertificateText, RandomChangesOfBytesNeverCrash) {
   const Case c(make_builtin_scene("degenerate"));
   const std::string text = to_text(c.certificate);
   std::mt19937_64 random(20240609);
-  int refused = 0;
-  int parsed = 0;
+  int refused = 0, parsed = 0;
   for (int n = 0; n < 40'000; ++n) {
     std::string changed = text;
     for (std::uint64_t k = random() % 4 + 1; k-- > 0;) {

@@ -194,8 +194,7 @@ TEST(GivenList, TellsWhatIsWrongAndWhatIsMissing) {
     EXPECT_EQ(wrong.wrong_line, 5u) << row;
     EXPECT_TRUE(has_text(wrong.wrong_reason, reason));
   }
-  EXPECT_NE(differences(scene, "0,1,1,0,0\n", {}, 0.5).wrong_reason.find("farther apart"),
-            std::string::npos);
+  EXPECT_TRUE(has_text(differences(scene, "0,1,1,0,0\n", {}, 0.5).wrong_reason, "farther apart"));
   // What it says of neighbours.
   const ListDifferences said = differences(scene, "0,0,0,2,1\n0,0,1,0,0\n0,2,1,0,0\n", meeting);
   EXPECT_EQ(said.wrong, 1u);
@@ -203,8 +202,8 @@ TEST(GivenList, TellsWhatIsWrongAndWhatIsMissing) {
   EXPECT_TRUE(has_text(said.wrong_reason, "no neighbours, and the line says 1"));
   const std::vector<TrianglePair> with_neighbours = {{0, 1}};
   EXPECT_TRUE(differences(scene, "0,0,0,1,1\n", with_neighbours).none());
-  EXPECT_NE(differences(scene, "0,0,0,1,0\n", with_neighbours).wrong_reason.find("line says 0"),
-            std::string::npos);
+  EXPECT_TRUE(
+      has_text(differences(scene, "0,0,0,1,0\n", with_neighbours).wrong_reason, "line says 0"));
   // Both, and the first of several in the order of the file.
   const ListDifferences both =
       differences(scene, "0,1,1,0,0\n0,0,0,2,0\n0,0,0,1,1\n0,0,0,2,0\n", meeting);
@@ -214,8 +213,7 @@ TEST(GivenList, TellsWhatIsWrongAndWhatIsMissing) {
   EXPECT_EQ(both.missing, 2u);
   EXPECT_EQ(both.missing_pair, (TrianglePair{0, 3}));
   // Of an object that is not self.
-  EXPECT_NE(differences(folded(false), "0,0,0,2,0\n", {}).wrong_reason.find("--self asks"),
-            std::string::npos);
+  EXPECT_TRUE(has_text(differences(folded(false), "0,0,0,2,0\n", {}).wrong_reason, "--self asks"));
 }
 
 TEST(NotAsked, IsWhatLiesInsideObjectsThatAreNotSelf) {
@@ -248,11 +246,10 @@ TEST(NotAsked, IsSaidBesideThePromise) {
                        "pairs of triangles inside sheet, "));
   EXPECT_TRUE(has_text(heading, "(--self asks)\n"));
   record.options.method = Method::cullide;
-  EXPECT_NE(run_heading(folded(false), record).find("(--method far-pairs --self asks)\n"),
-            std::string::npos);
+  EXPECT_TRUE(has_text(run_heading(folded(false), record), "(--method far-pairs --self asks)\n"));
   record.options.method = Method::exact;
-  EXPECT_NE(run_heading(folded(false), record).find("(--self asks)\n"), std::string::npos);
-  EXPECT_EQ(run_heading(folded(true), record).find("not asked"), std::string::npos);
+  EXPECT_TRUE(has_text(run_heading(folded(false), record), "(--self asks)\n"));
+  EXPECT_FALSE(has_text(run_heading(folded(true), record), "not asked"));
 }
 
 }  // namespace

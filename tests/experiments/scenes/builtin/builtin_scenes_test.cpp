@@ -147,8 +147,7 @@ TEST(BuiltinScenes, SoupAndNeedlesReachTheirExtremes) {
     return std::pair(std::min({a, b, c}), std::max({a, b, c}));
   };
   const Scene soup = make_builtin_scene("random-soup");
-  double least = 1e9;
-  double most = 0;
+  double least = 1e9, most = 0;
   for (std::uint32_t t = 0; t < soup.triangles.size(); ++t) {
     const double size = shortest_and_longest(soup.corners(t)).second;
     least = std::min(least, size);
@@ -169,9 +168,7 @@ TEST(BuiltinScenes, SoupAndNeedlesReachTheirExtremes) {
 
 TEST(BuiltinScenes, DegenerateHoldsPointsSegmentsAndExactContacts) {
   const Scene scene = make_builtin_scene("degenerate");
-  int points = 0;
-  int segments = 0;
-  int identical = 0;
+  int points = 0, segments = 0, identical = 0;
   const std::uint32_t half = scene.objects[0].triangle_count;
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
     const auto [a, b, c] = scene.corners(t);
@@ -209,8 +206,7 @@ void expect_needles(const Scene& scene, std::size_t directions) {
   }
   EXPECT_EQ(seen.size(), directions);
   const std::vector<Box> boxes = triangle_boxes(scene);
-  std::uint64_t looked = 0;
-  std::uint64_t overlapping = 0;
+  std::uint64_t looked = 0, overlapping = 0;
   const std::uint32_t second = scene.objects[1].first_triangle;
   for (std::uint32_t a = 0; a < second; a += 50)
     for (std::uint32_t b = second; b < boxes.size(); b += 50, ++looked)
@@ -357,8 +353,7 @@ TEST(PackagedScenes, ComeFromTheFolderOfTheEnvironment) {
   folder.write("bunny00.off", "OFF\n4 1 0\n-1 0 0\n3 0 0\n0 1 0\n100 100 100\n3 0 1 2\n");
   const Scene scene = make_builtin_scene("two-bunnies");
   // Half the extent along x is 2; the vertex that no triangle uses does not count.
-  const double c = std::cos(0.7);
-  const double s = std::sin(0.7);
+  const double c = std::cos(0.7), s = std::sin(0.7);
   EXPECT_EQ(scene.vertices[4], Vec3(c * -1 + 2 * 0.02, s * -1 + 2 * 0.0026, 2 * 0.0014));
   const Scene apart = make_builtin_scene("bunnies-far-apart");
   const std::vector<Box> boxes = object_boxes(apart, triangle_boxes(apart));

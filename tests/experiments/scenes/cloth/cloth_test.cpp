@@ -51,10 +51,8 @@ double rounding(const ClothSettings& s, const Cloth& cloth) {
 // Steps `frames` times. In every frame: the total energy gains no more than slack and rounding,
 // and slack is no more than the residual on every vertex times the way it went.
 struct Course {
-  int most_iterations = 0;
-  int failed = 0;
-  bool bounded = true;
-  bool finite = true;
+  int most_iterations = 0, failed = 0;
+  bool bounded = true, finite = true;
 };
 Course run(Cloth& cloth, const ClothSettings& settings, int frames) {
   Course course;
@@ -110,8 +108,7 @@ TEST(Cloth, TheEnergyBoundCatchesExplicitEuler) {
     const cloth::Energies e = cloth::energies(model, x, v);
     return e.kinetic + e.elastic + e.bending + e.gravitational + e.contact;
   };
-  VectorXd x = model.rest;
-  VectorXd v = VectorXd::Zero(x.size());
+  VectorXd x = model.rest, v = VectorXd::Zero(x.size());
   VectorXd force;
   bool caught = false;
   for (int f = 0; f < 20 && !caught; ++f) {
@@ -149,13 +146,10 @@ TEST(Cloth, CentreOfMassFallsByTheRecurrence) {
         sum += model.mass[static_cast<std::size_t>(v)] * q.segment<3>(3 * v);
       return Vec3(sum / (s.density * s.side * s.side));
     };
-    Vec3 w = mean(start);
-    Vec3 c = mean(positions(cloth));
-    const double n = static_cast<double>(start.size()) / 3;
-    const double mass = s.density * s.side * s.side;
+    Vec3 w = mean(start), c = mean(positions(cloth));
+    const double n = static_cast<double>(start.size()) / 3, mass = s.density * s.side * s.side;
     const double h = s.time_step;
-    double allowed_w = n * 0x1p-52;
-    double allowed_c = n * 0x1p-52;
+    double allowed_w = n * 0x1p-52, allowed_c = n * 0x1p-52;
     for (int f = 0; f < 30; ++f) {
       const ClothReport report = cloth.step();
       ASSERT_TRUE(report.converged) << report.warning;
