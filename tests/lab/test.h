@@ -68,6 +68,14 @@ std::string message_of(const Call& call) {
   return "";
 }
 
+/// The parts of a text between commas.
+inline std::vector<std::string> listed(const std::string& text) {
+  std::vector<std::string> out;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ',');) out.push_back(part);
+  return out;
+}
+
 /// Whether the text has this part; shows the text where a test fails.
 inline testing::AssertionResult has_text(const std::string& text, const std::string& part) {
   const bool has = text.find(part) != std::string::npos;

@@ -89,41 +89,12 @@ TEST(BuiltinScenes, AreWhatTheirEntrySays) {
     EXPECT_NO_THROW(validate(scene, entry.name));
     EXPECT_EQ(scene_hash(scene), scene_hash(entry.make())) << entry.name << " differs from itself";
   }
-  for (const char* name : {"two-spheres",
-                           "two-tori",
-                           "random-soup",
-                           "needles",
-                           "degenerate",
-                           "ground",
-                           "crowd",
-                           "far-apart",
-                           "two-bunnies",
-                           "armadillo-elephant",
-                           "dragon-bunny",
-                           "near-copy",
-                           "bunnies-far-apart",
-                           "needles-layers",
-                           "needles-crossed",
-                           "field",
-                           "crumpled",
-                           "rope",
-                           "spheres",
-                           "fans",
-                           "funnel",
-                           "mannequin-devil",
-                           "armadillo",
-                           "bunny",
-                           "cylinders",
-                           "torii",
-                           "tree-leaves",
-                           "shells",
-                           "cloth",
-                           "bunny-dragon",
-                           "breaking-dragon",
-                           "slivers",
-                           "stack",
-                           "mixed",
-                           "gap"})
+  for (const std::string& name :
+       listed("two-spheres,two-tori,random-soup,needles,degenerate,ground,crowd,far-apart,"
+              "two-bunnies,armadillo-elephant,dragon-bunny,near-copy,bunnies-far-apart,"
+              "needles-layers,needles-crossed,field,crumpled,rope,spheres,fans,funnel,"
+              "mannequin-devil,armadillo,bunny,cylinders,torii,tree-leaves,shells,cloth,"
+              "bunny-dragon,breaking-dragon,slivers,stack,mixed,gap"))
     EXPECT_TRUE(names.contains(name)) << name;
 }
 
@@ -252,31 +223,12 @@ TEST(BuiltinScenes, FieldHasTheSizeOfItsNameAndKeepsItsDensity) {
 }
 
 TEST(BuiltinScenes, RefuseSizesThatAreNone) {
-  for (const char* name : {"field:",
-                           "field:0",
-                           "field:999",
-                           "field:1e6",
-                           "field:-1000",
-                           "field:1000000001",
-                           "field:99999999999999999999",
-                           "field:5000x",
-                           "field:5000:5000",
-                           "crowd:1",
-                           "crowd:",
-                           "two-bunnies:1",
-                           "two-tori:",
-                           "crowd:400:",
-                           "crowd:400:0",
-                           "crowd:400:x",
-                           "crowd:400:nan",
-                           "crowd:400:inf",
-                           "crowd:400:-1",
-                           "crowd:400:0.2:1",
-                           "crowd:400:0.2 ",
-                           "crowd:400:0x1p-2",
-                           "crowd::0.2",
-                           "crowd:0.2",
-                           "shells:3"}) {
+  for (const std::string& name :
+       listed("field:,field:0,field:999,field:1e6,field:-1000,field:1000000001,"
+              "field:99999999999999999999,field:5000x,field:5000:5000,crowd:1,crowd:,"
+              "two-bunnies:1,two-tori:,crowd:400:,crowd:400:0,crowd:400:x,crowd:400:nan,"
+              "crowd:400:inf,crowd:400:-1,crowd:400:0.2:1,crowd:400:0.2 ,crowd:400:0x1p-2,"
+              "crowd::0.2,crowd:0.2,shells:3")) {
     EXPECT_TRUE(is_builtin_scene(name)) << name;
     EXPECT_EQ(error_of([&] { make_builtin_scene(name); }).where, name);
   }
