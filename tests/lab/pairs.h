@@ -98,15 +98,9 @@ inline Scene crowded_scene(std::uint64_t seed, int count) {
 // A bit of everything that takes programs of its own: rows, crowds, large triangles, self.
 inline Scene mixed_scene() {
   Scene scene = crowded_scene(5, 600);
-  const auto v = static_cast<std::uint32_t>(scene.vertices.size());
-  scene.vertices.insert(scene.vertices.end(),
-                        {Vec3(-1, -1, 0.2), Vec3(1, -1, 0.1), Vec3(0, 1, 0.3), Vec3(-1, 0.9, 0),
-                         Vec3(0.9, -1, 0.5), Vec3(0.95, -1, 0.4)});
-  for (std::uint32_t t = 0; t < 2; ++t) {
-    scene.source_face.push_back(static_cast<std::uint32_t>(scene.triangles.size()));
-    scene.triangles.push_back({v + 3 * t, v + 3 * t + 1, v + 3 * t + 2});
-    ++scene.objects.back().triangle_count;
-  }
+  add_triangle(scene, {Vec3(-1, -1, 0.2), Vec3(1, -1, 0.1), Vec3(0, 1, 0.3)});
+  add_triangle(scene, {Vec3(-1, 0.9, 0), Vec3(0.9, -1, 0.5), Vec3(0.95, -1, 0.4)});
+  scene.objects.back().triangle_count += 2;
   validate(scene, "test");
   return scene;
 }

@@ -220,13 +220,20 @@ inline Scene scene_of(const std::vector<std::vector<Triangle>>& objects) {
   for (const auto& triangles : objects) {
     scene.objects.push_back({"", static_cast<std::uint32_t>(scene.triangles.size()),
                              static_cast<std::uint32_t>(triangles.size())});
-    for (const Triangle& t : triangles) {
-      const auto v = static_cast<std::uint32_t>(scene.vertices.size());
-      scene.vertices.insert(scene.vertices.end(), t.begin(), t.end());
-      scene.triangles.push_back({v, v + 1, v + 2});
-      scene.source_face.push_back(static_cast<std::uint32_t>(scene.source_face.size()));
-    }
+    for (const Triangle& t : triangles) add_triangle(scene, t);
   }
+  return scene;
+}
+
+/// One object of triangles with corners on a grid, which is tested against itself.
+template <typename Random>
+Scene soup(Random& random, std::uint32_t triangles, int extent) {
+  Scene scene;
+  const auto corner = [&] {
+    return Vec3(random.below(extent), random.below(extent), random.below(extent));
+  };
+  for (std::uint32_t t = 0; t < triangles; ++t) add_triangle(scene, {corner(), corner(), corner()});
+  scene.objects.push_back({"soup", 0, triangles, true});
   return scene;
 }
 

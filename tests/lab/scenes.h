@@ -15,12 +15,7 @@ inline Scene scene_of(const std::vector<std::vector<std::array<Vec3, 3>>>& objec
     scene.objects.push_back({"o" + std::to_string(scene.objects.size()),
                              static_cast<std::uint32_t>(scene.triangles.size()),
                              static_cast<std::uint32_t>(triangles.size())});
-    for (const auto& t : triangles) {
-      const auto v = static_cast<std::uint32_t>(scene.vertices.size());
-      scene.vertices.insert(scene.vertices.end(), t.begin(), t.end());
-      scene.source_face.push_back(static_cast<std::uint32_t>(scene.triangles.size()));
-      scene.triangles.push_back({v, v + 1, v + 2});
-    }
+    for (const auto& t : triangles) add_triangle(scene, t);
   }
   validate(scene, "test");
   return scene;

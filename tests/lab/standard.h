@@ -42,3 +42,15 @@
 
 #include "core/base/error.h"
 #include "core/scene/scene.h"
+
+namespace farcull {
+
+/// Adds a triangle with corners of its own, to no object.
+inline void add_triangle(Scene& scene, const std::array<Vec3, 3>& corners) {
+  const auto v = static_cast<std::uint32_t>(scene.vertices.size());
+  scene.vertices.insert(scene.vertices.end(), corners.begin(), corners.end());
+  scene.source_face.push_back(static_cast<std::uint32_t>(scene.triangles.size()));
+  scene.triangles.push_back({v, v + 1, v + 2});
+}
+
+}  // namespace farcull

@@ -254,14 +254,7 @@ TEST(ContactKind, EveryPairOnAGridHasOneKind) {
 
 TEST(ContactKinds, AnswerEachPairWhateverTheThreads) {
   Random random(603);
-  Scene scene;
-  for (std::uint32_t t = 0; t < 40; ++t) {
-    for (int k = 0; k < 3; ++k)
-      scene.vertices.emplace_back(random.below(4), random.below(4), random.below(4));
-    scene.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
-    scene.source_face.push_back(t);
-  }
-  scene.objects.push_back({"soup", 0, 40, true});
+  const Scene scene = reference::soup(random, 40, 4);
   std::vector<TrianglePair> pairs;
   std::vector<ContactKind> kinds;
   std::vector<ContactShape> shapes;

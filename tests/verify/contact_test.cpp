@@ -224,14 +224,7 @@ TEST(Contact, AsTheReferenceAmongDoublesOfEverySize) {
 
 TEST(CountContacts, CountsEachPairWhateverTheThreads) {
   Random random(502);
-  Scene scene;
-  for (std::uint32_t t = 0; t < 100; ++t) {
-    for (int corner = 0; corner < 3; ++corner)
-      scene.vertices.emplace_back(random.below(5), random.below(5), random.below(5));
-    scene.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
-    scene.source_face.push_back(t);
-  }
-  scene.objects.push_back({"soup", 0, 100, true});
+  const Scene scene = reference::soup(random, 100, 5);
   std::vector<TrianglePair> pairs;
   ContactCounts expected;
   for (std::uint32_t a = 0; a < 100; ++a) {

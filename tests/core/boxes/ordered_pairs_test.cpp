@@ -15,11 +15,9 @@ Scene some_scene(Random& random, int triangles) {
   Scene scene;
   for (int t = 0; t < triangles; ++t) {
     const Vec3 at(random.below(7), random.below(7), random.below(3));
-    for (int k = 0; k < 3; ++k)
-      scene.vertices.push_back(t == 5 ? Vec3(random.cube(9)) : Vec3(at + random.cube(0.7)));
-    const auto first = static_cast<std::uint32_t>(3 * t);
-    scene.triangles.push_back({first, first + 1, first + 2});
-    scene.source_face.push_back(0);
+    std::array<Vec3, 3> corners;
+    for (Vec3& p : corners) p = t == 5 ? Vec3(random.cube(9)) : Vec3(at + random.cube(0.7));
+    add_triangle(scene, corners);
   }
   for (int first = 0; first < triangles;) {
     const int count = std::min(random.below(triangles / 2 + 2), triangles - first);

@@ -93,11 +93,7 @@ Scene with_crowd(Scene scene) {
         {"crowd", static_cast<std::uint32_t>(scene.triangles.size()), 100, false});
     for (int i = 0; i < 100; ++i) {
       const Vec3 at(3 + 0.1 * (i % 10), 3 + 0.1 * (i / 10), 3 + 0.1 * (i % 10));
-      const auto v = static_cast<std::uint32_t>(scene.vertices.size());
-      for (const Vec3& d : {Vec3(0, 0, 0), Vec3(0.2, 0, 0.1), Vec3(0, 0.2, 0.1)})
-        scene.vertices.push_back(at + d);
-      scene.source_face.push_back(static_cast<std::uint32_t>(scene.triangles.size()));
-      scene.triangles.push_back({v, v + 1, v + 2});
+      add_triangle(scene, {at, at + Vec3(0.2, 0, 0.1), at + Vec3(0, 0.2, 0.1)});
     }
   }
   return scene;

@@ -53,10 +53,7 @@ TEST(PairsEdges, ATriangleThatNoViewShowsCostsLittle) {
   PairResult before, after;
   const double without = std::min(timed(before), timed(before));
   const Vec3 far = Vec3(1, 1, 1) * 0x1p60;
-  const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-  scene.vertices.insert(scene.vertices.end(), {-far, far, far + Vec3(0, 0, 0x1p10)});
-  scene.triangles.push_back({first, first + 1, first + 2});
-  scene.source_face.push_back(0);
+  add_triangle(scene, {-far, far, far + Vec3(0, 0, 0x1p10)});
   ++scene.objects.back().triangle_count;
   const double with = std::min(timed(after), timed(after));
   ASSERT_EQ(after.views.size(), 1u);

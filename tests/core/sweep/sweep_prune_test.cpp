@@ -16,14 +16,8 @@ using namespace lab;
 /// Triangles whose boxes are the given ones, which are not empty.
 Scene scene_of(const Boxes& boxes, const Indices& sizes, const std::vector<bool>& self) {
   Scene scene;
-  for (const Box& box : boxes) {
-    const auto v = static_cast<std::uint32_t>(scene.vertices.size());
-    scene.vertices.push_back(box.lo);
-    scene.vertices.push_back(box.hi);
-    scene.vertices.emplace_back(box.lo.x(), box.hi.y(), box.lo.z());
-    scene.source_face.push_back(static_cast<std::uint32_t>(scene.triangles.size()));
-    scene.triangles.push_back({v, v + 1, v + 2});
-  }
+  for (const Box& box : boxes)
+    add_triangle(scene, {box.lo, box.hi, Vec3(box.lo.x(), box.hi.y(), box.lo.z())});
   std::uint32_t first = 0;
   for (std::size_t o = 0; o < sizes.size(); ++o) {
     scene.objects.push_back({"o", first, sizes[o], self[o]});

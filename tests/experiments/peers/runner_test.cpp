@@ -223,13 +223,9 @@ struct MeshCase {
                     .triangle_count = 60};
       std::string obj;
       for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
-        const auto v = static_cast<std::uint32_t>(mesh.scene.vertices.size());
-        for (Vec3 p : o == 0 ? some[t].a : some[t].b) {
-          p.x() -= static_cast<double>(t);
-          mesh.scene.vertices.push_back(p);
-        }
-        mesh.scene.triangles.push_back({v, v + 1, v + 2});
-        mesh.scene.source_face.push_back(t);
+        std::array<Vec3, 3>& corners = o == 0 ? some[t].a : some[t].b;
+        for (Vec3& p : corners) p.x() -= static_cast<double>(t);
+        add_triangle(mesh.scene, corners);
       }
       for (const Vec3& p : std::span(mesh.scene.vertices).last(180)) {
         char line[100];

@@ -75,11 +75,8 @@ struct Hidden {
     window = picture_window(parse_view("-1:-1:-1"), boxes, 300, 300, 0.04, "two-tori");
     const double s = 0.1 * window.pixel_size;
     const Vec3 at = 0.5 * boxes[0].lo + 0.5 * boxes[0].hi;
-    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-    scene.vertices.insert(scene.vertices.end(), {at, at + Vec3(s, 0, 0), at + Vec3(0, s, 0)});
     tiny = static_cast<std::uint32_t>(scene.triangles.size());
-    scene.triangles.push_back({first, first + 1, first + 2});
-    scene.source_face.push_back(0);
+    add_triangle(scene, {at, at + Vec3(s, 0, 0), at + Vec3(0, s, 0)});
     ++scene.objects.back().triangle_count;
   }
 };

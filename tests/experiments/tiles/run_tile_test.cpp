@@ -118,9 +118,7 @@ TEST(Tiles, AreCutByAFixedRuleIntoEvenParts) {
   scene.name = "even";
   for (std::uint32_t t = 0; t < 100'000; ++t) {  // more than the sample holds
     const double x = 100 * random.unit(), y = random.unit();
-    for (int k = 0; k < 3; ++k) scene.vertices.emplace_back(x + 0.1 * k, y, 0);
-    scene.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
-    scene.source_face.push_back(t);
+    add_triangle(scene, {Vec3(x, y, 0), Vec3(x + 0.1 * 1, y, 0), Vec3(x + 0.1 * 2, y, 0)});
   }
   scene.objects = {{"a", 0, 50'000}, {"b", 50'000, 50'000}};
   const Census census = take_census(source_of(scene), 0);
