@@ -1,6 +1,14 @@
 // What every study promises of its grid.
 #include "experiments/studies/study.h"
 
+#include "core/canvas/fatten.h"
+#include "core/view/regions.h"
+#include "core/view/view.h"
+#include "experiments/scenes/builtin/scenes.h"
+#include "experiments/studies/point.h"
+#include "experiments/studies/run_point.h"
+#include "offsets/minkowski.h"
+#include "offsets/obb.h"
 #include "tests/lab/test.h"
 
 namespace farcull {
@@ -123,6 +131,183 @@ TEST(ErrorTime, HasEveryLibraryOnEveryScene) {
            {"cgal-boxes", "cgal-aabb", "embree-low", "fcl-double", "fcl-float", "ode-trimesh"})
         EXPECT_TRUE(of.contains(peer)) << peer << " on " << scene;
   }
+}
+
+// ---- That a point's row depends on the point alone, not on what the lab measured before, nor on
+// which of several runs was looked at.
+
+PointResult measured(Lab& lab, const std::string& scene, Method method, int repeat = 1) {
+  return measure_run(repeated(plain_point(NamedScene{scene}, method), repeat), lab);
+}
+
+TEST(RunPoint, DoesNotDependOnEarlierRunsOfTheSession) {
+  Lab fresh("cpu");
+  const PointResult first = measured(fresh, "far-apart", Method::far_pairs);
+  Lab used("cpu");
+  measured(used, "two-spheres", Method::far_pairs);
+  const PointResult later = measured(used, "far-apart", Method::far_pairs);
+  EXPECT_EQ(named(first.counts), named(later.counts));
+  EXPECT_EQ(first.device, later.device);
+}
+
+// Whether the lists of i-collide are those of a run just before.
+bool is_warm(Lab& lab) { return lab.session().sweep().find(lab.current()).counts.sorts == 0; }
+
+TEST(RunPoint, StartsICollideWithoutListsEachTimeWhereNothingMoves) {
+  Lab lab("cpu");
+  const auto stages_of = [&](const RunPoint& point) {
+    Record record;
+    measure_run(point, lab, &record);
+    std::string out;
+    for (const Stage& stage : record.trace) out += name_of(stage) + ": " + reason_of(stage) + "\n";
+    return out;
+  };
+  const RunPoint still = plain_point(NamedScene{"crowd"}, Method::i_collide);
+  const std::string cold = stages_of(still);
+  EXPECT_EQ(stages_of(still), cold);
+  EXPECT_TRUE(is_warm(lab)) << "else nothing is there to be forgotten";
+  EXPECT_EQ(stages_of(still), cold);
+  // The twin: a point of a motion keeps the lists.
+  RunPoint moving = still;
+  moving.scene = MotionFrame{"crowd", 0, 2};
+  const std::string first = stages_of(moving);
+  EXPECT_NE(stages_of(moving), first);
+  EXPECT_THROW(measure_run(repeated(moving, 2), lab), std::logic_error);
+}
+
+// Crossings at the corners of pixels: 0.9 of the radius loses some, the budget none. A method
+// without a radius has nothing at risk of it.
+TEST(RunPoint, OfScenesThatGoToAnExtremeSaysHowManyPairsAreAtRisk) {
+  Lab lab("native");
+  const auto counts_of = [&lab](RunPoint point) {
+    point.scene = PixelCorners{};
+    point.views = "z";
+    point.resolution = 96;
+    return std::get<RunCounts>(stability_study().measure(point, lab).counts);
+  };
+  const RunCounts far =
+      counts_of({.method = Method::far, .offset = "obb", .radius = kBudgetRadius});
+  EXPECT_EQ(far.missed, 0u);
+  ASSERT_TRUE(far.at_risk.has_value());
+  EXPECT_GT(*far.at_risk, 0u);
+  EXPECT_FALSE(counts_of({.method = Method::cullide}).at_risk.has_value());
+}
+
+TEST(RunPoint, GivesTheSameCountsInEveryRepeat) {
+  Lab lab("cpu");
+  for (const Method method : {Method::far_pairs, Method::i_collide, Method::exact}) {
+    EXPECT_EQ(named(measured(lab, "crowd", method, 3).counts),
+              named(measured(lab, "crowd", method).counts));
+  }
+}
+
+// The twin: each way in which two runs may differ is refused, and said.
+TEST(RunPoint, RefusesRunsThatDiffer) {
+  const PointKey point = key_of(plain_point(NamedScene{"crowd"}, Method::far_pairs));
+  const Outcome good{.pairs = {{1, 2}, {3, 4}}, .counts = RunCounts{}, .device = "cpu"};
+  EXPECT_NO_THROW(require_same(point, good, good));
+  const auto said = [&](const Outcome& other) -> std::string {
+    try {
+      require_same(point, good, other);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.where, describe(point));
+      return error.reason;
+    }
+    return "nothing";
+  };
+  Outcome other = good;
+  std::get<RunCounts>(other.counts).missed = 3;
+  EXPECT_TRUE(has_text(said(other), "missed 0 and 3"));
+  other = good;
+  std::get<RunCounts>(other.counts).drawn = DrawnCounts{.queries = 7};
+  EXPECT_TRUE(has_text(said(other), "queries none and 7"));
+  other = good;
+  other.pairs = {{1, 2}, {3, 5}};
+  EXPECT_TRUE(has_text(said(other), "1 and 1 pairs"));
+  other = good;
+  other.device = "another";
+  EXPECT_TRUE(has_text(said(other), "device cpu and another"));
+}
+
+// ----
+
+Record record_at(int resolution, double radius) {
+  Record record;
+  record.options.method = Method::far;
+  record.options.resolution = resolution;
+  record.options.views = "x,y,z";
+  std::vector<ViewReport> views;
+  for (const char* name : {"x", "y", "z"}) {
+    ViewReport view{.name = name, .budget = {}};
+    view.radius_px = radius;
+    views.push_back(view);
+  }
+  record.found.by = views;
+  return record;
+}
+
+// Whether the point is inside the closed convex quadrilateral, by the side of each edge.
+bool inside(const std::array<float, 8>& c, double x, double y) {
+  bool left = true, right = true;
+  for (int i = 0; i < 4; ++i) {
+    const double ax = c[2 * i], ay = c[2 * i + 1];
+    const double bx = c[(2 * i + 2) % 8], by = c[(2 * i + 3) % 8];
+    const double side = (bx - ax) * (y - ay) - (by - ay) * (x - ax);
+    left &= side >= 0;
+    right &= side <= 0;
+  }
+  return left || right;
+}
+
+// Every pixel of every view against every proxy.
+Fragments by_all_pixels(const Scene& scene, const Record& record, const Fattener& fattener) {
+  Fragments out;
+  const Regions plan = find_regions(scene);
+  for (const View& view : parse_views(record.options.views)) {
+    const auto window = fit_window(view, plan.places, record.options.resolution);
+    FattenCounts counts;
+    const Drawables drawables =
+        fatten(scene, plan.triangles, *window, fattener, record.found.views()[0].radius_px, counts);
+    out.elements += drawables.elements();
+    for (const Proxy& proxy : drawables.proxies) {
+      for (int j = 0; j < window->height; ++j) {
+        for (int i = 0; i < window->width; ++i) {
+          const double x = i + 0.5 - window->width / 2, y = j + 0.5 - window->height / 2;
+          if (!inside(proxy.corners, x, y)) continue;
+          float entry = 0, exit = 0;
+          ++out.covered;
+          out.solid += fattener.solid.interval(static_cast<float>(x), static_cast<float>(y),
+                                               proxy.solid, entry, exit);
+        }
+      }
+    }
+  }
+  return out;
+}
+
+TEST(Fragments, AreThoseOfEveryPixelTried) {
+  for (const char* name : {"needles:20", "degenerate"}) {
+    const Scene scene = make_builtin_scene(name);
+    const Record record = record_at(48, 0.75);
+    for (const bool exact : {false, true}) {
+      const Fragments fast = count_fragments(scene, record, exact ? "exact" : "obb");
+      const Fragments slow =
+          by_all_pixels(scene, record, exact ? minkowski_fattener() : obb_fattener());
+      EXPECT_GT(slow.solid, 0u);
+      EXPECT_EQ(fast.elements, slow.elements);
+      EXPECT_EQ(fast.covered, slow.covered) << name << (exact ? " exact" : " obb");
+      EXPECT_EQ(fast.solid, slow.solid);
+    }
+  }
+}
+
+TEST(Fragments, AreFewerOfTheSmallerSolidAndMoreOfTheLargerBall) {
+  const Scene scene = make_builtin_scene("two-spheres");
+  const Fragments obb = count_fragments(scene, record_at(128, 0.75), "obb");
+  const Fragments exact = count_fragments(scene, record_at(128, 0.75), "exact");
+  EXPECT_LT(exact.solid, obb.solid);
+  EXPECT_LE(exact.solid, exact.covered);
+  EXPECT_GT(count_fragments(scene, record_at(128, 1.5), "obb").solid, obb.solid);
 }
 
 }  // namespace
