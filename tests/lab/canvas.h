@@ -6,7 +6,7 @@
 #include "core/canvas/fatten.h"
 #include "core/view/budget.h"
 #include "core/view/view.h"
-#include "tests/lab/standard.h"
+#include "tests/lab/test.h"
 
 namespace farcull::lab {
 
@@ -52,6 +52,33 @@ inline void add(std::vector<Draw>& draws, const Drawables& drawables, std::uint3
 
 inline double budget_radius(const Canvas& canvas, const Window& w) {
   return budget_for(canvas.limits(), viewport_side(w.width)).radius();
+}
+
+/// What the canvas stores and asks at each pixel is its sample under the depth map, rounded to
+/// these bits, and asked so much behind.
+inline void expect_held_under_map(Canvas& canvas, const Fattener& fattener, int depth_bits,
+                                  double behind) {
+  const Window w = window(64, 100);
+  const std::vector<Patch> patches = {patch({{-20, -20, -60}, {20, -10, 30}, {0, 25, 80}}),
+                                      patch({{-5, 0, 2}, {28, 3, 9}, {10, 30, -99}})};
+  const Drawables drawables = fattened(w, fattener, 0.72, patches);
+  canvas.begin(w, drawables);
+  const std::vector<Draw> draws = {{0, 0}, {1, 0}};
+  for (const Verb verb : {Verb::store, Verb::ask}) {
+    const std::vector<float> px = canvas.samples(verb, draws), held = canvas.depths(verb, draws);
+    int covered = 0;
+    for (std::size_t i = 0; i < px.size(); ++i) {
+      if (std::isnan(px[i])) {
+        EXPECT_EQ(held[i], verb == Verb::store ? 1 : 0);
+        continue;
+      }
+      ++covered;
+      const double more = verb == Verb::ask ? behind : 0;
+      const double map = 0.5 + static_cast<double>(px[i]) * depth_scale(w) + more;
+      EXPECT_LE(std::abs(held[i] - map) * 0x1p24, depth_rounding(depth_bits) + (more > 0 ? 1 : 0));
+    }
+    EXPECT_GT(covered, 500);
+  }
 }
 
 using MakeCanvas = std::function<std::unique_ptr<Canvas>(const Fattener&)>;

@@ -215,6 +215,17 @@ inline void count_losses(const Scene& scene, const std::vector<exact_distance::N
   }
 }
 
+/// The square of the distance of a point of a grid from a triangle.
+inline rational::Q squared_distance(const GridPoint& point, const GridTriangle& triangle) {
+  exact_distance::Corners<rational::Q> corners;
+  exact_distance::Point<rational::Q> p;
+  for (std::size_t k = 0; k < 3; ++k) {
+    p[k] = static_cast<double>(point[k]);
+    for (std::size_t c = 0; c < 3; ++c) corners[c][k] = static_cast<double>(triangle.corners[c][k]);
+  }
+  return exact_distance::to_triangle(p, corners);
+}
+
 // What tests of a diagram that a device computes slice by slice share.
 
 // A triangle in the unit cubes of a grid, often a needle, a segment or a point.

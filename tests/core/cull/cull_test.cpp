@@ -109,19 +109,6 @@ TEST(Cull, NothingIsMissedWhateverTheOrderOfObjects) {
   }
 }
 
-TEST(Cull, EconomyCullsAtLeastWhatPlainStoringCulls) {
-  Random random(603);
-  std::size_t more = 0;
-  for (int n = 0; n < 300; ++n) {
-    const Scene scene = reference::scene_of(random_objects(random));
-    const Indices economy = cull_ideally(scene, settings_for("x,y,z", 16)).live;
-    const Indices plain = cull_ideally(scene, settings_for("x,y,z", 16, false)).live;
-    ASSERT_TRUE(std::includes(plain.begin(), plain.end(), economy.begin(), economy.end())) << n;
-    more += plain.size() - economy.size();
-  }
-  EXPECT_GT(more, 0u);
-}
-
 // Bits only grow, and more bits store less: the fixed point is one, whatever order leads to it.
 TEST(Cull, ReachesTheFixedPointWhateverTheOrderOfViews) {
   Random random(604);

@@ -321,27 +321,6 @@ TEST(GlFar, FarApartDrawsNothingAndSaysWhy) {
   EXPECT_EQ(record.verification->false_negatives, 0u);
 }
 
-// The economy of storing only open items must cost no culling: the fixed point is at least as
-// small.
-TEST(GlFar, EconomyNeverKeepsMore) {
-  for (const char* name : {"two-spheres", "crowd", "random-soup"}) {
-    SCOPED_TRACE(name);
-    const Scene scene = make_builtin_scene(name);
-    const Regions plan = find_regions(scene);
-    const Fattener fattener = obb_fattener();
-    GlCanvas canvas(session().context(), fattener.mode, fattener.solid);
-    CullSettings settings{.views = parse_views("x,y,z"),
-                          .resolution = 96,
-                          .fattener = fattener,
-                          .radius = {},
-                          .quick = true};
-    const std::vector<std::uint32_t> economical = cull(scene, plan, settings, canvas).live;
-    settings.quick = false;
-    const std::vector<std::uint32_t> plain = cull(scene, plan, settings, canvas).live;
-    EXPECT_TRUE(std::includes(plain.begin(), plain.end(), economical.begin(), economical.end()));
-  }
-}
-
 lab::MakeCanvas canvases(const GlCanvasOptions& options = {}) {
   return [options](const Fattener& fattener) {
     return std::make_unique<GlCanvas>(lab::context(), fattener.mode, fattener.solid, options);

@@ -62,15 +62,16 @@ void add_lines(rational::Draws& random, float cx, float cy, std::vector<float>& 
   }
 }
 
-TEST(NativeLanes, BoxesAreThoseOfTheScalarTextBitForBit) {
-  const SolidProgram program = obb_fattener().solid;
+/// On every instruction set lines through solids that `draw` makes are those of the scalar text;
+/// it says where a line is.
+template <class Draw>
+void expect_scalar_lines(const SolidProgram& program, std::uint64_t seed, const Draw& draw) {
   on_every_target([&] {
-    rational::Draws random(20261122);
+    rational::Draws random(seed);
     std::uint64_t lines = 0, different = 0;
     for (std::uint64_t n = 0; n < kTriangles; ++n) {
       float cx = 0, cy = 0;
-      Solid solid;
-      box_line::adversarial(random, solid, cx, cy);
+      const Solid solid = draw(random, n, cx, cy);
       std::vector<float> x, y;
       add_lines(random, cx, cy, x, y);
       lines += x.size();
@@ -81,24 +82,24 @@ TEST(NativeLanes, BoxesAreThoseOfTheScalarTextBitForBit) {
   });
 }
 
+TEST(NativeLanes, BoxesAreThoseOfTheScalarTextBitForBit) {
+  expect_scalar_lines(obb_fattener().solid, 20261122,
+                      [](rational::Draws& random, std::uint64_t, float& cx, float& cy) {
+                        Solid solid;
+                        box_line::adversarial(random, solid, cx, cy);
+                        return solid;
+                      });
+}
+
 TEST(NativeLanes, ExactOffsetsAreThoseOfTheScalarTextBitForBit) {
-  const SolidProgram program = minkowski_fattener().solid;
-  on_every_target([&] {
-    rational::Draws random(20261123);
-    std::uint64_t lines = 0, different = 0;
-    for (std::uint64_t n = 0; n < kTriangles; ++n) {
-      const auto t = minkowski_cases::random_triangle(
-          random, static_cast<int>(n % minkowski_cases::kKindCount));
-      const Solid solid = minkowski_solid(t[0], t[1], t[2], random.uniform(0.1, 3));
-      std::vector<float> x, y;
-      const Vec3 p = (t[0] + t[1] + t[2]) / 3;
-      add_lines(random, static_cast<float>(p[0]), static_cast<float>(p[1]), x, y);
-      lines += x.size();
-      different += different_lines(program, solid, x, y);
-    }
-    EXPECT_EQ(different, 0u);
-    EXPECT_EQ(lines, kTriangles * kLines);
-  });
+  expect_scalar_lines(minkowski_fattener().solid, 20261123,
+                      [](rational::Draws& random, std::uint64_t n, float& cx, float& cy) {
+                        const auto t = minkowski_cases::random_triangle(
+                            random, static_cast<int>(n % minkowski_cases::kKindCount));
+                        const Vec3 p = (t[0] + t[1] + t[2]) / 3;
+                        cx = static_cast<float>(p[0]), cy = static_cast<float>(p[1]);
+                        return minkowski_solid(t[0], t[1], t[2], random.uniform(0.1, 3));
+                      });
 }
 
 // ---- fattening ----
@@ -348,29 +349,10 @@ TEST(NativeCanvas, ElementsBesideTheWindowTakePartInNothing) {
 }
 
 TEST(NativeCanvas, HoldsTheSamplesUnderTheDepthMap) {
-  const Window w = lab::window(64, 100);
-  const std::vector<Patch> patches = {lab::patch({{-20, -20, -60}, {20, -10, 30}, {0, 25, 80}}),
-                                      lab::patch({{-5, 0, 2}, {28, 3, 9}, {10, 30, -99}})};
   const Fattener fattener = obb_fattener();
   for (const int bits : {32, 24}) {
     NativeCanvas canvas(fattener.mode, fattener.solid, {.depth_bits = bits});
-    const Drawables drawables = lab::fattened(w, fattener, 0.72, patches);
-    canvas.begin(w, drawables);
-    for (const Verb verb : {Verb::store, Verb::ask}) {
-      const std::vector<float> px = canvas.samples(verb, {{0, 0}, {1, 0}}),
-                               held = canvas.depths(verb, {{0, 0}, {1, 0}});
-      int covered = 0;
-      for (std::size_t i = 0; i < px.size(); ++i) {
-        if (std::isnan(px[i])) {
-          EXPECT_EQ(held[i], verb == Verb::store ? 1 : 0);
-          continue;
-        }
-        ++covered;
-        const double map = 0.5 + static_cast<double>(px[i]) * depth_scale(w);
-        EXPECT_LE(std::abs(held[i] - map) * 0x1p24, depth_rounding(bits));
-      }
-      EXPECT_GT(covered, 500);
-    }
+    lab::expect_held_under_map(canvas, fattener, bits, 0);
   }
 }
 

@@ -8,7 +8,6 @@
 namespace farcull {
 namespace {
 
-using exact_distance::Corners;
 using lab::neighbours_scene;
 using rational::Q;
 
@@ -92,14 +91,7 @@ int wrong_bounds(int count, float error_share) {
     GridPoint point;
     for (float& x : point) x = static_cast<float>(random.below(2 * longest) + 1) * 0.5f;
     const GridDistance d = distance_of(point, triangle, error_share * voronoi_error(longest));
-    Corners<Q> corners;
-    exact_distance::Point<Q> p;
-    for (std::size_t k = 0; k < 3; ++k) {
-      p[k] = static_cast<double>(point[k]);
-      for (std::size_t c = 0; c < 3; ++c)
-        corners[c][k] = static_cast<double>(triangle.corners[c][k]);
-    }
-    const Q exact = exact_distance::to_triangle(p, corners);
+    const Q exact = lab::squared_distance(point, triangle);
     wrong += squared(Q(static_cast<double>(d.lower))) > exact ||
              squared(Q(static_cast<double>(d.upper))) < exact;
   }

@@ -27,6 +27,12 @@ class Check : public testing::Test {
     record.collisions.pairs = all_colliding_pairs(scene).pairs;
     certificate = certificate_of(scene, record);
   }
+  TrianglePair pair_of(const nlohmann::json& named) const {
+    const auto triangle = [&](const nlohmann::json& one) {
+      return scene.objects[one["object"]].first_triangle + one["triangle"].get<std::uint32_t>();
+    };
+    return {triangle(named["a"]), triangle(named["b"])};
+  }
   std::string written() { return folder.write("certificate.json", to_text(certificate)); }
 
   Scene scene;
@@ -59,13 +65,7 @@ TEST_F(Check, RefutedIsStatus1AndNamesThePair) {
   const nlohmann::json json = nlohmann::json::parse(answer.text);
   EXPECT_EQ(json["verdict"], "refuted");
   EXPECT_EQ(json["culled_meeting"], 1);
-  const TrianglePair first = record.collisions.pairs.front();
-  EXPECT_EQ(scene.objects[json["pair"]["a"]["object"]].first_triangle +
-                json["pair"]["a"]["triangle"].get<std::uint32_t>(),
-            first.a);
-  EXPECT_EQ(scene.objects[json["pair"]["b"]["object"]].first_triangle +
-                json["pair"]["b"]["triangle"].get<std::uint32_t>(),
-            first.b);
+  EXPECT_EQ(pair_of(json["pair"]), record.collisions.pairs.front());
 }
 
 // The list that a run wrote is proved with the certificate, or shown not to be the one.
@@ -114,15 +114,8 @@ TEST_F(Check, ComparesTheListThatIsGiven) {
       EXPECT_TRUE(json["proves"].is_null());
       EXPECT_TRUE(has_text(json["reason"].get<std::string>(), reason));
       if (missing == 0) continue;
-      const TrianglePair first = record.collisions.pairs.front();
-      for (const auto& pair : {json["pair"], json["list"]["missing"]["first"]}) {
-        EXPECT_EQ(scene.objects[pair["a"]["object"]].first_triangle +
-                      pair["a"]["triangle"].get<std::uint32_t>(),
-                  first.a);
-        EXPECT_EQ(scene.objects[pair["b"]["object"]].first_triangle +
-                      pair["b"]["triangle"].get<std::uint32_t>(),
-                  first.b);
-      }
+      for (const auto& pair : {json["pair"], json["list"]["missing"]["first"]})
+        EXPECT_EQ(pair_of(pair), record.collisions.pairs.front());
     }
     EXPECT_EQ(error_of([&] { check_list("", with); }).where, folder.path("pairs.csv"));
     EXPECT_EQ(error_of([&] { check_list(list + "9,9,9,9\n", with); }).line,
