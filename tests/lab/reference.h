@@ -252,6 +252,21 @@ inline Scene welded(Scene scene, bool all) {
   return scene;
 }
 
+/// So many objects of small triangles on a grid, some of them empty; many touch, share corners or
+/// are degenerate.
+inline Scene grid_scene(std::mt19937& random, std::size_t object_count, int extent,
+                        int empty_one_in) {
+  std::vector<std::vector<Triangle>> objects(object_count);
+  for (auto& triangles : objects) {
+    triangles.resize(random() % empty_one_in == 0 ? 0 : random() % 40);
+    for (Triangle& t : triangles) {
+      const Vec3 corner(random() % extent, random() % extent, random() % extent);
+      for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
+    }
+  }
+  return welded(scene_of(objects), random() % 2 == 0);
+}
+
 /// Calls visit(pair, boxes overlap) for every pair of triangles that counts, in sorted order.
 template <typename Visit>
 void for_each_pair(const Scene& scene, Visit visit, double clearance = 0) {

@@ -209,27 +209,13 @@ TEST(Accounting, HoldsAtTheEndsOfTheDoubles) {
   expect_equal(account(scene, {}), recount(scene, {}, {}));
 }
 
-/// Objects of small triangles on a grid, some of them `self`; many touch, share corners or are
-/// degenerate.
-Scene random_scene(std::mt19937& random, int object_count, int extent, int self_one_in) {
-  std::vector<std::vector<Triangle>> objects(object_count);
-  for (auto& triangles : objects) {
-    triangles.resize(random() % 4 == 0 ? 0 : random() % 40);
-    for (Triangle& t : triangles) {
-      const Vec3 corner(random() % extent, random() % extent, random() % extent);
-      for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
-    }
-  }
-  Scene scene = reference::welded(reference::scene_of(objects), random() % 2 == 0);
-  for (Object& object : scene.objects) object.self = random() % self_one_in == 0;
-  return scene;
-}
-
 RC_GTEST_PROP(AccountingProperty, EachClassAsRecountedOverAllPairs, ()) {
   const int object_count = *rc::gen::inRange(0, 6);
   const int extent = *rc::gen::inRange(1, 7);
   std::mt19937 random(*rc::gen::arbitrary<unsigned>());
-  const Scene scene = random_scene(random, object_count, extent, *rc::gen::inRange(1, 4));
+  const int self_one_in = *rc::gen::inRange(1, 4);
+  Scene scene = reference::grid_scene(random, object_count, extent, 4);
+  for (Object& object : scene.objects) object.self = random() % self_one_in == 0;
   const unsigned keep_one_in = *rc::gen::inRange(1, 6);
   std::vector<ObjectPair> ignored;
   for (std::uint32_t a = 0; a < scene.objects.size(); ++a) {

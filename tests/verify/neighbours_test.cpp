@@ -215,24 +215,11 @@ TEST(Neighbours, DecideRefusesATriangleWithItselfAndBadClearances) {
   EXPECT_THROW(decide(scene, {}, {.clearance = std::nan("")}), std::logic_error);
 }
 
-/// Small triangles on a grid in several objects, some `self`, with empty objects between.
-Scene grid_scene(std::mt19937& random, int extent) {
-  std::vector<std::vector<Triangle>> objects(1 + random() % 5);
-  for (auto& triangles : objects) {
-    triangles.resize(random() % 3 == 0 ? 0 : random() % 40);
-    for (Triangle& t : triangles) {
-      const Vec3 corner(random() % extent, random() % extent, random() % extent);
-      for (Vec3& p : t) p = corner + Vec3(random() % 3, random() % 3, random() % 3);
-    }
-  }
-  Scene scene = reference::welded(reference::scene_of(objects), random() % 2 == 0);
-  for (Object& object : scene.objects) object.self = random() % 2 == 0;
-  return scene;
-}
-
 RC_GTEST_PROP(AllCollidingPairsProperty, AsBruteForceWithSelfAndClearance, ()) {
   std::mt19937 random(*rc::gen::arbitrary<unsigned>());
-  const Scene scene = grid_scene(random, *rc::gen::inRange(1, 8));
+  const int extent = *rc::gen::inRange(1, 8);
+  Scene scene = reference::grid_scene(random, 1 + random() % 5, extent, 3);
+  for (Object& object : scene.objects) object.self = random() % 2 == 0;
   const double clearance = *rc::gen::element(0.0, 0.0, 0.5, 1.0, 1.7320508075688772, 1e-300);
   ExactResult expected;
   reference::for_each_pair(

@@ -18,6 +18,7 @@ namespace farcull {
 namespace {
 
 using lab::crowded_scene;
+using lab::missed;
 using lab::mixed_scene;
 using lab::Random;
 using lab::random_scene;
@@ -137,16 +138,6 @@ TEST(GlPairs, LeaveOutNeighboursLikeTheCpu) {
     GlPairs gathering(lab::context(), {.storage_limit = 100'000});
     EXPECT_EQ(find_pairs(scene, settings, gathering).candidates, expected);
   }
-}
-
-// Every pair that counts and collides, neighbours included.
-std::size_t missed(const Scene& scene, const PairSettings& settings, PairBackend& backend) {
-  const ExactResult exact = all_colliding_pairs(scene, {.clearance = settings.clearance});
-  std::vector<TrianglePair> truth = exact.pairs;
-  truth.insert(truth.end(), exact.neighbour_pairs.begin(), exact.neighbour_pairs.end());
-  const std::vector<TrianglePair> found = find_pairs(scene, settings, backend).candidates;
-  return static_cast<std::size_t>(std::ranges::count_if(
-      truth, [&](const TrianglePair& pair) { return !std::ranges::binary_search(found, pair); }));
 }
 
 TEST(GlPairs, MissNothing) {
