@@ -13,12 +13,32 @@
 #include "experiments/system/output_file.h"
 #include "experiments/system/text_table.h"
 #include "tests/lab/certificates.h"
-#include "tests/lab/check.h"
+#include "tests/lab/test.h"
 #include "verify/certificate/pair_list.h"
 #include "verify/exact.h"
 
 namespace farcull {
 namespace {
+
+/// The command's status and what it printed.
+struct ProgramAnswer {
+  int status = -1;
+  std::string text;
+  std::string line() const { return text.substr(0, text.find('\n')); }
+};
+
+ProgramAnswer check(const CheckArguments& arguments) {
+  testing::internal::CaptureStdout();
+  ProgramAnswer answer;
+  try {
+    answer.status = run_check(arguments);
+  } catch (...) {
+    testing::internal::GetCapturedStdout();
+    throw;
+  }
+  answer.text = testing::internal::GetCapturedStdout();
+  return answer;
+}
 
 class Check : public testing::Test {
  protected:
