@@ -1,7 +1,7 @@
 // Accounting puts every pair into the right class, and notices faults of its own steps.
 #include "verify/accounting.h"
 
-#include <rapidcheck.h>
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "tests/lab/reference.h"

@@ -1,7 +1,7 @@
 // The exact predicates agree with rational arithmetic, degenerate triangles included.
 #include "verify/exact.h"
 
-#include <rapidcheck.h>
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "tests/lab/rational.h"

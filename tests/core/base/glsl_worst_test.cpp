@@ -2,6 +2,7 @@
 // Worst must hold every result that a device may give, and stay exact where a device must be.
 #include "core/base/glsl_worst.h"
 
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "tests/lab/rational.h"

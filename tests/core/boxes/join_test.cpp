@@ -1,7 +1,7 @@
 // The box join finds the pairs that brute force finds.
 #include "core/boxes/join.h"
 
-#include <rapidcheck.h>
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "core/boxes/block.h"

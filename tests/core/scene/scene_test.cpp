@@ -2,7 +2,7 @@
 // against a search through the list.
 #include "core/scene/scene.h"
 
-#include <rapidcheck.h>
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "experiments/scenes/scene_file.h"

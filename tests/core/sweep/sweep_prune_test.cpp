@@ -1,5 +1,6 @@
 // Sweep and prune on scenes: as brute force, from frame to frame, and broken ones that must be
 // caught.
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "tests/lab/boxes.h"

@@ -1,6 +1,6 @@
 #include "core/view/view.h"
 
-#include <rapidcheck.h>
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "core/view/budget.h"

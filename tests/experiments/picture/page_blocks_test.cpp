@@ -2,7 +2,7 @@
 // written.
 #include "experiments/picture/picture.h"
 
-#include <rapidcheck.h>
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "core/base/base64.h"

@@ -1,7 +1,7 @@
 // Certificates of right results check; forged ones do not.
 #include "verify/certificate/certificate.h"
 
-#include <rapidcheck.h>
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "experiments/scenes/builtin/scenes.h"
