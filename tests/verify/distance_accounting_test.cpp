@@ -3,7 +3,7 @@
 #include "verify/distance_accounting.h"
 
 #include "experiments/generators/pair_generators.h"
-#include "tests/experiments/method/distance_lab.h"
+#include "tests/lab/distances.h"
 #include "tests/lab/hard_pairs.h"
 #include "tests/lab/test.h"
 #include "verify/distance_claims.h"

@@ -4,7 +4,7 @@
 #include "experiments/method/distances.h"
 #include "experiments/method/run.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/experiments/method/distance_lab.h"
+#include "tests/lab/distances.h"
 #include "tests/lab/flat.h"
 #include "verify/exact.h"
 

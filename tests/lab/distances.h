@@ -2,15 +2,9 @@
 // formulas of near_lab.h, which share no code with farcull.
 #pragma once
 
-#include <algorithm>
-#include <optional>
-#include <span>
-#include <tuple>
-#include <vector>
-
 #include "experiments/method/distances.h"
-#include "tests/core/proximity/near_lab.h"
-#include "tests/verify/closest_reference.h"
+#include "tests/lab/closest.h"
+#include "tests/lab/grid_distance.h"
 #include "verify/rational.h"
 
 namespace farcull::distance_lab {
@@ -19,52 +13,10 @@ using rational::Q;
 using Z = mpz_class;
 using Corners = near_lab::Corners<Z>;
 
-/// The least common denominator of coordinates, a power of two.
-inline Z scale_of(std::span<const Vec3> points) {
-  Z scale = 1;
-  for (const Vec3& p : points) {
-    for (const double x : p) scale = std::max(scale, Z(Q(x).get_den()));
-  }
-  return scale;
-}
-
-/// The corners times the scale.
-inline Corners exact(const std::array<Vec3, 3>& t, const Z& scale) {
-  Corners out;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (int axis = 0; axis < 3; ++axis)
-      out[i][static_cast<std::size_t>(axis)] = Z(Q(Q(t[i][axis]) * scale));
-  }
-  return out;
-}
-
-inline Q squared_distance(const Corners& a, const Corners& b) {
-  const auto f = near_lab::squared_distance(a, b);
-  Q out(f.numerator, f.denominator);
-  out.canonicalize();
-  return out;
-}
-
-inline Q squared_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-  const Z scale = std::max(scale_of(a), scale_of(b));
-  return squared_distance(exact(a, scale), exact(b, scale)) / (scale * scale);
-}
-
-inline bool share_corner(const Corners& a, const Corners& b) {
-  return std::ranges::any_of(a, [&](const auto& p) { return std::ranges::find(b, p) != b.end(); });
-}
-
-/// The square of the gap of the boxes: no pair of points is nearer.
-inline Z box_gap(const Corners& a, const Corners& b) {
-  Z sum = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto less = [&](const auto& p, const auto& q) { return p[axis] < q[axis]; };
-    const auto [a_lo, a_hi] = std::ranges::minmax(a, less);
-    const auto [b_lo, b_hi] = std::ranges::minmax(b, less);
-    const Z gap = std::max(Z(b_lo[axis] - a_hi[axis]), Z(a_lo[axis] - b_hi[axis]));
-    if (gap > 0) sum += gap * gap;
-  }
-  return sum;
+using near_lab::exact;
+using near_lab::scale_of;
+inline Q squared_distance(const auto& a, const auto& b) {
+  return near_lab::squared_distance_of(a, b);
 }
 
 struct Answer {
@@ -89,8 +41,8 @@ class Truth {
       const std::uint32_t first = a == b ? i + 1 : y.first_triangle;
       for (std::uint32_t j = first; j < y.first_triangle + y.triangle_count; ++j) {
         const Corners &s = corners_[i], &t = corners_[j];
-        if (!keep(box_gap(s, t))) continue;
-        if (a == b && share_corner(s, t)) continue;
+        if (!keep(near_lab::square_of_gap(s, t))) continue;
+        if (a == b && near_lab::share_position(s, t)) continue;
         visit(TrianglePair{i, j}, s, t);
       }
     }
@@ -105,7 +57,7 @@ class Truth {
     each(
         a, b, [&](const Z& gap) { return !least_gap || gap < *least_gap; },
         [&](const TrianglePair& pair, const Corners& s, const Corners& t) {
-          least_gap = box_gap(s, t);
+          least_gap = near_lab::square_of_gap(s, t);
           start = pair;
         });
     if (!least_gap) return out;
@@ -160,9 +112,8 @@ class Truth {
       }));
     };
     std::vector<Answer> out;
-    for (const Answer& x : answers) {
+    for (const Answer& x : answers)
       if (before(x, x.objects.a) < k || before(x, x.objects.b) < k) out.push_back(x);
-    }
     answers = out;
   }
 

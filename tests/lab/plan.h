@@ -1,14 +1,9 @@
 // A plan against the trace of the run that executed it.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "experiments/method/run.h"
 #include "experiments/scenes/builtin/scenes.h"
-#include "tests/core/base/trials.h"
+#include "tests/lab/test.h"
 
 namespace farcull::lab {
 
@@ -58,20 +53,18 @@ inline bool covers(const Stage& planned, const Stage& ran) {
 inline std::string not_followed(const Record& record) {
   std::vector<std::string> planned, traced;
   std::vector<Stage> depending;
-  for (const Stage& stage : record.plan) {
-    if (stage.depends) {
+  for (const Stage& stage : record.plan)
+    if (stage.depends)
       depending.push_back(stage);
-    } else {
+    else
       planned.push_back(fixed_part(stage));
-    }
-  }
   for (const Stage& stage : record.trace) {
     if (!stage.depends) {
       traced.push_back(fixed_part(stage));
       continue;
     }
-    const bool covered = std::any_of(depending.begin(), depending.end(),
-                                     [&](const Stage& p) { return covers(p, stage); });
+    const bool covered =
+        std::ranges::any_of(depending, [&](const Stage& p) { return covers(p, stage); });
     if (!covered) return "not planned: " + fixed_part(stage);
   }
   const auto [p, t] = std::mismatch(planned.begin(), planned.end(), traced.begin(), traced.end());

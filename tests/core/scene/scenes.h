@@ -1,4 +1,0 @@
-// The old place of tests/lab/scenes.h.
-#pragma once
-
-#include "tests/lab/scenes.h"

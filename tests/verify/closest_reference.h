@@ -1,4 +1,0 @@
-// The old place of tests/lab/closest.h.
-#pragma once
-
-#include "tests/lab/closest.h"
